@@ -3,18 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <memory>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "compare/comparison/characteristics.hpp"
-#include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/points.hpp"
-#include "compare/deviation/deviation.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
@@ -28,147 +21,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Points of a branch between which a figure over another output is interpolated.
-constexpr int interpolated_points = 40;
+constexpr double legs_agree = 1e-6;  // of a figure's movement
 
-// Model with its outputs, of which the required ones are evaluated.
-struct Solver {
-    const Model& model;
-    std::span<const Figure> figures;
-    Leg leg;
-    FigureValues& result;
-
-    std::vector<Channel> all = figure_outputs(model);
-
-    const Channel& output(const std::string& name) const {
-        const int c = find_channel(all, name);
-        if (c < 0) throw std::invalid_argument(fmt::format("the scene has no output '{}'", name));
-        return all[static_cast<std::size_t>(c)];
-    }
-
-    // The outputs of these figures, each once.
-    std::vector<Channel> outputs(const std::vector<std::size_t>& which) const {
-        std::vector<Channel> list;
-        const auto want = [&](const std::string& name) {
-            if (!name.empty() && find_channel(list, name) < 0) list.push_back(output(name));
-        };
-        for (const std::size_t k : which) want(figures[k].name), want(figures[k].over);
-        return list;
-    }
-
-    void miss(const std::string& why, Outcome outcome = Outcome::converged) const {
-        if (!result.why_not.empty()) return;
-        result.why_not = why;
-        result.not_applicable = is_not_applicable(outcome);
-    }
-    void set(std::size_t k, double value, const Channel& channel) const {
-        if (figures[k].change)
-            value -= evaluate(model, std::span(&channel, 1), design_state(model)).front();
-        result.value[static_cast<Index>(k)] = finite_or_nan(value);
-        if (!std::isfinite(value))
-            miss(fmt::format(
-                "{}: {}", channel.name,
-                std::isinf(value) ? why_undefined(channel) : "it could not be computed"));
-    }
-
-    // Figures at values of the parameter.
-    void at_parameters(const Branch& branch, std::vector<std::size_t> which) const {
-        const auto channels = outputs(which);
-        std::ranges::sort(which, {}, [&](std::size_t k) { return std::abs(figures[k].at); });
-        auto ways = sides_of(model, branch, 1);
-        for (std::size_t w = 0; w < ways.size(); ++w) {
-            std::vector<std::size_t> here;
-            std::vector<double> points;
-            for (const std::size_t k : which) {
-                const double a = figures[k].at;
-                const bool is_here = a == 0 ? w == 0 : a * ways[w].branch.to > 0;
-                if (!is_here) continue;
-                here.push_back(k);
-                if (points.empty() || points.back() != a) points.push_back(a);
-            }
-            if (points.empty()) continue;
-            std::map<double, std::vector<double>> rows;
-            Analyses analyses;
-            const EquilibriumPath path =
-                walk_through(ways[w], leg, points, [&](const Equilibrium& state) {
-                    rows[state.load] =
-                        row_of(model, channels, ways[w], {.leg = leg}, state, analyses).values;
-                });
-            for (const std::size_t k : here) {
-                const auto row = rows.find(figures[k].at);
-                if (row == rows.end()) {
-                    miss(fmt::format("branch '{}': {}: {}", branch.name,
-                                     elastocheck::name(path.outcome), path.detail),
-                         path.outcome);
-                    continue;
-                }
-                const auto c = static_cast<std::size_t>(find_channel(channels, figures[k].name));
-                set(k, row->second[c], channels[c]);
-            }
-        }
-    }
-
-    // Figures at values of another output, interpolated on the curve of the branch. `places`, if
-    // asked for, receives the parameters there.
-    void over_outputs(const Branch& branch, const std::vector<std::size_t>& which,
-                      std::map<std::size_t, double>* places = nullptr) const {
-        const auto channels = outputs(which);
-        const auto ways = sides_of(model, branch, std::min(branch.steps, interpolated_points));
-        const PathCurve path = walk(model, channels, branch, ways, {.leg = leg});
-        for (const std::size_t k : which) {
-            const auto over = static_cast<std::size_t>(find_channel(channels, figures[k].over));
-            const auto c = static_cast<std::size_t>(find_channel(channels, figures[k].name));
-            const auto x = placed_by(path.curve, over);
-            if (reaches(x, figures[k].at)) {
-                set(k, interpolate(x, path.curve.channel(c), figures[k].at, 6), channels[c]);
-                if (places != nullptr)
-                    (*places)[k] = interpolate(x, path.curve.a, figures[k].at, 6) /
-                                   in_unit(unit_of(branch.unit));
-            } else
-                miss(x.empty()
-                         ? fmt::format("branch '{}': {} is not monotonic", branch.name,
-                                       figures[k].over)
-                         : fmt::format("branch '{}' does not reach {} = {:g} {}", branch.name,
-                                       figures[k].over, figures[k].at, symbol(channels[over].unit)),
-                     path.outcome);
-        }
-    }
-};
-
-}  // namespace
-
-std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
-    auto all = channels(model);
-    std::ranges::move(characteristics(model), std::back_inserter(all));
-    std::ranges::move(element_channels(model), std::back_inserter(all));
-    if (with_sums) std::ranges::move(sums(model), std::back_inserter(all));
-    return all;
+// Reason why the trim of a scene is not reached; empty if it is.
+std::string why_not_trimmed(const Trimmed& trimmed) {
+    return !trimmed.record || trimmed.record->reached() ? "" : "trim: " + trimmed.record->detail;
 }
 
-FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg) {
-    FigureValues result;
-    result.value = VectorXd::Constant(static_cast<Index>(figures.size()), nan);
-    const Trimmed trimmed = trim(scene);
-    if (trimmed.record && !trimmed.record->reached()) {
-        result.why_not = "trim: " + trimmed.record->detail;
-        return result;
-    }
-    const Model model = compile(trimmed.scene);
-    const Solver solver{model, figures, leg, result};
-    for (const auto& branch : model.branches) {
-        std::vector<std::size_t> placed, over;
-        for (std::size_t k = 0; k < figures.size(); ++k)
-            if (figures[k].branch == branch.name)
-                (figures[k].over.empty() ? placed : over).push_back(k);
-        if (!placed.empty()) solver.at_parameters(branch, placed);
-        if (!over.empty()) solver.over_outputs(branch, over);
-    }
-    return result;
-}
-
-namespace {
-
-// One branch of figure_gradient(): its rows.
+// Rates of the figures of one branch.
 struct BranchGradient {
     const Scene& scene;
     const Trimmed& trimmed;
@@ -176,54 +36,65 @@ struct BranchGradient {
     const VaryingScene& varying;
     std::span<const Figure> figures;
     FigureGradient& result;
+    std::vector<Channel> outputs = {};
+    std::vector<bool> changes = {};             // of `outputs`: counted from the design position
+    std::map<std::size_t, double> places = {};  // of the figures
+    std::string why = {};  // of the first rate that is missing, with its figure and number
 
-    // `why`: of the first rate that is missing, with its figure and number.
-    void add(const Branch& branch, const std::vector<std::size_t>& which, std::string& why) const {
-        FigureValues unused;
-        unused.value = VectorXd::Constant(static_cast<Index>(figures.size()), nan);
-        const Solver solver{model, figures, Leg::equilibrium, unused};
-        std::map<std::size_t, double> places;
-        std::vector<std::size_t> over;
-        for (const std::size_t k : which) {
+    // Position in `outputs`, where it is added.
+    Index output(const std::string& name, bool change) {
+        for (std::size_t c = 0; c < outputs.size(); ++c)
+            if (outputs[c].name == name && changes[c] == change) return static_cast<Index>(c);
+        const auto all = figure_outputs(model);
+        outputs.push_back(all[static_cast<std::size_t>(find_channel(all, name))]);
+        changes.push_back(change);
+        return std::ssize(outputs) - 1;
+    }
+    void place(const std::string& branch) {
+        std::vector<std::size_t> which;
+        std::vector<Figure> over;
+        for (std::size_t k = 0; k < figures.size(); ++k) {
+            if (figures[k].branch != branch) continue;
             if (figures[k].over.empty())
                 places[k] = figures[k].at;
             else
-                over.push_back(k);
+                which.push_back(k), over.push_back(figures[k]);
         }
-        if (!over.empty()) solver.over_outputs(branch, over, &places);
-        why = unused.why_not;
+        if (over.empty()) return;
+        const FigureValues found = evaluate(model, over, Leg::equilibrium);
+        why = found.why_not;
+        for (std::size_t i = 0; i < which.size(); ++i)
+            if (const double a = found.place[static_cast<Index>(i)]; std::isfinite(a))
+                places[which[i]] = a;
+    }
+    void add(const std::string& branch) {
+        place(branch);
         if (places.empty()) return;
-
-        // each output as it stands and, where a figure asks for it, counted from the design position
-        auto outputs = solver.outputs(which);
-        const std::size_t plain = outputs.size();
-        for (const std::size_t k : which)
-            if (figures[k].change) outputs.push_back(solver.output(figures[k].name));
-        GradientOptions options{
-            .branches = {branch.name}, .legs = {Leg::equilibrium}, .by_parameter = !over.empty()};
-        for (std::size_t c = 0; c < outputs.size(); ++c) options.changes.push_back(c >= plain);
-        for (const auto& [k, a] : places) options.stations[branch.name].push_back(a);
+        GradientOptions options{.branches = {branch}, .legs = {Leg::equilibrium}};
+        for (const auto& [k, a] : places) {
+            output(figures[k].name, figures[k].change);
+            options.stations[branch].push_back(a);
+            if (figures[k].over.empty()) continue;
+            output(figures[k].over, false);
+            options.by_parameter = true;
+        }
+        options.changes = changes;
         const Gradients found = gradients(scene, trimmed, model, varying, outputs, options);
         for (const SideGradients& side : found.sides) {
             const LegGradients& leg = side.legs.front();
             if (why.empty()) why = leg.failure;
             for (const auto& [k, a] : places)
                 for (std::size_t s = 0; s < leg.at.size(); ++s)
-                    if (side.a[s] == a) row(k, outputs, plain, leg.at[s], side.why_number[s], why);
+                    if (side.a[s] == a) row(k, leg.at[s], side.why_number[s]);
         }
     }
-
-  private:
-    void row(std::size_t k, const std::vector<Channel>& outputs, std::size_t plain,
-             const MatrixXd& at, const std::vector<std::string>& reasons, std::string& why) const {
+    void row(std::size_t k, const MatrixXd& at, const std::vector<std::string>& reasons) {
         const Figure& figure = figures[k];
         const auto n = std::ssize(varying.numbers);
-        const auto counted = std::span(outputs).subspan(figure.change ? plain : 0);
-        const Index y =
-            find_channel(counted, figure.name) + static_cast<Index>(figure.change ? plain : 0);
+        const Index y = output(figure.name, figure.change);
         Eigen::RowVectorXd rate = at.row(y).head(n);
         if (!figure.over.empty()) {
-            const int x = find_channel(outputs, figure.over);
+            const Index x = output(figure.over, false);
             // a branch that drives x has the same x at the same parameter, whatever the number
             rate -= at(y, n) / at(x, n) * at.row(x).head(n);
         }
@@ -240,31 +111,58 @@ struct BranchGradient {
 
 }  // namespace
 
+FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg) {
+    const Trimmed trimmed = trim(scene);
+    const VectorXd none = VectorXd::Constant(std::ssize(figures), nan);
+    if (const auto why = why_not_trimmed(trimmed); !why.empty()) return {none, none, why};
+    return evaluate(compile(trimmed.scene), figures, leg);
+}
+
 FigureGradient figure_gradient(const Scene& scene, const VaryingScene& varying,
                                std::span<const Figure> figures, int threads) {
-    FigureGradient result{MatrixXd::Constant(std::ssize(figures), std::ssize(varying.numbers), nan),
-                          {}};
     const Trimmed trimmed = trim(scene);
-    if (trimmed.record && !trimmed.record->reached()) {
-        result.why_not = "trim: " + trimmed.record->detail;
-        return result;
-    }
+    FigureGradient result{MatrixXd::Constant(std::ssize(figures), std::ssize(varying.numbers), nan),
+                          why_not_trimmed(trimmed)};
+    if (!result.why_not.empty()) return result;
     const Model model = compile(trimmed.scene);
-    const BranchGradient gradient{scene, trimmed, model, varying, figures, result};
     std::vector<std::string> why(model.branches.size());
     std::vector<Job> jobs;
-    for (std::size_t b = 0; b < model.branches.size(); ++b) {
-        std::vector<std::size_t> which;
-        for (std::size_t k = 0; k < figures.size(); ++k)
-            if (figures[k].branch == model.branches[b].name) which.push_back(k);
-        if (!which.empty())
-            jobs.push_back({model.branches[b].name,
-                            [&, b, which] { gradient.add(model.branches[b], which, why[b]); }});
-    }
+    for (std::size_t b = 0; b < model.branches.size(); ++b)
+        jobs.push_back({model.branches[b].name, [&, b] {
+                            BranchGradient on{scene, trimmed, model, varying, figures, result};
+                            on.add(model.branches[b].name);
+                            why[b] = on.why;
+                        }});
     run_jobs(jobs, threads, {});
     if (!result.rate.allFinite())
         for (const std::string& reason : why)
             if (result.why_not.empty()) result.why_not = reason;
+    return result;
+}
+
+Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
+                     const std::vector<std::string>& units, const VectorXd& values,
+                     const VectorXd& movement) {
+    Confirmation result;
+    std::string& why = result.why_not;
+    bool judged = false;
+    for (const auto leg : {Leg::energy, Leg::series}) {
+        const FigureValues found = figure_values(scene, figures, leg);
+        (leg == Leg::energy ? result.energy : result.series) = found.value;
+        if (found.not_applicable) continue;
+        judged = true;
+        for (std::size_t k = 0; k < figures.size(); ++k) {
+            const auto i = static_cast<Index>(k);
+            const double apart = std::abs(found.value[i] - values[i]);
+            if (why.empty() && std::isfinite(apart) && !(apart <= legs_agree * movement[i]))
+                why = fmt::format("{}: the {} differs by {:.2g} {}", figures[k].name,
+                                  leg == Leg::energy ? "energy leg" : "series", apart, units[k]);
+        }
+        if (why.empty()) why = found.why_not;
+        if (why.empty() && !found.value.allFinite()) why = "a figure has no value by another leg";
+    }
+    if (why.empty() && !judged) why = "no other leg applies to the scene";
+    result.confirmed = why.empty();
     return result;
 }
 

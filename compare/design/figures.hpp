@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <functional>
 #include <span>
 #include <string>
@@ -50,13 +51,15 @@ using SceneAt = std::function<Scene(const Eigen::VectorXd& p)>;
 // of what redundant joints share.
 std::vector<Channel> figure_outputs(const Model& model, bool with_sums = true);
 
-// Values of the figures by one leg, in their units. NaN where there is none, with the reason in
-// `why_not` (of the first).
+// Values of figures by one leg, in their units, and the parameters of their branches where they are
+// [SI]. NaN where there is none, with the reason in `why_not` (of the first).
 struct FigureValues {
-    Eigen::VectorXd value;
+    Eigen::VectorXd value, place;
     std::string why_not = {};
     bool not_applicable = false;  // the reason is that the leg does not apply to the scene
 };
+FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg);
+// Of the scene with its trim.
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg);
 
 // Rates of the figures by the equilibrium leg; `scene` is `varying` at its values. NaN where there is
@@ -71,5 +74,21 @@ double step_of(const Number& number);
 // By the equilibrium leg; `numbers`: those of p, by their paths and units.
 Figures solved_figures(SceneAt scene_at, std::vector<Number> numbers, std::vector<Figure> figures,
                        int threads = 1);
+
+// Figures that the equilibrium leg found, by the energy leg and by the series.
+struct Confirmation {
+    Eigen::VectorXd energy, series;  // figures in their units; NaN where a leg does not apply
+    // A leg other than the equilibrium leg applies, and each that applies agrees on every figure, to
+    // a millionth of its movement over the ranges of the numbers.
+    bool confirmed = false;
+    std::string why_not = {};
+};
+// `values` and `movement` per figure, in the units that `units` name in messages.
+Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
+                     const std::vector<std::string>& units, const Eigen::VectorXd& values,
+                     const Eigen::VectorXd& movement);
+
+// What moves a figure of this value by less, does not move it: rounding.
+inline double least_movement(double value) { return 1e-10 * (1 + std::abs(value)); }
 
 }  // namespace elastocheck::compare

@@ -21,7 +21,8 @@
 //
 //   K² [Σ ψ² / (N - n)] / [mean ψ']²,   K = 1 + (n/N) var ψ' / [mean ψ']²
 //
-// A combination v_k of the numbers with S_k ≤ 1e-6 S_1 is not determined by the data: it keeps its start value, and a number with a part in it has no interval.
+// A combination v_k of the numbers with S_k ≤ 1e-6 S_1 is not determined by the data: it stays near its start value (`pull` of
+// least_squares.hpp), and a number with a part in it has no interval.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,19 +43,17 @@ struct Measured {
 };
 
 struct Fitted {
-    Eigen::VectorXd p;
+    Eigen::VectorXd p = {};
     // half of the 95 % interval; infinite: not determined
-    Eigen::VectorXd interval;
-    Eigen::VectorXd calculated;       // figures at p
-    std::vector<double> noise;        // s_c per column
-    std::vector<double> rms_before;   // of f - y per column, at the start
-    std::vector<int> outliers;        // per column: values with |f - y| > outlying s_c
-    std::vector<bool> at_limit;       // per number: its interval is not valid
-    Eigen::VectorXd singular_values;  // S, in falling order
+    Eigen::VectorXd interval = {};
+    std::vector<double> noise = {};        // s_c per column
+    std::vector<double> rms_before = {};   // of f - y per column, at the start
+    std::vector<int> outliers = {};        // per column: values with |f - y| > outlying s_c
+    std::vector<bool> at_limit = {};       // per number: its interval is not valid
+    Eigen::VectorXd singular_values = {};  // S, in falling order
     // columns: the undetermined combinations, as changes of the numbers in steps
-    Eigen::MatrixXd undetermined;
+    Eigen::MatrixXd undetermined = {};
     int freedom = 0;  // of the column with the fewest; below 1 there are no intervals
-    int iterations = 0;
     bool converged = false;
     std::string why_not = {};  // reason why there is no fit
 };

@@ -1,9 +1,7 @@
 #include "compare/design/least_squares.hpp"
 
-#include <Eigen/QR>
-#include <algorithm>
-#include <cmath>
-#include <vector>
+#include <unsupported/Eigen/NonLinearOptimization>
+#include <utility>
 
 namespace elastocheck::compare {
 namespace {
@@ -12,111 +10,75 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_iterations = 100;
-// of the largest squared column norm of J: numbers that no residual answers to keep their value
-constexpr double ridge = 1e-16;
-constexpr double least_decrease = 1e-13;  // of |r|²
+// of |r|² and of the scaled x
+constexpr double least_decrease = 1e-14, least_change = 1e-10;
 
-enum class At { free, low, high };
-
-MatrixXd columns(const MatrixXd& A, const std::vector<Index>& which) {
-    MatrixXd part(A.rows(), static_cast<Index>(which.size()));
-    for (Index k = 0; k < part.cols(); ++k) part.col(k) = A.col(which[static_cast<std::size_t>(k)]);
-    return part;
+// -1, 1: x is at this bound, beyond which the sum of squares decreases.
+int held(const Box& box, const VectorXd& x, Index i, double descent) {
+    return descent < 0 && x[i] <= box.low[i] ? -1 : descent > 0 && x[i] >= box.high[i] ? 1 : 0;
 }
 
-// [A; √λ I]
-MatrixXd damped(const MatrixXd& A, double lambda) {
-    MatrixXd stacked(A.rows() + A.cols(), A.cols());
-    stacked << A, std::sqrt(lambda) * MatrixXd::Identity(A.cols(), A.cols());
-    return stacked;
-}
+// [r; w (x - about)] at P(x), as Eigen's method calls it.
+struct Stacked {
+    const LeastSquares& problem;
+    MatrixXd first;      // ∂r/∂x at the start, for the first step
+    double weight;       // w
+    Index rows;          // of the stack
+    VectorXd last = {};  // of the last call
+
+    int values() const { return static_cast<int>(rows); }
+    int operator()(const VectorXd& x, VectorXd& stacked) {
+        const VectorXd at = within(problem.box, x);
+        stacked << problem.residual(at), weight * (at - problem.about);
+        last = stacked;
+        return 0;
+    }
+    int df(const VectorXd& x, MatrixXd& J) {
+        J << (first.size() > 0 ? std::exchange(first, {}) : problem.jacobian(x)),
+            weight * MatrixXd::Identity(x.size(), x.size());
+        const VectorXd descent = -J.transpose() * last;
+        for (Index i = 0; i < x.size(); ++i)
+            if (held(problem.box, x, i, descent[i]) != 0) J.col(i).setZero();
+        return J.allFinite() ? 0 : -1;
+    }
+};
 
 }  // namespace
 
-VectorXd bounded_least_squares(const MatrixXd& A, const VectorXd& b, const Box& box) {
-    const Index n = A.cols();
-    VectorXd x = VectorXd::Zero(n);
-    std::vector<At> state(static_cast<std::size_t>(n), At::free);
-    for (Index pass = 0; pass < 20 * (n + 1); ++pass) {
-        std::vector<Index> free;
-        for (Index i = 0; i < n; ++i)
-            if (state[static_cast<std::size_t>(i)] == At::free) free.push_back(i);
-        // To the minimum over the free x, as far as the bounds allow.
-        double share = 1;
-        Index stopped = -1;
-        if (!free.empty()) {
-            const MatrixXd part = columns(A, free);
-            const VectorXd d = part.colPivHouseholderQr().solve(b - A * x);
-            for (Index k = 0; k < d.size(); ++k) {
-                const Index i = free[static_cast<std::size_t>(k)];
-                const double room = d[k] > 0 ? box.high[i] - x[i] : box.low[i] - x[i];
-                if (std::abs(d[k]) * share > std::abs(room)) share = room / d[k], stopped = i;
-            }
-            for (Index k = 0; k < d.size(); ++k) {
-                const Index i = free[static_cast<std::size_t>(k)];
-                x[i] += share * d[k];
-                if (i != stopped) continue;
-                const bool up = d[k] > 0;
-                x[i] = up ? box.high[i] : box.low[i];
-                state[static_cast<std::size_t>(i)] = up ? At::high : At::low;
-            }
-        }
-        if (stopped >= 0) continue;
-        // The bound that holds back the largest decrease.
-        const VectorXd residual = b - A * x, descent = A.transpose() * residual;
-        Index released = -1;
-        double most = 0;
-        for (Index i = 0; i < n; ++i) {
-            const At at = state[static_cast<std::size_t>(i)];
-            const double pull = at == At::low ? descent[i] : at == At::high ? -descent[i] : 0;
-            if (pull > 1e-12 * A.col(i).norm() * residual.norm() && pull > most)
-                most = pull, released = i;
-        }
-        if (released < 0) break;
-        state[static_cast<std::size_t>(released)] = At::free;
-    }
-    return x;
+VectorXd within(const Box& box, const VectorXd& x) {
+    return x.cwiseMax(box.low).cwiseMin(box.high);
 }
 
-Minimum minimise(const LeastSquares& problem, VectorXd start, const Box& box) {
-    Minimum found;
-    found.x = std::move(start);
+Minimum minimise(const LeastSquares& problem, VectorXd start) {
+    namespace Status = Eigen::LevenbergMarquardtSpace;
+    Minimum found{.x = std::move(start)};
     found.residual = problem.residual(found.x);
-    found.jacobian = problem.jacobian(found.x);
-    double lambda = 0;  // of the largest squared column norm of J
-    while (found.iterations < most_iterations && found.residual.allFinite() &&
-           found.jacobian.allFinite()) {
-        const MatrixXd& J = found.jacobian;
-        const double size = J.cols() > 0 ? J.colwise().squaredNorm().maxCoeff() : 0;
-        if (!(size > 0)) {
-            found.converged = true;
-            return found;
-        }
-        VectorXd target = VectorXd::Zero(J.rows() + J.cols());
-        target.head(J.rows()) = -found.residual;
-        const VectorXd d = bounded_least_squares(damped(J, std::max(lambda, ridge) * size), target,
-                                                 {box.low - found.x, box.high - found.x});
-        const double before = found.residual.squaredNorm(),
-                     expected = before - (found.residual + J * d).squaredNorm();
-        if (!(expected > least_decrease * before)) {
-            found.converged = true;
-            return found;
-        }
-        ++found.iterations;
-        // Within the box in spite of rounding.
-        const VectorXd x = (found.x + d).cwiseMax(box.low).cwiseMin(box.high);
-        const VectorXd residual = problem.residual(x);
-        if (residual.allFinite() && residual.squaredNorm() < before) {
-            found.x = x;
-            found.residual = residual;
-            found.jacobian = problem.jacobian(x);
-            lambda = lambda > 1e-8 ? lambda / 10 : 0;
-        } else {
-            lambda = std::max(10 * lambda, 1e-4);
-        }
-    }
+    const MatrixXd J = problem.jacobian(found.x);
+    if (!found.residual.allFinite() || !J.allFinite()) return found;
+    const double size = J.size() > 0 ? J.colwise().norm().maxCoeff() : 0;
+    found.converged = !(size > 0);
+    if (found.converged) return found;
+    Stacked stacked{problem, J, problem.pull * size, J.rows() + J.cols()};
+    Eigen::LevenbergMarquardt<Stacked> method(stacked);
+    method.parameters.ftol = least_decrease, method.parameters.xtol = least_change;
+    auto status = method.minimizeInit(found.x);
+    do {
+        status = method.minimizeOneStep(found.x);
+        found.x = within(problem.box, found.x);
+    } while (status == Status::Running && !method.fvec.head(found.residual.size()).isZero(0));
+    found.residual = method.fvec.head(found.residual.size());
+    found.converged = status != Status::TooManyFunctionEvaluation && status != Status::UserAsked;
     return found;
+}
+
+std::vector<int> limits_reached(const LeastSquares& problem, const Minimum& at) {
+    const VectorXd descent = -problem.jacobian(at.x).transpose() * at.residual;
+    std::vector<int> limits;
+    for (Index i = 0; i < descent.size(); ++i)
+        limits.push_back(std::abs(descent[i]) > 1e-6 * at.residual.norm()
+                             ? held(problem.box, at.x, i, descent[i])
+                             : 0);
+    return limits;
 }
 
 }  // namespace elastocheck::compare

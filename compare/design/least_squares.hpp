@@ -1,37 +1,40 @@
-// Nonlinear least squares within bounds: Levenberg and Marquardt's method on a bounded linear
-// problem.
+// Nonlinear least squares within bounds: Levenberg and Marquardt's method of Eigen (MINPACK's lmder).
+//
+//   minimise  |r(P(x))|² + w² |P(x) - about|²,   P(x): the point of the box that is nearest to x
+//
+// w is `pull` times the largest column norm of ∂r/∂x at the start; it keeps numbers that r does not
+// determine where they are. A number at a bound beyond which the sum would decrease has no column in
+// the Jacobian: the steps are those of the others.
 #pragma once
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 namespace elastocheck::compare {
 
 struct Box {
     Eigen::VectorXd low, high;
 };
-
-// The x within the box that minimises |A x - b|². A has full column rank, and the box contains
-// zero. Active-set method: from a feasible point to the minimum over the free x, or to the first
-// bound on the way; a bound whose multiplier has the wrong sign is released.
-Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
-                                      const Box& box);
+Eigen::VectorXd within(const Box& box, const Eigen::VectorXd& x);  // P(x)
 
 struct LeastSquares {
     std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> residual;  // NaN where there is none
     std::function<Eigen::MatrixXd(const Eigen::VectorXd& x)> jacobian;
+    Box box;
+    Eigen::VectorXd about = {};
+    double pull = 1e-8;
 };
 
 struct Minimum {
-    Eigen::VectorXd x, residual;
-    Eigen::MatrixXd jacobian;  // at x
-    int iterations = 0;
-    // no step within the bounds decreases |residual|² by more than 1e-13 of itself
+    Eigen::VectorXd x, residual = {};
     bool converged = false;
 };
 
-// Minimises |r(x)|² within the box. A step d minimises |r + J d|² + λ |d|² over the box; λ is zero
-// as long as the steps decrease |r|. `start` is within the box and has a residual.
-Minimum minimise(const LeastSquares& problem, Eigen::VectorXd start, const Box& box);
+// `start` is within the box.
+Minimum minimise(const LeastSquares& problem, Eigen::VectorXd start);
+
+// Per number: at a limit beyond which |r| would decrease: -1 the lower, 1 the upper, else 0.
+std::vector<int> limits_reached(const LeastSquares& problem, const Minimum& at);
 
 }  // namespace elastocheck::compare

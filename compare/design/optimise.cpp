@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "compare/design/least_squares.hpp"
 
@@ -21,29 +22,24 @@ using Eigen::VectorXd;
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
-constexpr int most_evaluations = 200;    // of one run of SLSQP
-constexpr int most_runs = 4;             // each from the best point before
-constexpr int calls_at_one_point = 20;   // the step of SLSQP has vanished: it would loop for ever
-constexpr double least_step = 1e-12;     // of x
-constexpr double active_within = 1e-6;   // of c
-constexpr double optimal_within = 1e-4;  // of |∇F|
-constexpr double least_residual = 1e-7;  // of the conditions of the optimum, where ∇F vanishes
-// of a column of ∇c: makes the multipliers of parallel columns unique
-constexpr double multiplier_ridge = 1e-7;
-
-// c = sign (f - bound) / g ≤ 0 of a figure.
-struct BandSide {
-    Index figure;
-    double sign, bound;
-};
+constexpr int most_evaluations = 200;     // of one run of SLSQP
+constexpr int most_runs = 4;              // each from the best point before
+constexpr int calls_at_one_point = 20;    // the step of SLSQP has vanished: it would loop for ever
+constexpr double least_step = 1e-12;      // of x
+constexpr double active_within = 1e-6;    // of c
+constexpr double optimal_within = 1e-4;   // of |∇F|
+constexpr double least_residual = 1e-7;   // of the conditions of the optimum, where ∇F vanishes
+constexpr double multiplier_pull = 1e-7;  // makes the multipliers of parallel ∇c unique
 
 // The problem in x, with the last evaluated point, and the best point within the bands.
 struct Problem {
     const Figures& figures;
     const Goals& goals;
-    VectorXd range, scale;
-    std::vector<BandSide> sides;
-    Box box;
+    VectorXd range = {}, scale = {};
+    // sides of the bands, c = per (f - bound): their figures, 1 / g or -1 / g, their bounds
+    std::vector<Index> side = {};
+    VectorXd per = {}, bound = {};
+    Box box = {};
 
     VectorXd at = {}, f = {};
     VectorXd gradient_at = {};
@@ -59,11 +55,17 @@ struct Problem {
     std::exception_ptr failed = {};
 
     VectorXd number_at(const VectorXd& x) const {
-        // A number at its limit has exactly that value.
-        return (goals.start + range.cwiseProduct(x)).cwiseMax(goals.least).cwiseMin(goals.most);
+        return within({goals.least, goals.most}, goals.start + range.cwiseProduct(x));
     }
-    Index count() const { return static_cast<Index>(sides.size()); }
-
+    double unit_of(const ActiveBound& one) const {
+        return one.of_number ? range[one.which] : scale[one.which];
+    }
+    void add_side(Index figure, double sign, double value) {
+        if (!std::isfinite(value)) return;
+        side.push_back(figure);
+        for (VectorXd* each : {&per, &bound}) each->conservativeResize(std::ssize(side));
+        per[std::ssize(side) - 1] = sign / scale[figure], bound[std::ssize(side) - 1] = value;
+    }
     double cost() const {
         return goals.minimised < 0 ? at.squaredNorm() / 2
                                    : f[goals.minimised] / scale[goals.minimised];
@@ -72,22 +74,8 @@ struct Problem {
         if (goals.minimised < 0) return at;
         return f_x.row(goals.minimised).transpose() / scale[goals.minimised];
     }
-    VectorXd excess() const {
-        VectorXd c(count());
-        for (Index k = 0; k < c.size(); ++k) {
-            const BandSide& side = sides[static_cast<std::size_t>(k)];
-            c[k] = side.sign * (f[side.figure] - side.bound) / scale[side.figure];
-        }
-        return c;
-    }
-    MatrixXd excess_gradient() const {
-        MatrixXd c_x(count(), range.size());
-        for (Index k = 0; k < count(); ++k) {
-            const BandSide& side = sides[static_cast<std::size_t>(k)];
-            c_x.row(k) = side.sign / scale[side.figure] * f_x.row(side.figure);
-        }
-        return c_x;
-    }
+    VectorXd excess() const { return per.cwiseProduct(VectorXd(f(side)) - bound); }
+    MatrixXd excess_gradient() const { return per.asDiagonal() * MatrixXd(f_x(side, Eigen::all)); }
     bool has_value() const { return excess().allFinite() && std::isfinite(cost()); }
     double largest_excess() const {
         const VectorXd c = excess();
@@ -155,7 +143,7 @@ void slsqp_excess(unsigned m, double* result, unsigned n, const double* x, doubl
 }
 
 void run_slsqp(Problem& problem, VectorXd x) {
-    const auto n = static_cast<unsigned>(x.size()), m = static_cast<unsigned>(problem.count());
+    const auto n = static_cast<unsigned>(x.size()), m = static_cast<unsigned>(problem.side.size());
     const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> run(nlopt_create(NLOPT_LD_SLSQP, n),
                                                                 nlopt_destroy);
     problem.run = run.get();
@@ -174,168 +162,153 @@ void run_slsqp(Problem& problem, VectorXd x) {
     if (problem.failed) std::rethrow_exception(problem.failed);
 }
 
-// A bound that holds at a point, with ∇c.
-struct Active {
-    bool of_number;
-    Index which;
-    double sign, bound;
-    VectorXd gradient;
-    double multiplier = 0;  // λ
-};
-
-// Multipliers of the bounds that hold at the evaluated point.
+// The bounds that hold at the evaluated point with their prices, and what they leave of ∇F.
 struct Conditions {
-    std::vector<Active> active;
-    double residual = 0;  // |∇F + Σ λ ∇c|
-    double size = 0;      // |∇F|
-    bool fulfilled() const { return residual <= optimal_within * size + least_residual; }
+    std::vector<ActiveBound> active = {};
+    double left = 0, size = 0;  // |∇F + Σ λ ∇c|, |∇F|
+    bool fulfilled() const { return left <= optimal_within * size + least_residual; }
 };
 Conditions conditions(const Problem& problem) {
-    const VectorXd& x = problem.at;
-    const Index n = x.size();
-    Conditions all;
-    const VectorXd c = problem.excess();
+    const VectorXd &x = problem.at, c = problem.excess(), F_x = problem.cost_gradient();
     const MatrixXd c_x = problem.excess_gradient();
-    for (Index k = 0; k < c.size(); ++k) {
-        const BandSide& side = problem.sides[static_cast<std::size_t>(k)];
-        if (c[k] >= -active_within)
-            all.active.push_back({false, side.figure, side.sign, side.bound, c_x.row(k)});
-    }
+    const Goals& goals = problem.goals;
+    const Index n = x.size();
+    Conditions all{.size = F_x.norm()};
+    MatrixXd A(n, 0);  // ∇c
+    const auto add = [&](double by, const ActiveBound& bound, const VectorXd& gradient) {
+        if (!(by >= -active_within)) return;
+        all.active.push_back(bound);
+        A.conservativeResize(n, A.cols() + 1);
+        A.rightCols(1) = gradient;
+    };
+    for (Index k = 0; k < c.size(); ++k)
+        add(c[k],
+            {false, problem.side[static_cast<std::size_t>(k)], problem.per[k] > 0,
+             problem.bound[k]},
+            c_x.row(k));
     for (Index i = 0; i < n; ++i) {
-        if (x[i] - problem.box.low[i] <= active_within)
-            all.active.push_back({true, i, -1, problem.goals.least[i], -VectorXd::Unit(n, i)});
-        if (problem.box.high[i] - x[i] <= active_within)
-            all.active.push_back({true, i, 1, problem.goals.most[i], VectorXd::Unit(n, i)});
+        add(problem.box.low[i] - x[i], {true, i, false, goals.least[i]}, -VectorXd::Unit(n, i));
+        add(x[i] - problem.box.high[i], {true, i, true, goals.most[i]}, VectorXd::Unit(n, i));
     }
-    const VectorXd F_x = problem.cost_gradient();
-    all.size = F_x.norm();
-    VectorXd left = F_x;
-    if (const auto m = static_cast<Index>(all.active.size()); m > 0) {
-        // [∇c; ρ I] λ ≈ [-∇F; 0]
-        MatrixXd A = MatrixXd::Zero(n + m, m);
-        for (Index k = 0; k < m; ++k) {
-            A.col(k).head(n) = all.active[static_cast<std::size_t>(k)].gradient;
-            A(n + k, k) = multiplier_ridge;
-        }
-        VectorXd b = VectorXd::Zero(n + m);
-        b.head(n) = -F_x;
-        if (A.allFinite() && b.allFinite()) {
-            const VectorXd lambda =
-                bounded_least_squares(A, b, {VectorXd::Zero(m), VectorXd::Constant(m, none)});
-            left += A.topRows(n) * lambda;
-            for (Index k = 0; k < m; ++k)
-                all.active[static_cast<std::size_t>(k)].multiplier = lambda[k];
-        } else {
-            left.setConstant(std::nan(""));
-        }
+    const VectorXd zero = VectorXd::Zero(A.cols());
+    const Minimum multipliers =
+        minimise({[&](const VectorXd& lambda) -> VectorXd { return A * lambda + F_x; },
+                  [&](const VectorXd&) { return A; },
+                  {zero, VectorXd::Constant(A.cols(), none)},
+                  zero,
+                  multiplier_pull},
+                 zero);
+    all.left = multipliers.residual.norm();
+    // dF per unit of the shown cost
+    const double unit = goals.minimised < 0 ? x.norm() : 1 / problem.scale[goals.minimised];
+    for (std::size_t k = 0; k < all.active.size(); ++k) {
+        ActiveBound& one = all.active[k];
+        const double lambda = multipliers.x[static_cast<Index>(k)];
+        one.price = unit > 0 ? lambda / problem.unit_of(one) / unit : 0;
     }
-    all.residual = left.norm();
+    std::ranges::stable_sort(all.active, std::ranges::greater{}, [&](const ActiveBound& one) {
+        return one.price * problem.unit_of(one);
+    });
     return all;
 }
 
-double positive_part(double c) { return c > 0 ? c : c <= 0 ? 0 : std::nan(""); }
+// max(0, c), zero also where a band is met as far as it counts; NaN of NaN.
+double outside_of_band(double c) { return c <= within_bands / 10 ? 0 : c; }
 
-// The numbers nearest to the bands.
-Minimum nearest_to_bands(Problem& problem, const VectorXd& start) {
-    const LeastSquares excess{[&](const VectorXd& x) -> VectorXd {
-                                  problem.move_to(x);
-                                  return problem.excess().unaryExpr(&positive_part);
-                              },
-                              [&](const VectorXd& x) -> MatrixXd {
-                                  problem.move_to(x);
-                                  problem.differentiate();
-                                  MatrixXd J = problem.excess_gradient();
-                                  const VectorXd c = problem.excess();
-                                  for (Index k = 0; k < c.size(); ++k)
-                                      if (c[k] <= 0) J.row(k).setZero();
-                                  return J;
-                              }};
-    return minimise(excess, start, problem.box);
+// |max(0, c)|²
+LeastSquares excess_from(Problem& problem, const VectorXd& start) {
+    return {[&](const VectorXd& x) -> VectorXd {
+                problem.move_to(x);
+                return problem.excess().unaryExpr(&outside_of_band);
+            },
+            [&](const VectorXd& x) -> MatrixXd {
+                problem.move_to(x);
+                problem.differentiate();
+                MatrixXd J = problem.excess_gradient();
+                const VectorXd c = problem.excess();
+                for (Index k = 0; k < c.size(); ++k)
+                    if (outside_of_band(c[k]) == 0) J.row(k).setZero();
+                return J;
+            },
+            problem.box, start};
 }
 
-// A search, and what is at its end if the bands cannot be met.
+// A search, and what is at its end.
 struct Found {
-    Search search;
-    VectorXd x;
-    Minimum nearest;  // with the excess as residual
+    Search search = {};
+    VectorXd x = {}, outside = {};   // the positive excess over each side of a band
+    std::vector<int> at_limit = {};  // as in Optimum
     Conditions at_end = {};
+
+    // Within the bands and of less cost, or nearer to them; by more than rounding, so that the first
+    // of equal ones is taken.
+    bool is_better_than(const Found& other) const {
+        if (search.met != other.search.met) return search.met;
+        const auto size = [&](const Found& one) {
+            return search.met ? one.search.cost : one.outside.norm();
+        };
+        return size(*this) < size(other) - 1e-6 * std::abs(size(other));
+    }
 };
+
 Found search_from(Problem& problem, const VectorXd& p) {
-    Found found;
+    Found found{.search = {.to = p, .excess = none, .cost = none}};
     Search& search = found.search;
-    search.from = p;
     problem.evaluations = 0;
     problem.best = {};
     problem.least_cost = none;
-    const VectorXd start = (p - problem.goals.start)
-                               .cwiseQuotient(problem.range)
-                               .cwiseMax(problem.box.low)
-                               .cwiseMin(problem.box.high);
-    problem.move_to(start);
+    found.x = within(problem.box, (p - problem.goals.start).cwiseQuotient(problem.range));
+    problem.move_to(found.x);
     search.has_value = problem.has_value();
-    found.x = start;
-    search.excess = search.cost = none;
-    if (search.has_value) {
-        found.nearest = nearest_to_bands(problem, start);
-        found.x = found.nearest.x;
-        search.met = problem.best.size() > 0;
-        search.converged = !search.met && found.nearest.converged;
-        for (int run = 0; search.met && run < most_runs && !search.converged; ++run) {
-            run_slsqp(problem, problem.best);
-            found.x = problem.best;
-            problem.move_to(found.x);
-            problem.differentiate();
-            found.at_end = conditions(problem);
-            search.converged = found.at_end.fulfilled();
-        }
+    search.evaluations = problem.evaluations;
+    if (!search.has_value) return found;
+    const LeastSquares excess = excess_from(problem, found.x);
+    const Minimum nearest = minimise(excess, found.x);
+    found.x = nearest.x, found.outside = nearest.residual;
+    search.met = problem.best.size() > 0;
+    search.converged = !search.met && nearest.converged;
+    if (!search.met) found.at_limit = limits_reached(excess, nearest);
+    for (int run = 0; search.met && run < most_runs && !search.converged; ++run) {
+        run_slsqp(problem, problem.best);
+        found.x = problem.best;
         problem.move_to(found.x);
-        search.excess = problem.largest_excess();
-        search.cost =
-            problem.goals.minimised < 0 ? found.x.norm() : problem.f[problem.goals.minimised];
+        problem.differentiate();
+        found.at_end = conditions(problem);
+        search.converged = found.at_end.fulfilled();
     }
+    problem.move_to(found.x);
+    search.excess = problem.largest_excess();
+    search.cost = problem.goals.minimised < 0 ? found.x.norm() : problem.f[problem.goals.minimised];
     search.to = problem.number_at(found.x);
     search.evaluations = problem.evaluations;
     return found;
 }
 
-// Within the bands and of less cost, or nearer to them; by more than rounding, so that the first
-// of equal ones is taken.
-bool is_better(const Found& a, const Found& b) {
-    if (a.search.met != b.search.met) return a.search.met;
-    const double of_a = a.search.met ? a.search.cost : a.nearest.residual.norm(),
-                 of_b = b.search.met ? b.search.cost : b.nearest.residual.norm();
-    return of_a < of_b - 1e-6 * std::abs(of_b);
-}
-
-void set_conflict(const Problem& problem, const Found& found, Optimum& optimum) {
-    const VectorXd& r = found.nearest.residual;
-    for (Index k = 0; k < r.size(); ++k)
-        optimum.conflict[problem.sides[static_cast<std::size_t>(k)].figure] += r[k] / r.norm();
-    const VectorXd descent = -found.nearest.jacobian.transpose() * r;
-    for (Index i = 0; i < found.x.size(); ++i) {
-        const bool outwards = std::abs(descent[i]) > 1e-6 * r.norm();
-        if (outwards && found.x[i] <= problem.box.low[i] && descent[i] < 0)
-            optimum.at_limit[static_cast<std::size_t>(i)] = -1;
-        if (outwards && found.x[i] >= problem.box.high[i] && descent[i] > 0)
-            optimum.at_limit[static_cast<std::size_t>(i)] = 1;
+// The goals that do not move, the scales, and the sides of the bands that move.
+Problem problem_of(const Figures& figures, const Goals& goals, Optimum& optimum) {
+    Problem problem{.figures = figures, .goals = goals, .range = goals.most - goals.least};
+    problem.box = {(goals.least - goals.start).cwiseQuotient(problem.range),
+                   (goals.most - goals.start).cwiseQuotient(problem.range)};
+    const VectorXd movement = (optimum.gradient.rate * problem.range.asDiagonal()).rowwise().norm();
+    const auto goal_of = [&](Index j) {
+        return static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(j)]);
+    };
+    std::vector<double> largest(1 +
+                                static_cast<std::size_t>(*std::ranges::max_element(goals.goal)));
+    optimum.still.assign(largest.size(), true);
+    for (Index j = 0; j < movement.size(); ++j) {
+        if (movement[j] > least_movement(optimum.before[j])) optimum.still[goal_of(j)] = false;
+        largest[goal_of(j)] = std::max(largest[goal_of(j)], movement[j]);
     }
-}
-
-void set_prices(const Problem& problem, const Found& found, Optimum& optimum) {
-    // dF of the minimised F per unit of the shown cost
-    const double unit = problem.goals.minimised < 0 ? found.search.cost
-                                                    : 1 / problem.scale[problem.goals.minimised];
-    for (const Active& one : found.at_end.active) {
-        const double per = one.of_number ? problem.range[one.which] : problem.scale[one.which];
-        optimum.active.push_back({.of_number = one.of_number,
-                                  .which = one.which,
-                                  .upper = one.sign > 0,
-                                  .bound = one.bound,
-                                  .price = unit > 0 ? one.multiplier / per / unit : 0});
+    problem.scale.resize(movement.size());
+    for (Index j = 0; j < movement.size(); ++j) {
+        problem.scale[j] = largest[goal_of(j)] > 0 ? largest[goal_of(j)] : 1;
+        if (optimum.still[goal_of(j)]) continue;
+        problem.add_side(j, -1, goals.low[j]);
+        problem.add_side(j, 1, goals.high[j]);
     }
-    std::ranges::stable_sort(optimum.active, std::ranges::greater{}, [&](const ActiveBound& one) {
-        return one.price * (one.of_number ? problem.range[one.which] : problem.scale[one.which]);
-    });
+    optimum.scale = problem.scale;
+    return problem;
 }
 
 }  // namespace
@@ -352,78 +325,47 @@ std::vector<VectorXd> starts_of(const Goals& goals, int count) {
 }
 
 Optimum optimise(const Figures& figures, const Goals& goals, const std::vector<VectorXd>& starts,
-                 const Progress& progress) {
-    const Index n = goals.start.size(), m = goals.low.size();
-    Optimum optimum;
-    optimum.p = goals.start;
-    optimum.before = optimum.after = figures.value(goals.start);
+                 const Progress& progress, const BestSoFar& best_so_far) {
+    Optimum optimum{.p = goals.start, .before = figures.value(goals.start)};
+    optimum.after = optimum.before;
     if (!optimum.before.allFinite()) return optimum;
     optimum.gradient = figures.gradient(goals.start);
     if (!optimum.gradient.rate.allFinite()) return optimum;
-
-    Problem problem{.figures = figures,
-                    .goals = goals,
-                    .range = goals.most - goals.least,
-                    .scale = VectorXd(m),
-                    .sides = {},
-                    .box = {}};
-    problem.box = {(goals.least - goals.start).cwiseQuotient(problem.range),
-                   (goals.most - goals.start).cwiseQuotient(problem.range)};
-    const VectorXd movement = (optimum.gradient.rate * problem.range.asDiagonal()).rowwise().norm();
-    const auto count = static_cast<std::size_t>(
-        goals.goal.empty() ? 0 : *std::ranges::max_element(goals.goal) + 1);
-    std::vector<double> largest(count, 0);
-    optimum.still.assign(count, true);
-    for (Index j = 0; j < m; ++j) {
-        const auto goal = static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(j)]);
-        const double rounding = 1e-10 * (1 + std::abs(optimum.before[j]));
-        if (movement[j] > rounding) optimum.still[goal] = false;
-        largest[goal] = std::max(largest[goal], movement[j]);
-    }
-    for (Index j = 0; j < m; ++j) {
-        const auto goal = static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(j)]);
-        problem.scale[j] = largest[goal] > 0 ? largest[goal] : 1;
-        if (optimum.still[goal]) continue;
-        if (std::isfinite(goals.low[j])) problem.sides.push_back({j, -1, goals.low[j]});
-        if (std::isfinite(goals.high[j])) problem.sides.push_back({j, 1, goals.high[j]});
-    }
-    optimum.scale = problem.scale;
+    Problem problem = problem_of(figures, goals, optimum);
     if (goals.minimised >= 0 &&
         optimum
             .still[static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(goals.minimised)])])
         return optimum;
 
-    std::vector<Found> all;
+    Found best;
     for (std::size_t k = 0; k < starts.size(); ++k) {
         if (progress)
             progress(fmt::format("start {} of {}{}", k + 1, starts.size(),
-                                 optimum.best < 0 ? ""
-                                 : all[static_cast<std::size_t>(optimum.best)].search.met
-                                     ? ", bands met"
-                                     : ", bands not met yet"),
+                                 optimum.best < 0  ? ""
+                                 : best.search.met ? ", bands met"
+                                                   : ", bands not met yet"),
                      static_cast<double>(k) / static_cast<double>(starts.size()));
-        all.push_back(search_from(problem, starts[k]));
-        optimum.searches.push_back(all.back().search);
-        if (all.back().search.has_value &&
-            (optimum.best < 0 ||
-             is_better(all.back(), all[static_cast<std::size_t>(optimum.best)])))
-            optimum.best = static_cast<int>(k);
+        Found found = search_from(problem, starts[k]);
+        optimum.searches.push_back(found.search);
+        if (!found.search.has_value || (optimum.best >= 0 && !found.is_better_than(best))) continue;
+        optimum.best = static_cast<int>(k);
+        best = std::move(found);
+        if (best_so_far) best_so_far(best.search.to, best.search.met);
     }
     if (optimum.best < 0) return optimum;
-    const Found& found = all[static_cast<std::size_t>(optimum.best)];
-    optimum.p = found.search.to;
+    optimum.p = best.search.to;
     optimum.after = figures.value(optimum.p);
-    optimum.met = found.search.met && optimum.after.allFinite();
-    optimum.converged = found.search.converged;
-    optimum.cost = found.search.cost;
-    optimum.conflict = VectorXd::Zero(m);
-    optimum.at_limit.assign(static_cast<std::size_t>(n), 0);
-    if (optimum.met) {
-        optimum.optimality = found.at_end.size > 0 ? found.at_end.residual / found.at_end.size : 0;
-        set_prices(problem, found, optimum);
-    } else {
-        set_conflict(problem, found, optimum);
-    }
+    optimum.met = best.search.met && optimum.after.allFinite();
+    optimum.converged = best.search.converged;
+    optimum.cost = best.search.cost;
+    optimum.optimality = best.at_end.size > 0 ? best.at_end.left / best.at_end.size : 0;
+    optimum.active = best.at_end.active;
+    optimum.conflict = VectorXd::Zero(goals.low.size());
+    for (Index k = 0; !optimum.met && k < best.outside.size(); ++k)
+        optimum.conflict[problem.side[static_cast<std::size_t>(k)]] +=
+            best.outside[k] / best.outside.norm();
+    optimum.at_limit = best.at_limit;
+    optimum.at_limit.resize(static_cast<std::size_t>(goals.start.size()));
     return optimum;
 }
 

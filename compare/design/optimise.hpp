@@ -48,7 +48,7 @@ struct ActiveBound {
 
 // Search from one start.
 struct Search {
-    Eigen::VectorXd from, to;
+    Eigen::VectorXd to = {};
     bool has_value = false;  // the figures have values at its start
     bool met = false, converged = false;
     double excess = 0;  // largest over a band, as a share of g; below zero within
@@ -59,29 +59,33 @@ struct Search {
 inline constexpr double within_bands = 1e-9;
 
 struct Optimum {
-    Eigen::VectorXd p;              // of the best search
-    Eigen::VectorXd before, after;  // figures at the start and at p
-    FigureGradient gradient;        // at the start
+    Eigen::VectorXd p = {};                   // of the best search
+    Eigen::VectorXd before = {}, after = {};  // figures at the start and at p
+    FigureGradient gradient = {};             // at the start
     // per goal: no number moves a figure of it at the start
-    std::vector<bool> still;
-    Eigen::VectorXd scale;   // g per figure, in its unit
-    bool met = false;        // no figure is outside of its band by more than `within_bands` g
-    bool converged = false;  // conditions of the optimum, or of the nearest numbers
-    double cost = 0;         // |x|, or the minimised figure in its unit
-    double optimality = 0;   // |∇F + Σ λ ∇c| / |∇F|
-    std::vector<ActiveBound> active;
+    std::vector<bool> still = {};
+    Eigen::VectorXd scale = {};  // g per figure, in its unit
+    bool met = false;            // no figure is outside of its band by more than `within_bands` g
+    bool converged = false;      // conditions of the optimum, or of the nearest numbers
+    double cost = 0;             // |x|, or the minimised figure in its unit
+    double optimality = 0;       // |∇F + Σ λ ∇c| / |∇F|
+    std::vector<ActiveBound> active = {};
     // if the bands cannot be met, as in Solution: share of each figure in the conflict, and numbers
     // at a limit beyond which the bands would come nearer
-    Eigen::VectorXd conflict;
-    std::vector<int> at_limit;
-    std::vector<Search> searches;
+    Eigen::VectorXd conflict = {};
+    std::vector<int> at_limit = {};
+    std::vector<Search> searches = {};
     int best = -1;  // of the searches; -1: none, because a goal that counts does not move
 };
+
+// Called with the numbers of each search that is better than all before.
+using BestSoFar = std::function<void(const Eigen::VectorXd& p, bool met)>;
 
 // The figures have values and rates at the start (NaN in `before` or `gradient` if not, and nothing
 // else is set). Figures of still goals are left out of the search; the caller refuses those that
 // are outside of their bands, and a minimised figure that is still.
 Optimum optimise(const Figures& figures, const Goals& goals,
-                 const std::vector<Eigen::VectorXd>& starts, const Progress& progress = {});
+                 const std::vector<Eigen::VectorXd>& starts, const Progress& progress = {},
+                 const BestSoFar& best_so_far = {});
 
 }  // namespace elastocheck::compare

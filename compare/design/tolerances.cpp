@@ -4,26 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/overloaded.hpp"
-
 namespace elastocheck::compare {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-double standard_deviation(const Tolerated& number) {
-    return std::visit(
-        overloaded{[](const Normal& normal) { return normal.sd; },
-                   [](const Uniform& uniform) { return uniform.half_width / std::sqrt(3.0); }},
-        number.spread);
-}
-
-double largest_deviation(const Tolerated& number) {
-    return std::visit(overloaded{[](const Normal& normal) { return 3 * normal.sd; },
-                                 [](const Uniform& uniform) { return uniform.half_width; }},
-                      number.spread);
-}
 
 bool is_correlation(const MatrixXd& matrix) {
     if (matrix.rows() != matrix.cols() || matrix != matrix.transpose() ||
@@ -40,7 +25,7 @@ std::vector<Scatter> scatter(const MatrixXd& gradient, const std::vector<Tolerat
     VectorXd sd(n), largest(n);
     for (Index i = 0; i < n; ++i) {
         const Tolerated& number = numbers[static_cast<std::size_t>(i)];
-        sd[i] = standard_deviation(number), largest[i] = largest_deviation(number);
+        sd[i] = number.sd, largest[i] = number.largest;
     }
     const MatrixXd covariance = sd.asDiagonal() * rho * sd.asDiagonal();
     std::vector<Scatter> all;

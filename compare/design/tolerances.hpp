@@ -8,29 +8,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
-#include <variant>
+#include <utility>
 #include <vector>
-
-#include "compare/design/figures.hpp"
 
 namespace elastocheck::compare {
 
-// In the unit of the number.
-struct Normal {
-    double sd = 0;
-};
-struct Uniform {
-    double half_width = 0;
-};
+// A number with its standard deviation and its largest deviation, of the worst case, in its unit.
 struct Tolerated {
     std::string path;
-    std::variant<Normal, Uniform> spread;
+    double sd = 0, largest = 0;
 };
-
-double standard_deviation(const Tolerated& number);
-// Largest deviation of the worst case: the half width, or three standard deviations.
-double largest_deviation(const Tolerated& number);
+inline Tolerated normal(std::string path, double sd) { return {std::move(path), sd, 3 * sd}; }
+inline Tolerated uniform(std::string path, double half_width) {
+    return {std::move(path), half_width / std::sqrt(3.0), half_width};
+}
 
 struct Scatter {  // of a figure, in its unit
     double sd = 0, worst_case = 0;

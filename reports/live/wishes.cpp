@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "compare/comparison/compliance.hpp"
-#include "compare/comparison/legs.hpp"
 #include "compare/comparison/trim.hpp"
 #include "compare/design/solve_for.hpp"
+#include "compare/outputs/curve.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/live/outputs.hpp"
@@ -90,47 +88,6 @@ Varied varied_of(const json& read, const Scene& scene, const Model& model) {
     return all;
 }
 
-// Values of the figures of a trimmed model by the series; NaN where there is none.
-VectorXd values_of(const Model& model, const std::vector<Figure>& figures) {
-    VectorXd values = VectorXd::Constant(std::ssize(figures), compare::nan);
-    const auto outputs = channels_of(model);
-    for (const Branch& branch : model.branches) {
-        std::vector<compare::Channel> read;
-        std::map<double, std::vector<std::pair<std::size_t, std::size_t>>> at;  // figure, in `read`
-        for (std::size_t j = 0; j < figures.size(); ++j) {
-            if (figures[j].branch != branch.name) continue;
-            int c = compare::find_channel(read, figures[j].name);
-            if (c < 0) {
-                c = static_cast<int>(read.size());
-                read.push_back(outputs[static_cast<std::size_t>(
-                    compare::find_channel(outputs, figures[j].name))]);
-            }
-            at[figures[j].at].emplace_back(j, static_cast<std::size_t>(c));
-        }
-        if (at.empty()) continue;
-        bool first = true;
-        for (const auto& side : compare::sides_of(model, branch, 1)) {
-            std::vector<double> points;
-            for (const auto& [a, which] : at)
-                if (a == 0 ? first : a * side.branch.to > 0) points.push_back(a);
-            first = false;
-            if (points.empty()) continue;
-            std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
-            compare::Analyses analyses;
-            compare::walk_through(
-                side, compare::Leg::series, points, [&](const Equilibrium& state) {
-                    const auto here = at.find(state.load);
-                    if (here == at.end()) return;
-                    const auto row = compare::row_of(
-                        model, read, side, {.leg = compare::Leg::series}, state, analyses);
-                    for (const auto& [j, c] : here->second)
-                        values[static_cast<Index>(j)] = compare::finite_or_nan(row.values[c]);
-                });
-        }
-    }
-    return values;
-}
-
 // Central differences, within the limits.
 MatrixXd differences(const std::function<VectorXd(const VectorXd&)>& value,
                      const compare::Wishes& wishes, const VectorXd& p) {
@@ -174,7 +131,7 @@ json wish(Session& session, std::string_view text) {
         for (std::size_t i = 0; i < all.paths.size(); ++i)
             with.push_back({all.paths[i], fmt::format("{:.17g}", p[static_cast<Index>(i)])});
         const auto model = model_of(with);
-        return model ? values_of(*model, all.figures)
+        return model ? compare::evaluate(*model, all.figures, compare::Leg::series).value
                      : VectorXd::Constant(std::ssize(all.figures), compare::nan);
     };
     const auto found = compare::solve_for(
@@ -210,11 +167,14 @@ json wish(Session& session, std::string_view text) {
              {"after", or_null(found.after[j])},
              {"still", !found.still.empty() && found.still[at]},
              {"conflict", found.conflict.size() == 0 ? 0 : found.conflict[j]}});
-        if (!std::isfinite(found.before[j]) && !answer.contains("why_not"))
-            answer["why_not"] =
-                fmt::format("{} has no value at {} {} of {}", figure.name,
-                            compare::parameter_in(compare::unit_of(branch->unit), figure.at),
-                            symbol(compare::unit_of(branch->unit)), figure.branch);
+        const bool has_value = std::isfinite(found.before[j]),
+                   no_rate =
+                       found.gradient.rate.rows() > 0 && !found.gradient.rate.row(j).allFinite();
+        if ((!has_value || no_rate) && !answer.contains("why_not"))
+            answer["why_not"] = fmt::format(
+                "{} has no {} at {} {} of {}", figure.name, has_value ? "rate" : "value",
+                compare::parameter_in(compare::unit_of(branch->unit), figure.at),
+                symbol(compare::unit_of(branch->unit)), figure.branch);
     }
     return answer;
 }

@@ -32,24 +32,29 @@ VectorXd vector(std::initializer_list<double> values) {
 
 // ---- Least squares within bounds.
 
-// Karush-Kuhn-Tucker conditions of 300 random problems.
-TEST(BoundedLeastSquares, FulfilsTheConditionsOfOptimality) {
+// Karush-Kuhn-Tucker conditions of 300 random linear problems, of which 100 have fewer residuals than
+// numbers need.
+TEST(LeastSquares, FulfilsTheConditionsOfOptimalityWithinBounds) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> at(-1, 1);
     int at_bounds = 0;
     for (int k = 0; k < 300; ++k) {
-        const Index n = 1 + k % 7, m = n + k % 3;
+        const Index n = 2 + k % 6, m = n - 1 + k % 3;
         const MatrixXd A = MatrixXd::NullaryExpr(m, n, [&] { return at(random); });
         const VectorXd b = VectorXd::NullaryExpr(m, [&] { return 3 * at(random); });
         const Box box{VectorXd::NullaryExpr(n, [&] { return std::min(0.0, at(random)); }),
                       VectorXd::NullaryExpr(n, [&] { return std::max(0.0, at(random)); })};
-        const VectorXd x = bounded_least_squares(A, b, box), g = A.transpose() * (A * x - b);
+        const Minimum found = minimise({[&](const VectorXd& x) -> VectorXd { return A * x - b; },
+                                        [&](const VectorXd&) { return A; }, box, VectorXd::Zero(n)},
+                                       VectorXd::Zero(n));
+        const VectorXd &x = found.x, g = A.transpose() * (A * x - b);
         const double rounding = 1e-9 * (1 + b.norm());
+        EXPECT_TRUE(found.converged) << k;
         for (Index i = 0; i < n; ++i) {
             ASSERT_GE(x[i], box.low[i]);
             ASSERT_LE(x[i], box.high[i]);
-            EXPECT_TRUE(g[i] <= rounding || x[i] == box.low[i]) << k;
-            EXPECT_TRUE(g[i] >= -rounding || x[i] == box.high[i]) << k;
+            EXPECT_TRUE(g[i] <= rounding || x[i] == box.low[i]) << k << " " << g[i];
+            EXPECT_TRUE(g[i] >= -rounding || x[i] == box.high[i]) << k << " " << g[i];
             at_bounds += x[i] == box.low[i] || x[i] == box.high[i];
         }
     }
@@ -57,22 +62,25 @@ TEST(BoundedLeastSquares, FulfilsTheConditionsOfOptimality) {
 }
 
 // r = (10 (y - x²), 1 - x); with x ≤ 1/2 the minimum is at (1/2, 1/4).
-TEST(Minimise, FindsTheMinimumOfRosenbrocksFunctionWithAndWithoutABound) {
-    const LeastSquares rosenbrock{[](const VectorXd& x) {
-                                      return vector({10 * (x[1] - x[0] * x[0]), 1 - x[0]});
-                                  },
-                                  [](const VectorXd& x) {
-                                      MatrixXd J(2, 2);
-                                      J << -20 * x[0], 10, -1, 0;
-                                      return J;
-                                  }};
-    const VectorXd far = VectorXd::Constant(2, infinity);
-    const Minimum free = minimise(rosenbrock, vector({-1.2, 1}), {-far, far});
+TEST(LeastSquares, FindsTheMinimumOfRosenbrocksFunctionWithAndWithoutABound) {
+    LeastSquares rosenbrock{[](const VectorXd& x) {
+                                return vector({10 * (x[1] - x[0] * x[0]), 1 - x[0]});
+                            },
+                            [](const VectorXd& x) {
+                                MatrixXd J(2, 2);
+                                J << -20 * x[0], 10, -1, 0;
+                                return J;
+                            },
+                            {VectorXd::Constant(2, -infinity), VectorXd::Constant(2, infinity)},
+                            vector({-1.2, 1})};
+    const Minimum free = minimise(rosenbrock, rosenbrock.about);
     EXPECT_TRUE(free.converged);
     EXPECT_LE((free.x - vector({1, 1})).norm(), 1e-12);
-    const Minimum bounded = minimise(rosenbrock, vector({-1.2, 1}), {-far, vector({0.5, 10})});
+    rosenbrock.box.high = vector({0.5, 10});
+    const Minimum bounded = minimise(rosenbrock, rosenbrock.about);
     EXPECT_TRUE(bounded.converged);
     EXPECT_LE((bounded.x - vector({0.5, 0.25})).norm(), 1e-7);
+    EXPECT_EQ(limits_reached(rosenbrock, bounded), (std::vector<int>{1, 0}));
 }
 
 // ---- Solve-for, figures in closed form.
@@ -336,7 +344,7 @@ TEST(SolveFor, SaysWhyANumberDoesNotMoveAFigure) {
 // ---- Tolerances.
 
 TEST(Tolerances, ShareOfEachAddsUpAndTheWorstCaseIsTheSum) {
-    const std::vector<Tolerated> numbers{{"a", Normal{2}}, {"b", Uniform{3}}};
+    const std::vector<Tolerated> numbers{normal("a", 2), uniform("b", 3)};
     const auto [f, g] = [&] {
         const auto all = scatter(MatrixXd{{3, -1}, {0, 0}}, numbers);
         return std::pair(all[0], all[1]);
@@ -362,10 +370,8 @@ TEST(Tolerances, ShareOfEachAddsUpAndTheWorstCaseIsTheSum) {
 TEST(Tolerances, OfAMcPhersonAreThoseOfAMonteCarloOfTheReferences) {
     const std::vector<std::string> paths{"points.tie_rod_inner.z", "points.tie_rod_outer.z",
                                          "points.arm_rear.z", "springs.K1_coil.rate"};
-    const std::vector<Tolerated> tolerated{{paths[0], Normal{5e-4}},
-                                           {paths[1], Uniform{1e-3}},
-                                           {paths[2], Normal{1e-3}},
-                                           {paths[3], Uniform{1e3}}};
+    const std::vector<Tolerated> tolerated{normal(paths[0], 5e-4), uniform(paths[1], 1e-3),
+                                           normal(paths[2], 1e-3), uniform(paths[3], 1e3)};
     const MatrixXd rho{{1, 0.6, 0, 0}, {0.6, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     const auto numbers = numbers_of("mcpherson", paths);
     const VectorXd nominal = values_of(numbers);
@@ -377,16 +383,16 @@ TEST(Tolerances, OfAMcPhersonAreThoseOfAMonteCarloOfTheReferences) {
 
     constexpr int samples = 400;
     std::mt19937_64 random(3);
-    std::normal_distribution<double> normal;
+    std::normal_distribution<double> gauss;
     // The second is uniform and correlated with the first: by a copula whose correlation is that
     // of a normal with a uniform variable, ρ √(3/π).
     const double r = 0.6 / std::sqrt(3 / std::numbers::pi);
     MatrixXd values(samples, 3);
     for (Index s = 0; s < samples; ++s) {
-        const double u = normal(random), v = r * u + std::sqrt(1 - r * r) * normal(random);
-        const auto uniform = [](double z) { return std::erf(z / std::sqrt(2.0)); };  // -1 to 1
-        const VectorXd d = vector(
-            {5e-4 * u, 1e-3 * uniform(v), 1e-3 * normal(random), 1e3 * uniform(normal(random))});
+        const double u = gauss(random), v = r * u + std::sqrt(1 - r * r) * gauss(random);
+        const auto share = [](double z) { return std::erf(z / std::sqrt(2.0)); };  // -1 to 1
+        const VectorXd d =
+            vector({5e-4 * u, 1e-3 * share(v), 1e-3 * gauss(random), 1e3 * share(gauss(random))});
         values.row(s) = of.value(nominal + d);
     }
     for (Index f = 0; f < 3; ++f) {

@@ -113,6 +113,23 @@ TEST(Ended, ByASignalLeavesNoPartOfAReportOrAFileAndTheNextRunClearsUp) {
     }
 }
 
+// The numbers of the best search that has ended, while others of the thousand run.
+TEST(Ended, ByASignalAnOptimisationLeavesItsBestSoFar) {
+    const Folder folder;
+    folder.write("goals.yaml",
+                 "vary: {springs.first.rate: [10, 60], springs.second.rate: [20, 70]}\n"
+                 "goals: [{figure: centre_z@up:3000, at_most: 437.5}]\n");
+    expect_said(says("cd " + folder.path.string() + " && { env --default-signal " + command +
+                     "optimise " + scenes + "/parallel_springs.yaml goals.yaml --starts 1000 -o " +
+                     "new.yaml >/dev/null 2>&1 & } && for k in $(seq 3000); do " +
+                     "[ -e new.yaml ] && break; sleep 0.01; done; kill -INT $!; wait $!"),
+                128 + SIGINT, {});
+    const std::string left = text_of(folder.path / "new.yaml");
+    EXPECT_TRUE(left.starts_with("# Changed by elastocheck optimise: not finished, goals.yaml\n"))
+        << left;
+    EXPECT_TRUE(contains(left, "# springs.first.rate was 30")) << left;
+}
+
 TEST(Ended, ByAReaderThatHasReadEnoughLeavesNothingOfAFileThatIsBeingWritten) {
     const Folder folder;
     const Said said =

@@ -4,25 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <stdexcept>
 
 #include "compare/comparison/characteristics.hpp"
-#include "compare/design/confirm.hpp"
-#include "compare/design/fit.hpp"
-#include "compare/design/solve_for.hpp"
-#include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
+#include "reports/command/design/request.hpp"
 #include "reports/command/grammar/exit_code.hpp"
-#include "reports/command/options/design_options.hpp"
 #include "reports/command/options/fitting.hpp"
-#include "reports/command/options/load_scene.hpp"
-#include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
-#include "reports/files/provenance.hpp"
-#include "reports/files/terminal.hpp"
-#include "reports/tables/studies/design_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -30,23 +19,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-void print_result(const Delivery& delivery, const char* schema, nlohmann::ordered_json result) {
-    if (!delivery.as_json) return;
-    nlohmann::ordered_json document = {{"schema", schema},
-                                       {"reproduce", delivery.command},
-                                       {"provenance", provenance_json(provenance())}};
-    document.update(result);
-    print_document(document);
-}
-
 // ---- solve-for
 
-struct SolveForRequest {
-    std::string scene, output;
-    Settings settings;
+struct SolveForRequest : DesignRequest {
     std::vector<std::string> vary, want;
-    Running running;
-    bool as_json = false;
 };
 
 // Exit code 0: the wishes are met and confirmed; 1: they cannot be met; 3: a leg has no values or
@@ -61,27 +37,23 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
                 fmt::format("--vary {}: needs limits, =LOW:HIGH; the smallest change is that of "
                             "the smallest shares of the ranges",
                             varied.numbers[static_cast<std::size_t>(k)].path));
-    std::vector<NamedFigure> wanted;
-    VectorXd target(static_cast<Index>(request.want.size()));
+    SolvedFor solved{
+        .numbers = varied.numbers,
+        .wishes = {VectorXd(std::ssize(request.want)), varied.start, varied.low, varied.high}};
+    std::vector<std::string> units;
     for (const auto& word : request.want) {
         const auto [figure, value] = parse_wanted(word, loaded.model);
-        target[static_cast<Index>(wanted.size())] = value;
-        wanted.push_back(figure);
+        solved.wishes.target[std::ssize(solved.wanted)] = value;
+        solved.wanted.push_back(figure);
+        units.push_back(symbol(figure.output.unit));
     }
-    const auto figures = figures_of(wanted);
+    const auto figures = figures_of(solved.wanted);
     const auto scene = scene_at(request.scene, request.settings, varied.numbers);
-    SolvedFor solved{.numbers = varied.numbers,
-                     .wishes = {target, varied.start, varied.low, varied.high},
-                     .solution = {},
-                     .rows = {}};
-    solved.solution = compare::solve_for(
+    const compare::Solution& solution = solved.solution = compare::solve_for(
         compare::solved_figures(scene, varied.numbers, figures, threads_of(request.running)),
         solved.wishes);
-    const compare::Solution& solution = solved.solution;
-    if (!solution.before.allFinite()) {
-        print_error(
-            "no value at the start: {}\n",
-            compare::figure_values(loaded.scene, figures, compare::Leg::equilibrium).why_not);
+    if (!solution.before.allFinite() || !solution.gradient.rate.allFinite()) {
+        print_error("{}\n", why_no_start(loaded.scene, figures, solution.gradient));
         return could_not_judge;
     }
     for (std::size_t j = 0; j < solution.still.size(); ++j)
@@ -90,49 +62,22 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
                 "--want {}: none of the numbers moves it:\n  {}", request.want[j],
                 fmt::join(compare::why_still(scene, figures[j], varied.numbers, varied.start),
                           "\n  ")));
-    if (!solution.gradient.rate.allFinite()) {
-        print_error("no rate at the start: {}\n", solution.gradient.why_not);
-        return could_not_judge;
-    }
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-        const auto i = static_cast<Index>(k);
-        solved.rows.push_back({.output = wanted[k].figure.name,
-                               .unit = symbol(wanted[k].output.unit),
-                               .place = wanted[k].place,
-                               .asked = target[i],
-                               .before = solution.before[i],
-                               .after = solution.after[i]});
-    }
-    std::vector<std::string> units;
-    for (const WishRow& row : solved.rows) units.push_back(row.unit);
-    const compare::Confirmation by =
+    solved.by =
         compare::confirm(scene(solution.p), figures, units, solution.after, solution.movement);
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-        const auto i = static_cast<Index>(k);
-        solved.rows[k].energy = by.energy[i], solved.rows[k].series = by.series[i];
-    }
-    solved.confirmed = by.confirmed, solved.not_confirmed = by.why_not;
     delivery.print_text(solve_for_text(solved));
-    if (!request.output.empty()) {
-        write_changed_scene(request.scene, request.output,
-                            fmt::format("solve-for: {}{}", solution.met ? "" : "nearest to ",
-                                        fmt::join(request.want, ", ")),
-                            request.settings, varied, solution.p);
-        print_error("Written: {}\n", request.output);
-    }
+    request.write(fmt::format("solve-for: {}{}", solution.met ? "" : "nearest to ",
+                              fmt::join(request.want, ", ")),
+                  varied, solution.p);
     print_result(delivery, solve_for_schema, solve_for_json(solved));
-    return !solved.confirmed ? could_not_judge : solution.met ? fine : limit_broken;
+    return !solved.by.confirmed ? could_not_judge : solution.met ? fine : limit_broken;
 }
 
 // ---- fit
 
-struct FitRequest {
-    std::string scene, measured, map, output;
-    Settings settings;
+struct FitRequest : DesignRequest {
+    std::string measured, map;
     std::vector<std::string> vary;
     bool robust = false;
-    Running running;
-    bool as_json = false;
 };
 
 // Exit code 0: the data determine all numbers; 3: not all, or there is no fit.
@@ -148,25 +93,17 @@ int fit(const FitRequest& request, const Delivery& delivery) {
         return could_not_judge;
     }
     delivery.print_text(fit_text(result));
-    if (!request.output.empty()) {
-        write_changed_scene(request.scene, request.output,
-                            fmt::format("fit: to {}", request.measured), request.settings, varied,
-                            result.fitted.p);
-        print_error("Written: {}\n", request.output);
-    }
+    request.write("fit: to " + request.measured, varied, result.fitted.p);
     print_result(delivery, fit_schema, fit_json(result));
     return result.fitted.converged && result.fitted.interval.allFinite() ? fine : could_not_judge;
 }
 
 // ---- tolerances
 
-struct TolerancesRequest {
-    std::string scene, file;
-    Settings settings;
+struct TolerancesRequest : SceneRequest {
+    std::string file;
     std::vector<std::string> of;
     int most = 5;
-    Running running;
-    bool as_json = false;
 };
 
 // The requested figures; without a request the characteristics at the start of the first branch.
@@ -215,14 +152,9 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
             continue;
         }
         // A figure that moves by rounding does not move.
-        const double rounding = 1e-10 * (1 + std::abs(nominal[i]));
-        const bool moves = scatter[k].sd > rounding;
-        all.figures.push_back(
-            {.output = named[k].figure.name,
-             .unit = symbol(named[k].output.unit),
-             .place = named[k].place,
-             .nominal = nominal[i],
-             .scatter = moves ? scatter[k] : compare::Scatter{0, 0, 0 * scatter[k].share}});
+        const bool moves = scatter[k].sd > compare::least_movement(nominal[i]);
+        all.figures.push_back({named[k], nominal[i],
+                               moves ? scatter[k] : compare::Scatter{0, 0, 0 * scatter[k].share}});
     }
     delivery.print_text(tolerances_text(all, request.most));
     print_result(delivery, tolerances_schema, tolerances_json(all));
@@ -231,79 +163,64 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-// To become `sensitivity --tolerances`.
 Command tolerances_command() {
     const auto request = std::make_shared<TolerancesRequest>();
-    return {
-        "tolerances",
-        "Scatter of the figures by the tolerances of the numbers of a scene; exact rates by the "
-        "equilibrium leg",
-        {scene_option(request->scene),
-         {"TOLERANCES", Text{&request->file, a_file()},
+    auto options = request->options_of_a_run();
+    options.insert(
+        options.end(),
+        {{"TOLERANCES", Text{&request->file, a_file()},
           "file with the tolerances, such as points.tie_rod_inner.z: {normal: {sd: 0.5}}", true},
          {"--of", TextList{&request->of, TextList::Form::commas},
           "outputs, OUTPUT or OUTPUT@BRANCH:PARAMETER (default: the characteristics at the "
           "start of the first branch)"},
          {"--most", Integer{&request->most, 0, 100000},
-          "shares shown per output (default: 5; 0: all)"},
-         set_option(request->settings),
-         jobs_option(request->running),
-         quiet_option(request->running),
-         json_option(request->as_json)},
-        [request](const std::string& line) {
-            return tolerances(*request, {.as_json = request->as_json, .command = line});
+          "shares shown per output (default: 5; 0: all)"}});
+    return {
+        "tolerances",
+        "Scatter of the figures by the tolerances of the numbers of a scene; exact rates by the "
+        "equilibrium leg",
+        std::move(options), [request](const std::string& line) {
+            return tolerances(*request, request->delivery(line));
         }};
 }
 
 Command solve_for_command() {
     const auto request = std::make_shared<SolveForRequest>();
-    using enum TextList::Form;
+    auto options = request->options();
+    options.insert(
+        options.end(),
+        {{"--vary", TextList{&request->vary, TextList::Form::repeated},
+          "number that may change, with its limits: points.tie_rod_inner.z=260:340; repeat it",
+          true},
+         {"--want", TextList{&request->want, TextList::Form::repeated},
+          "figure and value: bump_steer=0 at the start of the first branch, "
+          "toe@jounce:3000=-0.1 elsewhere; repeat it",
+          true}});
     return {"solve-for",
             "Change numbers of a scene as little as possible so that figures have wanted values; "
             "gradients by the equilibrium leg",
-            {scene_option(request->scene),
-             {"--vary", TextList{&request->vary, repeated},
-              "number that may change, with its limits: points.tie_rod_inner.z=260:340; repeat it",
-              true},
-             {"--want", TextList{&request->want, repeated},
-              "figure and value: bump_steer=0 at the start of the first branch, "
-              "toe@jounce:3000=-0.1 elsewhere; repeat it",
-              true},
-             {"-o,--output", Text{&request->output, a_file()},
-              "write the scene with the changed numbers; the old ones are in comments"},
-             set_option(request->settings),
-             jobs_option(request->running),
-             quiet_option(request->running),
-             json_option(request->as_json)},
-            [request](const std::string& line) {
-                return solve_for(*request, {.as_json = request->as_json, .command = line});
+            std::move(options), [request](const std::string& line) {
+                return solve_for(*request, request->delivery(line));
             }};
 }
 
 Command fit_command() {
     const auto request = std::make_shared<FitRequest>();
-    using enum TextList::Form;
-    return {
-        "fit",
-        "Fit numbers of a scene to measured curves, with 95 % intervals; gradients "
-        "of the equilibrium leg",
-        {scene_option(request->scene),
-         {"--measured", Text{&request->measured, a_file()}, "measured points (CSV), as for report",
-          true},
-         {"--vary", TextList{&request->vary, repeated},
-          "number to fit, or pattern with *; limits as NAME=LOW:HIGH; repeat it", true},
-         {"--map", Text{&request->map, a_file()},
-          "YAML file with the table's column names, units, signs and offsets"},
-         {"--robust", Flag{&request->robust}, "give gross outliers little weight (Cauchy's loss)"},
-         {"-o,--output", Text{&request->output, a_file()},
-          "write the scene with the fitted numbers; the old ones are in comments"},
-         set_option(request->settings),
-         jobs_option(request->running),
-         quiet_option(request->running),
-         json_option(request->as_json)},
-        [request](const std::string& line) {
-            return fit(*request, {.as_json = request->as_json, .command = line});
-        }};
+    auto options = request->options();
+    options.insert(options.end(),
+                   {{"--measured", Text{&request->measured, a_file()},
+                     "measured points (CSV), as for report", true},
+                    {"--vary", TextList{&request->vary, TextList::Form::repeated},
+                     "number to fit, or pattern with *; limits as NAME=LOW:HIGH; repeat it", true},
+                    {"--map", Text{&request->map, a_file()},
+                     "YAML file with the table's column names, units, signs and offsets"},
+                    {"--robust", Flag{&request->robust},
+                     "give gross outliers little weight (Cauchy's loss)"}});
+    return {"fit",
+            "Fit numbers of a scene to measured curves, with 95 % intervals; gradients "
+            "of the equilibrium leg",
+            std::move(options),
+            [request](const std::string& line) { return fit(*request, request->delivery(line)); }};
 }
 
 }  // namespace elastocheck::reports

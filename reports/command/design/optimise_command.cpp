@@ -5,20 +5,12 @@
 #include <cmath>
 #include <memory>
 
-#include "compare/design/confirm.hpp"
-#include "compare/design/optimise.hpp"
 #include "compare/proofs/certify.hpp"
 #include "models/reader/document/yaml.hpp"
-#include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
+#include "reports/command/design/request.hpp"
 #include "reports/command/grammar/exit_code.hpp"
-#include "reports/command/options/design_options.hpp"
 #include "reports/command/options/goals_file.hpp"
-#include "reports/command/options/load_scene.hpp"
-#include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
-#include "reports/files/terminal.hpp"
-#include "reports/tables/studies/optimise_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -30,12 +22,9 @@ using Eigen::VectorXd;
 constexpr int most_rounds = 3;
 constexpr double between_within = 1e-6;  // outside of a band, as a share of the movement
 
-struct OptimiseRequest {
-    std::string scene, file, output;
-    Settings settings;
+struct OptimiseRequest : DesignRequest {
+    std::string file;
     int starts = 4;
-    Running running;
-    bool as_json = false;
 };
 
 VectorXd values_of(const Scene& scene, const std::vector<GoalPoint>& points) {
@@ -103,6 +92,33 @@ compare::CertifyStudy certificate(const Scene& scene, const std::vector<compare:
                                     .progress = progress});
 }
 
+// A goal that does not move is refused unless it is met, which is noted.
+void judge_still(const compare::SceneAt& scene, const GoalFigures& all,
+                 const compare::Optimum& optimum, const std::string& name, GoalsFile& file) {
+    for (std::size_t g = 0; g < optimum.still.size(); ++g) {
+        if (!optimum.still[g]) continue;
+        const bool is_goal = g < file.goals.size();
+        bool met = is_goal;
+        std::size_t last = 0;
+        for (std::size_t k = 0; k < all.goals.goal.size(); ++k) {
+            if (all.goals.goal[k] != static_cast<int>(g)) continue;
+            const auto i = static_cast<Index>(k);
+            met = met && optimum.before[i] >= all.goals.low[i] &&
+                  optimum.before[i] <= all.goals.high[i];
+            last = k;
+        }
+        const auto reasons =
+            compare::why_still(scene, all.figures[last], file.varied.numbers, file.varied.start);
+        const std::string why = fmt::format("{}", fmt::join(reasons, "\n  "));
+        if (!met)
+            reader::fail(name, is_goal ? file.goals[g].line : file.minimised_line,
+                         is_goal ? "goals" : "minimise",
+                         fmt::format("{}: none of the numbers moves it:\n  {}",
+                                     all.figures[last].name, why));
+        file.goals[g].not_moved = why;
+    }
+}
+
 // Exit code 0: the bands are met at the least cost that was found, confirmed and proved; 1: they
 // cannot be met; 3: a figure has no value, or the result is not confirmed, not proved or not
 // converged.
@@ -115,52 +131,31 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
     const auto scene = scene_at(request.scene, request.settings, varied.numbers);
     const int threads = threads_of(request.running);
     GoalFigures all = figures_of(file);
+    const auto write = [&](const VectorXd& p, bool met, bool last) {
+        request.write(fmt::format("optimise: {}{}{}", last ? "" : "not finished, ",
+                                  met ? "" : "nearest to ", request.file),
+                      varied, p, last);
+    };
     const auto search = [&](const std::vector<VectorXd>& starts) {
         return compare::optimise(
             compare::solved_figures(scene, varied.numbers, all.figures, threads), all.goals, starts,
-            progress);
+            progress, [&](const VectorXd& p, bool met) { write(p, met, false); });
     };
     const auto starts = compare::starts_of(all.goals, request.starts);
-    compare::Optimum optimum = search(starts);
+    OptimisedScene result{.numbers = varied.numbers, .optimum = search(starts)};
+    compare::Optimum& optimum = result.optimum;
     if (!optimum.before.allFinite() || !optimum.gradient.rate.allFinite()) {
         progress("");
-        const auto why =
-            compare::figure_values(loaded.scene, all.figures, compare::Leg::equilibrium).why_not;
-        print_error("{}\n", why.empty() ? "no rate at the start: " + optimum.gradient.why_not
-                                        : "no value at the start: " + why);
+        print_error("{}\n", why_no_start(loaded.scene, all.figures, optimum.gradient));
         return could_not_judge;
     }
-    // A goal that does not move is refused, unless it is met.
-    for (std::size_t g = 0; g < optimum.still.size(); ++g) {
-        if (!optimum.still[g]) continue;
-        bool met = g < file.goals.size();
-        std::size_t last = 0;
-        for (std::size_t k = 0; k < all.goals.goal.size(); ++k) {
-            if (all.goals.goal[k] != static_cast<int>(g)) continue;
-            const auto i = static_cast<Index>(k);
-            met = met && optimum.before[i] >= all.goals.low[i] &&
-                  optimum.before[i] <= all.goals.high[i];
-            last = k;
-        }
-        const std::string reasons = fmt::format(
-            "{}",
-            fmt::join(compare::why_still(scene, all.figures[last], varied.numbers, varied.start),
-                      "\n  "));
-        const bool is_goal = g < file.goals.size();
-        if (!met)
-            reader::fail(request.file, is_goal ? file.goals[g].line : file.minimised_line,
-                         is_goal ? "goals" : "minimise",
-                         fmt::format("{}: none of the numbers moves it:\n  {}",
-                                     all.figures[last].name, reasons));
-        file.goals[g].not_moved = reasons;
-    }
-    const auto searches = optimum.searches;
-    std::optional<Between> between;
+    judge_still(scene, all, optimum, request.file, file);
+    result.searches = optimum.searches;
     for (int round = 0; optimum.met; ++round) {
         const bool again = round < most_rounds;
         const std::vector<Goal> goals = file.goals;
-        between = add_points_outside(scene(optimum.p), optimum.scale, file.goals, again);
-        if (!between || !again || !std::isfinite(between->excess)) {
+        result.between = add_points_outside(scene(optimum.p), optimum.scale, file.goals, again);
+        if (!result.between || !again || !std::isfinite(result.between->excess)) {
             file.goals = goals;
             break;
         }
@@ -174,16 +169,7 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
         }
         optimum = std::move(next);
     }
-    OptimisedScene result{.numbers = varied.numbers,
-                          .goals = file.goals,
-                          .minimised = {},
-                          .minimised_unit = {},
-                          .limits = all.goals,
-                          .optimum = std::move(optimum),
-                          .searches = searches,
-                          .confirmation = {},
-                          .between = between,
-                          .certificate = {}};
+    result.goals = file.goals, result.limits = all.goals;
     std::vector<std::string> units;
     for (const Goal& goal : file.goals) units.insert(units.end(), goal.points.size(), goal.unit);
     if (file.minimised) {
@@ -191,55 +177,41 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
         result.minimised_unit = symbol(file.minimised->output.unit);
         units.push_back(result.minimised_unit);
     }
-    const Scene changed = scene(result.optimum.p);
+    const Scene changed = scene(optimum.p);
     result.confirmation =
-        compare::confirm(changed, all.figures, units, result.optimum.after, result.optimum.scale);
-    if (result.optimum.met) result.certificate = certificate(changed, all.figures, threads);
+        compare::confirm(changed, all.figures, units, optimum.after, optimum.scale);
+    if (optimum.met) result.certificate = certificate(changed, all.figures, threads);
     progress("");
     delivery.print_text(optimise_text(result));
-    if (!request.output.empty()) {
-        write_changed_scene(
-            request.scene, request.output,
-            fmt::format("optimise: {}{}", result.optimum.met ? "" : "nearest to ", request.file),
-            request.settings, varied, result.optimum.p);
-        print_error("Written: {}\n", request.output);
-    }
-    if (delivery.as_json) {
-        nlohmann::ordered_json document = document_head(optimise_schema, delivery.command);
-        document.update(optimise_json(result));
-        print_document(document);
-    }
+    write(optimum.p, optimum.met, true);
+    print_result(delivery, optimise_schema, optimise_json(result));
     if (!result.confirmation.confirmed) return could_not_judge;
-    if (!result.optimum.met) return limit_broken;
-    if (between && !std::isfinite(between->excess)) return could_not_judge;
-    return result.optimum.converged && result.certificate->conclusive() ? fine : could_not_judge;
+    if (!optimum.met) return limit_broken;
+    if (result.between && !std::isfinite(result.between->excess)) return could_not_judge;
+    return optimum.converged && result.certificate->conclusive() ? fine : could_not_judge;
 }
 
 }  // namespace
 
 Command optimise_command() {
     const auto request = std::make_shared<OptimiseRequest>();
+    auto options = request->options();
+    options.insert(
+        options.end(),
+        {{"GOALS", Text{&request->file, a_file()},
+          "file with the numbers, their limits and the bands, such as vary: "
+          "{points.tie_rod_inner.z: [260, 340]} and goals: [{figure: toe, over: travel, from: "
+          "-80, to: 80, within: [-0.1, 0.1]}]",
+          true},
+         {"--starts", Integer{&request->starts, 1, 1000},
+          "points to search from: the scene, and others within the limits, the same on every "
+          "run (default: 4)"}});
     return {"optimise",
             "Change numbers of a scene within limits so that figures and curves stay within bands, "
             "with the smallest change or the least value of a figure; the prices of the bounds "
             "that hold, and proofs of the result",
-            {scene_option(request->scene),
-             {"GOALS", Text{&request->file, a_file()},
-              "file with the numbers, their limits and the bands, such as vary: "
-              "{points.tie_rod_inner.z: [260, 340]} and goals: [{figure: toe, over: travel, from: "
-              "-80, to: 80, within: [-0.1, 0.1]}]",
-              true},
-             {"--starts", Integer{&request->starts, 1, 1000},
-              "points to search from: the scene, and others within the limits, the same on every "
-              "run (default: 4)"},
-             {"-o,--output", Text{&request->output, a_file()},
-              "write the scene with the changed numbers; the old ones are in comments"},
-             set_option(request->settings),
-             jobs_option(request->running),
-             quiet_option(request->running),
-             json_option(request->as_json)},
-            [request](const std::string& line) {
-                return optimise(*request, {.as_json = request->as_json, .command = line});
+            std::move(options), [request](const std::string& line) {
+                return optimise(*request, request->delivery(line));
             }};
 }
 

@@ -217,14 +217,12 @@ Tolerances read_tolerances(std::string_view yaml, const std::string& file, const
         const auto normal = at.optional("normal"), uniform = at.optional("uniform");
         if (normal.has_value() == uniform.has_value())
             at.fail("allowed: one of {normal: {sd: ...}} and {uniform: {half_width: ...}}");
-        if (normal) {
-            normal->only_keys({"sd"});
-            all.numbers.push_back({name, compare::Normal{positive(normal->require("sd"))}});
-        } else {
-            uniform->only_keys({"half_width"});
-            all.numbers.push_back(
-                {name, compare::Uniform{positive(uniform->require("half_width"))}});
-        }
+        const char* size = normal ? "sd" : "half_width";
+        const reader::Cursor of = normal ? *normal : *uniform;
+        of.only_keys({size});
+        const double value = positive(of.require(size));
+        all.numbers.push_back(normal ? compare::normal(name, value)
+                                     : compare::uniform(name, value));
         names.push_back(name);
     }
     if (names.empty()) whole.fail("no tolerance; allowed: NUMBER: {normal: {sd: 0.5}}");

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "compare/design/figures.hpp"
-#include "compare/design/fit.hpp"
-#include "compare/design/solve_for.hpp"
 #include "compare/design/tolerances.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/document/candidate_file.hpp"
+#include "reports/tables/studies/design_tables.hpp"
 
 namespace elastocheck::reports {
 
@@ -34,12 +33,6 @@ compare::SceneAt scene_at(const std::string& file, const Settings& settings,
                           const std::vector<Number>& numbers);
 
 // ---- Figures.
-
-struct NamedFigure {
-    compare::Figure figure;
-    compare::Channel output;
-    std::string place;  // "jounce = 3000 N"
-};
 
 // "bump_steer": at the start of the first branch. "toe@jounce:3000": at a value of a branch's
 // parameter, in N, N·m, mm or deg. `option` is named in messages. Throws std::invalid_argument,

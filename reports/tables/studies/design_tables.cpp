@@ -17,6 +17,14 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using json = nlohmann::ordered_json;
 
+// Positions in falling order of size.
+std::vector<Index> largest_first(const VectorXd& values) {
+    std::vector<Index> order(static_cast<std::size_t>(values.size()));
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, std::ranges::greater{}, [&](Index i) { return std::abs(values[i]); });
+    return order;
+}
+
 // ---- solve-for
 
 constexpr double least_share = 0.05;  // of a wish in a conflict
@@ -40,14 +48,14 @@ Table wishes_table(const SolvedFor& solved) {
          {"range", "", "movement over the ranges of the numbers, to first order", false, three},
          {"conflict", "", "share in the conflict of the wishes", false, percent}},
         {}};
-    for (std::size_t k = 0; k < solved.rows.size(); ++k) {
-        const WishRow& row = solved.rows[k];
+    const compare::Solution& found = solved.solution;
+    for (std::size_t k = 0; k < solved.wanted.size(); ++k) {
+        const auto& [figure, output, place] = solved.wanted[k];
         const auto i = static_cast<Index>(k);
-        const auto& [p, before, after, gradient, still, movement, met, converged, iterations,
-                     conflict, at_limit] = solved.solution;
-        table.rows.push_back({row.output, row.unit, row.place, row.asked, row.before, row.after,
-                              row.energy, row.series, movement[i],
-                              met || conflict.size() == 0 ? compare::nan : conflict[i]});
+        table.rows.push_back({figure.name, std::string(symbol(output.unit)), place,
+                              solved.wishes.target[i], found.before[i], found.after[i],
+                              solved.by.energy[i], solved.by.series[i], found.movement[i],
+                              found.met ? compare::nan : found.conflict[i]});
     }
     return table;
 }
@@ -55,9 +63,9 @@ Table wishes_table(const SolvedFor& solved) {
 // The wishes that conflict, and the limits.
 std::string conflict_text(const SolvedFor& solved) {
     std::vector<std::string> wishes;
-    for (std::size_t k = 0; k < solved.rows.size(); ++k)
+    for (std::size_t k = 0; k < solved.wanted.size(); ++k)
         if (solved.solution.conflict[static_cast<Index>(k)] > least_share)
-            wishes.push_back(solved.rows[k].output + " at " + solved.rows[k].place);
+            wishes.push_back(solved.wanted[k].figure.name + " at " + solved.wanted[k].place);
     std::string text = wishes.size() > 1
                            ? fmt::format(
                                  "In conflict: {}. Within the limits the numbers move "
@@ -71,17 +79,12 @@ std::string conflict_text(const SolvedFor& solved) {
 // ---- fit
 
 std::string combination(const FittedScene& fit, const VectorXd& v) {
-    std::vector<std::size_t> order(fit.numbers.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto size = [&](std::size_t k) { return std::abs(v[static_cast<Index>(k)]); };
-    std::ranges::sort(order, std::ranges::greater{}, size);
     std::string text;
-    for (const std::size_t k : order) {
-        if (size(k) < 0.05) break;
-        const double change =
-            v[static_cast<Index>(k)] * fit.measured.step[static_cast<Index>(k)] / size(order[0]);
-        text += fmt::format("{}{} {:+.4g} {}", text.empty() ? "" : ", ", fit.numbers[k].path,
-                            change, fit.numbers[k].unit);
+    for (const Index i : largest_first(v)) {
+        if (std::abs(v[i]) < 0.05) break;
+        const Number& number = fit.numbers[static_cast<std::size_t>(i)];
+        text += fmt::format("{}{} {:+.4g} {}", text.empty() ? "" : ", ", number.path,
+                            v[i] * fit.measured.step[i] / v.cwiseAbs().maxCoeff(), number.unit);
     }
     return text;
 }
@@ -155,8 +158,9 @@ Table scatter_table(const ToleratedScene& all) {
                  {"worst case", "", "", false, three}},
                 {}};
     for (const auto& figure : all.figures)
-        table.rows.push_back({figure.output, figure.unit, figure.place, figure.nominal,
-                              figure.scatter.sd, figure.scatter.worst_case});
+        table.rows.push_back({figure.named.figure.name,
+                              std::string(symbol(figure.named.output.unit)), figure.named.place,
+                              figure.nominal, figure.scatter.sd, figure.scatter.worst_case});
     return table;
 }
 
@@ -169,17 +173,13 @@ Table shares_table(const ToleratedScene& all, std::size_t most) {
                  {"share", "", "of the variance", false, percent}},
                 {}};
     for (const auto& figure : all.figures) {
-        std::vector<std::size_t> order(all.numbers.size());
-        std::iota(order.begin(), order.end(), 0);
-        const auto share = [&](std::size_t k) {
-            return figure.scatter.share[static_cast<Index>(k)];
-        };
-        std::ranges::sort(order, std::ranges::greater{},
-                          [&](std::size_t k) { return std::abs(share(k)); });
+        const VectorXd& share = figure.scatter.share;
+        auto order = largest_first(share);
         if (most > 0) order.resize(std::min(order.size(), most));
-        std::erase_if(order, [&](std::size_t k) { return share(k) == 0; });
-        for (const std::size_t k : order)
-            table.rows.push_back({figure.output, figure.place, all.numbers[k].path, share(k)});
+        for (const Index i : order)
+            if (share[i] != 0)
+                table.rows.push_back({figure.named.figure.name, figure.named.place,
+                                      all.numbers[static_cast<std::size_t>(i)].path, share[i]});
     }
     return table;
 }
@@ -222,6 +222,12 @@ std::string limits_text(const ChangedNumbers& changed, const char* what) {
                : fmt::format("The {} would come nearer with {}.\n", what, fmt::join(limits, "; "));
 }
 
+std::string confirmation_text(const compare::Confirmation& by) {
+    return by.confirmed
+               ? "The energy leg and the series, as far as they apply, confirm the values.\n"
+               : "Not confirmed: " + by.why_not + "\n";
+}
+
 std::string solve_for_text(const SolvedFor& solved) {
     const compare::Solution& solution = solved.solution;
     std::string text = reports::text(numbers_table(changed_numbers(solved))) + "\n" +
@@ -232,16 +238,13 @@ std::string solve_for_text(const SolvedFor& solved) {
                 : "The wishes cannot be met; these numbers come nearest.\n" + conflict_text(solved);
     if (!solution.met && !solution.converged)
         text += "The search has not converged: there may be nearer numbers.\n";
-    text += solved.confirmed ? "The energy leg and the series, as far as they apply, confirm the "
-                               "values.\n"
-                             : "Not confirmed: " + solved.not_confirmed + "\n";
-    return text;
+    return text + confirmation_text(solved.by);
 }
 
 json solve_for_json(const SolvedFor& solved) {
     return {{"met", solved.solution.met},
-            {"confirmed", solved.confirmed},
-            {"not_confirmed", solved.not_confirmed},
+            {"confirmed", solved.by.confirmed},
+            {"not_confirmed", solved.by.why_not},
             {"converged", solved.solution.converged},
             {"numbers", table_json(numbers_table(changed_numbers(solved)))},
             {"wishes", table_json(wishes_table(solved))}};

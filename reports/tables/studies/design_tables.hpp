@@ -17,6 +17,13 @@ inline constexpr const char* solve_for_schema = "elastocheck/solve-for/1";
 inline constexpr const char* fit_schema = "elastocheck/fit/1";
 inline constexpr const char* tolerances_schema = "elastocheck/tolerances/2";
 
+// A figure with its place, "jounce = 3000 N".
+struct NamedFigure {
+    compare::Figure figure;
+    compare::Channel output;
+    std::string place;
+};
+
 // ---- Results of a search
 
 // Numbers of a scene before and after a search within limits, in their units.
@@ -26,26 +33,18 @@ struct ChangedNumbers {
     const std::vector<int>& at_limit;  // -1, 0, +1: held by this limit; empty: none is
 };
 compare::Table numbers_table(const ChangedNumbers& changed);
+std::string confirmation_text(const compare::Confirmation& by);
 // A line that names the limits beyond which `what` ("bands") would come nearer.
 std::string limits_text(const ChangedNumbers& changed, const char* what);
 
 // ---- solve-for
 
-// A figure with its wish, and its values at the result by the other legs; NaN where a leg does not
-// apply.
-struct WishRow {
-    std::string output, unit, place;
-    double asked = 0, before = 0, after = 0;
-    double energy = 0, series = 0;
-};
 struct SolvedFor {
     std::vector<Number> numbers;
+    std::vector<NamedFigure> wanted = {};
     compare::Wishes wishes;
-    compare::Solution solution;
-    std::vector<WishRow> rows;
-    // the other legs have the figures of the equilibrium leg, within a millionth of their movement
-    bool confirmed = false;
-    std::string not_confirmed = {};  // reason
+    compare::Solution solution = {};
+    compare::Confirmation by = {};
 };
 std::string solve_for_text(const SolvedFor& solved);
 nlohmann::ordered_json solve_for_json(const SolvedFor& solved);
@@ -71,7 +70,7 @@ nlohmann::ordered_json fit_json(const FittedScene& fit);
 // ---- tolerances
 
 struct ToleratedFigure {
-    std::string output, unit, place;
+    NamedFigure named;
     double nominal = 0;
     compare::Scatter scatter;
 };

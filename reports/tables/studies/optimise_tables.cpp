@@ -113,12 +113,6 @@ std::string bound_text(const OptimisedScene& scene, const compare::ActiveBound& 
                        points[which].goal->unit, points[which].point->place);
 }
 
-const std::string& unit_of_bound(const OptimisedScene& scene, const compare::ActiveBound& one,
-                                 const std::vector<NamedPoint>& points) {
-    const auto which = static_cast<std::size_t>(one.which);
-    return one.of_number ? scene.numbers[which].unit : points[which].goal->unit;
-}
-
 Table prices_table(const OptimisedScene& scene) {
     using enum Digits;
     Table table{{{"bound", "", "", true, words},
@@ -129,7 +123,9 @@ Table prices_table(const OptimisedScene& scene) {
     const auto points = points_in_order(scene);
     for (const auto& one : scene.optimum.active) {
         const double amount = relaxed_by(scene, one, points);
-        table.rows.push_back({bound_text(scene, one, points), unit_of_bound(scene, one, points),
+        const auto which = static_cast<std::size_t>(one.which);
+        table.rows.push_back({bound_text(scene, one, points),
+                              one.of_number ? scene.numbers[which].unit : points[which].goal->unit,
                               amount, amount * one.price});
     }
     return table;
@@ -158,21 +154,19 @@ Table searches_table(const OptimisedScene& scene) {
 }
 
 void add_prices(const OptimisedScene& scene, std::back_insert_iterator<std::string> out) {
-    const auto points = points_in_order(scene);
-    if (scene.optimum.active.empty())
-        fmt::format_to(out, "No bound holds the result back.\n");
-    else
-        fmt::format_to(out, "Bounds that hold at the result, with their prices to first order:\n");
-    for (const auto& one : scene.optimum.active) {
-        const double amount = relaxed_by(scene, one, points), gain = amount * one.price;
-        fmt::format_to(out, "  {}: ", bound_text(scene, one, points));
-        const std::string relaxing =
-            fmt::format("relaxing it by {:g} {}", amount, unit_of_bound(scene, one, points));
+    const Table prices = prices_table(scene);
+    fmt::format_to(out, "{}\n",
+                   prices.rows.empty()
+                       ? "No bound holds the result back."
+                       : "Bounds that hold at the result, with their prices to first order:");
+    for (const auto& row : prices.rows) {
+        const auto words = [&](std::size_t c) { return std::get<std::string>(row[c]); };
+        const double by = std::get<double>(row[2]), gain = std::get<double>(row[3]);
+        fmt::format_to(out, "  {}: relaxing it by {:g} {} ", words(0), by, words(1));
         if (scene.minimised.empty())
-            fmt::format_to(out, "{} reduces the change by {:.3g} % of the ranges\n", relaxing,
-                           100 * gain);
+            fmt::format_to(out, "reduces the change by {:.3g} % of the ranges\n", 100 * gain);
         else
-            fmt::format_to(out, "{} lowers {} by {:.3g} {}\n", relaxing, scene.minimised, gain,
+            fmt::format_to(out, "lowers {} by {:.3g} {}\n", scene.minimised, gain,
                            scene.minimised_unit);
     }
 }
@@ -186,9 +180,7 @@ void add_conflict(const OptimisedScene& scene, std::back_insert_iterator<std::st
         if (!(optimum.conflict[i] > least_share_shown)) continue;
         const Goal& goal = *points[k].goal;
         const bool above = optimum.after[i] > goal.high;
-        bands.push_back(fmt::format("{} {} {:g} {} at {}", goal.output,
-                                    above ? "<=" : ">=", above ? goal.high : goal.low, goal.unit,
-                                    points[k].point->place));
+        bands.push_back(bound_text(scene, {false, i, above, above ? goal.high : goal.low}, points));
     }
     fmt::format_to(out, "{}: {}.\n", bands.size() > 1 ? "In conflict" : "Out of reach",
                    fmt::join(bands, "; "));
@@ -236,12 +228,7 @@ std::string optimise_text(const OptimisedScene& scene) {
     if (scene.between)
         fmt::format_to(out, "Between its points {} is outside of its band by {:.2g}.\n",
                        scene.between->what, scene.between->excess);
-    if (scene.confirmation.confirmed)
-        fmt::format_to(out,
-                       "The energy leg and the series, as far as they apply, confirm the "
-                       "values.\n");
-    else
-        fmt::format_to(out, "Not confirmed: {}\n", scene.confirmation.why_not);
+    all += confirmation_text(scene.confirmation);
     if (scene.certificate) fmt::format_to(out, "{}\n", sentence(*scene.certificate));
     return all;
 }

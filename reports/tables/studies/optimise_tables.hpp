@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "compare/design/confirm.hpp"
 #include "compare/design/optimise.hpp"
 #include "compare/proofs/certify.hpp"
 
@@ -43,15 +42,16 @@ struct Between {
 
 struct OptimisedScene {
     std::vector<Number> numbers;
-    std::vector<Goal> goals;
-    std::string minimised, minimised_unit;  // "bump_steer at jounce = 0 N"; empty: the change
+    std::vector<Goal> goals = {};
+    std::string minimised = {},
+                minimised_unit = {};  // "bump_steer at jounce = 0 N"; empty: the change
     // of the figures: the points of the goals in order, then the minimised one
-    compare::Goals limits;
+    compare::Goals limits = {};
     compare::Optimum optimum;
-    std::vector<compare::Search> searches;
-    compare::Confirmation confirmation;
-    std::optional<Between> between;
-    std::optional<compare::CertifyStudy> certificate;  // if the bands are met
+    std::vector<compare::Search> searches = {};
+    compare::Confirmation confirmation = {};
+    std::optional<Between> between = {};
+    std::optional<compare::CertifyStudy> certificate = {};  // if the bands are met
 };
 std::string optimise_text(const OptimisedScene& scene);
 nlohmann::ordered_json optimise_json(const OptimisedScene& scene);
