@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "compare/comparison/compare.hpp"
 #include "compare/comparison/compare_with.hpp"
+#include "compare/deviation/agreement.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/compile.hpp"
@@ -168,6 +168,26 @@ struct SideRun {
     std::vector<Known> known = {};  // per requested point
 };
 
+// Message on the output that exceeds claim, e and rounding most; empty where none does.
+std::string breach(const std::vector<Output>& outputs, const Limits& claim, const Vectors& found,
+                   const Known& known, double rounding) {
+    const Limits round_off{rounding, 4 * eps, 0, 0};
+    std::string why;
+    double worst = 1;
+    for (const Output& output : outputs) {
+        const auto is = found.find(output.name), truth = known.values.find(output.name);
+        if (is == found.end() || truth == known.values.end()) continue;
+        const Quantity q = output.quantity;
+        const double off = (is->second - truth->second).norm(),
+                     over = off / (claim[q] + known.error[q] + round_off[q]);
+        if (off == 0 || over <= worst) continue;
+        worst = over;
+        why = fmt::format("{} deviates by {:.3e} {}, and at most {:.3e} is claimed", output.name,
+                          off, symbols[q], claim[q]);
+    }
+    return why;
+}
+
 // The proof of the k-th point by the first of the accurate solvers' states for which it succeeds.
 Known proved(const SideRun& run, const std::vector<const Run*>& exact, std::size_t k,
              bool anything_idle) {
@@ -188,33 +208,32 @@ Known proved(const SideRun& run, const std::vector<const Run*>& exact, std::size
     return {};
 }
 
-// The truth of a scene that is not transformed: by construction, by proof, or as `compare` requires
-// the references to agree.
+// Two accurate solvers that agree within their claims.
+Known agreed(const SideRun& run, const std::vector<const Run*>& exact, std::size_t k) {
+    for (const auto& [i, j] : {std::pair{0u, 1u}, {0u, 2u}, {1u, 2u}}) {
+        const Run &one = *exact[i], &other = *exact[j];
+        if (k < one.points.size() && k < other.points.size() &&
+            breach(run.outputs, one.claim, one.points[k],
+                   {.values = other.points[k], .error = other.claim}, run.rounding)
+                .empty())
+            return {"references", one.points[k], one.claim};
+    }
+    return {};
+}
+
+// The truth of a scene that is not transformed: by construction, by proof, or by agreement.
 void find_truth(SideRun& run, const std::vector<Solver>& solvers, const Variant& variant,
-                const Model& model, const Comparison& comparison, bool anything_idle) {
+                const Vectors& design, bool anything_idle) {
     std::vector<const Run*> exact;
     for (const char* name : {"equilibrium", "energy", "series"})
         exact.push_back(&run.runs[static_cast<std::size_t>(
             std::ranges::find(solvers, name, &Solver::name) - solvers.begin())]);
-    const BranchComparison& branch = comparison.branches.front();
-    const Bounds& b = branch.bounds;
-    const bool agree =
-        disagreements(model, comparison.channels, model.branches.front(), branch, Of::references)
-            .empty();
     for (std::size_t k = 0; k < run.known.size(); ++k) {
-        Known& known = run.known[k];
         if (variant.known == Variant::Construction::nothing_moves)
-            known = {"construction",
-                     values_of(run.outputs,
-                               evaluate(model, comparison.channels, design_state(model)), {}),
-                     {run.rounding, eps, inf, inf}};
+            run.known[k] = {"construction", design, {run.rounding, eps, inf, inf}};
         else
-            known = proved(run, exact, k, anything_idle);
-        if (known.by.empty() && agree && k < exact[0]->points.size())
-            known = {
-                "references",
-                exact[0]->points[k],
-                {b.length / in_unit(Unit::mm), b.angle / in_unit(Unit::deg), b.force, b.moment}};
+            run.known[k] = proved(run, exact, k, anything_idle);
+        if (run.known[k].by.empty()) run.known[k] = agreed(run, exact, k);
     }
 }
 
@@ -267,7 +286,10 @@ void run_side(SideRun& result, const Variant& variant, Model model,
                 }
     }
     if (!variant.transforms)
-        find_truth(result, solvers, variant, model, comparison, !diagnosis.idle.empty());
+        find_truth(result, solvers, variant,
+                   values_of(result.outputs,
+                             evaluate(model, comparison.channels, design_state(model)), {}),
+                   !diagnosis.idle.empty());
 }
 
 std::vector<SideRun> run_trial(const Trial& trial, const std::vector<Solver>& solvers) {
@@ -325,26 +347,6 @@ double range_of(const SideRun& run) {
         range = std::max(range, apart(run.outputs, start->values, known.values));
     }
     return range > 1e-9 * run.size ? range : run.size;
-}
-
-// Message on the output that exceeds claim, e and rounding most; empty where none does.
-std::string breach(const std::vector<Output>& outputs, const Limits& claim, const Vectors& found,
-                   const Known& known, double rounding) {
-    const Limits round_off{rounding, 4 * eps, 0, 0};
-    std::string why;
-    double worst = 1;
-    for (const Output& output : outputs) {
-        const auto is = found.find(output.name), truth = known.values.find(output.name);
-        if (is == found.end() || truth == known.values.end()) continue;
-        const Quantity q = output.quantity;
-        const double off = (is->second - truth->second).norm(),
-                     over = off / (claim[q] + known.error[q] + round_off[q]);
-        if (off == 0 || over <= worst) continue;
-        worst = over;
-        why = fmt::format("{} deviates by {:.3e} {}, and at most {:.3e} is claimed", output.name,
-                          off, symbols[q], claim[q]);
-    }
-    return why;
 }
 
 StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const SideRun& run,

@@ -84,7 +84,8 @@ struct StressCell {
     CellVerdict verdict = CellVerdict::unjudged;
     std::string why = {};  // reason, for a verdict that needs one
     // source of the true outputs: "construction"; "proof" of a state of a reference or of the series;
-    // "references", which agree as `compare` requires; "the unchanged scene"; empty: unknown
+    // "references", or one and the series, that agree within their claims; "the unchanged scene"
+    // without the transform; empty: unknown
     std::string known_by = {};
     // -log10(error / range); NaN where the truth is unknown
     double digits = std::numeric_limits<double>::quiet_NaN();

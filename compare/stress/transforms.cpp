@@ -32,17 +32,6 @@ SpatialLaw scaled(const SpatialLaw& law, double length, double force, double mom
     return elastocheck::scaled(law, stretch, stress);
 }
 
-double factor_of(ParameterUnit unit, double length, double force) {
-    switch (unit) {
-        case ParameterUnit::newton: return force;
-        case ParameterUnit::newton_metre: return force * length;
-        case ParameterUnit::metre: return length;
-        case ParameterUnit::radian:
-        case ParameterUnit::none: return 1;
-    }
-    return 1;
-}
-
 }  // namespace
 
 // The axes A of a body become M A S with S = diag(1, ±1, 1) of the determinant of M, so that they
@@ -104,7 +93,10 @@ Scene transformed(const Scene& original, const Transform& how) {
     // (start + rate a) times the driven quantity: start and rate take its change, and the rate also
     // that of a's unit.
     for (auto& branch : scene.branches) {
-        const double parameter = factor_of(branch.unit, length, force);
+        const double parameter = branch.unit == ParameterUnit::newton         ? force
+                                 : branch.unit == ParameterUnit::newton_metre ? moment
+                                 : branch.unit == ParameterUnit::metre        ? length
+                                                                              : 1;
         branch.from *= parameter, branch.to *= parameter;
         for (auto& driver : branch.drivers) {
             double by = length;  // of a free length

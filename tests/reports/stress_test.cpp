@@ -20,7 +20,7 @@ TEST(Survival, OfTheCommandIsWhatItWrites) {
     const auto said = elastocheck_says("stress " + scenes + "/four_bar.yaml --json -o " + out);
     EXPECT_EQ(said.out, text_of(out + "/stress.json"));
     const json document = json::parse(said.out);
-    EXPECT_EQ(said.code, document["wrong"].empty() ? 0 : 1) << said.err;
+    EXPECT_EQ(said.code, document["counts"]["wrong"] == 0 ? 0 : 1) << said.err;
     EXPECT_EQ(document["schema"], "elastocheck/stress/3");
     const json& map = document["map"]["rows"];
     ASSERT_EQ(map.size(), 9u);
@@ -29,7 +29,6 @@ TEST(Survival, OfTheCommandIsWhatItWrites) {
     const auto& columns = document["cells"]["columns"];
     EXPECT_EQ(columns.size(), 14u);
     EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
-    EXPECT_EQ(document["counts"]["wrong"], document["wrong"].size());
 }
 
 TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {

@@ -100,18 +100,9 @@ std::string stress_text(const Survival& survival) {
 json stress_json(const Survival& survival) {
     json counts = json::object();
     for (const auto verdict : verdicts) counts[name(verdict)] = survival.count(verdict);
-    json wrong = json::array();
-    for (const auto& c : survival.cells)
-        if (c.verdict == CellVerdict::wrong)
-            wrong.push_back({{"scene", c.scene},
-                             {"variant", c.variant},
-                             {"way", c.side},
-                             {"solver", c.solver},
-                             {"why", c.why}});
     return {{"solvers", survival.solvers},
             {"map", table_json(map_table(survival))},
             {"counts", counts},
-            {"wrong", wrong},
             {"cells", table_json(cell_table(survival))}};
 }
 

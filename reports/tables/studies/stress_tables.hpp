@@ -22,7 +22,7 @@ compare::Table map_table(const compare::Survival& survival);
 // The map, its legend, the counts and every wrong cell.
 std::string stress_text(const compare::Survival& survival);
 
-// {"solvers", "map", "counts", "wrong", "cells"}; `map` and `cells` are tables.
+// {"solvers", "map", "counts", "cells"}; `map` and `cells` are tables.
 nlohmann::ordered_json stress_json(const compare::Survival& survival);
 
 }  // namespace elastocheck::reports
