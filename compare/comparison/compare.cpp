@@ -96,6 +96,8 @@ std::vector<double> stations_of(const std::vector<double>& requested) {
     return stations;
 }
 
+}  // namespace
+
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
            const std::vector<BranchSide>& sides, const SolverSettings& solver, bool times) {
     LegRun run;
@@ -150,6 +152,8 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
         run.seconds = seconds_alone(sides, solver);
     return run;
 }
+
+namespace {
 
 // Ratio to the bound; above 1 is a violation, and so is a value that is not finite.
 double share(double value, double bound) {

@@ -1,4 +1,4 @@
-// Comparison with further outputs, such as figures by other definitions.
+// Comparison with further outputs, such as figures by other definitions, and one run of it.
 #pragma once
 
 #include <vector>
@@ -9,5 +9,9 @@ namespace elastocheck::compare {
 
 // compare() with these outputs after channels() and characteristics().
 Comparison compare(const Model& model, const Options& options, const std::vector<Channel>& also);
+
+// Runs one leg with these outputs; `times`: measure LegRun::seconds, else NaN.
+LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
+           const std::vector<BranchSide>& sides, const SolverSettings& solver, bool times);
 
 }  // namespace elastocheck::compare

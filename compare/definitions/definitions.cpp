@@ -10,7 +10,6 @@
 
 #include "compare/comparison/characteristic_formulas.hpp"
 #include "compare/comparison/characteristics.hpp"
-#include "compare/definitions/figure_words.hpp"
 #include "compare/definitions/wishbones.hpp"
 #include "compare/outputs/positions.hpp"
 
@@ -339,12 +338,6 @@ std::vector<Channel> definitions_of(std::span<const Channel> defined, const std:
             list_of_figure.push_back(channel);
     }
     return list_of_figure;
-}
-
-std::size_t end_of_output(std::string_view figure, std::span<const Channel> outputs) {
-    const auto first = std::min(figure.find('@'), figure.size()),
-               second = std::min(figure.find('@', first + 1), figure.size());
-    return find_channel(outputs, figure.substr(0, second)) >= 0 ? second : first;
 }
 
 }  // namespace elastocheck::compare

@@ -1,6 +1,8 @@
-// Words that name a figure: "OUTPUT", or "OUTPUT@BRANCH:PARAMETER".
+// Words that name a figure: "OUTPUT", "OUTPUT@BRANCH" or "OUTPUT@BRANCH:PARAMETER". Messages of
+// std::invalid_argument say what the scene has not, and the nearest name that it has.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -8,7 +10,19 @@
 
 namespace elastocheck::compare {
 
-// Where the output ends: an output may have an "@" of its own, "left.lateral_force_steer@parallel".
-std::size_t end_of_output(std::string_view figure, std::span<const Channel> outputs);
+// "BRANCH" or "BRANCH:PARAMETER", the parameter in N, N·m, mm or deg.
+struct Station {
+    const Branch* branch = nullptr;  // of the model
+    std::optional<double> at = {};   // [SI], within the branch
+};
+Station parse_station(std::string_view words, const Model& model);
+
+struct FigureWords {
+    const Channel* output = nullptr;  // of `outputs`
+    Station station;                  // without an "@", the first branch
+    bool placed = false;              // whether there is an "@"
+};
+FigureWords parse_figure_words(std::string_view words, const Model& model,
+                               std::span<const Channel> outputs);
 
 }  // namespace elastocheck::compare

@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "compare/outputs/positions.hpp"
 #include "compare/stress/stress.hpp"
-#include "compare/stress/transforms.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 Scene first_branch(const Scene& scene) {
@@ -28,15 +26,10 @@ Scene driven(const Scene& scene, double factor) {
     return farther;
 }
 
-std::vector<Variant> itself(const Scene& scene) { return {{"as it is", scene}}; }
-
 double drawn_length(const Scene& scene, const std::vector<Point>& ends) {
-    const auto drawn = [&](const Point& at) -> Vector3d {
-        if (at.body == ground) return at.s_local;
-        const Pose& body = scene.bodies[static_cast<std::size_t>(at.body)].design;
-        return body.r + body.p * at.s_local;
-    };
-    return (drawn(ends[1]) - drawn(ends[0])).norm();
+    std::vector<Pose> design;
+    for (const auto& body : scene.bodies) design.push_back(body.design);
+    return (position(design, ends[1]) - position(design, ends[0])).norm();
 }
 
 // First element much softer or stiffer than the others; a spring keeps its force in the design
@@ -64,7 +57,8 @@ std::vector<Variant> levers(const Scene& scene) {
     std::vector<Variant> variants;
     for (const double factor : {1e-6, 1e-3, 1e3})
         variants.push_back({fmt::format("lever arms times {:g}", factor),
-                            with_rotational_rates(scaled(first_branch(scene), factor, factor),
+                            with_rotational_rates(transformed(first_branch(scene),
+                                                              {.length = factor, .force = factor}),
                                                   1 / (factor * factor))});
     return variants;
 }
@@ -112,67 +106,40 @@ std::vector<Variant> steps(const Scene& scene) {
     return variants;
 }
 
+Variant transform(const char* label, const Scene& scene, const Transform& how) {
+    return {label, transformed(first_branch(scene), how), how};
+}
+
 // The same numbers read in other units.
 std::vector<Variant> units(const Scene& scene) {
-    std::vector<Variant> variants;
-    for (const auto& [label, factor] : {std::pair{"its millimetres read as metres", 1e3},
-                                        {"its metres read as millimetres", 1e-3}})
-        variants.push_back({.label = label,
-                            .scene = scaled(first_branch(scene), factor, factor * factor),
-                            .transforms = Transform{.length = factor}});
-    return variants;
+    return {transform("its millimetres read as metres", scene, {.length = 1e3, .force = 1e6}),
+            transform("its metres read as millimetres", scene, {.length = 1e-3, .force = 1e-6})};
 }
 
 std::vector<Variant> far_away(const Scene& scene) {
-    const Vector3d t(10e3, 0, 0);
-    return {{.label = "10 km from the origin",
-             .scene = moved(first_branch(scene), Quaterniond::Identity(), t),
-             .transforms = Transform{.t = t}}};
+    return {transform("10 km from the origin", scene, {.t = {10e3, 0, 0}})};
 }
 
-std::vector<Variant> invariances(const Scene& original) {
-    const Scene scene = first_branch(original);
-    const Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
-    const Eigen::Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
-    return {{.label = "rotated",
-             .scene = moved(scene, R, Vector3d::Zero()),
-             .transforms = Transform{.M = R.toRotationMatrix()}},
-            {.label = "mirrored", .scene = mirrored(scene), .transforms = Transform{.M = S}},
-            {.label = "in reverse order", .scene = reversed(scene), .transforms = Transform{}},
-            {.label = "in other body axes",
-             .scene = with_body_axes(scene, {R, R.conjugate()}),
-             .transforms = Transform{}}};
-}
-
-// The unchanged scene under other arithmetic; and every number of it changed by one ulp.
-std::vector<Variant> arithmetic(const Scene& original) {
-    const Scene scene = first_branch(original);
-    std::vector<Variant> variants;
-    for (const auto how :
-         {Arithmetic::up, Arithmetic::down, Arithmetic::towards_zero, Arithmetic::flushed})
-        variants.push_back({.label = name(how),
-                            .scene = scene,
-                            .transforms = Transform{},
-                            .skipped = exists(how) ? "" : "not available on this processor",
-                            .arithmetic = how});
-    variants.push_back(
-        {.label = "an ulp off", .scene = an_ulp_off(scene), .transforms = Transform{}});
-    return variants;
+std::vector<Variant> invariances(const Scene& scene) {
+    const Eigen::AngleAxisd R(2, Vector3d(1, -2, 0.5).normalized());
+    return {transform("rotated", scene, {.M = R.toRotationMatrix()}),
+            transform("mirrored", scene, {.M = Vector3d(1, -1, 1).asDiagonal().toDenseMatrix()})};
 }
 
 }  // namespace
 
-const std::vector<Sweep>& sweeps() {
-    static const std::vector<Sweep> all{{std::string(as_it_is), itself},
-                                        {"transforms", invariances},
-                                        {"units", units},
-                                        {"far away", far_away},
-                                        {"stiffness", stiffness},
-                                        {"levers", levers},
-                                        {"load", loads},
-                                        {"beyond", beyond},
-                                        {"steps", steps},
-                                        {"arithmetic", arithmetic}};
+std::vector<Trial> trials(const std::string& name, const Scene& scene) {
+    std::vector<Trial> all{{name, std::string(as_it_is), {"as it is", scene}}};
+    using Sweep = std::pair<const char*, std::vector<Variant> (*)(const Scene&)>;
+    for (const auto& [sweep, variants] : {Sweep{"transforms", invariances},
+                                          {"units", units},
+                                          {"far away", far_away},
+                                          {"stiffness", stiffness},
+                                          {"levers", levers},
+                                          {"load", loads},
+                                          {"beyond", beyond},
+                                          {"steps", steps}})
+        for (auto& variant : variants(scene)) all.push_back({name, sweep, std::move(variant)});
     return all;
 }
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -44,7 +43,7 @@ std::vector<compare::Trial> built_in() {
     for (const auto& name : templates()) {
         progress(fmt::format("{}: trim", name));
         const compare::Trimmed trimmed = compare::trim(parse_scene(template_text(name), name));
-        add(trials, compare::trials(name, trimmed.scene, compare::sweeps()));
+        add(trials, compare::trials(name, trimmed.scene));
     }
     add(trials, extremes());
     return trials;
@@ -53,12 +52,11 @@ std::vector<compare::Trial> built_in() {
 // Exit code: 0 no wrong result, 1 a wrong result, 3 nothing could be judged.
 int stress(const StressRequest& request, const Delivery& delivery) {
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
-    const auto start = std::chrono::steady_clock::now();
     std::vector<compare::Trial> trials;
     for (const auto& file : request.scenes) {
         progress(fmt::format("{}: trim", file));
         add(trials, compare::trials(std::filesystem::path(file).stem().string(),
-                                    load_scene(file, request.settings).scene, compare::sweeps()));
+                                    load_scene(file, request.settings).scene));
     }
     if (request.scenes.empty()) {
         if (!request.settings.empty())
@@ -66,14 +64,9 @@ int stress(const StressRequest& request, const Delivery& delivery) {
         trials = built_in();
     }
     const compare::Survival survival =
-        compare::stress(trials, {.threads = threads_of(request.running), .progress = progress});
+        compare::stress(trials, threads_of(request.running), progress);
     progress("");
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    delivery.print_text(
-        stress_text(survival) +
-        fmt::format("{:.0f} s, {:.0f} s of processor time; the slowest trial: {}, {}, {:.0f} s\n",
-                    elapsed.count(), survival.seconds, survival.dearest.scene,
-                    survival.dearest.variant, survival.dearest.seconds));
+    delivery.print_text(stress_text(survival));
     if (delivery.wants_document()) {
         nlohmann::ordered_json document = document_head(stress_schema, delivery.command);
         document.update(stress_json(survival));

@@ -156,15 +156,21 @@ bool is_segment(const Elastic& elastic) { return elastic.written_as == WrittenAs
 
 json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-json symbols_json(const Scene& scene) {
+json symbols_json(const Sketch& sketch) {
+    const Scene& scene = *sketch.scene;
+    const auto design = sketch.design();
     json list = json::array();
     const auto pose = [&](BodyId body) {
         return body == ground ? Pose{} : scene.bodies[static_cast<std::size_t>(body)].design;
     };
     const auto put = [&](const char* kind, const std::string& name, const Vector3d& at,
                          const std::optional<Vector3d>& axis) {
+        json point = nullptr;
+        for (std::size_t k = sketch.points.size(); k-- > 0;)
+            if ((sketch.at(sketch.points[k], design) - at).norm() < 1e-5) point = k;
         list.push_back({{"kind", kind},
                         {"name", name},
+                        {"point", point},
                         {"at_mm", {1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z()}},
                         {"axis", axis ? vector_json(*axis) : json(nullptr)}});
     };
@@ -289,7 +295,7 @@ json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
 
 json drawing_json(const Scene& scene, const Model& model, const compare::Comparison& comparison) {
     Sketch sketch{&scene, &model, {}, {}, {}};
-    json bushings = json::array(), faces = json::array(), wheels = json::array();
+    json faces = json::array(), wheels = json::array();
     for (const auto& constraint : model.constraints) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         if (joint.active_only_where_driven) continue;  // a jack is not part of the suspension
@@ -322,9 +328,8 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
             beams.back().second.push_back({a, b});
             continue;
         }
-        const auto i = sketch.add({a.body, a.s_local}, elastic.name);
-        const auto j = sketch.add({b.body, b.s_local}, elastic.name);
-        bushings.push_back(a.body == ground ? j : i);
+        sketch.add({a.body, a.s_local}, elastic.name);
+        sketch.add({b.body, b.s_local}, elastic.name);
     }
     for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
     for (const auto& damper : model.dampers) {
@@ -385,9 +390,11 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
         if (back) put(branch.branch, "end", *back);
         stations.push_back(motion(sketch, branch));
     }
-    json result = {{"points", points}, {"links", sketch.links},
-                   {"faces", faces},   {"symbols", symbols_json(scene)},
-                   {"wheels", wheels}, {"bushings", bushings}};
+    json result = {{"points", points},
+                   {"links", sketch.links},
+                   {"faces", faces},
+                   {"symbols", symbols_json(sketch)},
+                   {"wheels", wheels}};
     result["design"] = positions(sketch, design);
     result["positions"] = along;
     result["motion"] = stations;

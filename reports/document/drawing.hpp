@@ -1,4 +1,5 @@
-// Drawing data: positions of the points of a suspension at the design position and along every
+// The list of what is drawn of a suspension, by the report's fixed views, its turned view and the
+// live page: points, lines and labels at the design position, and their positions along every
 // branch.
 #pragma once
 
@@ -15,9 +16,9 @@ namespace elastocheck::reports {
 //   links      pairs of points joined by a line: of one body, of a rod (distance), a spring, a
 //              stop, a beam
 //   faces      a body's coplanar points, in order along their outline: an arm
-//   symbols    joints and bushings of the scene: kind, name, position [mm], axis if any
+//   symbols    joints and bushings of the scene: kind, name, point (null: none there), position
+//              [mm], axis if any
 //   wheels     centre, patch and spin axis at the design position
-//   bushings   points
 //   positions  of all points [mm], by the equilibrium leg, at the middle and the ends of every
 //              branch
 //   motion     for each branch, at up to 17 stations of the equilibrium leg: the parameter, the

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "reports/text/labels.hpp"
@@ -115,104 +114,81 @@ struct Canvas {
 
 constexpr Colour moved_colours[] = {sky, pink};
 
-void draw_symbol(Canvas& canvas, const Suspension::Symbol& symbol) {
-    using Style = Series::Style;
-    const PaperPoint at = canvas.on(symbol.at);
-    const Position axis = symbol.axis ? unit(*symbol.axis) : Position{0, 0, 1};
-    const PaperPoint direction{dot(canvas.plane.right, axis), dot(canvas.plane.up, axis)};
-    if (symbol.kind == "bushing") {
-        canvas.stroke(ring(at, 5.5), Style::line, green);
-        canvas.stroke(ring(at, 2), Style::line, green);
-    } else if (symbol.kind == "spherical") {
-        canvas.stroke(ring(at, 3.2), Style::line, ink);
-        canvas.stroke(ring(at, 1.2), Style::line, ink);
-    } else if (symbol.kind == "revolute") {
-        canvas.strokes(barrel(at, direction, 8), Style::line, blue);
-    } else if (symbol.kind == "sliding") {
-        canvas.strokes(barrel(at, direction, 13), Style::line, blue);
-    } else if (symbol.kind == "universal") {
-        canvas.strokes(cross(at, 5), Style::line, blue);
-    } else if (symbol.kind == "fixed") {
-        canvas.strokes(square(at, 4), Style::line, blue);
-    } else if (symbol.kind == "plane") {
-        canvas.strokes(diamond(at, 5), Style::line, blue);
-    } else if (symbol.kind == "drive" && std::hypot(direction.x, direction.y) > 0.15) {
-        // beside the point, so that the arrow does not cover it
-        const double length = std::hypot(direction.x, direction.y), nx = -direction.y / length,
-                     ny = direction.x / length;
-        const double off = ny < 0 ? -13 : 13;
-        const PaperPoint beside{at.x + off * nx, at.y + off * ny};
-        canvas.strokes(arrow({beside.x - 20 * direction.x, beside.y - 20 * direction.y},
-                             {beside.x + 20 * direction.x, beside.y + 20 * direction.y}, true),
-                       Style::line, purple);
-    }
-    canvas.paper.taken.push_back({at.x - 5, at.y - 5, at.x + 5, at.y + 5});
-}
+// ---- Signs of links and symbols. `along` is the direction of a symbol's axis on paper,
+// foreshortened.
 
-// Legend of the symbols in use, in lines from the lower edge up.
-struct Entry {
-    std::string text;
-    std::function<void(Canvas&, PaperPoint)> sign;
+using Place = PaperPoint;
+struct Sign {
+    std::string_view kind, legend;  // no legend: none is needed
+    Colour colour;
+    Strokes (*link)(Place a, Place b);
+    Strokes (*symbol)(Place at, Place along) = nullptr;
+    Series::Style style = Series::Style::line;
+    double raised = 0;  // [px] in the legend
 };
 
-std::vector<Entry> entries(const Suspension& s) {
-    using Style = Series::Style;
-    std::vector<Entry> list;
-    const auto symbol = [&](const char* kind, const char* text) {
-        if (std::ranges::any_of(s.symbols, [&](const auto& one) { return one.kind == kind; }))
-            list.push_back({text, [kind](Canvas& canvas, PaperPoint at) {
-                                const PaperPoint mm{canvas.x + at.x / canvas.scale,
-                                                    canvas.y + at.y / canvas.scale};
-                                Position place = along({0, 0, 0}, mm.x, canvas.plane.right);
-                                place = along(place, mm.y, canvas.plane.up);
-                                draw_symbol(canvas, {kind, place, canvas.plane.right});
-                            }});
-    };
-    const auto link = [&](const char* kind, const char* text, auto&& strokes, Style style,
-                          Colour colour) {
-        if (std::ranges::any_of(s.links, [&](const auto& one) { return one.kind == kind; }))
-            list.push_back({text, [=](Canvas& canvas, PaperPoint at) {
-                                canvas.strokes(strokes({at.x - 10, at.y}, {at.x + 10, at.y}), style,
-                                               colour, false);
-                            }});
-    };
-    symbol("spherical", "ball joint");
-    symbol("bushing", "bushing");
-    symbol("revolute", "revolute joint");
-    symbol("sliding", "sliding joint");
-    symbol("universal", "universal joint");
-    symbol("fixed", "fixed joint");
-    link(
-        "spring", "spring",
-        [](PaperPoint a, PaperPoint b) {
-            return coil({a.x - 5, a.y}, {b.x + 3, b.y});
-        },
-        Style::line, vermilion);
-    link(
-        "damper", "damper", [](PaperPoint a, PaperPoint b) { return damper(a, b); }, Style::line,
-        ochre);
-    link(
-        "beam", "elastic beam",
-        [](PaperPoint a, PaperPoint b) {
-            return Strokes{{a, b}};
-        },
-        Style::heavy, purple);
-    if (std::ranges::any_of(s.points, [](const auto& p) { return p.body == "ground"; }))
-        list.push_back({"vehicle body", [](Canvas& canvas, PaperPoint at) {
-                            canvas.strokes(hatching({at.x, at.y + 6}), Style::hair, slate, false);
-                        }});
-    if (std::ranges::any_of(s.symbols, [](const auto& one) { return one.kind == "drive"; }))
-        list.push_back({"driven", [](Canvas& canvas, PaperPoint at) {
-                            canvas.strokes(arrow({at.x - 10, at.y}, {at.x + 10, at.y}, true),
-                                           Style::line, purple, false);
-                        }});
+Strokes straight(Place a, Place b) { return {{a, b}}; }
+Strokes drive(Place at, Place u) {
+    if (std::hypot(u.x, u.y) <= 0.15) return {};
+    return arrow({at.x - 20 * u.x, at.y - 20 * u.y}, {at.x + 20 * u.x, at.y + 20 * u.y}, true);
+}
+Strokes ball(Place at, Place) { return {ring(at, 3.2), ring(at, 1.2)}; }
+Strokes bushing(Place at, Place) { return {ring(at, 5.5), ring(at, 2)}; }
+Strokes hinge(Place at, Place along) { return barrel(at, along, 8); }
+Strokes sleeve(Place at, Place along) { return barrel(at, along, 13); }
+
+// In the order of the legend.
+constexpr Sign signs[]{
+    {"spherical", "ball joint", ink, nullptr, ball},
+    {"bushing", "bushing", green, nullptr, bushing},
+    {"revolute", "revolute joint", blue, nullptr, hinge},
+    {"sliding", "sliding joint", blue, nullptr, sleeve},
+    {"universal", "universal joint", blue, nullptr, [](Place at, Place) { return cross(at, 5); }},
+    {"fixed", "fixed joint", blue, nullptr, [](Place at, Place) { return square(at, 4); }},
+    {"plane", "", blue, nullptr, [](Place at, Place) { return diamond(at, 5); }},
+    {"spring", "spring", vermilion, coil},
+    {"damper", "damper", ochre, damper},
+    {"body", "", ink, straight, nullptr, Series::Style::heavy},
+    {"rod", "", ink, straight, nullptr, Series::Style::heavy},
+    {"beam", "elastic beam", purple, straight, nullptr, Series::Style::heavy},
+    {"ground", "vehicle body", slate, nullptr, [](Place at, Place) { return hatching(at); },
+     Series::Style::hair, 6},
+    {"drive", "driven", purple, nullptr, drive},
+};
+
+bool is_shown(const Suspension& s, std::string_view kind) {
+    return std::ranges::find(s.symbols, kind, &Suspension::Symbol::kind) != s.symbols.end() ||
+           std::ranges::find(s.links, kind, &Suspension::Link::kind) != s.links.end() ||
+           (kind == "ground" &&
+            std::ranges::find(s.points, kind, &Suspension::Point::body) != s.points.end());
+}
+
+// Entries of the legend: the signs in use, then the other positions.
+std::vector<Sign> entries(const Suspension& s) {
+    std::vector<Sign> list;
+    for (const Sign& sign : signs)
+        if (!sign.legend.empty() && is_shown(s, sign.kind)) list.push_back(sign);
     for (std::size_t m = 0; m < s.moved.size(); ++m)
-        list.push_back({s.moved[m].title, [m](Canvas& canvas, PaperPoint at) {
-                            canvas.strokes({{{at.x - 10, at.y}, {at.x + 10, at.y}}}, Style::thin,
-                                           moved_colours[m % std::size(moved_colours)], false);
-                        }});
+        list.push_back({"", s.moved[m].title, moved_colours[m % std::size(moved_colours)], straight,
+                        nullptr, Series::Style::thin});
     return list;
 }
+
+void draw_symbol(Canvas& canvas, const Suspension::Symbol& symbol) {
+    PaperPoint at = canvas.on(symbol.at);
+    const Position axis = symbol.axis ? unit(*symbol.axis) : Position{0, 0, 1};
+    const PaperPoint along{dot(canvas.plane.right, axis), dot(canvas.plane.up, axis)};
+    canvas.paper.taken.push_back({at.x - 5, at.y - 5, at.x + 5, at.y + 5});
+    if (symbol.kind == "drive") {  // beside the point, so that the arrow does not cover it
+        const double off = (along.x < 0 ? -13 : 13) / std::hypot(along.x, along.y);
+        at = {at.x - off * along.y, at.y + off * along.x};
+    }
+    for (const Sign& sign : signs)
+        if (sign.kind == symbol.kind && sign.symbol != nullptr)
+            canvas.strokes(sign.symbol(at, along), sign.style, sign.colour);
+}
+
+// ---- The legend, in lines from the lower edge up.
 
 struct LegendPosition {
     double x;
@@ -220,12 +196,12 @@ struct LegendPosition {
 };
 // Positions of the entries on lines of this width; the number of lines is the last entry's line
 // plus one.
-std::vector<LegendPosition> legend_positions(const std::vector<Entry>& list, double width) {
+std::vector<LegendPosition> legend_positions(const std::vector<Sign>& list, double width) {
     std::vector<LegendPosition> result;
     double x = 6;
     int line = 0;
     for (const auto& entry : list) {
-        const double need = 38 + text_width(entry.text, letter) + 12;
+        const double need = 38 + text_width(entry.legend, letter) + 12;
         if (x > 6 && x + need > width) x = 6, ++line;
         result.push_back({x, line});
         x += need;
@@ -233,14 +209,17 @@ std::vector<LegendPosition> legend_positions(const std::vector<Entry>& list, dou
     return result;
 }
 
-void draw_legend(Canvas& canvas, const std::vector<Entry>& list, double width) {
+void draw_legend(Canvas& canvas, const std::vector<Sign>& list, double width) {
     const auto where = legend_positions(list, width);
     if (where.empty()) return;
     const int lines = where.back().line + 1;
     for (std::size_t k = 0; k < list.size(); ++k) {
         const PaperPoint at{where[k].x + 17, strip * (lines - where[k].line) - strip / 2};
-        list[k].sign(canvas, at);
-        canvas.word({where[k].x + 38, at.y}, list[k].text, ink);
+        const Sign& sign = list[k];
+        canvas.strokes(sign.link != nullptr ? sign.link({at.x - 12, at.y}, {at.x + 12, at.y})
+                                            : sign.symbol({at.x, at.y + sign.raised}, {1, 0}),
+                       sign.style, sign.colour, false);
+        canvas.word({where[k].x + 38, at.y}, std::string(sign.legend), ink);
     }
     canvas.paper.taken.push_back({0, 0, width, strip * lines + 2});
 }
@@ -326,18 +305,12 @@ void draw_suspension(Canvas& canvas, const Suspension& s) {
         round.push_back(round.front());
         canvas.stroke(round, Style::face, blue, false);
     }
-    const auto each = [&](std::string_view kind, auto&& draw) {
+    for (const Sign& sign : signs)
         for (const auto& link : s.links)
-            if (link.kind == kind)
-                draw(canvas.on(s.points[link.i].at), canvas.on(s.points[link.j].at));
-    };
-    each("spring",
-         [&](PaperPoint a, PaperPoint b) { canvas.strokes(coil(a, b), Style::line, vermilion); });
-    each("damper",
-         [&](PaperPoint a, PaperPoint b) { canvas.strokes(damper(a, b), Style::line, ochre); });
-    each("body", [&](PaperPoint a, PaperPoint b) { canvas.stroke({a, b}, Style::heavy, ink); });
-    each("rod", [&](PaperPoint a, PaperPoint b) { canvas.stroke({a, b}, Style::heavy, ink); });
-    each("beam", [&](PaperPoint a, PaperPoint b) { canvas.stroke({a, b}, Style::heavy, purple); });
+            if (link.kind == sign.kind && sign.link != nullptr)
+                canvas.strokes(
+                    sign.link(canvas.on(s.points[link.i].at), canvas.on(s.points[link.j].at)),
+                    sign.style, sign.colour);
     for (const auto& symbol : s.symbols) draw_symbol(canvas, symbol);
     for (const auto& wheel : s.wheels)
         canvas.stroke(ring(canvas.on(s.points[wheel.patch].at), 2), Style::line, slate);
@@ -417,7 +390,7 @@ Frame small_frame(const Suspension& s) { return {s.wheels.size() > 1 ? 480 : 330
 
 std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& views,
                                const Frame& frame) {
-    const auto list = frame.legend ? entries(s) : std::vector<Entry>{};
+    const auto list = frame.legend ? entries(s) : std::vector<Sign>{};
     const auto where = legend_positions(list, frame.width);
     const double legend = where.empty() ? 0 : strip * (where.back().line + 1);
     double scale = INFINITY;

@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -367,48 +366,17 @@ struct Reading {
         for (const auto& [word, over] :
              {std::pair("min ", Over::least), std::pair("max ", Over::largest)})
             if (words.starts_with(word)) result.over = over, words.erase(0, 4);
-        const auto place = compare::end_of_output(words, outputs);
-        result.output = words.substr(0, place);
-        std::vector<std::string> names;
-        for (const auto& output : outputs) names.push_back(output.name);
-        const auto output = std::ranges::find(names, result.output);
-        if (output == names.end())
-            at.fail(fmt::format("the scene has no output {}{}", reader::quote(result.output),
-                                reader::did_you_mean(result.output, names, "outputs")));
-        result.unit = outputs[static_cast<std::size_t>(output - names.begin())].unit;
-        const Branch* branch = &model.branches.front();
-        if (place == words.size()) {
-            result.branch = branch->name;
-            return result;
+        compare::FigureWords parsed;
+        try {
+            parsed = compare::parse_figure_words(words, model, outputs);
+        } catch (const std::invalid_argument& error) {
+            at.fail(error.what());
         }
-        const std::string where = words.substr(place + 1);
-        const auto colon = where.rfind(':');
-        result.branch = where.substr(0, colon);
-        std::vector<std::string> branches;
-        for (const Branch& one : model.branches) {
-            branches.push_back(one.name);
-            if (one.name == result.branch) branch = &one;
-        }
-        if (std::ranges::find(branches, result.branch) == branches.end())
-            at.fail(fmt::format("the scene has no branch {}{}", reader::quote(result.branch),
-                                reader::did_you_mean(result.branch, branches, "branches")));
-        if (colon == where.npos) return result;
-        if (result.over != Over::station)
+        if (parsed.station.at && result.over != Over::station)
             at.fail("an extreme is that of the whole branch; allowed: min OUTPUT@BRANCH");
-        const std::string text = where.substr(colon + 1);
-        double value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-            at.fail(reader::quote(text) + " is not a number");
-        const compare::Unit unit = compare::unit_of(branch->unit);
-        const double factor = compare::in_unit(unit),
-                     low = factor * std::min(branch->from, branch->to),
-                     high = factor * std::max(branch->from, branch->to),
-                     within = 1e-9 * (high - low);
-        if (!(value >= low - within && value <= high + within))
-            at.fail(fmt::format("branch '{}' goes from {:g} to {:g} {}", branch->name, low, high,
-                                symbol(unit)));
-        result.at = value / factor;
+        result.output = parsed.output->name, result.unit = parsed.output->unit;
+        result.branch = parsed.station.branch->name;
+        result.at = parsed.station.at.value_or(0);
         return result;
     }
 

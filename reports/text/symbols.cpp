@@ -89,11 +89,8 @@ Strokes diamond(PaperPoint at, double r) {
 }
 
 Strokes square(PaperPoint at, double h) {
-    return {{{at.x - h, at.y - h},
-             {at.x + h, at.y - h},
-             {at.x + h, at.y + h},
-             {at.x - h, at.y + h},
-             {at.x - h, at.y - h}}};
+    const double l = at.x - h, r = at.x + h, low = at.y - h, high = at.y + h;
+    return {{{l, low}, {r, low}, {r, high}, {l, high}, {l, low}}};
 }
 
 Strokes hatching(PaperPoint at) {

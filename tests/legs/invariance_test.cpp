@@ -195,7 +195,7 @@ TEST_P(Invariance, OfTheUnitsOfLengthAndForce) {
                        : channel.unit == Unit::newton_metre ? force * length
                                                             : 1;
             };
-            expect_same(scene, compare::scaled(scene, length, force), factor, wider);
+            expect_same(scene, support::scaled(scene, length, force), factor, wider);
         }
 }
 

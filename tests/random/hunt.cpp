@@ -45,20 +45,19 @@ double cpu_seconds() {
 // ---- Child process: writes one line per result to the pipe.
 
 std::string line(std::uint64_t seed, const std::string& solver, const std::string& verdict,
-                 const std::string& outcome, const std::string& why, int reactions = 0) {
-    return fmt::format("{}\t{}\t{}\t{}\t{}\t{}\n", seed, solver, verdict, outcome, reactions, why);
+                 const std::string& outcome, const std::string& why) {
+    return fmt::format("{}\t{}\t{}\t{}\t{}\n", seed, solver, verdict, outcome, why);
 }
 
 std::string judged(std::uint64_t seed, const Scene& scene) {
     std::string lines;
     const compare::Trial trial{
         fmt::format("{}", seed), "random", {.label = "as it is", .scene = scene}};
-    for (const auto& cell : compare::stress({&trial, 1}, {.threads = 1}).cells)
+    for (const auto& cell : compare::stress({&trial, 1}, 1).cells)
         lines +=
             line(seed, cell.solver, compare::name(cell.verdict), elastocheck::name(cell.outcome),
                  fmt::format("{}: {}{}{}", cell.side, cell.why, cell.why.empty() ? "" : "; ",
-                             cell.detail),
-                 cell.reactions);
+                             cell.detail));
     return lines;
 }
 
@@ -93,7 +92,6 @@ struct Tally {
     // by solver; then by verdict, or by outcome for a failure that was reported as such
     std::map<std::string, std::map<std::string, int>> table;
     std::vector<std::string> wrong;  // one message each
-    long reactions = 0;              // judged reactions: each of one joint, point and solver
     double seconds = 0, slowest = 0;
     std::uint64_t slowest_seed = 0;
     std::ofstream log;
@@ -108,8 +106,8 @@ struct Tally {
                 << "# " << what << "\n"
                 << compare::random_scene(seed, family);
     }
-    void take(const std::array<std::string, 6>& told) {
-        const auto& [seed, solver, verdict, outcome, known, why] = told;
+    void take(const std::array<std::string, 5>& told) {
+        const auto& [seed, solver, verdict, outcome, why] = told;
         if (log.is_open()) log << fmt::format("{}\n", fmt::join(told, "\t"));
         if (verdict == "done") {
             const double took = std::stod(outcome);
@@ -118,7 +116,6 @@ struct Tally {
             return;
         }
         ++table[solver][verdict == "honest" ? outcome : verdict];
-        reactions += std::stol(known);
 
         if (verdict == "wrong" || verdict == "thrown")
             fail(std::stoull(seed), fmt::format("seed {}: {}: {} {}", seed, solver, verdict, why));
@@ -152,7 +149,7 @@ struct Worker {
         while (::getline(&text, &size, in) > 0) {
             std::istringstream split(
                 std::string(text, std::string(text).find_last_not_of('\n') + 1));
-            std::array<std::string, 6> told;
+            std::array<std::string, 5> told;
             for (auto& field : told) std::getline(split, field, '\t');
             tally.take(told);
             if (told[2] != "done") continue;
@@ -223,9 +220,8 @@ int main(int argc, char** argv) {
         fmt::print("\n");
     }
     fmt::print(
-        "{} scenes, {} reactions judged, {:.0f} s of CPU; the slowest, seed {}, {:.1f} s; {} "
+        "{} scenes, {:.0f} s of CPU; the slowest, seed {}, {:.1f} s; {} "
         "wrong\n",
-        count, tally.reactions, tally.seconds, tally.slowest_seed, tally.slowest,
-        tally.wrong.size());
+        count, tally.seconds, tally.slowest_seed, tally.slowest, tally.wrong.size());
     return tally.wrong.empty() ? 0 : 1;
 }

@@ -147,7 +147,7 @@ TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
         } catch (const SceneError&) {
             continue;
         }
-        for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells) {
+        for (const auto& cell : stress({&trial, 1}, 1).cells) {
             EXPECT_NE(cell.verdict, CellVerdict::wrong)
                 << seed << ", " << cell.side << ", " << cell.solver << ": " << cell.why << " "
                 << cell.detail;
@@ -182,7 +182,7 @@ TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
         const Trial trial{fmt::format("{}", seed),
                           "random",
                           {.label = "as it is", .scene = parse_scene(text, "random.yaml")}};
-        for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells)
+        for (const auto& cell : stress({&trial, 1}, 1).cells)
             EXPECT_TRUE(cell.verdict != CellVerdict::wrong &&
                         cell.verdict != CellVerdict::elsewhere)
                 << seed << ", " << cell.side << ", " << cell.solver << ": " << cell.why << " "

@@ -44,13 +44,13 @@ std::vector<std::string> parts(const std::string& text, const std::string& open,
 
 TEST(Report, PageAsksForNothingFromOutside) {
     const std::string html = page();
-    // the page's own two scripts, by their hashes, and no other; data of the drawings are inert
+    // the page's own three scripts, by their hashes, and no other; data of the drawings are inert
     EXPECT_TRUE(std::regex_search(
         html, std::regex("Content-Security-Policy\" content=\"default-src 'none'; style-src "
-                         "'unsafe-inline'; script-src( 'sha256-[A-Za-z0-9+/]{43}='){2}\"")));
+                         "'unsafe-inline'; script-src( 'sha256-[A-Za-z0-9+/]{43}='){3}\"")));
     const std::string inert = "<script type=\"application/json\" class=\"motion\">";
     EXPECT_EQ(parts(html, "<script", ">"),
-              (std::vector<std::string>{inert, inert, "<script>", "<script>"}));
+              (std::vector<std::string>{inert, inert, "<script>", "<script>", "<script>"}));
     for (const auto& target : all(html, "(?:href|src)=\"([^\"]*)\""))
         EXPECT_TRUE(target.starts_with("#")) << target;
     for (const char* fetching :
@@ -251,10 +251,10 @@ const fixed=document.querySelector('svg.still'),slider=document.querySelector('.
 const shown=()=>document.querySelector('.turn output').textContent;
 const press=name=>[...document.querySelectorAll('.turn button')].find(b=>b.textContent==name).click();
 const slide=v=>{slider.value=v;slider.dispatchEvent(new Event('input'))};
-const thick=d.links.filter(l=>l[0]=='body'||l[0]=='rod'||l[0]=='beam');
-const place=k=>{const n=thick.findIndex(l=>l[1]==k||l[2]==k),ends=svg.querySelectorAll('path[stroke-width="3"]')[n].getAttribute('d').slice(1).split('L');
-  return ends[thick[n][1]==k?0:1].split(',').map(Number)};
-const centres=()=>d.wheels.map(w=>place(w[0]));
+const thick=d.list.links.filter(l=>['body','rod','beam'].includes(l.kind)).map(l=>l.points);
+const place=k=>{const n=thick.findIndex(l=>l.includes(k)),ends=svg.querySelectorAll('path[stroke-width="3"]')[n].getAttribute('d').slice(1).split('L');
+  return ends[thick[n][0]==k?0:1].split(',').map(Number)};
+const centres=()=>d.list.wheels.map(w=>place(w.centre));
 const drag=(x,y)=>{const at=(e,t,x,y)=>e.dispatchEvent(new PointerEvent(t,{pointerId:1,clientX:x,clientY:y,bubbles:true}));
   at(svg,'pointerdown',200,200);at(window,'pointermove',200+x,200+y);at(window,'pointerup',200+x,200+y);at(window,'pointermove',0,0)};
 const key=k=>svg.dispatchEvent(new KeyboardEvent('keydown',{key:k}));
@@ -293,7 +293,7 @@ TEST(Report, BrowserMovesTheDrawingByWhatTheCurveSays) {
 press('Front');
 const seen={wrong,branch:d.branches[0].name,a:d.branches[0].a,at:[],marks:document.querySelectorAll('.here[d^=M]').length};
 d.branches[0].a.forEach((a,k)=>{slide(k);seen.at.push([shown(),...centres().map(p=>p[1])])});
-const [l,r]=d.wheels.map(w=>w[0]),last=d.branches[0].d.at(-1),y=k=>d.points[3*k+1]+last[3*k+1];
+const [l,r]=d.list.wheels.map(w=>w.centre),last=d.branches[0].d.at(-1),y=k=>d.points[3*k+1]+last[3*k+1];
 seen.px_per_mm=(centres()[0][0]-centres()[1][0])/(y(l)-y(r))*100;
 )",
                                             "1280");

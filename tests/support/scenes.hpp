@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "compare/stress/transforms.hpp"
 #include "elastocheck/scene.hpp"
+#include "tests/support/transforms.hpp"
 
 namespace elastocheck::support {
 
@@ -28,11 +28,5 @@ Scene in_millimetres_and_kilonewtons(const std::string& name);
 // springs, a static load, a load of force and moment together, body axes different from ground
 // axes.
 Scene rich_scene();
-
-// Transforms that must not change the result of any solver.
-using compare::mirrored;
-using compare::moved;
-using compare::reversed;
-using compare::with_body_axes;
 
 }  // namespace elastocheck::support

@@ -39,19 +39,6 @@ double number_of(std::string_view text, const std::string& option, const std::st
     return value;
 }
 
-template <class Item, class Name>
-const Item& named(const std::vector<Item>& all, const std::string& name, const Name& name_of,
-                  const std::string& option, const char* what, const char* label) {
-    std::vector<std::string> names;
-    for (const Item& item : all) {
-        if (name_of(item) == name) return item;
-        names.push_back(name_of(item));
-    }
-    throw std::invalid_argument(fmt::format("{}: the scene has no {} {}{}", option, what,
-                                            reader::quote(name),
-                                            reader::did_you_mean(name, names, label)));
-}
-
 void add(Settings& settings, const Number& number, double value) {
     for (const std::string& path : compare::paths_in(number.path))
         settings.push_back(elastocheck::setting(path, value));
@@ -68,12 +55,15 @@ Settings without(Settings settings, const std::vector<Number>& numbers) {
 Number number_of_path(const std::string& joined, const Scene& scene) {
     Number number;
     for (const std::string& path : compare::paths_in(joined)) {
-        const auto of_one_side = find_number(scene, path);
-        const Number one = of_one_side
-                               ? *of_one_side
-                               : named(
-                                     scene.numbers, path, [](const Number& n) { return n.path; },
-                                     "--vary", "number", "numbers");
+        const auto found = find_number(scene, path);
+        if (!found) {
+            std::vector<std::string> names;
+            for (const Number& other : scene.numbers) names.push_back(other.path);
+            throw std::invalid_argument(fmt::format("--vary: the scene has no number {}{}",
+                                                    reader::quote(path),
+                                                    reader::did_you_mean(path, names, "numbers")));
+        }
+        const Number& one = *found;
         if (number.path.empty()) number = one;
         if (one.value != number.value || one.unit != number.unit)
             throw std::invalid_argument(fmt::format(
@@ -147,37 +137,18 @@ compare::SceneAt scene_at(const std::string& file, const Settings& settings,
 }
 
 NamedFigure parse_figure(const std::string& word, const std::string& option, const Model& model) {
-    if (model.branches.empty())
-        throw std::invalid_argument(
-            fmt::format("{}: the scene has no branch, so no output has a value", option));
-    NamedFigure named_figure;
-    const Branch* branch = &model.branches.front();
-    double at = 0;
     const auto outputs = compare::figure_outputs(model);
-    const auto place = compare::end_of_output(word, outputs);
-    const std::string name = word.substr(0, place);
-    if (place < word.size()) {
-        const std::string text = word.substr(place + 1);
-        const auto colon = text.rfind(':');
-        branch = &named(
-            model.branches, text.substr(0, colon), [](const Branch& b) { return b.name; }, option,
-            "branch", "branches");
-        if (colon != text.npos) at = number_of(text.substr(colon + 1), option, word);
+    try {
+        const auto [output, station, placed] = compare::parse_figure_words(word, model, outputs);
+        const compare::Unit unit = compare::unit_of(station.branch->unit);
+        const double at = station.at.value_or(0);
+        return {{.name = output->name, .branch = station.branch->name, .at = at},
+                *output,
+                fmt::format("{} = {:g} {}", station.branch->name, at * compare::in_unit(unit),
+                            symbol(unit))};
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(option + ": " + error.what());
     }
-    const compare::Unit unit = compare::unit_of(branch->unit);
-    const double factor = compare::in_unit(unit);
-    named_figure.output = named(
-        outputs, name, [](const compare::Channel& c) { return c.name; }, option, "output",
-        "outputs");
-    named_figure.figure = {.name = name, .branch = branch->name, .at = at / factor};
-    named_figure.place = fmt::format("{} = {:g} {}", branch->name, at, symbol(unit));
-    const double low = factor * std::min(branch->from, branch->to),
-                 high = factor * std::max(branch->from, branch->to), within = 1e-9 * (high - low);
-    if (!(at >= low - within && at <= high + within))
-        throw std::invalid_argument(fmt::format("{} '{}': branch '{}' goes from {:g} to {:g} {}",
-                                                option, word, branch->name, low, high,
-                                                symbol(unit)));
-    return named_figure;
 }
 
 std::pair<NamedFigure, double> parse_wanted(const std::string& word, const Model& model) {

@@ -93,7 +93,7 @@ void add_curve(const Cursor& at, const Scene& scene, const Model& model, Goal& g
     for (int k = 0; k < points; ++k)
         // from a share on either side, so that ±80 has exactly 0 in its middle
         values.push_back((from * (points - 1 - k) + to * k) / (points - 1));
-    if (compare::end_of_output(goal.output, compare::figure_outputs(model)) < goal.output.size())
+    if (compare::parse_figure_words(goal.output, model, compare::figure_outputs(model)).placed)
         at.require("figure").fail("of a curve without @; its place is branch, over, from and to");
     const auto branch = at.optional("branch");
     const std::string on =

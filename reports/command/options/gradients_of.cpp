@@ -4,13 +4,12 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "compare/definitions/figure_words.hpp"
 #include "compare/design/figures.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -55,33 +54,18 @@ std::vector<Item> of_names(const char* option, const char* label, const char* la
 std::map<std::string, std::vector<double>> stations(const std::vector<std::string>& words,
                                                     const Model& model) {
     std::map<std::string, std::vector<double>> all;
-    std::vector<std::string> names;
-    for (const Branch& branch : model.branches) names.push_back(branch.name);
     for (const std::string& word : words) {
-        const auto colon = word.rfind(':');
-        const std::string name = word.substr(0, colon);
-        const auto branch = std::ranges::find(model.branches, name, &Branch::name);
-        if (branch == model.branches.end())
-            throw std::invalid_argument(fmt::format("--at '{}': the scene has no branch {}{}", word,
-                                                    reader::quote(name),
-                                                    reader::did_you_mean(name, names, "branches")));
-        const std::string text = colon == word.npos ? "" : word.substr(colon + 1);
-        double value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-            throw std::invalid_argument(
-                fmt::format("--at '{}': allowed: BRANCH:VALUE, such as {}:{:g}", word, name,
-                            compare::in_unit(compare::unit_of(branch->unit)) * branch->to));
-        const double a = value / compare::in_unit(compare::unit_of(branch->unit)),
-                     low = std::min(branch->from, branch->to),
-                     high = std::max(branch->from, branch->to), within = 1e-9 * (high - low);
-        if (!(a >= low - within && a <= high + within))
-            throw std::invalid_argument(
-                fmt::format("--at '{}': branch '{}' goes from {:g} to {:g} {}", word, name,
-                            compare::in_unit(compare::unit_of(branch->unit)) * low,
-                            compare::in_unit(compare::unit_of(branch->unit)) * high,
-                            symbol(compare::unit_of(branch->unit))));
-        all[name].push_back(a);
+        compare::Station station;
+        try {
+            station = compare::parse_station(word, model);
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(fmt::format("--at '{}': {}", word, error.what()));
+        }
+        if (!station.at)
+            throw std::invalid_argument(fmt::format(
+                "--at '{}': allowed: BRANCH:VALUE, such as {}:{:g}", word, word,
+                compare::in_unit(compare::unit_of(station.branch->unit)) * station.branch->to));
+        all[station.branch->name].push_back(*station.at);
     }
     return all;
 }

@@ -41,10 +41,6 @@ const shown = value => Number.isNaN(value) ? '–' : !Number.isFinite(value) ? '
 const signed = value => Number.isFinite(value) && value >= 5e-10 ? '+' + shown(value) : shown(value);
 // The shortest decimal of ten digits, for a setting.
 const written = value => String(+value.toPrecision(10));
-const add = (a, t, b) => a.map((v, k) => v + t * b[k]);
-const dot = (a, b) => a.reduce((sum, v, k) => sum + v * b[k], 0);
-const px = value => value.toFixed(1);
-const path = (points, end = '') => points.length ? 'M' + points.map(p => px(p[0]) + ',' + px(p[1])).join('L') + end : '';
 const millimetres = {mm: 1, cm: 10, m: 1000, in: 25.4};
 
 // ---- Answers of the solver (reports/live/engine.hpp)

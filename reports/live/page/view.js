@@ -11,58 +11,29 @@ const flat = (p, {right, up, scale}) => {
   const d = add(p, -1, view.centre);
   return [view.wide / 2 + scale * dot(d, right), view.high / 2 - scale * dot(d, up)];
 };
-const between = (a, b, t, off) => {
-  const x = b[0] - a[0], y = b[1] - a[1], l = Math.hypot(x, y) || 1;
-  return [a[0] + t * x - off * y / l, a[1] + t * y + off * x / l];
-};
-const shapes = {
-  spring: (a, b) => path([a, ...Array.from({length: 13}, (_, k) => between(a, b, .12 + .76 * k / 12, k % 12 ? (k % 2 ? 7 : -7) : 0)), b]),
-  damper: (a, b) => path([a, between(a, b, .35, 0)]) + path([between(a, b, .55, 0), b]) +
-    path([[.7, 4], [.35, 4], [.35, -4], [.7, -4]].map(([t, off]) => between(a, b, t, off))),
-  stop: () => ''
-};
-// A wheel: the circle of the tyre about the spin axis.
-const circle = (run, branch, k, wheel, index) => {
-  const centre = run.point(branch, k, wheel.centre), patch = run.point(branch, k, wheel.patch), e = run.spin(branch, k, index);
-  const arm = add(patch, -1, centre), r = add(arm, -dot(arm, e), e), size = Math.hypot(...r);
-  if (size < 1e-6) return [];
-  const side = [e[1] * r[2] - e[2] * r[1], e[2] * r[0] - e[0] * r[2], e[0] * r[1] - e[1] * r[0]];
-  return Array.from({length: 49}, (_, i) => add(add(centre, Math.cos(i * Math.PI / 24), r), Math.sin(i * Math.PI / 24), side));
-};
+const tyresOf = (run, branch, k) => run.drawing.wheels.map((wheel, index) =>
+  tyre(run.point(branch, k, wheel.centre), run.point(branch, k, wheel.patch), run.spin(branch, k, index)));
 const fitView = run => {
   const branch = run.branches[0], all = [];
   if (!branch || !branch.points) return;
   for (let i = 0; i < run.drawing.points.length; ++i) all.push(run.point(branch, branch.start, i));
-  run.drawing.wheels.forEach((wheel, w) => all.push(...circle(run, branch, branch.start, wheel, w)));
+  all.push(...tyresOf(run, branch, branch.start).flat(2));
   const low = [0, 1, 2].map(k => Math.min(...all.map(p => p[k]))), high = [0, 1, 2].map(k => Math.max(...all.map(p => p[k])));
   view.centre = low.map((v, k) => (v + high[k]) / 2);
   view.size = Math.hypot(...low.map((v, k) => high[k] - v)) * .8 || 1;
 };
 const scenery = (run, branch, k, axes, was) => {
-  const group = sketch('g'), at = run.drawing.points.map((_, i) => flat(run.point(branch, k, i), axes));
-  if (!was)
-    for (const face of run.drawing.faces) group.children.push(sketch('path', {class: 'face', d: path(face.points.map(i => at[i]), 'Z')}));
-  for (const link of run.drawing.links) {
-    const [a, b] = link.points.map(i => at[i]), d = (shapes[link.kind] ?? ((p, q) => path([p, q])))(a, b);
-    if (d) group.children.push(sketch('path', {class: 'l ' + (was ? 'was' : link.kind), d}));
-  }
-  run.drawing.wheels.forEach((wheel, w) => group.children.push(sketch('path',
-    {class: was ? 'tyre was' : 'tyre', d: path(circle(run, branch, k, wheel, w).map(p => flat(p, axes)), 'Z')})));
-  if (!was)
-    for (const i of run.drawing.bushings) {
-      group.children.push(sketch('circle', {class: 'bush', cx: px(at[i][0]), cy: px(at[i][1]), r: 9}));
-    }
-  return group;
+  const at = run.drawing.points.map((_, i) => flat(run.point(branch, k, i), axes));
+  return was ? pale(run.drawing, at)
+    : suspension(run.drawing, at, tyresOf(run, branch, k).map(edges => edges.map(edge => edge.map(p => flat(p, axes)))));
 };
 const triad = axes => {
-  const group = sketch('g', {class: 'axes'}), from = [30, view.high - 30];
-  ['x', 'y', 'z'].forEach((name, k) => {
+  const from = [30, view.high - 30];
+  return ['x', 'y', 'z'].map((name, k) => {
     const to = [from[0] + 22 * axes.right[k], from[1] - 22 * axes.up[k]];
-    if (Math.hypot(to[0] - from[0], to[1] - from[1]) < 4) return;
-    group.children.push(sketch('line', {x1: from[0], y1: from[1], x2: px(to[0]), y2: px(to[1])}),
-                 sketch('text', {x: px(to[0] + 3), y: px(to[1] - 2)}, name));
-  });
-  return group;
+    if (Math.hypot(to[0] - from[0], to[1] - from[1]) < 4) return '';
+    return `<g class="axes">${line(path([from, to]), 6, 1.2)}<text x="${px(to[0] + 3)}" y="${px(to[1] - 2)}">${name}</text></g>`;
+  }).join('');
 };
 // The movable hardpoints, each an element that keeps its place in the document, so that it keeps the focus.
 const handles = new Map();
@@ -99,7 +70,7 @@ const draw3d = () => {
   }
   if (branch && branch.points) layers.push(scenery(now, branch, k, axes, false));
   layers.push(triad(axes));
-  show($('scenery'), ...layers);
+  $('scenery').innerHTML = layers.join('');
   drawHandles(axes);
   for (const button of $('views').children) button.setAttribute('aria-pressed', String(button.textContent === view.name));
 };

@@ -20,39 +20,9 @@ using compare::Survival;
 constexpr std::array verdicts{
     CellVerdict::right,     CellVerdict::no_claim, CellVerdict::reported_failure,
     CellVerdict::elsewhere, CellVerdict::unjudged, CellVerdict::wrong};
-constexpr std::size_t terminal_width = 118;  // of a terminal
 
 compare::Column words(std::string name, std::string description = {}) {
     return {std::move(name), {}, std::move(description), true};
-}
-
-std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep,
-                  const std::string& variant = {}) {
-    std::string all;
-    for (const auto& solver : survival.solvers)
-        all += sign(survival, scene, sweep, solver, variant);
-    return all;
-}
-
-// Rows of the map: scenes by sweep, and the variants of extreme scenes.
-struct Rows {
-    std::vector<std::string> scenes, sweeps;
-    std::vector<std::pair<std::string, std::string>> extremes;  // scene, variant
-};
-Rows rows_of(const Survival& survival) {
-    Rows rows;
-    for (const auto& sweep : survival.sweeps)
-        if (sweep != compare::extreme) rows.sweeps.push_back(sweep);
-    for (const auto& cell : survival.cells) {
-        if (cell.sweep == compare::extreme) {
-            const std::pair row{cell.scene, cell.variant};
-            if (std::ranges::find(rows.extremes, row) == rows.extremes.end())
-                rows.extremes.push_back(row);
-        } else if (std::ranges::find(rows.scenes, cell.scene) == rows.scenes.end()) {
-            rows.scenes.push_back(cell.scene);
-        }
-    }
-    return rows;
 }
 
 std::string where(const compare::StressCell& cell) {
@@ -72,7 +42,6 @@ compare::Table cell_table(const Survival& survival) {
          words("verdict"),
          words("known by", "source of the true state"),
          {"digits", "", "-log10 of the error over the range"},
-         {"apart", "mm", "distance from the result of the untransformed scene"},
          {"error", "mm", "of any place, at most"},
          {"claim", "mm", "accuracy that the solver claims; empty without a tolerance"},
          {"range", "mm",
@@ -82,95 +51,58 @@ compare::Table cell_table(const Survival& survival) {
         {}};
     for (const auto& c : survival.cells)
         table.rows.push_back({c.scene, c.sweep, c.variant, c.side, c.solver, name(c.outcome),
-                              name(c.verdict), name(c.knowledge), c.digits, 1e3 * c.apart,
-                              1e3 * c.error, finite_or_nan(1e3 * c.claim), 1e3 * c.range, c.why,
-                              c.detail});
+                              name(c.verdict), c.known_by, c.digits, 1e3 * c.error,
+                              finite_or_nan(1e3 * c.claim), 1e3 * c.range, c.why, c.detail});
+    return table;
+}
+
+compare::Table map_table(const Survival& survival) {
+    constexpr std::string_view worst_first = "X?~0123456789!.";
+    compare::Table table{};
+    for (const char* name : {"scene", "variants", "signs"})
+        table.columns.push_back({name, {}, {}, true, Digits::words});
+    for (const auto& cell : survival.cells) {
+        const std::string& variants = cell.sweep == compare::extreme ? cell.variant : cell.sweep;
+        const auto is_row = [&](const auto& row) {
+            return row[0] == compare::Cell(cell.scene) && row[1] == compare::Cell(variants);
+        };
+        auto row = std::ranges::find_if(table.rows, is_row);
+        if (row == table.rows.end())
+            row = table.rows.insert(
+                row, {cell.scene, variants, std::string(survival.solvers.size(), '.')});
+        const auto solver = std::ranges::find(survival.solvers, cell.solver);
+        char& now = std::get<std::string>(
+            (*row)[2])[static_cast<std::size_t>(solver - survival.solvers.begin())];
+        if (worst_first.find(sign(cell)) < worst_first.find(now)) now = sign(cell);
+    }
     return table;
 }
 
 std::string stress_text(const Survival& survival) {
-    std::string text;
-    const auto out = std::back_inserter(text);
-    const Rows rows = rows_of(survival);
-    std::size_t head = 0;
-    for (const auto& scene : rows.scenes) head = std::max(head, scene.size());
-    std::size_t column = survival.solvers.size();
-    for (const auto& sweep : rows.sweeps) column = std::max(column, sweep.size());
-    const std::size_t at_once = std::max<std::size_t>(1, (terminal_width - head) / (column + 2));
-    for (std::size_t first = 0; first < rows.sweeps.size(); first += at_once) {
-        const std::size_t last = std::min(first + at_once, rows.sweeps.size());
-        fmt::format_to(out, "{:<{}}", "", head);
-        for (std::size_t s = first; s < last; ++s)
-            fmt::format_to(out, "  {:<{}}", rows.sweeps[s], column);
-        text += '\n';
-        for (const auto& scene : rows.scenes) {
-            fmt::format_to(out, "{:<{}}", scene, head);
-            for (std::size_t s = first; s < last; ++s)
-                fmt::format_to(out, "  {:<{}}", signs(survival, scene, rows.sweeps[s]), column);
-            text += '\n';
-        }
-        text += '\n';
-    }
-    std::size_t row_head = 0;
-    for (const auto& [scene, variant] : rows.extremes)
-        row_head = std::max(row_head, scene.size() + variant.size() + 2);
-    for (const auto& [scene, variant] : rows.extremes)
-        fmt::format_to(out, "{:<{}}  {}\n", scene + ", " + variant, row_head,
-                       signs(survival, scene, std::string(compare::extreme), variant));
-    if (!rows.extremes.empty()) text += '\n';
-    text += "One sign for each of";
+    std::string result = text(map_table(survival)) + "\nOne sign for each of";
+    const auto out = std::back_inserter(result);
     for (const auto& solver : survival.solvers) fmt::format_to(out, " {}", solver);
-    text +=
-        ", the worst of all variants of a sweep:\n"
+    result +=
+        ", the worst of the variants:\n"
         "  0 ... 9  correct digits of the range of motion (9: nine or more)    !  reported as "
         "failed each time\n"
-        "  ~  another proved equilibrium    ?  converged, not judged    X  WRONG    .  not run\n";
-    text += '\n';
+        "  ~  another proved equilibrium    ?  converged, not judged    X  WRONG    .  not run\n\n";
     for (const auto verdict : verdicts)
         fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
                        verdict == verdicts.back() ? "" : ", ");
     fmt::format_to(out, ": {} cells\n", survival.cells.size());
-    for (const auto& s : survival.skipped)
-        fmt::format_to(out, "not run: {}, {}: {}\n", s.scene, s.variant, s.why);
     for (const auto& cell : survival.cells)
         if (cell.verdict == CellVerdict::wrong)
             fmt::format_to(out, "WRONG: {}: {}\n", where(cell), cell.why);
-    return text;
+    return result;
 }
 
 json stress_json(const Survival& survival) {
-    json map = json::array(), extremes = json::array(), counts = json::object(),
-         skipped = json::array();
-    const Rows rows = rows_of(survival);
-    for (const auto& scene : rows.scenes) {
-        json row = json::array();
-        for (const auto& sweep : rows.sweeps) row.push_back(signs(survival, scene, sweep));
-        map.push_back({{"scene", scene}, {"signs", row}});
-    }
-    for (const auto& [scene, variant] : rows.extremes)
-        extremes.push_back(
-            {{"scene", scene},
-             {"variant", variant},
-             {"signs", signs(survival, scene, std::string(compare::extreme), variant)}});
+    json counts = json::object();
     for (const auto verdict : verdicts) counts[name(verdict)] = survival.count(verdict);
-    for (const auto& s : survival.skipped)
-        skipped.push_back(
-            {{"scene", s.scene}, {"sweep", s.sweep}, {"variant", s.variant}, {"why", s.why}});
-    json wrong = json::array();
-    for (const auto& c : survival.cells)
-        if (c.verdict == CellVerdict::wrong)
-            wrong.push_back({{"scene", c.scene},
-                             {"variant", c.variant},
-                             {"way", c.side},
-                             {"solver", c.solver},
-                             {"why", c.why}});
     return {{"solvers", survival.solvers},
-            {"sweeps", rows.sweeps},
-            {"map", map},
-            {"extremes", extremes},
+            {"map", table_json(map_table(survival))},
             {"counts", counts},
-            {"wrong", wrong},
-            {"skipped", skipped},
             {"cells", table_json(cell_table(survival))}};
 }
 

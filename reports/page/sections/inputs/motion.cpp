@@ -85,28 +85,13 @@ json branch_of(const JsonCursor& scene, const JsonCursor& branch, const JsonCurs
 json motion_of(const JsonCursor& scene, const Suspension& s, const View& first) {
     const auto motions = scene["drawing"].find("motion");
     if (!motions) return nullptr;
-    json points = json::array(), names = json::array(), bodies = json::array(),
-         hard = json::array(), links = json::array(), symbols = json::array(),
-         wheels = json::array();
-    for (const auto& p : s.points) {
+    json points = json::array(), list = json::object();
+    for (const auto& p : s.points)
         for (const double x : p.at) points.push_back(hundredths(x));
-        names.push_back(p.name);
-        bodies.push_back(p.body);
-        hard.push_back(p.hardpoint ? 1 : 0);
-    }
-    for (const auto& link : s.links) links.push_back({link.kind, link.i, link.j});
-    for (const auto& symbol : s.symbols)
-        for (std::size_t k = 0; k < s.points.size(); ++k) {
-            const auto& at = s.points[k].at;
-            constexpr double same = 0.01;  // [mm]
-            if (symbol.kind == "drive" ||
-                std::hypot(at[0] - symbol.at[0], at[1] - symbol.at[1], at[2] - symbol.at[2]) > same)
-                continue;
-            symbols.push_back({symbol.kind, k});
-            break;
-        }
-    for (const auto& w : s.wheels)
-        wheels.push_back({w.centre, w.patch, w.spin_axis[0], w.spin_axis[1], w.spin_axis[2]});
+    for (const char* part : {"points", "links", "faces", "symbols", "wheels"})
+        list[part] = scene["drawing"].value->value(part, json::array());
+    for (json& point : list["points"]) point.erase("design_mm");
+    for (json& symbol : list["symbols"]) symbol.erase("at_mm"), symbol.erase("axis");
     const auto leading = leading_sweep(scene);
     json branches = json::array();
     for (const bool of_leading : {true, false})
@@ -120,13 +105,7 @@ json motion_of(const JsonCursor& scene, const Suspension& s, const View& first) 
     constexpr double degree = std::numbers::pi / 180;
     const Position& to = first.towards_viewer;
     return {{"points", points},
-            {"names", names},
-            {"bodies", bodies},
-            {"hard", hard},
-            {"links", links},
-            {"faces", s.faces},
-            {"symbols", symbols},
-            {"wheels", wheels},
+            {"list", list},
             {"view",
              {std::round(std::atan2(to[1], to[0]) / degree),
               std::round(std::atan2(to[2], std::hypot(to[0], to[1])) / degree)}},

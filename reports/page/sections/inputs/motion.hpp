@@ -9,9 +9,8 @@
 namespace elastocheck::reports {
 
 // Lengths in 0.01 mm, whole numbers; lists of coordinates x, y, z one after the other.
-//   points, names, bodies, hard  of every point of the drawing, at the design position
-//   links, symbols               kind and points; faces: points
-//   wheels                       centre, patch, spin axis
+//   points                       of the drawing, at the design position
+//   list                         its parts, as in drawing_json()
 //   view                         angles of the first view [deg]: about z from the front, above it
 //   branches                     name, unit and parameter `a` of the stations, the one to `start`
 //                                at, displacements `d` of the points, spin axes `e`; the positions
