@@ -18,6 +18,8 @@
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/mistakes.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -124,7 +126,7 @@ std::vector<double> outputs_with(const std::string& file, const Setting& set, do
 
 // Derivatives of 516 outputs by numbers that dual numbers through the reader, the model, the
 // equilibrium leg and the outputs gave: with trims, an axle, bushings, stops, beams; positions,
-// reactions, forces of elements, characteristics. `row`: the largest of the output's by its steps.
+// reactions, forces of elements, characteristics, the patches fixed to the carriers. `row`: the largest of the output's by its steps.
 struct Recorded {
     std::string side, output, number;
     double parameter = 0, derivative = 0, step = 0, row = 0;
@@ -155,8 +157,12 @@ std::map<std::string, std::vector<Recorded>> recorded() {
 TEST(Gradients, AreTheRecordedExactOnes) {
     int compared = 0;
     std::map<Leg, double> worst;
+    const support::Folder folder;
     for (const auto& [scene, entries] : recorded()) {
-        Asked all = asked(file_of(scene), {}, "none");
+        const std::string file = folder.write(
+            "scene.yaml", support::replaced(support::text_of(file_of(scene)), "spin_axis: y,",
+                                            "spin_axis: y, contact: carrier,"));
+        Asked all = asked(file, {}, "none");
         std::ranges::move(characteristics_otherwise(all.model), std::back_inserter(all.outputs));
         std::set<std::string> outputs, numbers, branches;
         for (const Recorded& entry : entries) {
@@ -165,8 +171,8 @@ TEST(Gradients, AreTheRecordedExactOnes) {
             branches.insert(entry.side.substr(0, entry.side.find(" to ")));
         }
         std::erase_if(all.outputs, [&](const Channel& c) { return !outputs.contains(c.name); });
-        all.varying = varying(file_of(scene), {},
-                              [&](const std::string& path) { return numbers.contains(path); });
+        all.varying =
+            varying(file, {}, [&](const std::string& path) { return numbers.contains(path); });
         const Gradients by =
             gradients_of(all, {.points = 1, .branches = {branches.begin(), branches.end()}});
         EXPECT_TRUE(by.conclusive());

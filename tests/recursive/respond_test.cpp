@@ -92,7 +92,7 @@ TEST(Respond, NextStateBeginsWithTheOrdersOfTheLast) {
 TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
     const OneWay way = way_of("front_axle", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
-    const Point at = way.model.wheels[0].contact;
+    const Point at{way.model.wheels[0].body, way.model.wheels[0].centre_local};
     const Vector3d f(0.3, -2, 0.7), m(5, 1, -3);
     const std::vector<Disturbance> both{UnitWrench{at, f}, UnitWrench{at, Vector3d::Zero(), m},
                                         UnitWrench{at, f, m}};
