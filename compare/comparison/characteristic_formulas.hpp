@@ -55,6 +55,13 @@ struct Wheels {
         return placed(model.wheels[w].body, model.wheels[w].centre_local);
     }
     Placed patch(std::size_t w) const { return point(model.wheels[w].contact); }
+    // The patch as a point of the carrier, to which the brake holds the wheel.
+    Placed braked(std::size_t w) const {
+        const Wheel& wheel = model.wheels[w];
+        if (!wheel.rolls()) return patch(w);
+        const Vector3d at = patch(w).at;
+        return {wheel.body, at, at - pose(state.poses, wheel.body).r};
+    }
     Placed point(const Point& p) const { return placed(p.body, p.s_local); }
     double side(std::size_t w) const { return model.wheels[w].side; }
     Vector3d spin(std::size_t w) const {
@@ -243,7 +250,7 @@ inline double forward_per_travel(const Wheels& wheels, const Placed& at) {
 // drive torque, the wheel centre where the car body carries it through a shaft.
 inline Placed driven_at(const Wheels& wheels, std::size_t w) {
     const bool housing = is_axle(wheels.model) && wheels[0].body == wheels[1].body;
-    return housing ? wheels.patch(w) : wheels.centre(w);
+    return housing ? wheels.braked(w) : wheels.centre(w);
 }
 // Milliken & Milliken, Race Car Vehicle Dynamics, 1995, ch. 17: axle share · tan
 // φ · wheelbase / height of the centre of gravity.

@@ -119,13 +119,14 @@ const Entry other_figures[] = {
               const auto axis = steering_axis(x, w);
               return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : undefined;
           }},
-    Entry{
-        Owner::front_wheel, "anti_dive", Unit::percent,
-        "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
-        "patch: share of the load transfer under braking that the links carry; positive where "
-        "they resist dive",
-        no_vertical,
-        [](const auto& x, std::size_t w) { return anti(x, x.patch(w), &Vehicle::brake_share, 1); }},
+    Entry{Owner::front_wheel, "anti_dive", Unit::percent,
+          "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
+          "patch: share of the load transfer under braking that the links carry; positive where "
+          "they resist dive",
+          no_vertical,
+          [](const auto& x, std::size_t w) {
+              return anti(x, x.braked(w), &Vehicle::brake_share, 1);
+          }},
     Entry{Owner::front_wheel, "anti_lift", Unit::percent,
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist lift of the front "
@@ -140,7 +141,7 @@ const Entry other_figures[] = {
           "where they resist lift of the rear",
           no_vertical,
           [](const auto& x, std::size_t w) {
-              return anti(x, x.patch(w), &Vehicle::brake_share, -1);
+              return anti(x, x.braked(w), &Vehicle::brake_share, -1);
           }},
     Entry{Owner::rear_wheel, "anti_squat", Unit::percent,
           "drive_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
@@ -280,7 +281,9 @@ Entry entry_of(Owner owner, const ForceTest& test, const Loading& loading,
                 never,
                 [cause = test.cause, sign = test.sign, other = loading.other, seen = figure.seen](
                     const auto& x, std::size_t w) {
-                    const auto at = cause < moment_on ? x.centre(w) : x.patch(w);
+                    const auto at = cause < moment_on   ? x.centre(w)
+                                    : cause == at_patch ? x.braked(w)
+                                                        : x.patch(w);
                     const auto by_force_on = [&](std::size_t k) {
                         const auto& by = held(x, k, cause);
                         return seen == Seen::toe      ? x.toe(w, by)
@@ -455,9 +458,12 @@ Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibri
                                           [static_cast<std::size_t>(k < 3 ? force + k : k)];
             for (Eigen::Index i = 0; i < n; ++i) {
                 const auto w = static_cast<std::size_t>(i);
-                const auto at = point == WheelPoint::centre ? wheels.centre(w) : wheels.patch(w);
-                C.block<6, 1>(6 * i, 6 * j + k) << wheels.moved_by(by, at),
+                const bool centre = point == WheelPoint::centre;
+                C.block<6, 1>(6 * i, 6 * j + k)
+                    << wheels.moved_by(by, centre ? wheels.centre(w) : wheels.patch(w)),
                     turned(by, wheels[w].body);
+                // as the longitudinal force, that of a braked wheel
+                if (!centre) C(6 * i, 6 * j + k) = wheels.moved_by(by, wheels.braked(w)).x();
             }
         }
     return C;

@@ -206,7 +206,9 @@ void add_patch(std::vector<Channel>& list, const Drawing& design, std::size_t w,
     const Vector3d drawn = design.drawn().position(patch);
     const std::size_t first = list.size();
     add_position(list, prefix + "contact_patch",
-                 "the point of the wheel's body that is the contact patch at the design position",
+                 wheel.rolls() ? "the contact patch, the lowest point of the rolling wheel"
+                               : "the point of the carrier that is the contact patch at the design "
+                                 "position",
                  patch);
     for (std::size_t k = first; k < list.size(); ++k) list[k].main = false;
     list.push_back({.name = prefix + "track_change",

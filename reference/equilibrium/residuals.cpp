@@ -115,7 +115,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         const BodyId body = body_of(load.kind);
         if (body == ground) continue;
         const auto on =
-            std::visit([&](const auto& k) { return on_body(k, judge.frame(body)); }, load.kind);
+            std::visit([&](const auto& k) { return on_body(k, judge.frame(acts_with(load.kind))); },
+                       load.kind);
         judge.apply(body, on, load.factor.at(a));
     }
 

@@ -276,7 +276,11 @@ std::string driven_name(const Model& model, const Driven& what) {
         overloaded{
             [](const Load& load) { return load.name; },
             [&](const Motion& m) { return model.joints[static_cast<std::size_t>(m.joint)].name; },
-            [&](const FreeLength& f) { return "free length of " + element(f.elastic); },
+            [&](const FreeLength& f) {
+                const Elastic& of = model.elastics[static_cast<std::size_t>(f.elastic)];
+                return (of.written_as == WrittenAs::tyre ? "road under " : "free length of ") +
+                       of.name;
+            },
             [&](const Preload& p) { return "preload of " + element(p.elastic); }},
         what);
 }

@@ -99,7 +99,8 @@ std::string arm_scene(const Arm& arm, const std::string& more = "") {
         "springs: {{coil: {{bodies: [arm, ground], from: low, to: top, rate: 50e3}}}}\n"
         "loads: {{up: {{on: arm, at: p, force: [0, 0, 1]}}}}\n"
         "branches: {{up: {{load: up, to: 500, steps: 2}}}}\n"
-        "wheel: {{body: arm, centre: c, contact_patch: p, spin_axis: y, side: left}}\n{}",
+        "wheel: {{body: arm, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
+        "left}}\n{}",
         point(arm.a), point(arm.b), point(arm.centre), point(arm.patch), more);
 }
 
@@ -155,8 +156,8 @@ joints: {guide: {bodies: [axle, ground], )" +
 springs: {coil: {bodies: [axle, ground], from: mid, to: top, rate: 50e3}}
 branches: {travel: {drive: left.travel, to: 0.01, steps: 2}}
 wheels:
-  left: {body: axle, centre: l, contact_patch: pl, spin_axis: y, side: left}
-  right: {body: axle, centre: r, contact_patch: pr, spin_axis: -y, side: right}
+  left: {body: axle, centre: l, contact_patch: pl, contact: carrier, spin_axis: y, side: left}
+  right: {body: axle, centre: r, contact_patch: pr, contact: carrier, spin_axis: -y, side: right}
 )");
 }
 
@@ -249,7 +250,8 @@ std::string wishbones(const std::string& upper_inner, const std::string& upper_o
         "springs: {{coil: {{bodies: [wheel, ground], from: lo, to: top, rate: 30e3}}}}\n"
         "loads: {{up: {{on: wheel, at: p, force: [0, 0, 1]}}}}\n"
         "branches: {{up: {{load: up, to: 100, steps: 2}}}}\n"
-        "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}}\n",
+        "wheel: {{body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
+        "left}}\n",
         upper_inner, upper_outer, lower_inner, lower_outer);
 }
 
@@ -312,7 +314,8 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
                 "true}}\n"
                 "springs: {{coil: {{bodies: [link, ground], from: above, to: c, rate: 30e3}}}}\n"
                 "branches: {{steer: {{drive: joints.rack, to: 0.01, steps: 2}}}}\n"
-                "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: {}y, side: {}}}\n",
+                "wheel: {{body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: "
+                "{}y, side: {}}}\n",
                 point(-0.2 * caster, 0.8 - inboard - 0.2 * inclination, 0.5),
                 point(0.2 * caster, 0.8 - inboard + 0.2 * inclination, 0.1), point(0, 0.8, 0.3),
                 point(0, 0.8, 0), point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3),
@@ -352,7 +355,8 @@ TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSt
                 "held: true}}\n"
                 "springs: {{coil: {{bodies: [slider, ground], from: low, to: up, rate: 30e3}}}}\n"
                 "branches: {{steer: {{drive: joints.kingpin, to: 0.1, steps: 2}}}}\n"
-                "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: [{:.17g}, "
+                "wheel: {{body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: "
+                "[{:.17g}, "
                 "{:.17g}, 0], side: {}}}\n",
                 point(0, 0, -0.1), point(0, 0, 0.2), point(0, 0.05, 0), point(-0.03, 0.1, -0.3),
                 spin.x(), spin.y(), side > 0 ? "left" : "right"));
@@ -373,7 +377,8 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
         "7e3, 8e3]}}\n"
         "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, "
         "steps: 2}}\n"
-        "wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}\n");
+        "wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
+        "left}\n");
     const Vector3d lever = Vector3d(0, 1, 0) - Vector3d(0.1, 0.7, 0.4);
     const auto tilde = [](const Vector3d& v) {
         Eigen::Matrix3d m;

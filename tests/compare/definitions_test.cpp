@@ -163,7 +163,7 @@ joints:
   ub: {type: spherical, bodies: [upper, wheel], at: uo}
   rod: {type: distance, bodies: [wheel, ground], from: to, to: ti}
 branches: {travel: {drive: travel, from: -0.05, to: 0.05, steps: 4}}
-wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}
+wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: left}
 )",
                                     "parallel");
     const Model model = compile(scene);
@@ -277,7 +277,7 @@ bushings:
 TYRE
 loads: {side: {force: [0, 1, 0], on: wheel, at: p}}
 branches: {side: {load: side, from: -10, to: 10, steps: 2HOLD}}
-wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}
+wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: left}
 )";
 Model with_tyre(const std::string& tyre) {
     std::string text = on_a_tyre;

@@ -50,12 +50,16 @@ void add(std::vector<Vector6>& on, const Equilibrium& state, const LoadKind& loa
     const auto turn = [&](BodyId body, const Vector3d& v) -> Vector3d {
         return pose(state.poses, body).p * v;
     };
-    std::visit(
-        overloaded{[&](const DeadForce& l) { force(l.at, l.f); },
-                   [&](const DeadMoment& l) { moment(l.body, l.m); },
-                   [&](const FollowerForce& l) { force(l.at, turn(l.at.body, l.f_local)); },
-                   [&](const FollowerMoment& l) { moment(l.body, turn(l.body, l.m_local)); }},
-        load);
+    std::visit(overloaded{[&](const DeadForce& l) { force(l.at, l.f); },
+                          [&](const DeadMoment& l) { moment(l.body, l.m); },
+                          [&](const FollowerForce& l) { force(l.at, turn(l.at.body, l.f_local)); },
+                          [&](const FollowerMoment& l) { moment(l.body, turn(l.body, l.m_local)); },
+                          [&](const BrakeForce& l) {
+                              on[static_cast<std::size_t>(l.body)] +=
+                                  wrench_about_origin(state, l.body, position(state.poses, l.patch),
+                                                      factor * l.f, Vector3d::Zero());
+                          }},
+               load);
 }
 
 // Wrenches of loads and joints on each body, about its origin.

@@ -378,7 +378,8 @@ TEST(GradientsClosedForm, OfASemiTrailingArm) {
         "springs: {coil: {bodies: [arm, ground], from: low, to: top, rate: 50e3}}\n"
         "loads: {up: {on: arm, at: p, force: [0, 0, 1]}}\n"
         "branches: {up: {load: up, to: 500, steps: 2}}\n"
-        "wheel: {body: arm, centre: c, contact_patch: p, spin_axis: y, side: left}\n",
+        "wheel: {body: arm, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
+        "left}\n",
         {"bump_steer", "wheel_rate"},
         {"points.b.z", "points.a.x", "springs.coil.rate", "points.low.x"}, 0,
         [&](const Eigen::MatrixXd& by) {
@@ -406,7 +407,8 @@ std::string equal_arms(const std::string& branch) {
            "branches: {" +
            branch +
            "}\n"
-           "wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}\n";
+           "wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, "
+           "side: left}\n";
 }
 
 // The upper inner joint raised by t: the lines of the arms meet at y - 0.3 = 0.4 (0.3 + t) / t, and

@@ -88,10 +88,11 @@ double stored(const Model& model, const Branch& branch, const Equilibrium& state
                        },
                        [&](const Bushing& e) {
                            if (!has_energy(e.formulation)) return 0.0;
-                           const Vector6 x = deformation(e, state);
+                           const Vector6 x = deformation(ElasticKind(e), k, branch, state),
+                                         whole = deformation(e, state) + e.undeformed;
                            const Vector6 b = e.preload + driven_preload(branch, k, state.load);
                            return std::visit([&](const auto& u) { return energy(u, x); }, e.law) +
-                                  b.dot(x + e.undeformed);
+                                  b.dot(whole);
                        }},
             model.elastics[k].kind);
     return U;
@@ -125,7 +126,12 @@ double power(const LoadKind& load, const Equilibrium& state, const series::Rates
             [&](const DeadForce& l) { return force(l.at, l.f); },
             [&](const DeadMoment& l) { return moment(l.body, l.m); },
             [&](const FollowerForce& l) { return force(l.at, turned(l.at.body, l.f_local)); },
-            [&](const FollowerMoment& l) { return moment(l.body, turned(l.body, l.m_local)); }},
+            [&](const FollowerMoment& l) { return moment(l.body, turned(l.body, l.m_local)); },
+            [&](const BrakeForce& l) {
+                const Vector3d lever = position(state.poses, l.patch) - pose(state.poses, l.body).r;
+                return l.f.dot(rates.dr[static_cast<std::size_t>(l.body)]) +
+                       moment(l.body, lever.cross(l.f));
+            }},
         load);
 }
 
@@ -176,23 +182,23 @@ Power power(const Model& model, const std::vector<Channel>& channels, const Bran
     };
     for (const auto& driver : branch.drivers)
         all.add(std::visit(
-            overloaded{[&](const Load& l) {
-                           return value(driver, state.load) * power(l.kind, state, rates);
-                       },
-                       [&](const Motion& m) {
-                           return driver.rate == 0 ? 0 : driver.rate * effort(m.joint);
-                       },
-                       [&](const FreeLength& f) {
-                           const auto& e = std::get<AxialSpring>(element(f.elastic));
-                           const double x = deformation(e, static_cast<std::size_t>(f.elastic),
-                                                        branch, state)[0];
-                           return -driver.rate * force(e.law, x);
-                       },
-                       [&](const Preload& p) {
-                           const auto& e = std::get<Bushing>(element(p.elastic));
-                           return driver.rate *
-                                  p.direction.dot(deformation(e, state) + e.undeformed);
-                       }},
+            overloaded{
+                [&](const Load& l) {
+                    return value(driver, state.load) * power(l.kind, state, rates);
+                },
+                [&](const Motion& m) {
+                    return driver.rate == 0 ? 0 : driver.rate * effort(m.joint);
+                },
+                [&](const FreeLength& f) {
+                    const ElasticKind& e = element(f.elastic);
+                    const Vector6 x =
+                        deformation(e, static_cast<std::size_t>(f.elastic), branch, state);
+                    return -driver.rate * force(e, x)[std::holds_alternative<Bushing>(e) ? 2 : 0];
+                },
+                [&](const Preload& p) {
+                    const auto& e = std::get<Bushing>(element(p.elastic));
+                    return driver.rate * p.direction.dot(deformation(e, state) + e.undeformed);
+                }},
             driver.what));
     return all;
 }

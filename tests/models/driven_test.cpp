@@ -78,10 +78,10 @@ TEST(Driven, BranchesShareAJack) {
 
 TEST(Driven, WheelsHaveJacksOfTheirOwnNames) {
     std::string text = rig("  up: {drive: [left.travel, right.patch_travel], to: 100, steps: 1}");
-    text.replace(
-        text.find("wheel: {body"), std::string::npos,
-        "wheels:\n  left: {body: hub, centre: a, contact_patch: patch, spin_axis: y, side: left}\n"
-        "  right: {body: arm, centre: o, spin_axis: -y, side: right}\n");
+    text.replace(text.find("wheel: {body"), std::string::npos,
+                 "wheels:\n  left: {body: hub, centre: a, contact_patch: patch, contact: carrier, "
+                 "spin_axis: y, side: left}\n"
+                 "  right: {body: arm, centre: o, spin_axis: -y, side: right}\n");
     const Scene scene = parsed(text);
     ASSERT_EQ(scene.wheels.size(), 2U);
     EXPECT_EQ(scene.wheels[0].name, "left");

@@ -40,6 +40,42 @@ TEST(SteeringAxis, HasEachEndOnTheBodyWhereItSits) {
                      .steering_axis);
 }
 
+// A force at the patch acts on the rolling wheel; along x it is a brake's unless the car holds it.
+TEST(Wheel, RollsWherePatchIsDrawnBelowItsCentre) {
+    const std::string loads =
+        "loads: {push: {on: hub, at: hub, force: [0, 0, 1]}, up: {on: hub, at: patch, force: [0, "
+        "1, "
+        "1]}, brake: {on: hub, at: patch, force: [-1, 0, 0]}, drive: {on: hub, at: patch, force: "
+        "[1, "
+        "0, 0], torque: ground}}";
+    const std::string rolling =
+        replaced(replaced(strut, "loads: {push: {on: hub, at: hub, force: [0, 0, 1]}}", loads),
+                 "branches: {up: {load: push,", "branches: {up: {load: [push, up, brake, drive],");
+    for (const char* contact : {"", "contact: rolling, ", "contact: carrier, "}) {
+        std::string text = replaced(rolling, "contact: carrier, ", contact);
+        if (std::string(contact) == "contact: carrier, ")
+            text = replaced(text, ", torque: ground", "");
+        const Scene scene = parsed(text);
+        const Wheel& wheel = scene.wheels.at(0);
+        const bool rolls = std::string(contact) != "contact: carrier, ";
+        EXPECT_EQ(wheel.rolls(), rolls);
+        EXPECT_LE((drawn(scene, wheel.contact) - Vector3d(0, 0.71, 0)).norm(), 1e-16);
+        EXPECT_EQ(scene.bodies.size(), rolls ? 3 : 2);
+        const auto& drivers = scene.branches.at(0).drivers;
+        const auto load = [&](std::size_t k) { return std::get<Load>(drivers.at(k).what).kind; };
+        EXPECT_EQ(std::get<DeadForce>(load(0)).at.body, 0);
+        EXPECT_EQ(std::get<DeadForce>(load(1)).at.body, wheel.contact.body);
+        EXPECT_EQ(std::holds_alternative<BrakeForce>(load(2)), rolls);
+        if (!rolls) continue;
+        EXPECT_EQ(std::get<BrakeForce>(load(2)).body, 0);
+        EXPECT_EQ(std::get<BrakeForce>(load(2)).patch.body, wheel.contact.body);
+        EXPECT_EQ(std::get<DeadForce>(load(3)).at.body, wheel.contact.body);
+    }
+    const std::string aside = replaced(replaced(strut, "patch: [0, 710, 0]", "patch: [0, 800, 0]"),
+                                       "contact: carrier, ", "");
+    EXPECT_FALSE(parsed(aside).wheels.at(0).rolls());
+}
+
 TEST(Damper, IsTwoPoints) {
     const Scene scene = parsed(strut);
     const Damper& damper = scene.dampers.at(0);

@@ -120,7 +120,8 @@ std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
                               },
                               [&](const FollowerMoment& m) {
                                   note(Direction{m.body, m.m_local});
-                              }},
+                              },
+                              [&](const BrakeForce& b) { note(b.patch), list->push_back(b.f); }},
                    l.kind);
     };
     for (const Load& l : scene.static_loads) load(l);

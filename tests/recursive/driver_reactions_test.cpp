@@ -84,7 +84,7 @@ loads:
   force: {{on: knuckle, at: patch, force: [0.3, 0.5, 1]}}
   moment: {{on: knuckle, moment: [0.2, 0.1, 0.3]}}
   thrust: {{on: knuckle, at: patch, force: [0.3, 0.5, 1], follows: true}}
-wheel: {{body: knuckle, centre: centre, contact_patch: patch, spin_axis: y, side: left}}
+wheel: {{body: knuckle, centre: centre, contact_patch: patch, contact: carrier, spin_axis: y, side: left}}
 branches: {{b: {{{}, steps: 4}}}}
 )",
         kind.hinge, kind.rack, kind.joint, kind.tyre, kind.branch);

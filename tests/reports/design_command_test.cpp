@@ -217,7 +217,7 @@ const std::string arm =
     "bodies: {arm: {origin: c}}\n"
     "joints: {in: {type: revolute, bodies: [arm, ground], at: in, axis: [0.2, 1, 0.1]}}\n"
     "branches: {travel: {drive: travel, from: -60, to: 60, steps: 24}}\n"
-    "wheel: {body: arm, centre: c, contact_patch: p, spin_axis: y, side: left}\n";
+    "wheel: {body: arm, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: left}\n";
 
 TEST(OptimiseCommand, TakesACurveOverTheTravelThatItsBranchDrives) {
     const Folder folder;

@@ -195,7 +195,7 @@ branches:
   held: {load: brake, to: 2000, steps: 4, hold: {travel: 0}}
   spindle: {load: spindle, to: 800, steps: 4, static_loads: {vertical: 200}}
   road: {drive: tyres.tyre.road, from: -15, to: 60, steps: 5, static_loads: {vertical: -4000}}
-wheel: {body: hub, centre: centre, contact_patch: patch, spin_axis: y, side: left}
+wheel: {body: hub, centre: centre, contact_patch: patch, contact: carrier, spin_axis: y, side: left}
 )";
 
 std::string scene_text(const std::string& name) {

@@ -175,7 +175,7 @@ bushings:
 springs: {coil: {bodies: [arm, ground], from: seat, to: top, rate: 90}}
 loads: {up: {on: arm, at: patch, force: [0, 0, 1]}}
 branches: {up: {load: up, to: 100, steps: 4}}
-wheel: {body: arm, centre: centre, contact_patch: patch, spin_axis: y, side: left}
+wheel: {body: arm, centre: centre, contact_patch: patch, contact: carrier, spin_axis: y, side: left}
 )";
 }
 

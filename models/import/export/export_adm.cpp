@@ -477,9 +477,8 @@ class AdmWriter {
                 },
                 [&](const FollowerMoment& m) { load(l.name, m.body, none, none, m.m_local, true); },
                 [&](const BrakeForce&) {
-                    result_.notes.missing.emplace_back(
-                        SourceLocation{0, "load '" + l.name + "'"},
-                        "a brake force acts through a point of another body");
+                    result_.notes.miss({0, "load '" + l.name + "'"},
+                                       "acts through a point of another body");
                 }},
             l.kind);
     }

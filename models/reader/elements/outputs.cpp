@@ -35,6 +35,13 @@ double share(const Cursor& at) {
     return x;
 }
 
+// Whether the patch is below the centre in the wheel's plane, within 10 deg: then the wheel rolls
+// unless the file says otherwise. The patch keeps what it is drawn off the lowest point.
+bool is_below(const Vector3& arm, const Vector3& spin) {
+    const Vector3 down = spin.z() * spin - Vector3::UnitZ();
+    return arm.z() < 0 && arm.dot(down.normalized()) > 0.985 * arm.norm();
+}
+
 // The body of a rolling wheel (scene.hpp), at its centre, and that of its twin.
 BodyId add_rolling_wheel(const std::string& name, const Vector3& centre, Definitions& defs) {
     const std::string of_wheel = name.empty() ? "" : name + ".";
@@ -81,12 +88,12 @@ Wheel read_wheel(const std::string& name, const Cursor& at, Definitions& defs) {
     if (const auto axis = at.optional("steering_axis"))
         wheel.steering_axis = read_steering_axis(*axis, body, defs);
     const Vector3 arm = wheel.contact.s_local - wheel.centre_local;
-    if (const auto kind = at.optional("contact");
-        kind && kind->one_of("a contact", {"carrier", "rolling"}) == 1) {
-        if (!(arm.z() < 0))
-            kind->fail("the contact patch is not below the wheel centre; allowed: carrier");
-        wheel.contact = {add_rolling_wheel(name, hardpoint(centre, defs), defs), arm};
-    }
+    const auto kind = at.optional("contact");
+    const bool rolls = kind ? kind->one_of("a contact", {"carrier", "rolling"}) == 1
+                            : is_below(arm, wheel.spin_axis_local);
+    if (rolls && kind && !(arm.z() < 0))
+        kind->fail("the contact patch is not below the wheel centre; allowed: carrier");
+    if (rolls) wheel.contact = {add_rolling_wheel(name, hardpoint(centre, defs), defs), arm};
     return wheel;
 }
 
@@ -122,12 +129,13 @@ Damper read_damper(const std::string& name, const Cursor& at, const Definitions&
 Vehicle read_vehicle(const Cursor& at, const Definitions& defs) {
     at.only_keys({"wheelbase", "cg_height", "axle", "brake_share", "drive_share"});
     const Unit& length = defs.units.length;
+    const auto drive = at.optional("drive_share");
     return {.wheelbase = above_zero(at.require("wheelbase"), "not a wheelbase", length),
             .cg_height = above_zero(at.require("cg_height"), "not a height", length),
             .axle = at.require("axle").one_of("an axle", {"front", "rear"}) == 0 ? Axle::front
                                                                                  : Axle::rear,
             .brake_share = share(at.require("brake_share")),
-            .drive_share = share(at.require("drive_share"))};
+            .drive_share = drive ? share(*drive) : 0};
 }
 
 }  // namespace elastocheck::reader

@@ -16,10 +16,9 @@ namespace {
 // Whether it is active only on the branches that drive it: a jack, the drive of a joint not held, a
 // tyre.
 bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
-    const bool is_preload = preload(quantity.what) != nullptr;
     const int element = driven_element(quantity.what);
     return quantity.joint.has_value() ||
-           (is_preload &&
+           (element >= 0 &&
             scene.elastics[static_cast<std::size_t>(element)].active_only_where_driven);
 }
 

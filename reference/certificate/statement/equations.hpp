@@ -109,9 +109,11 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
     return m;
 }
 
+// e - e₀, the undeformed d_z raised by its driver.
 template <class T>
-std::array<T, 6> deformation(const Bushing& bushing, const Measured<T>& m) {
+std::array<T, 6> deformation(const Bushing& bushing, const T& raised, const Measured<T>& m) {
     std::array<T, 6> e = m.e;
+    e[2] = e[2] - raised;
     for (std::size_t k = 0; k < 6; ++k)
         e[k] = e[k] - Base<T>(bushing.undeformed[static_cast<int>(k)]);
     return e;
@@ -239,9 +241,11 @@ template <class T>
 Acting<T> acting(const FollowerMoment& load, const Frame<T>& body) {
     return {constant<T>(Eigen::Vector3d::Zero()), lever(body, load.m_local)};
 }
+// Moment (p - r) x f on the carrier, p a point of the wheel.
 template <class T>
-Acting<T> acting(const BrakeForce&, const Frame<T>&) {
-    throw std::logic_error("certificate: a brake force: not yet");
+Acting<T> acting(const BrakeForce& load, const Frame<T>& carrier, const Frame<T>& wheel) {
+    const Vec<T> f = constant<T>(load.f);
+    return {f, cross(position(wheel, load.patch.s_local) - carrier.r, f)};
 }
 
 }  // namespace elastocheck::reference::certificate

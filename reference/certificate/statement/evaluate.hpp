@@ -160,7 +160,7 @@ struct Assembly {
                                      const Frame<T>& i, const Frame<T>& j,
                                      bool back = false) const {
         const Measured<T> m = measured(bushing, path.rotational, i, j);
-        const std::array<T, 6> e = deformation(bushing, m);
+        const std::array<T, 6> e = deformation(bushing, path.free_length.at(parameter<T>()), m);
         if (!back) return e;
         return turned_back(e, path, m.A_f, +1);
     }
@@ -176,7 +176,8 @@ struct Assembly {
     OnBoth<T> acting_at(const Bushing& bushing, const ElementPath& path, const Frame<T>& i,
                         const Frame<T>& j) {
         const Measured<T> m = measured(bushing, path.rotational, i, j);
-        std::array<T, 6> u = force(bushing.law, deformation(bushing, m), path.apart);
+        const T raised = path.free_length.at(parameter<T>());
+        std::array<T, 6> u = force(bushing.law, deformation(bushing, raised, m), path.apart);
         for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] + path.preload[k].at(parameter<T>());
         if (fixed_forces) {
             for (T& x : u) x = constant_of(x);
@@ -240,7 +241,9 @@ struct Assembly {
         std::array<T, 6> u;
         u.fill(constant<T>(0.));
         u[axis] = constant<T>(1.);
-        return {deformation(bushing, m)[axis], acting(bushing, u, m, path.rotational, i, j)};
+        const T raised = path.free_length.at(parameter<T>());
+        return {deformation(bushing, raised, m)[axis],
+                acting(bushing, u, m, path.rotational, i, j)};
     }
     template <class T>
     void corner(std::size_t c) {
@@ -292,17 +295,25 @@ struct Assembly {
             kind);
     }
 
+    // A load acts on i; a brake force depends on the wheel as well.
+    static Slots slots_of(const LoadKind& load) {
+        const Point* point = member<Point>(load);
+        const BodyId on = body_of(load);
+        return {on, point != nullptr && point->body != on ? point->body : ground};
+    }
     template <class T>
     void load(const LoadPath& path) {
-        const Slots slots{body_of(path.kind), ground};
+        const Slots slots = slots_of(path.kind);
         const auto body = frame<T>(slots.i, 0);
         const T factor = path.factor.at(parameter<T>());
-        std::visit(
-            [&](const auto& kind) {
-                const Acting<T> on = acting(kind, body);
-                add(slots, slots.i, Acting<T>{on.force * factor, on.moment * factor});
-            },
+        const Acting<T> on = std::visit(
+            overloaded{[&](const auto& kind) { return acting(kind, body); },
+                       [&](const BrakeForce& brake) {
+                           const bool own = brake.patch.body == brake.body;
+                           return acting(brake, body, own ? body : frame<T>(slots.j, slots.at_j()));
+                       }},
             path.kind);
+        add(slots, slots.i, Acting<T>{on.force * factor, on.moment * factor});
     }
 
     template <class T>
@@ -336,7 +347,9 @@ void assemble(Assembly<S>& sum, Slopes slopes) {
         two(model.constraints[c].kind) ? sum.template constraint<Two>(c)
                                        : sum.template constraint<One>(c);
     for (const LoadPath& load : system.loads)
-        if (body_of(load.kind) != ground) sum.template load<One>(load);
+        if (body_of(load.kind) != ground)
+            sum.slots_of(load.kind).two() ? sum.template load<Two>(load)
+                                          : sum.template load<One>(load);
     for (BodyId body = 0; body < system.bodies; ++body) sum.template norm<One>(body);
 }
 

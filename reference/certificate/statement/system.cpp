@@ -40,6 +40,7 @@ bool is_round(const Bushing& bushing, const ElementPath& path, std::size_t i, st
     const auto I = static_cast<Eigen::Index>(i), J = static_cast<Eigen::Index>(j);
     for (const std::size_t k : {i, j})
         if (bushing.undeformed[static_cast<Eigen::Index>(k)] != 0 ||
+            (k == 2 && !(is_zero(path.free_length.start) && is_zero(path.free_length.rate))) ||
             !is_zero(path.preload[k].start) || !is_zero(path.preload[k].rate))
             return false;
     return std::visit(
@@ -66,8 +67,6 @@ void set_formulations(System& system) {
         const auto* bushing = std::get_if<Bushing>(&elastic.kind);
         if (bushing == nullptr) continue;
         ElementPath& path = system.elements[e];
-        if (!is_zero(path.free_length.start) || !is_zero(path.free_length.rate))
-            throw std::logic_error("certificate: a driven undeformed length of a bushing: not yet");
         path.rotational = resists_rotation(bushing->law);
         for (std::size_t k = 3; k < 6; ++k)
             path.rotational |= !is_zero(path.preload[k].start) || !is_zero(path.preload[k].rate);

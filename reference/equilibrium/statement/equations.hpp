@@ -134,13 +134,9 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
 // Not conjugate (frame on i): the moment is A_i g, although it is not conjugate to θ. Without
 // offset moment, D × F acts on neither body: F acts on each at its own marker.
 template <class T>
-OnBoth<T> interaction(const Bushing& bushing, const Vec6<T>& preload, bool rotational,
-                      const ElementPieces& pieces, const Frame<T>& i, const Frame<T>& j) {
+OnBoth<T> interaction(const Bushing& bushing, const Measured<T>& at, const Vec6<T>& fg,
+                      bool rotational) {
     const Formulation& formulation = bushing.formulation;
-    const Measured<T> at = measured(bushing, rotational, i, j);
-    const Vec6<T> fg =
-        gradient(bushing.law, Vec6<T>(at.e - bushing.undeformed.cast<T>()), pieces) + preload;
-
     Interaction<T> on_i;
     on_i.force = turned(at.A_f, Vec3<T>(fg.template head<3>()));
     on_i.at = at.p_j;
@@ -298,9 +294,19 @@ Interaction<T> on_body(const FollowerMoment& load, const Frame<T>& body) {
     return on;
 }
 
+// A brake force acts on the carrier, at a point of the wheel.
 template <class T>
-Interaction<T> on_body(const BrakeForce&, const Frame<T>&) {
-    throw std::logic_error("equilibrium: a brake force: not yet");
+Interaction<T> on_body(const BrakeForce& load, const Frame<T>& wheel) {
+    Interaction<T> on;
+    on.force = load.f.cast<T>();
+    on.at = position(wheel, load.patch.s_local);
+    return on;
+}
+
+// The body whose frame determines the action of a load: its own, or that of its point.
+inline BodyId acts_with(const LoadKind& load) {
+    const Point* point = member<Point>(load);
+    return point != nullptr ? point->body : body_of(load);
 }
 
 // ---- Bodies of an element or constraint

@@ -53,8 +53,6 @@ void set_paths(System& system) {
         ElementPath& path = system.elements.emplace_back(ElementPath{inputs.elements[e]});
         const auto* law = member<SpatialLaw>(model.elastics[e].kind);
         if (law == nullptr) continue;
-        if (path.free_length.start != 0 || path.free_length.rate != 0)
-            throw std::logic_error("equilibrium: a driven undeformed length of a bushing: not yet");
         path.rotational = resists_rotation(*law);
         for (std::size_t k = 3; k < 6; ++k)
             path.rotational |= path.preload[k].start != 0 || path.preload[k].rate != 0;

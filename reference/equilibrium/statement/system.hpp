@@ -136,6 +136,15 @@ Vec6<T> preload_at(const ElementPath& path, const T& a) {
     return preload;
 }
 
+// e - e₀ of a bushing at a.
+template <class T>
+Vec6<T> deformed(const Bushing& bushing, const ElementPath& path, const T& a,
+                 const Measured<T>& at) {
+    Vec6<T> e = at.e - bushing.undeformed.cast<T>();
+    e[2] -= path.free_length.at(a);
+    return e;
+}
+
 // Actions of element e on its two bodies.
 template <class T>
 OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const T& held,
@@ -151,7 +160,10 @@ OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const T& 
                        Vec6<T> preload = preload_at(path, a);
                        if (system.grows)
                            for (int k = 0; k < 6; ++k) preload[k] -= held * path.stored[k];
-                       return interaction(bushing, preload, path.rotational, on, i, j);
+                       const Measured<T> at = measured(bushing, path.rotational, i, j);
+                       const Vec6<T> law =
+                           gradient(bushing.law, deformed(bushing, path, a, at), on);
+                       return interaction(bushing, at, Vec6<T>(law + preload), path.rotational);
                    }},
         system.model->elastics[e].kind);
 }
@@ -167,8 +179,8 @@ Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Fram
                                      return x;
                                  },
                                  [&](const Bushing& bushing) {
-                                     return Vec6<T>(measured(bushing, path.rotational, i, j).e -
-                                                    bushing.undeformed.cast<T>());
+                                     return deformed(bushing, path, a,
+                                                     measured(bushing, path.rotational, i, j));
                                  }},
                       system.model->elastics[e].kind);
 }
@@ -254,11 +266,15 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     }
     for (std::size_t k = 0; k < system.loads.size(); ++k) {
         const auto& load = system.loads[k];
-        const Part part{.i = body_of(load.kind), .term = Term::load, .number = k};
-        if (part.i == ground || !wants(source, Term::load, k)) continue;
-        const Frame<T> body = source.frame(part, 0);
-        apply(part, part.i, body,
-              std::visit([&](const auto& kind) { return on_body(kind, body); }, load.kind),
+        const BodyId body = body_of(load.kind), with = acts_with(load.kind);
+        const Part part{
+            .i = body, .j = with == body ? ground : with, .term = Term::load, .number = k};
+        if (body == ground || !wants(source, Term::load, k)) continue;
+        const Frame<T> frame = source.frame(part, 0);
+        const auto on = [&](const Frame<T>& at) {
+            return std::visit([&](const auto& kind) { return on_body(kind, at); }, load.kind);
+        };
+        apply(part, body, frame, with == body ? on(frame) : on(source.frame(part, 1)),
               system.grows ? T(load.factor.at(a) * (1.0 - held)) : load.factor.at(a));
     }
 

@@ -226,6 +226,9 @@ struct Mechanism {
     }
     void add(const std::string& name, const FollowerForce&) { refuse_follower(name); }
     void add(const std::string& name, const FollowerMoment&) { refuse_follower(name); }
+    void add(const std::string& name, const BrakeForce&) {
+        throw NotRepresented("load '" + name + "': it acts through a point of another body");
+    }
     static void refuse_follower(const std::string& name) {
         throw NotRepresented("load '" + name + "': Simbody's keep their direction in ground axes");
     }

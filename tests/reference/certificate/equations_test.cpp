@@ -168,6 +168,47 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
     EXPECT_GE(tube.corners, 1);
 }
 
+// A cambered wheel that rolls, on a skewed hinge: on a tyre over its lift-off, on a jack, and braked.
+TEST(CertificateEquations, AWheelThatRollsIsProvedAndMovedByAMicrometreItIsNot) {
+    const std::string scene =
+        "elastocheck: 1\nname: arm\nunits: {length: mm, angle: rad, force: N}\n"
+        "points: {o: [450, 600, 10], c: [0, 750, 0], p: [3, 730, -319]}\n"
+        "bodies: {arm: {origin: c}}\n"
+        "joints: {hinge: {type: revolute, bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1]}}\n"
+        "torsion_springs: {bar: {bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1], "
+        "rate: 4050e3, preload_moment: -1500e3}}\n"
+        "tyres: {t: {rate: 200, preload: 3500}}\n"
+        "loads: {brake: {on: arm, at: p, force: [-1, 0, 0.2]}}\n"
+        "wheel: {body: arm, centre: c, contact_patch: p, spin_axis: [0.03, 1, -0.06], side: left, "
+        "contact: rolling}\nbranches: ";
+    int lifted = 0, corners = 0;
+    for (const auto& [branch, to] : {std::pair{"{drive: tyres.t.road, to: -400, steps: 20}", -0.4},
+                                     {"{drive: tyres.t.road, to: 100, steps: 20}", 0.1},
+                                     {"{drive: patch_travel, to: 80, steps: 20}", 0.08},
+                                     {"{load: brake, to: 3000, steps: 20}", 3000.}}) {
+        const Side side(scene + "{b: " + branch + "}\n");
+        std::vector<Equilibrium> states;
+        for (int k = 0; k <= 4; ++k) {
+            Equilibrium state = states.emplace_back(side.solved(to * k / 4));
+            const Certificate c = side.certify(state);
+            EXPECT_EQ(c.answer, Answer::proved) << branch << k << c.detail;
+            EXPECT_TRUE(c.stable) << branch << k;
+            for (const int axis : {0, 2}) {
+                Equilibrium moved = state;
+                moved.poses[0].r[axis] += 1e-6;
+                EXPECT_EQ(side.certify(moved).answer, Answer::excluded) << branch << k << axis;
+            }
+            lifted +=
+                k > 0 && (state.poses[0].r - states[states.size() - 2].poses[0].r).norm() < 1e-12;
+        }
+        const Tube tube = certify_branch(side.model, side.branch, states);
+        EXPECT_EQ(tube.answer, Answer::proved) << branch << tube.detail;
+        corners += tube.corners;
+    }
+    EXPECT_EQ(corners, 1);  // where the wheel leaves the road
+    EXPECT_GT(lifted, 0);   // without a load the wheel stays where it is
+}
+
 // For every formulation, at small and large rotations, the equilibrium leg's points are proved.
 TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) {
     using F = Formulation;

@@ -84,7 +84,7 @@ branches:
   up: {load: {up: 1, on_the_bracket: 1}, from: -1500, to: 2500, steps: 40}
   side: {load: side, to: 2000, steps: 20, hold: {travel: 0.02}}
   travel: {drive: travel, to: 0.06, steps: 20, static_loads: {side: 500}}
-wheel: {body: wheel, centre: hub, contact_patch: contact, spin_axis: y, side: left}
+wheel: {body: wheel, centre: hub, contact_patch: contact, contact: carrier, spin_axis: y, side: left}
 probes: {tip: {on: knuckle, at: out_1}}
 )";
 

@@ -53,7 +53,8 @@ TEST(EquilibriumElements, WhereAnAngleHasNoValueThereIsNoNumber) {
             }
 }
 
-// A block on a bushing of every formulation, with curves for every other, a follower and a stop.
+// Two blocks on a bushing of every formulation, with curves for every other, followers, a brake, a
+// road and a stop.
 Scene every_formulation(Random& random) {
     // A rising cubic between knots at ±1.5.
     const auto curve = [&](double rate) {
@@ -91,7 +92,9 @@ Scene every_formulation(Random& random) {
                 }
     s.elastics.push_back({"stop", AxialSpring{{0, 0.2 * X}, {ground, X}, curve(3e5), 0.5}});
     s.branches = {branch_of({{Load{"f", FollowerForce{{0, {0.1, 0.2, 0.3}}, {1, 2, 3}}}, 0, 1},
-                             {Load{"m", FollowerMoment{1, {0.1, -0.2, 0.3}}}, 0, 1}},
+                             {Load{"m", FollowerMoment{1, {0.1, -0.2, 0.3}}}, 0, 1},
+                             {Load{"brake", BrakeForce{{0, {0.3, 0, -0.2}}, 1, {1, 2, -3}}}, 0, 1},
+                             {FreeLength{0}, 1e-3, 2e-5}},
                             1000)};
     s.probes = {{"a", {0}}};
     return s;
@@ -114,7 +117,13 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
             const Eigen::VectorXd x =
                 equilibrium::moved(system, design_unknowns(system), random.many(n, away));
             Counts counts;
-            const Eigen::MatrixXd J = derivatives(system, {700}, x, counts).J;
+            const Derivatives found = derivatives(system, {700, 0, 1}, x, counts);
+            const Eigen::MatrixXd J = found.J;
+            const auto over_a = [&](double a) { return residual(system, {a}, x); };
+            const Eigen::VectorXd E_rate =
+                (8 * (over_a(701) - over_a(699)) - (over_a(702) - over_a(698))) / 12;
+            worst.see((found.E_rate - E_rate).cwiseAbs().maxCoeff(),
+                      s.name + " over the parameter");
             for (int k = 0; k < n; ++k) {
                 const auto E = [&](double by) {
                     return residual(
