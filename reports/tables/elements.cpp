@@ -155,9 +155,12 @@ bool is_beam(const Elastic& elastic) {
 
 std::string bushing_words(const Written& written, const Elastic& elastic, const SpatialLaw& law) {
     const Resisted axes = resisted(law);
-    if (elastic.active_only_where_driven && axes.all == std::vector<std::size_t>{2})
-        return fmt::format("tyre, {}, active on the branches that drive its road",
-                           law_words(law, 2, lengths));
+    if (elastic.written_as == WrittenAs::tyre) {
+        PerAxis pushed = std::get<PerAxis>(law);
+        pushed.axis[2] = LinearRate{curve_of(pushed.axis[2])->pieces.front()[1]};
+        return fmt::format("tyre, {}, only pushes, active on the branches that drive its road",
+                           law_words(pushed, 2, lengths));
+    }
     if (axes.all == std::vector<std::size_t>{5})
         return "torsion spring, " + law_words(law, 5, angles);
     std::string text = is_beam(elastic) ? "beam" : "bushing";

@@ -28,7 +28,7 @@ double value(const Model& model, const Equilibrium& state, const std::string& na
 std::pair<Model, Equilibrium> wheel(int side, const Eigen::Quaterniond& turn) {
     Model model;
     model.bodies.push_back({"wheel", {}});
-    model.wheels.push_back({"", 0, {0, 0.1, 0}, {0, 0.1, -0.3}, Vector3d(0, side, 0), side});
+    model.wheels.push_back({"", 0, {0, 0.1, 0}, {0, {0, 0.1, -0.3}}, Vector3d(0, side, 0), side});
     Equilibrium state;
     state.poses.push_back({Vector3d(1, 2, 3), turn});
     return {model, state};
@@ -99,7 +99,8 @@ TEST(Channels, EveryOneHasAUnitADefinitionAndANameOfItsOwn) {
 TEST(Channels, OfSeveralWheelsCarryTheWheelsName) {
     auto [model, state] = wheel(1, about(Vector3d::UnitZ(), -2));
     model.bodies.push_back({"other", {}});
-    model.wheels.push_back({"right", 1, {0, -0.1, 0}, {0, -0.1, -0.3}, Vector3d(0, -1, 0), -1});
+    model.wheels.push_back(
+        {"right", 1, {0, -0.1, 0}, {1, {0, -0.1, -0.3}}, Vector3d(0, -1, 0), -1});
     model.wheels.front().name = "left";
     state.poses.push_back({Vector3d(0, 0, 0.02), about(Vector3d::UnitZ(), 1)});
     EXPECT_NEAR(value(model, state, "left.toe"), 2, 1e-12);

@@ -461,9 +461,8 @@ TEST_P(Drivers, AModelThatDoesNotFitTheBranchIsMisuse) {
     Branch two_sides = plain.branches[0];
     two_sides.from = -1;
     misuse(plain, two_sides);
-    // A ball joint has no offset, a bushing no free length, a spring no preload vector.
-    for (const Driven& what :
-         {Driven{Motion{0}}, Driven{FreeLength{1}}, Driven{Preload{0, Vector6::Ones()}}}) {
+    // A ball joint has no offset, a spring no preload vector.
+    for (const Driven& what : {Driven{Motion{0}}, Driven{Preload{0, Vector6::Ones()}}}) {
         if (leg().kind == Leg::energy) continue;  // checks the branch only
         misuse(plain, branch_of({{what, 0, 1}}, 1));
     }

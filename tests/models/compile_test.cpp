@@ -214,11 +214,15 @@ const Reason reasons_to_stay[] = {
     {"the wheel", [](Scene& s, BodyId b, BodyId) { s.wheels.emplace_back().body = b; }},
     {"the lower end of a steering axis",
      [](Scene& s, BodyId b, BodyId) {
-         s.wheels.push_back({.name = "w", .body = 0, .steering_axis = SteeringAxis{{b}, {ground}}});
+         s.wheels.emplace_back().body = 0;
+         s.wheels.back().contact.body = 0;
+         s.wheels.back().steering_axis = SteeringAxis{{b}, {ground}};
      }},
     {"the upper end of a steering axis",
      [](Scene& s, BodyId b, BodyId) {
-         s.wheels.push_back({.name = "w", .body = 0, .steering_axis = SteeringAxis{{0}, {b}}});
+         s.wheels.emplace_back().body = 0;
+         s.wheels.back().contact.body = 0;
+         s.wheels.back().steering_axis = SteeringAxis{{0}, {b}};
      }},
     {"the first end of a damper",
      [](Scene& s, BodyId b, BodyId) {

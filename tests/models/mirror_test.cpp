@@ -112,7 +112,7 @@ TEST(Mirror, TurnsWholeWordsOnly) {
         if (text.substr(at - 1, 1) != "\n") text.replace(at, 4, "leftover");
     const Scene scene = parsed_axle(text);
     EXPECT_NO_THROW(named(scene.bodies, "leftover"));
-    EXPECT_EQ(scene.bodies.size(), 5U);
+    EXPECT_EQ(scene.bodies.size(), 7U);
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST(Readme, ItsExampleIsAScene) {
     while (std::getline(file, line) && line != "```yaml") continue;
     while (std::getline(file, line) && line != "```") text += line + "\n";
     const Scene scene = parse_scene(text, "README.md");
-    EXPECT_EQ(scene.bodies.size(), 2U);
+    EXPECT_EQ(scene.bodies.size(), 3U);  // the third is the rolling wheel
     EXPECT_EQ(scene.branches.at(1).drivers.size(), 2U);
     EXPECT_EQ(scene.elastics.size(), 5U);
 }

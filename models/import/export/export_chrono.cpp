@@ -62,7 +62,7 @@ class ChronoWriter {
         for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
             const Name& name = names_[b];
             if (name.side < 0 || static_cast<BodyId>(b) == spindle_ ||
-                static_cast<BodyId>(b) == other_spindle_)
+                static_cast<BodyId>(b) == other_spindle_ || is_rolling(static_cast<BodyId>(b)))
                 continue;  // written by its mirror image, or a spindle, which Chrono adds itself
             root["Bodies"].push_back({{"Name", name.stem},
                                       {"Mirrored", twice_ || name.side != 0},
@@ -95,6 +95,12 @@ class ChronoWriter {
         std::string stem;
         int side = 0;  // if one of a pair
     };
+
+    bool is_rolling(BodyId body) const {
+        return std::ranges::any_of(scene_.wheels, [&](const Wheel& wheel) {
+            return wheel.rolls() && wheel.contact.body == body;
+        });
+    }
 
     void miss(const std::string& what, const std::string& why) {
         result_.notes.miss({0, what}, why);
@@ -199,6 +205,9 @@ class ChronoWriter {
         if (one.active_only_where_driven)
             return result_.notes.leave_out("active only where a branch drives it",
                                            {0, "drive '" + one.name + "'"});
+        if (is_rolling(ends(one.kind).i))
+            return result_.notes.leave_out("of the wheels, which Chrono adds itself",
+                                           {0, "joint '" + one.name + "'"});
         const auto plain = [&](const char* type, const auto& k,
                                const Matrix3d& A = Matrix3d::Identity()) {
             joint(root, type, one.name, k.i.body, k.j.body, drawn(k.j), A);
