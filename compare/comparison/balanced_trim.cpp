@@ -9,6 +9,7 @@
 #include "compare/comparison/trim_once.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/trim.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -17,8 +18,8 @@ constexpr double in_place = 1e-12;  // [m, rad]: of a body that is where it is d
 constexpr int most_balances = 30;
 
 bool is_balanced(const Elastic& element) {
-    return std::holds_alternative<Bushing>(element.kind) &&
-           element.written_as == WrittenAs::itself && !element.active_only_where_driven;
+    return preload(element.kind) != nullptr && element.written_as == WrittenAs::itself &&
+           !element.active_only_where_driven;
 }
 
 // Of the body that is farthest from where it is drawn: its origin [m], or its rotation [rad].

@@ -19,7 +19,7 @@ const std::string kinds =
     "Spherical|Revolute|Universal|Cylindrical|Translational|Planar|Fixed|Distance|InPlane|InLine|"
     "Perpendicular|Parallel|Angle|CoincidentPoints|PointInPlane|PerpendicularDirections|"
     "DistanceBetween|DirectionAtAngle|AxialSpring|Bushing|LinearRate|Curve|LinearStiffness|PerAxis|"
-    "DeadForce|DeadMoment|FollowerForce|FollowerMoment|Load|Motion|FreeLength|Preload";
+    "DeadForce|DeadMoment|FollowerForce|FollowerMoment|BrakeForce|Load|Motion|FreeLength|Preload";
 
 // The files that implement one kind, and what for.
 const std::set<std::string> implement_a_kind{
