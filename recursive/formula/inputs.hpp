@@ -45,8 +45,9 @@ Rest<Real> rest_of(const ElasticKind& kind) {
     Rest<Real> rest;
     if (const double* length = driven_number(kind)) rest.free_length = static_cast<Real>(*length);
     if (const auto* wrench = preload(kind)) rest.preload = wrench->template cast<Real>();
-    if (const auto* bushing = std::get_if<Bushing>(&kind))
-        rest.undeformed = bushing->undeformed.template cast<Real>();
+    each_member(kind, [&](Deformation<const Vector6<double>> e) {
+        rest.undeformed = e.value.template cast<Real>();
+    });
     return rest;
 }
 
@@ -143,10 +144,10 @@ void set_inputs(const Model& model, const Branch& branch, const Inputs<Real>& dr
                                const auto e = static_cast<std::size_t>(f.elastic);
                                Rest<Real>& rest = inputs.rest[e];
                                const Rest<Real>& as_drawn = drawn.rest[e];
-                               if (std::holds_alternative<Bushing>(model.elastics[e].kind))
-                                   change(rest.undeformed[2], as_drawn.undeformed[2], by);
-                               else
+                               if (driven_number(model.elastics[e].kind) != nullptr)
                                    change(rest.free_length, as_drawn.free_length, by);
+                               else
+                                   change(rest.undeformed[2], as_drawn.undeformed[2], by);
                            },
                            [&](const Preload& p) {
                                const auto e = static_cast<std::size_t>(p.elastic);

@@ -11,6 +11,7 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"

@@ -142,15 +142,17 @@ TEST(Response,
 // ---- Reciprocity: 6 × 6 compliance of the contact patch under wrenches there.
 
 MatrixXd compliance(const OneWay& side, const Equilibrium& state, const Answering& leg) {
+    const Wheel& wheel = side.model.wheels[0];
+    const Point centre{wheel.body, wheel.centre_local};
     Disturbances wrenches;
-    for (int k = 0; k < 3; ++k) wrenches.push_back(at_wheel(side.model, Vector3d::Unit(k)));
     for (int k = 0; k < 3; ++k)
-        wrenches.push_back(at_wheel(side.model, Vector3d::Zero(), Vector3d::Unit(k)));
+        wrenches.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
+    for (int k = 0; k < 3; ++k)
+        wrenches.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
     const Response response = leg.linear_response(side, state, wrenches);
     EXPECT_EQ(response.outcome, Outcome::converged) << response.detail;
-    const Wheel& wheel = side.model.wheels[0];
     const auto body = static_cast<std::size_t>(wheel.body);
-    const Vector3d lever = state.poses[body].p * wheel.contact.s_local;
+    const Vector3d lever = state.poses[body].p * wheel.centre_local;
     MatrixXd C(6, 6);
     for (std::size_t k = 0; k < 6; ++k) {
         const Increment& by = response.increments[k][body];
@@ -170,7 +172,7 @@ TEST(Response, ForcesAndMomentsAnswerEachOtherAlikeInEquilibriumUnderForces) {
     for (const char* name :
          {"mcpherson_strut", "double_wishbone", "front_axle", "semi_trailing_arm"}) {
         const Scene scene = support::scene(name);
-        for (const char* branch : {"lateral", "braking"}) {
+        for (const char* branch : {"lateral", "traction"}) {  // a brake has no potential
             const OneWay side = way_of(scene, branch, 1);
             const Equilibrium state = state_at(side, side.branch.to);
             for (const auto& leg : three_legs()) {
