@@ -25,6 +25,7 @@ bool operator==(const Index& a, const Index& b) {
 #include <utility>
 #include <vector>
 
+#include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::engines {
@@ -59,11 +60,7 @@ void offset(ConstraintKind& kind, double by) {
 }
 
 Load times(Load load, double factor) {
-    std::visit(
-        overloaded{[&](DeadForce& l) { l.f *= factor; }, [&](DeadMoment& l) { l.m *= factor; },
-                   [&](FollowerForce& l) { l.f_local *= factor; },
-                   [&](FollowerMoment& l) { l.m_local *= factor; }},
-        load.kind);
+    load_vector(load.kind) *= factor;
     return load;
 }
 
@@ -72,18 +69,22 @@ Model standing_at(double a, Model model, const Branch& branch) {
     for (const Driver& driver : branch.drivers) {
         const double value = driver.start + driver.rate * a;
         std::visit(
-            overloaded{
-                [&](const Load& load) { model.static_loads.push_back(times(load, value)); },
-                [&](const Motion& m) {
-                    offset(at(model.constraints, at(model.joints, m.joint).driven).kind, value);
-                },
-                [&](const FreeLength& f) {
-                    std::get<AxialSpring>(at(model.elastics, f.elastic).kind).free_length += value;
-                },
-                [&](const Preload& p) {
-                    std::get<Bushing>(at(model.elastics, p.elastic).kind).preload +=
-                        value * p.direction;
-                }},
+            overloaded{[&](const Load& load) { model.static_loads.push_back(times(load, value)); },
+                       [&](const Motion& m) {
+                           offset(at(model.constraints, at(model.joints, m.joint).driven).kind,
+                                  value);
+                       },
+                       [&](const FreeLength& f) {
+                           ElasticKind& kind = at(model.elastics, f.elastic).kind;
+                           if (double* length = driven_number(kind))
+                               *length += value;
+                           else
+                               std::get<Bushing>(kind).undeformed[2] += value;
+                       },
+                       [&](const Preload& p) {
+                           std::get<Bushing>(at(model.elastics, p.elastic).kind).preload +=
+                               value * p.direction;
+                       }},
             driver.what);
     }
     return model;
