@@ -118,7 +118,7 @@ void take_twins(const Mirror& mirror, const Scene& from, Scene& to) {
     take(mirror, from.dampers, to.dampers);
     const auto of_twin = [&](const Driven& what) {
         const auto element = driven_element(what), joint = driven_joint(what);
-        const auto* load = std::get_if<Load>(&what);
+        const Load* load = driven_load(what);
         return is_twin(mirror, load         ? load->name
                                : joint >= 0 ? to.joints[static_cast<std::size_t>(joint)].name
                                             : to.elastics[static_cast<std::size_t>(element)].name);
