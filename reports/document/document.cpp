@@ -397,7 +397,8 @@ void add_inspection(json& scene_document, const Scene& scene, const Model& model
         const compare::Settled settled = compare::settled(model, channels, branch);
         json one = branch_json(model, branch), moves = json::object();
         for (std::size_t c = 0; c < settled.displacement.size(); ++c)
-            moves[channels[c].name] = settled.displacement[c];
+            if (!std::isnan(settled.displacement[c]))
+                moves[channels[c].name] = settled.displacement[c];
         one["steps"] = branch.steps;
         one["settles"] = {{"outcome", elastocheck::name(settled.outcome)},
                           {"detail", settled.detail},

@@ -124,7 +124,10 @@ Streamed streamed(const Model& model, const std::vector<BranchSide>& sides,
 }
 
 bool same(const Row& row, const Model& model, const Equilibrium& state) {
-    const auto values = evaluate(model, state);
+    std::vector<double> values = evaluate(model, state);
+    const auto outputs = channels(model);
+    for (std::size_t c = 0; c < outputs.size(); ++c)  // a state alone does not have it
+        if (outputs[c].kind() == ChannelKind::element) values[c] = row.values[c];
     return row.load == state.load && row.constraint_error == state.constraint_error &&
            std::ranges::equal(row.values, values, [](double a, double b) {
                return a == b || (std::isnan(a) && std::isnan(b));

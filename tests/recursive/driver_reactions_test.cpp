@@ -45,7 +45,7 @@ constexpr Kind kinds[] = {
      "drive: joints.rod, to: 15, hold: {travel: 30, springs.coil.free_length: 8}"},
     {.name = "road under a tyre",
      .branch = "drive: tyres.t.road, to: 30",
-     .tyre = "tyres: {t: {rate: 200, preload: 2000}}\n"},
+     .tyre = "tyres: {t: {rate: 200, preload: 8000}}\n"},
 };
 
 // An arm, a knuckle and a rod to a rack, with weight and preload at the start of the branch;

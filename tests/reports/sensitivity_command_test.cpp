@@ -57,8 +57,8 @@ TEST(SensitivityCommand, WritesEveryDerivative) {
 // A direction that is zero in the scene is varied by a hundredth, not by a tenth of what it multiplies.
 TEST(SensitivityCommand, VariesAZeroDirectionByLittle) {
     expect_says("sensitivity " + scenes +
-                    "/trailing_arm.yaml --of toe --to loads.vertical.force.x --points 1",
-                0, {.out = {"loads.vertical.force.x", "the legs agree within 1e-07"}});
+                    "/trailing_arm.yaml --of toe --to loads.vertical.force.y --points 1",
+                0, {.out = {"loads.vertical.force.y", "the legs agree within 1e-07"}});
 }
 
 // What the trim holds at zero is zero, not 1e-10 of rounding; two legs that differ by rounding agree.

@@ -90,7 +90,8 @@ Model standing_at(double a, Model model, const Branch& branch) {
     return model;
 }
 
-// ---- What Simbody has no element for: a spring whose force is a curve.
+// ---- What Simbody has no element for: a spring whose force is a curve, a force on one body along a
+// line through a point of another.
 
 class CurvedSpring : public Force::Custom::Implementation {
   public:
@@ -125,6 +126,28 @@ class CurvedSpring : public Force::Custom::Implementation {
 
     MobilizedBody i_, j_;
     AxialSpring spring_;
+};
+
+class ForceThroughPatch : public Force::Custom::Implementation {
+  public:
+    ForceThroughPatch(MobilizedBody carrier, MobilizedBody wheel, const BrakeForce& load)
+        : carrier_(std::move(carrier)),
+          wheel_(std::move(wheel)),
+          at_(vec(load.patch.s_local)),
+          f_(vec(load.f)) {}
+
+    void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& on_bodies,
+                   SimTK::Vector_<Vec3>&, SimTK::Vector&) const override {
+        const Vec3 p = wheel_.findStationLocationInGround(state, at_);
+        carrier_.applyForceToBodyPoint(state, carrier_.findStationAtGroundPoint(state, p), f_,
+                                       on_bodies);
+    }
+    SimTK::Real calcPotentialEnergy(const SimTK::State&) const override { return SimTK::NaN; }
+    bool dependsOnlyOnPositions() const override { return true; }
+
+  private:
+    MobilizedBody carrier_, wheel_;
+    Vec3 at_, f_;
 };
 
 // ---- The same mechanism, of Simbody's parts.
@@ -227,8 +250,8 @@ struct Mechanism {
     }
     void add(const std::string& name, const FollowerForce&) { refuse_follower(name); }
     void add(const std::string& name, const FollowerMoment&) { refuse_follower(name); }
-    void add(const std::string& name, const BrakeForce&) {
-        throw NotRepresented("load '" + name + "': it acts through a point of another body");
+    void add(const std::string&, const BrakeForce& l) {
+        Force::Custom(forces, new ForceThroughPatch(body(l.body), body(l.patch.body), l));
     }
     static void refuse_follower(const std::string& name) {
         throw NotRepresented("load '" + name + "': Simbody's keep their direction in ground axes");
