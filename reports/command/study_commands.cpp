@@ -279,8 +279,10 @@ int trade(const TradeRequest& request, const Delivery& delivery) {
 Command inspect_command() {
     const auto given = std::make_shared<InspectRequest>();
     std::vector<Option> options = given->options();
-    options.push_back({"--verbose", Flag{&given->verbose},
-                       "long lists whole, and the size of the matrix, its order and its fill-in"});
+    options.push_back(
+        {"--verbose", Flag{&given->verbose},
+         "long lists whole, all numbers with their sides, and the size of the matrix, its "
+         "order and its fill-in"});
     options.push_back(keep_all_option(given->keep_all));
     return {"inspect", "Show the compiled scene: bodies, coordinates, constraints, idle modes",
             std::move(options),

@@ -91,8 +91,10 @@ json channels_json(const std::vector<compare::Channel>& channels) {
 
 json numbers_json(const Scene& scene) {
     json numbers = json::array();
-    for (const auto& n : scene.numbers)
+    for (const auto& n : scene.numbers) {
         numbers.push_back({{"path", n.path}, {"value", n.value}, {"unit", n.unit}});
+        for (const auto& [side, value] : n.sides) numbers.back()["sides"][side] = value;
+    }
     return numbers;
 }
 

@@ -72,6 +72,20 @@ std::string trim_words(const compare::TrimRecord& trim) {
     return text;
 }
 
+// The numbers of the scene, and of which sides each is.
+std::string number_words(const std::vector<Number>& numbers) {
+    std::string text = "\nnumbers, as --set and --vary name them\n";
+    for (const Number& number : numbers) {
+        std::string sides;
+        for (const auto& [side, value] : number.sides)
+            sides += fmt::format("{}@{} {:.10g}", sides.empty() ? "both sides; alone: " : ", ",
+                                 side, value);
+        text += fmt::format("  {:<36} {:>12.10g} {:<8} {}\n", number.path, number.value,
+                            number.unit, sides);
+    }
+    return text;
+}
+
 // Cost of a step: the matrix with the border of idle modes and redundant rows, and its factors.
 std::string cost_words(const Model& model) {
     const recursive::SaddlePoint<double> system = recursive::analyse(model).system;
@@ -227,6 +241,7 @@ std::string inspection(const Inspected& inspected) {
                                      settled.displacement[c], symbol(channels[c].unit));
         if (!where.empty()) line("  branch '{}' settles: {}", branch.name, where);
     }
+    if (inspected.verbose) text += number_words(inspected.scene.numbers);
     return text;
 }
 

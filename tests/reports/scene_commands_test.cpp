@@ -495,6 +495,14 @@ TEST(Inspect, ShowsTheBeginningOfLongListsAndAllWhenVerbose) {
                  {"--verbose"});
 }
 
+TEST(Inspect, ListsNumbersWithTheirSidesWhenVerbose) {
+    expect_says(
+        "inspect --verbose " + scenes + "/front_axle.yaml --set springs.coil_left.rate@right=80e3",
+        0,
+        {.out = {"springs.coil_left.rate", "both sides; alone: @left 95000, @right 80000",
+                 "points.rack.z"}});
+}
+
 TEST(Inspect, TellsTheSizeBeforeAndAfter) {
     const Said said = elastocheck_says("inspect " + scenes + "/four_bar.yaml");
     EXPECT_TRUE(contains(said.out, "the scene  ") && contains(said.out, "as solved  ")) << said.out;
