@@ -69,7 +69,7 @@ TEST(SensitivityCommand, ShowsAndJudgesRoundingAsZero) {
                     "/double_wishbone.yaml --of toe --to points.tie_rod_inner.z --branch travel "
                     "--points 1 --csv " +
                     file,
-                0, {.out = {"points.tie_rod_inner.z         0      82  deg per m         0"}});
+                0, {.out = {"points.tie_rod_inner.z         0      82  deg per m       0"}});
     EXPECT_TRUE(contains(text_of(file), "travel to 80 mm,0,mm,toe,points.tie_rod_inner.z,0,"));
     expect_says("sensitivity " + scenes +
                     "/multi_link.yaml --of aligning_torque_steer --branch aligning --points 1",
