@@ -505,7 +505,7 @@ TEST(Inspect, NamesWhatIsCondensedWithItsReason) {
     expect_parts(said.out, {"left out or condensed, because no output depends on it",
                             "body 'drop_link_left': a link with a ball at each end and no load: "
                             "replaced by the distance joint 'drop_link_left'",
-                            "the scene  11 bodies", "as solved  9 bodies"});
+                            "the scene  13 bodies", "as solved  11 bodies"});
 }
 
 // ---- wheel and ride rate
