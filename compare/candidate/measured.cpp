@@ -45,13 +45,13 @@ double polygon(std::vector<std::pair<double, double>> points, double x) {
         const auto& [x_0, y_0] = points[k];
         const auto& [x_1, y_1] = points[k + 1];
         if (x < x_0 || x > x_1) continue;
-        return x_1 > x_0 ? y_0 + (y_1 - y_0) * (x - x_0) / (x_1 - x_0) : (y_0 + y_1) / 2;
+        return x_1 > x_0 ? std::lerp(y_0, y_1, (x - x_0) / (x_1 - x_0)) : (y_0 + y_1) / 2;
     }
     return points.size() == 1 && points.front().first == x ? points.front().second : nan;
 }
 
 // Replaces the values of a column by the mean of both ways, where a branch has two, and returns the
-// widths. A point that has no counterpart on the other way, at a turning point, stays.
+// widths above zero. A point that has no counterpart on the other way, at a turning point, stays.
 std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>& places,
                                    const Comparison& comparison) {
     std::vector<Hysteresis> loops;
@@ -83,7 +83,7 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
                     loop.width = std::abs(here - other), loop.at = at[k];
             }
             column.values = std::move(mean);
-            if (loop.points > 0) loops.push_back(loop);
+            if (loop.width > 0) loops.push_back(loop);
         }
     return loops;
 }
