@@ -159,8 +159,8 @@ const Entry list[] = {
      "the carrier does not rotate as seen from the front: the arm is infinite",
      [](const auto& x, std::size_t w) {
          const auto by = raised(x, w);
-         return ratio(x.side(w) * x.moved_by(by, x.centre(w)).z(),
-                      x.turned_by(by, x[w].body).x(), nowhere) +
+         return ratio(x.side(w) * x.moved_by(by, x.centre(w)).z(), x.turned_by(by, x[w].body).x(),
+                      nowhere) +
                 x.side(w) * (x.patch(w).at.y() - x.centre(w).at.y());
      },
      true, false, "SAE J670e: swing arm radius, from the centre of tire contact"},
@@ -168,9 +168,7 @@ const Entry list[] = {
      "travel of the wheel centre over change of camber, its sign turned; positive where jounce "
      "leans the top in",
      "camber does not change: the arm is infinite",
-     [](const auto& x, std::size_t w) {
-         return ratio(-1, x.camber(w, raised(x, w)), nowhere);
-     },
+     [](const auto& x, std::size_t w) { return ratio(-1, x.camber(w, raised(x, w)), nowhere); },
      true, false, "rigs, which measure camber over travel"},
     {Owner::every_wheel, "side_view_swing_arm@patch", Unit::mm,
      "longitudinal distance from the contact patch to the instant centre of the carrier seen from "
@@ -189,23 +187,24 @@ const Entry list[] = {
      [](const auto& x, std::size_t w) { return vertical_rate(x, w, at_patch + 2, x.patch(w)); },
      false, true, "rigs, which measure the pad under the tyre less the tyre's deflection"},
     {Owner::every_wheel, "wheel_rate@centre", Unit::newton_per_mm,
-     "vertical force over vertical displacement, both of the wheel centre, all wheels with the same "
+     "vertical force over vertical displacement, both of the wheel centre, all wheels with the "
+     "same "
      "load",
      no_rate,
      [](const auto& x, std::size_t w) { return vertical_rate(x, w, at_centre + 2, x.centre(w)); },
      false, true, "programs that load the spindle"},
     {Owner::wheel_of_axle, "wheel_rate@alone", Unit::newton_per_mm,
-     "vertical force at the contact patch over vertical displacement of the wheel centre, the other "
+     "vertical force at the contact patch over vertical displacement of the wheel centre, the "
+     "other "
      "wheel with its load unchanged",
      no_rate,
      [](const auto& x, std::size_t w) {
          if (x.response.free.empty()) return nothing(x);
-         return ratio(1, x.moved_by(x.response.free[w][at_patch + 2], x.centre(w)).z(),
-                      rigid);
+         return ratio(1, x.moved_by(x.response.free[w][at_patch + 2], x.centre(w)).z(), rigid);
      },
      false, true, "single wheel bump"},
-    {Owner::axle, "wheel_rate@axle", Unit::newton_per_mm,
-     "sum of the wheel rates of both wheels", no_rate,
+    {Owner::axle, "wheel_rate@axle", Unit::newton_per_mm, "sum of the wheel rates of both wheels",
+     no_rate,
      [](const auto& x, std::size_t) {
          return wheel_rate(x, 0, Pattern::alike) + wheel_rate(x, 1, Pattern::alike);
      },
@@ -213,8 +212,8 @@ const Entry list[] = {
     {Owner::spring, "motion_ratio@inverse", Unit::none,
      "travel of the wheel centres over shortening of the spring",
      "the spring does not move with the wheel",
-     [](const auto& x, std::size_t k) { return ratio(1, spring_ratio(x, k), nowhere); },
-     false, false, "wheel travel over spring travel; a manufacturer's table (tests/outside/README.md)"},
+     [](const auto& x, std::size_t k) { return ratio(1, spring_ratio(x, k), nowhere); }, false,
+     false, "wheel travel over spring travel; a manufacturer's table (tests/outside/README.md)"},
     {Owner::spring, "motion_ratio@patch", Unit::none,
      "shortening of the spring over the vertical displacement of the contact patches, their mean",
      never,
@@ -239,8 +238,8 @@ const Entry list[] = {
     {Owner::damper, "motion_ratio@inverse", Unit::none,
      "travel of the wheel centres over shortening of the damper",
      "the damper does not move with the wheel",
-     [](const auto& x, std::size_t k) { return ratio(1, damper_ratio(x, k), nowhere); },
-     false, false, "wheel travel over damper travel"},
+     [](const auto& x, std::size_t k) { return ratio(1, damper_ratio(x, k), nowhere); }, false,
+     false, "wheel travel over damper travel"},
     {Owner::damper, "motion_ratio@patch", Unit::none,
      "shortening of the damper over the vertical displacement of the contact patches, their mean",
      never,
@@ -263,7 +262,8 @@ const Entry list[] = {
      },
      false, false, "OptimumK: wheel displacement over damper displacement"},
     {Owner::front_wheel, "anti_dive@inboard", Unit::percent,
-     "brake_share · wheelbase / cg_height · forward over vertical displacement of the wheel centre: "
+     "brake_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
+     "centre: "
      "inboard brakes, whose torque the car body carries",
      no_vertical,
      [](const auto& x, std::size_t w) { return anti(x, x.centre(w), &Vehicle::brake_share, 1); },
@@ -274,7 +274,8 @@ const Entry list[] = {
      no_vertical, [](const auto& x, std::size_t w) { return anti_of_whole(x, x.braked(w), 1); },
      false, false, "programs without a brake distribution"},
     {Owner::front_wheel, "anti_lift@outboard", Unit::percent,
-     "drive_share · wheelbase / cg_height · forward over vertical displacement of the contact patch: "
+     "drive_share · wheelbase / cg_height · forward over vertical displacement of the contact "
+     "patch: "
      "the carrier carries the drive torque",
      no_vertical,
      [](const auto& x, std::size_t w) { return anti(x, x.braked(w), &Vehicle::drive_share, 1); },
@@ -286,7 +287,8 @@ const Entry list[] = {
      [](const auto& x, std::size_t w) { return anti(x, x.centre(w), &Vehicle::brake_share, -1); },
      false, false, "inboard brakes"},
     {Owner::rear_wheel, "anti_lift@whole", Unit::percent,
-     "wheelbase / cg_height · rearward over vertical displacement of the contact patch: per cent of "
+     "wheelbase / cg_height · rearward over vertical displacement of the contact patch: per cent "
+     "of "
      "the load transfer if this axle braked alone",
      no_vertical, [](const auto& x, std::size_t w) { return anti_of_whole(x, x.braked(w), -1); },
      false, false, "programs without a brake distribution"},
@@ -303,19 +305,21 @@ const Entry list[] = {
      [](const auto& x, std::size_t w) { return anti_of_whole(x, driven_at(x, w), -1); }, false,
      false, "rear wheel drive: the same figure"},
     {Owner::every_wheel, "lateral_force_steer@centre", Unit::deg_per_kN,
-     "change of toe over a force at the wheel centre of this wheel alone towards the middle of the vehicle, wheel centres held at their height",
+     "change of toe over a force at the wheel centre of this wheel alone towards the middle of the "
+     "vehicle, wheel centres held at their height",
      never,
      [](const auto& x, std::size_t w) {
          return inward(x, w) * x.toe(w, held(x, w, at_centre + 1));
      },
      false, false, "programs that load the spindle"},
     {Owner::every_wheel, "lateral_force_steer@trail", Unit::deg_per_kN,
-     "change of toe over a force towards the middle of the vehicle that acts on the road 30 mm behind the contact patch of this wheel alone, wheel centres held at their height",
-     never,
-     [](const auto& x, std::size_t w) { return inward(x, w) * x.toe(w, behind(x, w)); }, false,
-     false, "rigs with a pneumatic trail of 30 mm"},
+     "change of toe over a force towards the middle of the vehicle that acts on the road 30 mm "
+     "behind the contact patch of this wheel alone, wheel centres held at their height",
+     never, [](const auto& x, std::size_t w) { return inward(x, w) * x.toe(w, behind(x, w)); },
+     false, false, "rigs with a pneumatic trail of 30 mm"},
     {Owner::every_wheel, "lateral_force_steer@constant_load", Unit::deg_per_kN,
-     "change of toe over a force at the contact patch of this wheel alone towards the middle of the vehicle, the wheel loads unchanged and the wheels free to rise",
+     "change of toe over a force at the contact patch of this wheel alone towards the middle of "
+     "the vehicle, the wheel loads unchanged and the wheels free to rise",
      "the travel of the wheel is unresisted",
      [](const auto& x, std::size_t w) {
          const auto* by = unheld(x, w, at_patch + 1);
@@ -323,7 +327,8 @@ const Entry list[] = {
      },
      false, true, "programs whose wheels are free"},
     {Owner::wheel_on_tyre, "lateral_force_steer@on_tyres", Unit::deg_per_kN,
-     "change of toe over a force at the contact patch of this wheel alone towards the middle of the vehicle, the wheels on their tyres",
+     "change of toe over a force at the contact patch of this wheel alone towards the middle of "
+     "the vehicle, the wheels on their tyres",
      "the travel of the wheel is unresisted",
      [](const auto& x, std::size_t w) {
          const auto by = on_tyres(x, w, at_patch + 1);
@@ -331,11 +336,13 @@ const Entry list[] = {
      },
      false, true, "rigs that load the tyre"},
     {Owner::every_wheel, "braking_force_steer@inboard", Unit::deg_per_kN,
-     "change of toe over a force to the back at the wheel centre of this wheel alone, wheel centres held at their height: the car body carries the brake torque",
+     "change of toe over a force to the back at the wheel centre of this wheel alone, wheel "
+     "centres held at their height: the car body carries the brake torque",
      never, [](const auto& x, std::size_t w) { return -x.toe(w, held(x, w, at_centre)); }, false,
      false, "inboard brakes; wheel free to roll"},
     {Owner::every_wheel, "traction_force_steer@patch", Unit::deg_per_kN,
-     "change of toe over a force forward at the contact patch of this wheel alone, wheel centres held at their height: the carrier carries the drive torque",
+     "change of toe over a force forward at the contact patch of this wheel alone, wheel centres "
+     "held at their height: the carrier carries the drive torque",
      never, [](const auto& x, std::size_t w) { return x.toe(w, held(x, w, at_patch)); }, false,
      false, "wheel hub motors; rigs with the wheel locked"},
     {Owner::steered_wheel, "caster@instant_axis", Unit::deg,
@@ -370,25 +377,22 @@ const Entry list[] = {
      "height above the contact patches of the intersection of the lines that are perpendicular, "
      "seen from the front, to the motion of the wheel centres and pass through them",
      "no finite roll centre",
-     [](const auto& x, std::size_t) {
-         return roll_centre(x, &std::decay_t<decltype(x)>::centre);
-     },
+     [](const auto& x, std::size_t) { return roll_centre(x, &std::decay_t<decltype(x)>::centre); },
      false, false, "tracks that are measured at the wheel centres"},
     {Owner::wheels, "roll_centre_height@forces", Unit::mm,
-     "height above the contact patches of the point at which a lateral force on the body leaves the "
+     "height above the contact patches of the point at which a lateral force on the body leaves "
+     "the "
      "wheel centres at their height (of an axle: the body without roll), the same lateral force on "
      "each patch, elements included",
-     "no finite roll centre",
-     [](const auto& x, std::size_t) { return roll_centre_by_forces(x); }, false, true,
-     "SAE J670e: roll center; force-based roll centre"},
+     "no finite roll centre", [](const auto& x, std::size_t) { return roll_centre_by_forces(x); },
+     false, true, "SAE J670e: roll center; force-based roll centre"},
     {Owner::wheel_of_axle, "roll_camber@road", Unit::deg_per_deg,
      "change of camber against the road over the roll of the car body towards this wheel; positive "
      "where the top leans out",
      does_not_roll,
-     [](const auto& x, std::size_t w) {
-         return x.response.tied ? undefined
-                                : x.camber(w, rolled_towards(x, w)) + 1;
-     },
+     [](const auto& x,
+        std::size_t
+            w) { return x.response.tied ? undefined : x.camber(w, rolled_towards(x, w)) + 1; },
      false, false, "inclination to the ground"},
 };
 
