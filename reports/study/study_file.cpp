@@ -168,7 +168,7 @@ struct Reading {
 
     void variables() {
         const Cursor section = whole.require("variables");
-        for (const auto& [name, at] : section.entries())
+        for (const auto& [name, at] : section.entries(Cursor::Keys::numbers))
             study.variables.push_back(variable(name, at));
         if (study.variables.empty())
             section.fail("no variable; allowed: NUMBER: {normal: {sd: 0.5}}");

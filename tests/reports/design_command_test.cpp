@@ -441,6 +441,22 @@ TEST(TolerancesCommand, HasTheClosedFormOfTwoSprings) {
                 {.out = {"springs.second.rate", "%"}});
 }
 
+// The left wheel's bump steer scatters by the left side alone, whichever way the sides are named.
+TEST(TolerancesCommand, HasNumbersOfOneSide) {
+    const Folder folder;
+    const auto scatter = [&](const std::string& name, const std::string& tolerances) {
+        const Said said = expect_says("tolerances " + scenes + "/front_axle.yaml " +
+                                          folder.write(name, tolerances) +
+                                          " --of left.bump_steer@parallel:0 --json",
+                                      0);
+        return json::parse(said.out)["figures"]["rows"][0][4].get<double>();
+    };
+    const std::string z = "points.tie_rod_inner_left.z", sd = ": {normal: {sd: 0.0005}}\n";
+    const double both = scatter("both.yaml", z + sd);
+    EXPECT_GT(both, 0.01);
+    EXPECT_NEAR(scatter("sides.yaml", z + "@left" + sd + z + "@right" + sd), both, 1e-6 * both);
+}
+
 TEST(TolerancesCommand, RefusesAMistakeWithItsLine) {
     const Folder folder;
     const auto complaint = [&](const std::string& text, const std::string& part) {

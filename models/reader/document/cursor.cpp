@@ -79,13 +79,14 @@ Cursor Cursor::require(const std::string& key) const {
     reader::fail(*file, value->line, child_path(path, key), "missing; this field is required");
 }
 
-std::vector<Cursor::Named> Cursor::entries() const {
+std::vector<Cursor::Named> Cursor::entries(Keys keys) const {
     if (value->kind != Value::Kind::map && value->kind != Value::Kind::nothing)
         fail(fmt::format("expected a map of names, found {}", found()));
     std::vector<Named> entries;
     for (std::size_t k = 0; k < value->keys.size(); ++k) {
         const std::string& name = value->keys[k];
-        if (!is_name(name))
+        const auto side = keys == Keys::numbers ? name.rfind('@') : name.npos;
+        if (!is_name(std::string_view(name).substr(0, side)))
             at(value->items[k], path)
                 .fail(fmt::format("{} cannot be a name; allowed: up to {} letters, digits, _ and, "
                                   "not first, - + . "

@@ -37,9 +37,11 @@ struct Cursor {
     Cursor require(const std::string& key) const;
     std::optional<Cursor> optional(const std::string& key) const;
 
-    // The entries of a section, each with its user-defined name. An empty section has none.
+    // The entries of a section, each with its user-defined name, or that of a number, which may be of
+    // one side. An empty section has none.
     struct Named;
-    std::vector<Named> entries() const;
+    enum class Keys { names, numbers };
+    std::vector<Named> entries(Keys keys = Keys::names) const;
 
     // ---- lists; `what` completes "expected a list of 3 ..."
     std::vector<Cursor> list(std::size_t size, const std::string& what) const;

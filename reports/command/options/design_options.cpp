@@ -180,7 +180,7 @@ Tolerances read_tolerances(std::string_view yaml, const std::string& file, const
         if (!(value > 0)) at.fail(fmt::format("{:g}; allowed: more than zero", value));
         return value;
     };
-    for (const auto& [name, at] : whole.entries()) {
+    for (const auto& [name, at] : whole.entries(reader::Cursor::Keys::numbers)) {
         if (name == "correlations") continue;
         if (!find_number(scene, name))
             at.fail("the scene has no such number" + reader::did_you_mean(name, known, "numbers"));
