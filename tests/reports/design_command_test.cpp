@@ -441,7 +441,7 @@ TEST(TolerancesCommand, HasTheClosedFormOfTwoSprings) {
                 {.out = {"springs.second.rate", "%"}});
 }
 
-// The left wheel's bump steer scatters by the left side alone, whichever way the sides are named.
+// Both sides that err alike are the number of both.
 TEST(TolerancesCommand, HasNumbersOfOneSide) {
     const Folder folder;
     const auto scatter = [&](const std::string& name, const std::string& tolerances) {
@@ -454,7 +454,9 @@ TEST(TolerancesCommand, HasNumbersOfOneSide) {
     const std::string z = "points.tie_rod_inner_left.z", sd = ": {normal: {sd: 0.0005}}\n";
     const double both = scatter("both.yaml", z + sd);
     EXPECT_GT(both, 0.01);
-    EXPECT_NEAR(scatter("sides.yaml", z + "@left" + sd + z + "@right" + sd), both, 1e-6 * both);
+    const std::string alike = "correlations:\n  - [" + z + "@left, " + z + "@right, 1]\n";
+    EXPECT_NEAR(scatter("sides.yaml", z + "@left" + sd + z + "@right" + sd + alike), both,
+                1e-9 * both);
 }
 
 TEST(TolerancesCommand, RefusesAMistakeWithItsLine) {
