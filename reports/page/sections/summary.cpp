@@ -49,20 +49,22 @@ std::optional<Table> alignment(const JsonCursor& scene) {
     return table;
 }
 
-// What the trim adjusted.
+// What the trim adjusted. Preloads of balanced bushings are listed with the model.
 std::optional<Table> adjusted(const JsonCursor& scene) {
     const auto trim = scene.find("trim");
     if (!trim) return std::nullopt;
-    Table table{
-        .caption = (*trim)["bushings"].text() == "balanced"
-                       ? "The trim adjusted; preloads of all bushings balance the drawn position"
-                       : "The trim adjusted; bushings are unloaded as drawn",
-        .columns = {{"what", true}, {"by"}, {"makes", true, true}}};
+    const bool balanced = (*trim)["bushings"].text() == "balanced";
+    Table table{.caption = balanced
+                               ? "The trim adjusted; preloads of all bushings (in “The model as "
+                                 "compiled”) balance the drawn position"
+                               : "The trim adjusted; bushings are unloaded as drawn",
+                .columns = {{"what", true}, {"by"}, {"makes", true, true}}};
     for (const auto& a : (*trim)["adjusted"].items())
-        table.rows.push_back(
-            {a["name"].text(),
-             fmt::format("{} {}", signed_number(a["by"].number(), 4), a["unit"].text()),
-             a["makes"].text()});
+        if (const auto name = a["name"].text();
+            !balanced || !name.starts_with("bushings.") || !name.ends_with(".preload"))
+            table.rows.push_back(
+                {name, fmt::format("{} {}", signed_number(a["by"].number(), 4), a["unit"].text()),
+                 a["makes"].text()});
     return table;
 }
 
