@@ -1,10 +1,12 @@
 // Trims, with bushings that are unloaded as drawn or balanced (elastocheck/trim.hpp).
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <vector>
 
 #include "compare/comparison/trim_once.hpp"
 #include "compare/outputs/deformation.hpp"
@@ -48,6 +50,39 @@ std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
     return loads;
 }
 
+// Anderson's method (1965) for P = P + r(P): of all combinations of the corrections so far the one
+// with the least r. Springs and preloads bear a part of what settles; where that is large, as in the
+// soft motion of a subframe, P + r alone takes hundreds of corrections.
+struct Corrections {
+    Eigen::VectorXd P, r;    // the last ones, all bushings of the model one after the other
+    Eigen::MatrixXd dP, dr;  // their changes, a column each
+};
+
+void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Corrections& of) {
+    std::vector<Vector6*> preloads;
+    for (Elastic& element : scene.elastics)
+        if (loads.contains(element.name))
+            preloads.push_back(&std::get<Bushing>(element.kind).preload);
+    Eigen::VectorXd P(6 * std::ssize(preloads)), r(P.size());
+    Eigen::Index at = 0;
+    for (const Elastic& element : scene.elastics)
+        if (const auto load = loads.find(element.name); load != loads.end()) {
+            P.segment<6>(at) = std::get<Bushing>(element.kind).preload;
+            r.segment<6>(at) = load->second;
+            at += 6;
+        }
+    Eigen::VectorXd next = P + r;
+    if (of.P.size() == P.size()) {
+        const Eigen::Index k = of.dP.cols();
+        of.dP.conservativeResize(P.size(), k + 1), of.dP.col(k) = P - of.P;
+        of.dr.conservativeResize(P.size(), k + 1), of.dr.col(k) = r - of.r;
+        next -= (of.dP + of.dr) * of.dr.colPivHouseholderQr().solve(r);
+    }
+    of.P = P, of.r = r;
+    for (std::size_t k = 0; k < preloads.size(); ++k)
+        *preloads[k] = next.segment<6>(6 * static_cast<Eigen::Index>(k));
+}
+
 void require_drawn_values(const Scene& scene) {
     const Eigen::VectorXd differs = asked_from_drawn(scene);
     for (Eigen::Index k = 0; k < differs.size(); ++k)
@@ -85,6 +120,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     TrimStart last;
     if (start != nullptr) last = *start;
     double distance = 0;
+    Corrections corrections;
     for (int balances = 0; balances < most_balances; ++balances) {
         SettledTrim settled;
         Trimmed found = trim_once(loaded, solver, false, &last, &settled);
@@ -98,10 +134,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
             record_preloads(scene, found.scene, *found.record);
             return found;
         }
-        const auto loads = loads_of_bushings(settled);
-        for (Elastic& element : loaded.elastics)
-            if (const auto load = loads.find(element.name); load != loads.end())
-                std::get<Bushing>(element.kind).preload += load->second;
+        correct(loaded, loads_of_bushings(settled), corrections);
     }
     TrimRecord record;
     record.outcome = Outcome::iteration_limit;
