@@ -22,8 +22,9 @@
 //   P ← P + u'(e(x)) - u'(e(drawn)),
 //
 // again until no body is farther than 1e-12 m from where it is drawn. The first state, of bushings
-// that are unloaded as drawn, decides what they and the adjusted springs carry. The distance shrinks
-// by about F/(K L) each time: force over stiffness and the size of the suspension.
+// that are unloaded as drawn, decides what they and the adjusted springs carry. Each correction leaves
+// what springs and preloads bear of the motion; corrections are combined (Anderson 1965), since on a
+// soft subframe that is most of it.
 #pragma once
 
 #include <optional>
