@@ -38,6 +38,8 @@ struct CertifiedSide {
     std::optional<LimitPoint> limit = {};  // where the path ends in a limit point
 };
 
+struct Result;
+
 struct CertifyOptions {
     std::vector<SolverSettings> solvers;  // empty: both references and the series
     Tolerance tolerance;
@@ -60,5 +62,7 @@ struct CertifyStudy {
 };
 
 CertifyStudy certify(const Model& model, const CertifyOptions& options);
+// Table "sides": a row for each side of a branch and solver. Fails where a point is excluded.
+Result result_of(const CertifyStudy& study);
 
 }  // namespace elastocheck::compare

@@ -25,6 +25,8 @@
 
 namespace elastocheck::compare {
 
+struct Result;
+
 struct FindOptions {
     // [rad] states with a body rotated further than this are left out
     double turn = 1.5707963267948966;
@@ -69,5 +71,9 @@ struct AllEquilibria {
 // Thread-safe.
 AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a,
                               const FindOptions& options = {});
+
+// Tables "equilibria" and "poses" (of every body in each); passes where the branch reaches the load and
+// all of the list is proved.
+Result result_of(const Model& model, const AllEquilibria& all);
 
 }  // namespace elastocheck::compare

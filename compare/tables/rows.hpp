@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/tables/table.hpp"
+#include "compare/result/table.hpp"
 
 namespace elastocheck {
 struct Model;
@@ -363,7 +363,6 @@ void describe(auto& field, Described<EffectRow> auto& r) {
 
 struct BranchAttribution;
 struct BranchOrders;
-struct CertifyStudy;
 struct Channel;
 struct Comparison;
 struct FormulationStudy;
@@ -391,6 +390,5 @@ std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders);
 std::vector<TradeRow> trade_rows(const Trade& trade);
 // Per side of a branch, station, output and number; the design position only of the first side.
 std::vector<EffectRow> effect_rows(const Gradients& all);
-Table certify_table(const CertifyStudy& study);  // per branch side and solver
 
 }  // namespace elastocheck::compare

@@ -3,17 +3,12 @@
 #include <memory>
 
 #include "compare/proofs/certify.hpp"
-#include "compare/tables/rows.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/command/options/solving.hpp"
-#include "reports/document/document.hpp"
-#include "reports/tables/certify_tables.hpp"
-#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -35,18 +30,7 @@ int certify(const CertifyRequest& request, const Delivery& delivery) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const compare::CertifyStudy study = compare::certify(loaded.model, options);
     progress("");
-    delivery.print_text(certify_text(study));
-    const bool conclusive = study.conclusive();
-    if (delivery.wants_document()) {
-        nlohmann::ordered_json part = document_of(loaded, request.scene);
-        part["certify"] = certify_json(study);
-        add_verdict(
-            part, study.points(),
-            conclusive ? std::vector<std::string>{} : std::vector<std::string>{sentence(study)});
-        deliver(delivery, std::move(part), {{"certify.csv", csv(certify_table(study))}});
-    }
-    delivery.print_text(sentence(study) + "\n");
-    return study.excluded() ? limit_broken : conclusive ? fine : could_not_judge;
+    return deliver_result(delivery, document_of(loaded, request.scene), result_of(study));
 }
 
 }  // namespace
@@ -66,7 +50,7 @@ Command certify_command() {
           "accuracy to be proved (default: 1e-6mm,1e-6deg)"},
          {"--points", Integer{&request->points, 1, most_steps},
           "points of each direction of a branch, besides its start (default: 20)"},
-         output_option(request->folder, "folder for result.json and certify.csv"),
+         output_option(request->folder, "folder for result.json and sides.csv"),
          json_option(request->as_json),
          jobs_option(request->running),
          quiet_option(request->running)},

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "reports/command/grammar/exit_code.hpp"
 #include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 
@@ -40,6 +42,19 @@ void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& fi
         written += fmt::format("{}{}/{}", written.empty() ? "" : ", ", delivery.folder, file.name);
     written = fmt::format("Written: {}\n", written);
     delivery.as_json ? print_error(written) : print(written);
+}
+
+int deliver_result(const Delivery& delivery, nlohmann::ordered_json scene,
+                   const compare::Result& result) {
+    delivery.print_text(text(result));
+    if (delivery.wants_document()) {
+        scene["results"] = nlohmann::ordered_json::array({json_of(result)});
+        std::vector<NamedContent> tables;
+        for (const auto& id : table_ids(result))
+            tables.push_back({id + ".csv", csv(whole_table(result, id))});
+        deliver(delivery, std::move(scene), std::move(tables));
+    }
+    return exit_code_of(result.verdict.grade);
 }
 
 void deliver(const Delivery& delivery, nlohmann::ordered_json scene,

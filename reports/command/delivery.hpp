@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/result/result.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/files/folder.hpp"
@@ -50,6 +51,12 @@ void print_result(const Delivery& delivery, const char* schema,
 
 // Writes the files to the folder in one step, and names them on the terminal.
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files);
+
+// Prints a result or writes it: to the terminal as text; as result.json and a CSV file for each of its
+// tables to the folder, in one step; with --json as the document. `scene` is document_of() of its scene.
+// Returns the exit code of its verdict.
+int deliver_result(const Delivery& delivery, nlohmann::ordered_json scene,
+                   const compare::Result& result);
 
 // Writes the result document of one scene: to the folder, with curves.csv and `tables` beside it,
 // in one step; to standard output; or both.

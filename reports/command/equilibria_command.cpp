@@ -10,10 +10,8 @@
 #include "compare/proofs/multiple_equilibria.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/tables/equilibria.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -35,13 +33,8 @@ int equilibria(const EquilibriaRequest& request, const Delivery& delivery) {
         loaded.model, branch, a,
         {.turn = request.turned / 57.29577951308232, .progress = progress});
     progress("");
-    delivery.print_text(equilibria_text(all));
-    if (delivery.as_json) {
-        nlohmann::ordered_json document = document_head(equilibria_schema, delivery.command);
-        document.update(equilibria_json(loaded.model, all));
-        print_document(document);
-    }
-    return all.outcome == Outcome::converged && all.proved ? fine : could_not_judge;
+    return deliver_result(delivery, document_of(loaded, request.scene),
+                          result_of(loaded.model, all));
 }
 
 }  // namespace

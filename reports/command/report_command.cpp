@@ -42,7 +42,7 @@
 #include "reports/page/report/report.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/words.hpp"
 

@@ -11,7 +11,7 @@
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/studies/sensitivity.hpp"
 
 namespace elastocheck::reports {

@@ -19,7 +19,7 @@
 #include "reports/extremes/extremes.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/studies/stress_tables.hpp"
 
 namespace elastocheck::reports {

@@ -32,7 +32,7 @@
 #include "reports/files/terminal.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/studies/study_tables.hpp"
 
 namespace elastocheck::reports {

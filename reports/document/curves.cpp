@@ -7,7 +7,7 @@
 
 #include "compare/tables/rows.hpp"
 #include "reports/json/json_cursor.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {

@@ -16,7 +16,7 @@
 #include "reports/document/drawing.hpp"
 #include "reports/document/wheels.hpp"
 #include "reports/tables/elements.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -14,7 +14,7 @@
 namespace elastocheck::reports {
 
 // Incremented when a field changes its meaning or is removed; new fields do not increment it.
-inline constexpr const char* result_schema = "elastocheck/result/3";
+inline constexpr const char* result_schema = "elastocheck/result/4";
 
 // "vertical", "left.jack", "free length of coil"
 std::string driven_name(const Model& model, const Driven& what);

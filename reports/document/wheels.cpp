@@ -11,7 +11,7 @@
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 #include "reports/tables/elements.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {

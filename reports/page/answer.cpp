@@ -9,7 +9,7 @@
 #include "compare/outputs/readings.hpp"
 #include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {

@@ -8,7 +8,7 @@
 #include "compare/outputs/readings.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/page.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/text/words.hpp"
 
 namespace elastocheck::reports {

@@ -28,10 +28,10 @@
 #include "reports/document/document.hpp"
 #include "reports/python/convert.hpp"
 #include "reports/python/scene.hpp"
+#include "reports/render/render.hpp"
 #include "reports/study/output/study_output.hpp"
 #include "reports/study/run_study.hpp"
 #include "reports/tables/candidate_tables.hpp"
-#include "reports/tables/certify_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/studies/design_tables.hpp"
@@ -55,6 +55,12 @@ struct Report {
     std::string csv = {};  // the curves of a comparison, as in curves.csv
     py::object converted = {};
 };
+
+Report report_of(const compare::Result& result) {
+    return {.text = reports::text(result),
+            .document = reports::json_of(result),
+            .exit_code = reports::exit_code_of(result.verdict.grade)};
+}
 
 int threads_of(int requested) {
     if (requested < 0)
@@ -139,12 +145,7 @@ Report certify(const SceneOfFile& scene, const std::vector<std::string>& methods
     options.points = points;
     options.threads = threads_of(threads);
     options.progress = progress;
-    const compare::CertifyStudy study = compare::certify(scene.loaded.model, options);
-    return {.text = reports::certify_text(study) + reports::sentence(study) + "\n",
-            .document = reports::certify_json(study),
-            .exit_code = study.excluded()     ? limit_broken
-                         : study.conclusive() ? fine
-                                              : could_not_judge};
+    return report_of(result_of(compare::certify(scene.loaded.model, options)));
 }
 
 Report sensitivity(const SceneOfFile& scene, reports::GradientsRequest request, int most,

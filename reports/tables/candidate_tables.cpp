@@ -9,7 +9,7 @@
 #include "compare/outputs/readings.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/text/numbers.hpp"
 #include "reports/text/words.hpp"
 

@@ -19,7 +19,7 @@
 #include "reports/document/curves.hpp"
 #include "reports/json/json.hpp"
 #include "reports/tables/csv.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {

@@ -31,7 +31,7 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
          {"inspect " + bushing, "solve --steps=4 " + bushing, "compare --steps=4 " + bushing,
           "converge " + bushing + " --steps=4,8,16,32,64", "trade " + chain}) {
         const json said = document(command);
-        EXPECT_EQ(said["schema"], "elastocheck/result/3") << command;
+        EXPECT_EQ(said["schema"], "elastocheck/result/4") << command;
         EXPECT_EQ(said["scenes"].size(), 1u) << command;
         EXPECT_EQ(said["scenes"][0]["name"], command.ends_with(chain)
                                                  ? "chain of 15 bodies on bushings"

@@ -9,7 +9,7 @@
 #include "elastocheck/trim.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/studies/study_tables.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -13,7 +13,7 @@
 #include "reports/files/templates.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/text/numbers.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"

@@ -12,7 +12,7 @@
 #include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/page/common.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/numbers.hpp"
 #include "tests/reports/command.hpp"

@@ -260,9 +260,10 @@ class Report:
         name = table or self._table
         if callable(name):
             return name()
-        found = self.document.get(name) if name else None
+        tables = self.document.get("tables", self.document)
+        found = tables.get(name) if name else None
         if not isinstance(found, dict) or "columns" not in found:
-            known = [key for key, value in self.document.items()
+            known = [key for key, value in tables.items()
                      if isinstance(value, dict) and "columns" in value]
             raise ArgumentError(f"table {table!r}; allowed: {', '.join(known) or 'none here'}")
         names = [column["name"] + (f" [{column['unit']}]" if column["unit"] else "")
@@ -305,7 +306,7 @@ def judge(scene, solver, name="candidate", tolerance=None, *, steps=0, threads=0
 def certify(scene, methods=(), tolerance=None, *, points=20, threads=0, progress=None):
     """Proves by interval arithmetic that computed points are equilibria; frame(): per solver."""
     return Report(_core.certify(scene, _listed(methods), tolerance, points, threads, progress),
-                  "ways")
+                  "sides")
 
 
 def sensitivity(scene, of=(), to=(), *, branches=(), at=(), points=4, most=5, progress=None):

@@ -9,7 +9,7 @@
 #include "models/overloaded.hpp"
 #include "reports/files/files.hpp"
 #include "reports/study/run_study.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {

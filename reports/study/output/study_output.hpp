@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "compare/tables/table.hpp"
+#include "compare/result/table.hpp"
 #include "compare/variants/statistics.hpp"
 #include "reports/study/ledger.hpp"
 #include "reports/study/study_file.hpp"

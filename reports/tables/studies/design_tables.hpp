@@ -8,7 +8,7 @@
 #include "compare/design/fit.hpp"
 #include "compare/design/solve_for.hpp"
 #include "compare/design/tolerances.hpp"
-#include "compare/tables/table.hpp"
+#include "compare/result/table.hpp"
 
 namespace elastocheck::reports {
 

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/tables/certify_tables.hpp"
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/studies/design_tables.hpp"
 
 namespace elastocheck::reports {
@@ -229,7 +228,7 @@ std::string optimise_text(const OptimisedScene& scene) {
         fmt::format_to(out, "Between its points {} is outside of its band by {:.2g}.\n",
                        scene.between->what, scene.between->excess);
     all += confirmation_text(scene.confirmation);
-    if (scene.certificate) fmt::format_to(out, "{}\n", sentence(*scene.certificate));
+    if (scene.certificate) fmt::format_to(out, "{}\n", result_of(*scene.certificate).verdict.sentence);
     return all;
 }
 
@@ -248,7 +247,7 @@ json optimise_json(const OptimisedScene& scene) {
                      {"searches", table_json(searches_table(scene))}};
     if (scene.between)
         document["between"] = {{"what", scene.between->what}, {"excess", scene.between->excess}};
-    if (scene.certificate) document["certify"] = certify_json(*scene.certificate);
+    if (scene.certificate) document["certify"] = json_of(result_of(*scene.certificate));
     return document;
 }
 

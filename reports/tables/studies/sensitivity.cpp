@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compare/sensitivity/sensitivity.hpp"
-#include "compare/tables/table.hpp"
+#include "compare/result/table.hpp"
 
 namespace elastocheck::reports {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {

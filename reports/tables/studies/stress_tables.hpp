@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compare/stress/stress.hpp"
-#include "compare/tables/table.hpp"
+#include "compare/result/table.hpp"
 
 namespace elastocheck::reports {
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <concepts>
+#include <functional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -45,9 +47,52 @@ struct Column {
 };
 
 struct Table {
-    std::vector<Column> columns;
-    std::vector<std::vector<Cell>> rows;  // one cell per column, of the column's kind
+    std::vector<Column> columns{};
+    std::vector<std::vector<Cell>> rows{};  // one cell per column, of the column's kind
+    // "sides": name of its file and in a document. Tables of one id have the same columns and are one
+    // table there, of which readers see the parts apart, each with its caption and notes.
+    std::string id{};
+    std::string caption{};             // above it
+    std::vector<std::string> notes{};  // below it
 };
+
+// A cell from a number of any kind or a text.
+struct AnyCell {
+    template <class Number>
+    requires std::is_arithmetic_v<Number> &&(!std::same_as<Number, bool>)AnyCell(Number number)
+        : cell(finite_or_nan(static_cast<double>(number))) {}
+    AnyCell(std::string text) : cell(std::move(text)) {}
+    AnyCell(const char* text) : cell(std::string(text)) {}
+    Cell cell;
+};
+
+// A column of a table whose rows are made from structs S, and its cell. Those of texts for programs
+// alone, which readers do not see, are Digits::hidden.
+template <class S>
+struct ColumnOf {
+    std::string name;
+    Digits digits = Digits::hidden;
+    std::function<AnyCell(const S&)> cell;
+    std::string description{}, unit{}, heading{};
+};
+
+// The table of a range of S; of std::vector<ColumnOf<S>>.
+template <class S>
+Table table(std::string id, const std::vector<ColumnOf<S>>& columns, const auto& range) {
+    Table all{.id = std::move(id)};
+    for (const auto& c : columns)
+        all.columns.push_back({.name = c.name,
+                               .unit = c.unit,
+                               .description = c.description,
+                               .words = c.digits == Digits::words,
+                               .digits = c.digits,
+                               .heading = c.heading});
+    for (const S& s : range) {
+        auto& row = all.rows.emplace_back();
+        for (const auto& c : columns) row.push_back(c.cell(s).cell);
+    }
+    return all;
+}
 
 // The description of a struct S is a function
 //     void describe(auto& field, Described<S> auto& s)

@@ -1,12 +1,12 @@
-// Renders a table (compare/tables/table.hpp) as CSV, JSON and text, and reads its rows back from
-// JSON. A missing number is an empty cell, null, and a dash.
+// The formats of a result (compare/result/result.hpp) and of its tables, and nothing else knows them:
+// text.cpp for a terminal, csv.cpp, json.cpp. A missing number is a dash, an empty cell, null.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "compare/tables/table.hpp"
+#include "compare/result/result.hpp"
 #include "reports/json/json_cursor.hpp"
 
 namespace elastocheck::reports {
@@ -28,6 +28,8 @@ std::vector<Row> read_rows(const JsonCursor& field) {
     return compare::rows_of<Row>(read_table(field, compare::table_of<Row>({})));
 }
 
+std::string with_unit(const std::string& name, const std::string& unit);  // "error [mm]"
+
 // A column as readers see it.
 struct ShownColumn {
     std::string heading;  // "error [mm]"
@@ -38,6 +40,14 @@ struct ShownColumn {
 // The columns with digits that are not empty, in the order for readers. `written` formats a number.
 std::vector<ShownColumn> shown_columns(const compare::Table& table,
                                        std::string (*written)(double, Digits));
+
+// For a terminal: what to know before, each table with its caption and its notes, notes, the verdict's
+// sentence. A part without content leaves no line.
+std::string text(const compare::Result& result);
+
+// {"analysis", "verdict": {"grade", "sentence", "reasons", "compared"}, "about", "tables": {id: table},
+// "charts": [{"id", "title", "table", "x", "y", "by", "log_x", "log_y"}], "notes"}
+nlohmann::ordered_json json_of(const compare::Result& result);
 
 // For a terminal: a line of headings and the rows, each column as wide as needed, words
 // left-aligned, lengths in mm.

@@ -1,4 +1,4 @@
-#include "reports/tables/render.hpp"
+#include "reports/render/render.hpp"
 
 #include <fmt/format.h>
 
@@ -6,21 +6,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/text/escape.hpp"
-
 namespace elastocheck::reports {
 namespace {
 
 using compare::Cell;
 using compare::Column;
 using compare::Table;
-using json = nlohmann::ordered_json;
-
-std::string with_unit(const std::string& name, const std::string& unit) {
-    return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
-}
-
-std::string exact(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 bool empty(const Cell& cell) {
     if (const auto* value = std::get_if<double>(&cell)) return !std::isfinite(*value);
@@ -49,63 +40,8 @@ std::size_t width(std::string_view text) {
 
 }  // namespace
 
-std::string csv(const Table& table) {
-    std::string lines;
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-        lines += fmt::format("{}{}", c > 0 ? "," : "",
-                             for_csv(with_unit(table.columns[c].name, table.columns[c].unit)));
-    lines += "\n";
-    for (const auto& row : table.rows) {
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            const auto* value = std::get_if<double>(&row[c]);
-            lines += fmt::format(
-                "{}{}", c > 0 ? "," : "",
-                value != nullptr ? exact(*value) : for_csv(std::get<std::string>(row[c])));
-        }
-        lines += "\n";
-    }
-    return lines;
-}
-
-json table_json(const Table& table) {
-    json columns = json::array(), rows = json::array();
-    for (const auto& column : table.columns)
-        columns.push_back(
-            {{"name", column.name}, {"unit", column.unit}, {"description", column.description}});
-    for (const auto& row : table.rows) {
-        json cells = json::array();
-        for (const auto& cell : row)
-            std::visit([&](const auto& value) { cells.push_back(value); }, cell);
-        rows.push_back(std::move(cells));
-    }
-    return {{"columns", std::move(columns)}, {"rows", std::move(rows)}};
-}
-
-Table read_table(const JsonCursor& field, const Table& like) {
-    Table table{like.columns, {}};
-    std::vector<std::string> names, units;
-    for (const auto& column : field["columns"].items()) {
-        names.push_back(column["name"].text());
-        units.push_back(column["unit"].text());
-    }
-    std::vector<std::size_t> places;
-    for (const auto& column : like.columns) {
-        const auto found = std::ranges::find(names, column.name);
-        if (found == names.end()) field["columns"].fail(fmt::format("no column '{}'", column.name));
-        places.push_back(static_cast<std::size_t>(found - names.begin()));
-        if (units[places.back()] != column.unit)
-            field["columns"].fail(fmt::format("column '{}' is in '{}', not in '{}'", column.name,
-                                              units[places.back()], column.unit));
-    }
-    for (const auto& row : field["rows"].items()) {
-        const auto cells = row.items();
-        if (cells.size() != names.size()) row.fail("not as many cells as columns");
-        auto& read = table.rows.emplace_back();
-        for (std::size_t c = 0; c < places.size(); ++c)
-            read.push_back(like.columns[c].words ? Cell(cells[places[c]].text())
-                                                 : Cell(cells[places[c]].number()));
-    }
-    return table;
+std::string with_unit(const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
 }
 
 std::vector<ShownColumn> shown_columns(const Table& table, std::string (*written)(double, Digits)) {
@@ -159,6 +95,33 @@ std::string text(const Table& table) {
     }
     std::string all;
     for (auto& line : lines) all += line.erase(line.find_last_not_of(' ') + 1) + "\n";
+    return all;
+}
+
+std::string text(const compare::Result& result) {
+    std::string all;
+    const auto line = [&](const std::string& what) {
+        if (!what.empty()) all += what + "\n";
+    };
+    const auto gap = [&] {
+        if (!all.empty() && !all.ends_with("\n\n")) all += "\n";
+    };
+    for (const auto& paragraph : result.about) line(paragraph), gap();
+    for (const auto& table : result.tables) {
+        const std::string rows = table.rows.empty() ? "" : text(table);
+        if (rows.find_first_not_of('\n') == std::string::npos && table.caption.empty() &&
+            table.notes.empty())
+            continue;
+        line(table.caption);
+        if (rows.find_first_not_of('\n') != std::string::npos) all += rows;
+        for (const auto& note : table.notes) line("  " + note);
+        gap();
+    }
+    for (const auto& note : result.notes) line(note);
+    if (!result.notes.empty()) gap();
+    for (const auto& reason : result.verdict.reasons) line("inconclusive: " + reason);
+    line(result.verdict.sentence);
+    while (all.ends_with("\n\n")) all.pop_back();
     return all;
 }
 

@@ -1,0 +1,98 @@
+// All equilibria found at one load for readers.
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "compare/proofs/multiple_equilibria.hpp"
+#include "compare/result/result.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+std::vector<ColumnOf<FoundEquilibrium>> columns() {
+    using enum Digits;
+    using Found = FoundEquilibrium;
+    return {{"stability", words, [](const Found& f) { return f.stable ? "stable" : "unstable"; },
+             "by the sign of the least stiffness"},
+            {"distance", three, [](const Found& f) { return 1e3 * f.length; },
+             "from that of the branch, or from the end of the branch", "mm"},
+            {"turned", three, [](const Found& f) { return degrees * f.angle; }, "likewise", "deg"},
+            {"proof", words, [](const Found& f) { return name(f.proof.answer); }},
+            {"within", size, [](const Found& f) { return 1e3 * f.proof.error.length; },
+             "proved distance to the true equilibrium, at most", "mm"},
+            {"alone within", size, [](const Found& f) { return 1e3 * f.proof.unique.length; },
+             "proved: no other equilibrium within this distance", "mm"},
+            {"what it means", words, [](const Found& f) { return f.meaning; }}};
+}
+
+// A body in one of the equilibria.
+struct BodyPose {
+    double number;  // of the equilibrium, from 1
+    std::string body;
+    Pose pose;
+};
+
+Table poses(const Model& model, const AllEquilibria& all) {
+    std::vector<BodyPose> rows;
+    for (std::size_t k = 0; k < all.list.size(); ++k)
+        for (std::size_t b = 0; b < model.bodies.size(); ++b)
+            rows.push_back(
+                {static_cast<double>(k + 1), model.bodies[b].name, all.list[k].state.poses[b]});
+    const auto part = [](const char* name, const char* unit, auto&& value) {
+        return ColumnOf<BodyPose>{.name = name, .cell = value, .unit = unit};
+    };
+    return table<BodyPose>("poses",
+                           {part("number", "", [](const BodyPose& p) { return p.number; }),
+                            part("body", "", [](const BodyPose& p) { return p.body; }),
+                            part("x", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.x(); }),
+                            part("y", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.y(); }),
+                            part("z", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.z(); }),
+                            part("qw", "", [](const BodyPose& p) { return p.pose.p.w(); }),
+                            part("qx", "", [](const BodyPose& p) { return p.pose.p.x(); }),
+                            part("qy", "", [](const BodyPose& p) { return p.pose.p.y(); }),
+                            part("qz", "", [](const BodyPose& p) { return p.pose.p.z(); })},
+                           rows);
+}
+
+}  // namespace
+
+Result result_of(const Model& model, const AllEquilibria& all) {
+    Result result{.analysis = "equilibria"};
+    Table list = table("equilibria", columns(), all.list);
+    list.columns.insert(list.columns.begin(), {.name = "number", .digits = Digits::whole});
+    for (std::size_t k = 0; k < list.rows.size(); ++k)
+        list.rows[k].insert(list.rows[k].begin(), static_cast<double>(k + 1));
+    list.caption = fmt::format(
+        "branch '{}' at {:.8g} {}: {} {}, {} stable; {}\nthe branch up to there: {}{}{}",
+        all.branch, all.a * in_unit(all.unit), symbol(all.unit), all.list.size(),
+        all.list.size() == 1 ? "equilibrium" : "equilibria", all.stable(),
+        all.list.empty() ? "none was found"
+        : all.proved     ? "each is proved, and all are distinct"
+                         : "not all of this is proved",
+        elastocheck::name(all.outcome), all.detail.empty() ? "" : ": ", all.detail);
+    for (const auto& one : all.list)
+        if (one.proof.answer != reference::certificate::Answer::proved)
+            list.notes.push_back(fmt::format("{}: {}", name(one.proof.answer), one.proof.detail));
+    result.tables = {std::move(list), poses(model, all)};
+    result.notes.push_back(
+        fmt::format("{} starts with deflation; completeness is not proved", all.starts));
+    if (all.other_way_round > 0)
+        result.notes.push_back(
+            fmt::format("left out: {} with a joint assembled in reverse", all.other_way_round));
+    if (all.turned_over > 0)
+        result.notes.push_back(
+            fmt::format("left out: {} with a body turned over", all.turned_over));
+    const bool reached = all.outcome == Outcome::converged;
+    result.verdict = {.grade = reached && all.proved ? Grade::pass : Grade::not_judged,
+                      .compared = static_cast<int>(all.list.size())};
+    if (!reached)
+        result.verdict.reasons.push_back(fmt::format("branch '{}': {}: {}", all.branch,
+                                                     elastocheck::name(all.outcome), all.detail));
+    else if (!all.proved)
+        result.verdict.reasons.emplace_back("not every equilibrium is proved, or proved distinct");
+    return result;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,45 @@
+// What an analysis found, as data for readers. Each analysis has in NAME_result.cpp a function that
+// makes one from its typed result; reports/render/ alone knows how terminals, files and pages show it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/result/table.hpp"
+#include "elastocheck/compare.hpp"
+
+namespace elastocheck::compare {
+
+// Of what was asked for. A side result that is not confirmed is a note, never the verdict.
+struct Verdict {
+    Grade grade = Grade::not_judged;
+    std::string sentence{};              // "Proved: all 12 points are equilibria to 1e-06 mm."
+    std::vector<std::string> reasons{};  // of `not_judged`
+    int compared = 0;                    // numbers that the verdict rests on
+};
+
+// Curves over columns of a table.
+struct Chart {
+    std::string id{}, title{};
+    std::string table{};            // its id
+    std::string x{};                // name of the column of the abscissa
+    std::vector<std::string> y{};   // of the ordinates, in one unit
+    std::vector<std::string> by{};  // a curve for each combination of values of these columns
+    bool log_x = false, log_y = false;
+};
+
+struct Result {
+    std::string analysis{};  // "certify", as the command
+    Verdict verdict{};
+    std::vector<std::string> about{};  // paragraphs that a reader needs before the tables
+    std::vector<Table> tables{};
+    std::vector<Chart> charts{};
+    std::vector<std::string> notes{};  // each with its place: "branch 'jounce': ..."
+};
+
+// The tables of one id as one: its columns, all rows, all notes. Throws std::out_of_range where there
+// is none.
+Table whole_table(const Result& result, const std::string& id);
+std::vector<std::string> table_ids(const Result& result);  // in their order, each once
+
+}  // namespace elastocheck::compare
