@@ -4,11 +4,11 @@
 
 #include "compare/proofs/certify.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/command/options/solving.hpp"
+#include "reports/command/program/command.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -35,26 +35,29 @@ int certify(const CertifyRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command certify_command() {
-    const auto request = std::make_shared<CertifyRequest>();
-    return {
-        "certify",
-        "Prove by interval arithmetic that computed states are equilibria and locally unique",
-        {scene_option(request->scene),
-         set_option(request->settings),
-         {"--method",
-          TextList{&request->solvers, TextList::Form::commas, one_of(certified_solvers())},
-          "solver of the points: equilibrium, energy, series (default: these three), or a "
-          "method of the recursion"},
-         {"--tolerance", Text{&request->tolerance},
-          "accuracy to be proved (default: 1e-6mm,1e-6deg)"},
-         {"--points", Integer{&request->points, 1, most_steps},
-          "points of each direction of a branch, besides its start (default: 20)"},
-         output_option(request->folder, "folder for result.json and sides.csv"),
-         json_option(request->as_json),
-         jobs_option(request->running),
-         quiet_option(request->running)},
-        [request](const std::string& line) { return certify(*request, request->delivery(line)); }};
-}
+const Command certify_command{
+    Group::prove, "certify",
+    "Prove by interval arithmetic that computed states are equilibria and locally unique",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<CertifyRequest>();
+        add_scene_and_run(command, *request);
+        as_word(command
+                    .add_option("--method", request->solvers,
+                                "solver of the points: equilibrium, energy, series (default: these "
+                                "three), or a "
+                                "method of the recursion")
+                    ->delimiter(','),
+                certified_solvers());
+        command.add_option("--tolerance", request->tolerance,
+                           "accuracy to be proved (default: 1e-6mm,1e-6deg)");
+        command
+            .add_option("--points", request->points,
+                        "points of each direction of a branch, besides its start (default: 20)")
+            ->check(CLI::Range(1, most_steps));
+        add_output(command, request->folder, "folder for result.json and sides.csv");
+        return [request](const std::string& line) {
+            return certify(*request, request->delivery(line));
+        };
+    }};
 
 }  // namespace elastocheck::reports

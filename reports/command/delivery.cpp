@@ -2,22 +2,22 @@
 
 #include <fmt/format.h>
 
-#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/program/exit_code.hpp"
 #include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 
-std::vector<Option> SceneRequest::options() {
-    return {scene_option(scene), set_option(settings), json_option(as_json)};
+void add_scene(CLI::App& command, SceneRequest& request) {
+    add_scene(command, request.scene);
+    add_set(command, request.settings);
+    add_json(command, request.as_json);
 }
 
-std::vector<Option> SceneRequest::options_of_a_run() {
-    auto list = options();
-    list.push_back(jobs_option(running));
-    list.push_back(quiet_option(running));
-    return list;
+void add_scene_and_run(CLI::App& command, SceneRequest& request) {
+    add_scene(command, request);
+    add_running(command, request.running);
 }
 
 void print_document(const nlohmann::ordered_json& document) { print(document.dump(1) + "\n"); }

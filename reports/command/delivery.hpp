@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "compare/result/result.hpp"
-#include "reports/command/options/load_scene.hpp"
-#include "reports/command/options/running.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
 
@@ -35,10 +34,9 @@ struct SceneRequest {
     Delivery delivery(const std::string& line) const {
         return {.folder = folder, .as_json = as_json, .command = line};
     }
-    // SCENE, --set, --json; of a long run also --jobs, --quiet.
-    std::vector<Option> options();
-    std::vector<Option> options_of_a_run();
 };
+void add_scene(CLI::App& command, SceneRequest& request);          // SCENE, --set, --json
+void add_scene_and_run(CLI::App& command, SceneRequest& request);  // and --jobs, --quiet
 
 // Writes one document, and nothing else, to standard output.
 void print_document(const nlohmann::ordered_json& document);

@@ -9,8 +9,8 @@
 
 #include "compare/proofs/multiple_equilibria.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/terminal.hpp"
 
 namespace elastocheck::reports {
@@ -39,22 +39,21 @@ int equilibria(const EquilibriaRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command equilibria_command() {
-    const auto request = std::make_shared<EquilibriaRequest>();
-    constexpr double any = std::numeric_limits<double>::infinity();
-    return {"equilibria",
-            "Search all equilibria at one load, prove each, and describe them",
-            {scene_option(request->scene),
-             {"--at", RealNumber{&request->at, -any, any},
-              "value of the branch parameter in N, N·m, mm or deg", true},
-             {"--branch", Text{&request->branch}, "name of the branch (default: the first)"},
-             {"--turned", RealNumber{&request->turned, 0, 180},
-              "leave out equilibria with a body rotated by more [deg] (default: 90)"},
-             set_option(request->settings),
-             json_option(request->as_json)},
-            [request](const std::string& line) {
-                return equilibria(*request, request->delivery(line));
-            }};
-}
+const Command equilibria_command{
+    Group::prove, "equilibria", "Search all equilibria at one load, prove each, and describe them",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<EquilibriaRequest>();
+        constexpr double any = std::numeric_limits<double>::infinity();
+        add_scene(command, *request);
+        add_number(command, "--at", request->at, {-any, any},
+                   "value of the branch parameter in N, N·m, mm or deg")
+            ->required();
+        command.add_option("--branch", request->branch, "name of the branch (default: the first)");
+        add_number(command, "--turned", request->turned, {0, 180},
+                   "leave out equilibria with a body rotated by more [deg] (default: 90)");
+        return [request](const std::string& line) {
+            return equilibria(*request, request->delivery(line));
+        };
+    }};
 
 }  // namespace elastocheck::reports

@@ -15,11 +15,10 @@
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/gate/baseline.hpp"
@@ -376,30 +375,33 @@ int gate(const GateOptions& options) {
 
 }  // namespace
 
-Command gate_command() {
-    const auto options = std::make_shared<GateOptions>();
-    std::vector<std::string> kinds;
-    for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
-    std::vector<Option> list{
-        {"SCENE", TextList{&options->scenes, TextList::Form::separate, a_file()},
-         "scene files (default: every scene of the baselines)"},
-        set_option(options->settings),
-        {"--baseline", Text{&options->folder, a_folder()},
-         "folder of the baselines (default: baselines/ beside each SCENE, or here)"},
-        {"--junit", Text{&options->junit, a_file()}, "write JUnit XML to this file"},
-        {"--summary", Text{&options->summary, a_file()},
-         "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY"},
-        {"--class", Text{&options->kind, one_of(kinds)},
-         "tolerances: same-build, cross-build or physical (default: by how the builds differ)"}};
-    list.push_back(json_option(options->as_json));
-    list.push_back(jobs_option(options->running));
-    list.push_back(quiet_option(options->running));
-    list.push_back(
-        {"--accept", Flag{&options->accept}, "print the changes and write the new baseline"});
-    list.push_back(
-        {"--reason", Text{&options->reason}, "reason of the change, required with --accept"});
-    return {"gate", "Regression test of scenes against their accepted baselines, for CI",
-            std::move(list), [options](const std::string&) { return gate(*options); }};
-}
+const Command gate_command{
+    Group::compare, "gate", "Regression test of scenes against their accepted baselines, for CI",
+    [](CLI::App& command) -> Run {
+        const auto options = std::make_shared<GateOptions>();
+        std::vector<std::string> kinds;
+        for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
+        as_file(command.add_option("SCENE", options->scenes,
+                                   "scene files (default: every scene of the baselines)"));
+        add_set(command, options->settings);
+        as_folder(command.add_option(
+            "--baseline", options->folder,
+            "folder of the baselines (default: baselines/ beside each SCENE, or here)"));
+        as_file(command.add_option("--junit", options->junit, "write JUnit XML to this file"));
+        as_file(command.add_option(
+            "--summary", options->summary,
+            "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY"));
+        as_word(command.add_option("--class", options->kind,
+                                   "tolerances: same-build, cross-build or physical (default: by "
+                                   "how the builds differ)"),
+                kinds);
+        add_json(command, options->as_json);
+        add_running(command, options->running);
+        command.add_flag("--accept", options->accept,
+                         "print the changes and write the new baseline");
+        command.add_option("--reason", options->reason,
+                           "reason of the change, required with --accept");
+        return [options](const std::string&) { return gate(*options); };
+    }};
 
 }  // namespace elastocheck::reports

@@ -20,9 +20,8 @@
 #include "models/import/import.hpp"
 #include "models/kinds.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/tables/blocks.hpp"
@@ -451,59 +450,75 @@ int export_scene(const ExportRequest& request) {
 
 }  // namespace
 
-Command import_command() {
-    const auto request = std::make_shared<ImportRequest>();
-    return {"import",
-            "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
-            "hardpoints .sub, tables of points .csv",
-            {{"FILE", Text{&request->file, a_file()}, "the model (.adm, .json, .sub, .csv)", true},
-             {"-o,--output", Text{&request->output, a_file()}, "write the scene to this file"},
-             {"--wheel", Text{&request->wheel},
-              "name or id of the wheel carrier part, or of a marker at the wheel centre (.adm)"},
-             {"--drop", TextList{&request->drop, TextList::Form::separate, one_of({"dynamics"})},
-              "dynamics: leave out dampers and friction"},
-             {"--axes", Text{&request->axes},
-              "axes of a table of hardpoints, turned to ISO 8855: x-rearward,y-right (default of "
-              ".sub), x-forward,y-right,z-down, ..."},
-             {"--columns", Text{&request->columns},
-              "columns of a table of points by heading, number or letters: "
-              "name=Punkt,x=X_mm,y=3,z=D; for sides side=COLUMN, or left.x ... right.z (.csv)"},
-             {"--unit", Text{&request->unit, one_of({"mm", "cm", "m", "in"})},
-              "unit of a table of points whose headings do not say it (.csv)"},
-             {"--axle", Text{&request->axle},
-              "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ..."},
-             {"--allow-missing", Flag{&request->allow_missing},
-              "warn about what a scene cannot represent instead of rejecting the file"},
-             json_option(request->as_json)},
-            [request](const std::string&) { return import(*request); }};
-}
+const Command import_command{
+    Group::models, "import",
+    "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
+    "hardpoints .sub, tables of points .csv",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<ImportRequest>();
+        as_file(command.add_option("FILE", request->file, "the model (.adm, .json, .sub, .csv)"))
+            ->required();
+        as_file(command.add_option("-o,--output", request->output, "write the scene to this file"));
+        command.add_option("--wheel", request->wheel,
+                           "name or id of the wheel carrier part, or of a marker at the wheel "
+                           "centre (.adm)");
+        as_word(
+            command.add_option("--drop", request->drop, "dynamics: leave out dampers and friction"),
+            {"dynamics"});
+        command.add_option("--axes", request->axes,
+                           "axes of a table of hardpoints, turned to ISO 8855: "
+                           "x-rearward,y-right (default of .sub), x-forward,y-right,z-down, ...");
+        command.add_option("--columns", request->columns,
+                           "columns of a table of points by heading, number or letters: "
+                           "name=Punkt,x=X_mm,y=3,z=D; for sides side=COLUMN, or left.x ... "
+                           "right.z (.csv)");
+        as_word(command.add_option("--unit", request->unit,
+                                   "unit of a table of points whose headings do not say it (.csv)"),
+                {"mm", "cm", "m", "in"});
+        command.add_option(
+            "--axle", request->axle,
+            "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ...");
+        command.add_flag("--allow-missing", request->allow_missing,
+                         "warn about what a scene cannot represent instead of rejecting the file");
+        add_json(command, request->as_json);
+        return [request](const std::string&) { return import(*request); };
+    }};
 
-Command export_command() {
-    const auto request = std::make_shared<ExportRequest>();
-    return {
-        "export",
-        "Export the trimmed scene as a model of ADAMS or Chrono, or its outputs as a map",
-        {scene_option(request->scene),
-         {"--format", Text{&request->format, one_of({"adm", "chrono", "lookup", "blocks"})},
-          "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON); "
-          "lookup: a table of outputs over a branch (CSV); blocks: K&C blocks in SI units (CSV)"},
-         {"-o,--output", Text{&request->output, a_file()}, "write the model to this file"},
-         {"--over", Text{&request->over}, "lookup, blocks: the branch"},
-         {"--rows", Text{&request->rows},
-          "lookup, blocks: a second variable, which the branch holds: "
-          "travel=-0.08:0.08:9"},
-         {"--axes", Text{&request->axes, one_of({"iso", "sae"})},
-          "blocks: x forward, y left, z up (iso, default), or x forward, y right, z down (sae)"},
-         {"--channels", TextList{&request->channels, TextList::Form::commas},
-          "lookup: outputs, as for solve (default: the main positions and angles)"},
-         {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
-          "adams or chrono, as the format: convert the bushings to that program's formulation "
-          "and report the change of the outputs"},
-         {"--allow-missing", Flag{&request->allow_missing},
-          "warn about elements that the other program does not have instead of rejecting the "
-          "scene"},
-         set_option(request->settings)},
-        [request](const std::string&) { return export_scene(*request); }};
-}
+const Command export_command{
+    Group::models, "export",
+    "Export the trimmed scene as a model of ADAMS or Chrono, or its outputs as a map",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<ExportRequest>();
+        add_scene(command, request->scene);
+        as_word(command.add_option(
+                    "--format", request->format,
+                    "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle "
+                    "(JSON); lookup: a table of outputs over a branch (CSV); blocks: K&C blocks in "
+                    "SI units (CSV)"),
+                {"adm", "chrono", "lookup", "blocks"});
+        as_file(command.add_option("-o,--output", request->output, "write the model to this file"));
+        command.add_option("--over", request->over, "lookup, blocks: the branch");
+        command.add_option("--rows", request->rows,
+                           "lookup, blocks: a second variable, which the branch holds: "
+                           "travel=-0.08:0.08:9");
+        as_word(command.add_option("--axes", request->axes,
+                                   "blocks: x forward, y left, z up (iso, default), or x forward, "
+                                   "y right, z down (sae)"),
+                {"iso", "sae"});
+        command
+            .add_option("--channels", request->channels,
+                        "lookup: outputs, as for solve (default: the main positions and angles)")
+            ->delimiter(',');
+        as_word(command.add_option(
+                    "--formulation", request->formulation,
+                    "adams or chrono, as the format: convert the bushings to that program's "
+                    "formulation and report the change of the outputs"),
+                {"adams", "chrono"});
+        command.add_flag("--allow-missing", request->allow_missing,
+                         "warn about elements that the other program does not have instead of "
+                         "rejecting the scene");
+        add_set(command, request->settings);
+        return [request](const std::string&) { return export_scene(*request); };
+    }};
 
 }  // namespace elastocheck::reports

@@ -5,10 +5,9 @@
 
 #include "compare/comparison/compare_with.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -75,23 +74,22 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command judge_command() {
-    const auto request = std::make_shared<JudgeRequest>();
-    std::vector<Option> options{scene_option(request->scene), set_option(request->settings)};
-    add_candidate_options(options, request->candidate);
-    options.insert(
-        options.end(),
-        {{"--steps", Integer{&request->steps, 1, most_steps},
-          "steps per branch passed to the command (default: of the scene)"},
-         {"--tolerance", Text{&request->tolerance},
-          "required accuracy: mm, deg, N, Nm, and % of the extent of forces, moments and rates "
-          "(default: 0.01mm,0.001deg,1%)"},
-         output_option(request->folder, "folder for result.json and curves.csv"),
-         json_option(request->as_json)});
-    return {"judge", "Judge the results of another solver by the references: pass or fail",
-            std::move(options), [request](const std::string& line) {
-                return judge(*request, request->delivery(line));
-            }};
-}
+const Command judge_command{
+    Group::compare, "judge", "Judge the results of another solver by the references: pass or fail",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<JudgeRequest>();
+        add_scene(command, *request);
+        add_candidate(command, request->candidate);
+        command
+            .add_option("--steps", request->steps,
+                        "steps per branch passed to the command (default: of the scene)")
+            ->check(CLI::Range(1, most_steps));
+        command.add_option("--tolerance", request->tolerance,
+                           "required accuracy: mm, deg, N, Nm, and % of the extent of forces, "
+                           "moments and rates (default: 0.01mm,0.001deg,1%)");
+        add_output(command, request->folder, "folder for result.json and curves.csv");
+        return
+            [request](const std::string& line) { return judge(*request, request->delivery(line)); };
+    }};
 
 }  // namespace elastocheck::reports

@@ -10,10 +10,9 @@
 #include <new>
 
 #include "elastocheck/read_scene.hpp"
-#include "reports/command/grammar/exit_code.hpp"
-#include "reports/command/grammar/parse.hpp"
 #include "reports/command/options/load_scene.hpp"
-#include "reports/command/registry.hpp"
+#include "reports/command/program/exit_code.hpp"
+#include "reports/command/program/parse.hpp"
 #include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/subprocess.hpp"
@@ -34,7 +33,7 @@ int main(int argc, char** argv) {
     // cleaned up. A handler, unlike SIG_IGN, is not inherited by programs that are run.
     if (std::signal(SIGPIPE, [](int) {}) == SIG_IGN) std::signal(SIGPIPE, SIG_IGN);
     try {
-        const int code = parse_and_run(program(), commands(), argc, argv);
+        const int code = parse_and_run(argc, argv);
         finish_printing();
         return code;
     } catch (const OutputClosed&) {

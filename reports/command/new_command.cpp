@@ -3,8 +3,7 @@
 #include <memory>
 
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/command/templates.hpp"
 #include "reports/files/terminal.hpp"
 
@@ -46,16 +45,17 @@ int new_scene(const std::string& name, bool as_json) {
 
 }  // namespace
 
-Command new_command() {
-    struct Request {
-        std::string name;
-        bool as_json = false;
-    };
-    const auto request = std::make_shared<Request>();
-    return {"new",
-            "Print a template scene; without a name, list the templates",
-            {{"NAME", Text{&request->name}, "name of the template"}, json_option(request->as_json)},
-            [request](const std::string&) { return new_scene(request->name, request->as_json); }};
-}
+const Command new_command{
+    Group::models, "new", "Print a template scene; without a name, list the templates",
+    [](CLI::App& command) -> Run {
+        struct Request {
+            std::string name;
+            bool as_json = false;
+        };
+        const auto request = std::make_shared<Request>();
+        command.add_option("NAME", request->name, "name of the template");
+        add_json(command, request->as_json);
+        return [request](const std::string&) { return new_scene(request->name, request->as_json); };
+    }};
 
 }  // namespace elastocheck::reports

@@ -21,14 +21,13 @@
 #include "elastocheck/read_scene.hpp"
 #include "reports/command/browser.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/live/live_page.hpp"
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/gradients_of.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/document/against.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/candidate_file.hpp"
@@ -418,44 +417,41 @@ int report(const ReportRequest& request, const std::string& reproduce) {
 
 }  // namespace
 
-Command report_command() {
-    const auto request = std::make_shared<ReportRequest>();
-    std::vector<Option> options{
-        {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file()},
-         "scene files (YAML)"},
-        set_option(request->settings),
-        {"-o,--output", Text{&request->folder, a_folder()},
-         "folder for report.html, report.md, result.json, curves.csv, numbers.csv, figures/", true},
-        {"--tolerance", Text{&request->tolerance},
-         "required accuracy (default: 0.01mm,0.001deg,1%)"},
-        {"--measured", Text{&request->measured, a_file()},
-         "CSV of measured curves, for comparison"},
-        {"--branch", TextList{&request->branches, TextList::Form::separate},
-         "only these branches of the scene"},
-        {"--only", Text{&request->only, one_of({"kc", "evidence"})},
-         "one part of the page: kinematics and compliance (without studies), or "
-         "the evidence"},
-        {"--quick", Flag{&request->quick},
-         "without studies: the references, proved at the ends of the branches, "
-         "kinematics and "
-         "compliance"},
-        jobs_option(request->running),
-        quiet_option(request->running)};
-    add_candidate_options(options, request->candidate);
-    options.insert(options.end(),
-                   {{"--against", Flag{&request->against},
-                     "of two scenes: what the second has "
-                     "otherwise than the first, as a section"},
-                    {"--live", Flag{&request->live},
-                     "write live.html beside the page, which solves the scene again while its "
-                     "hardpoints are moved"},
-                    json_option(request->as_json),
-                    {"--open", Flag{&request->open}, "open the page with $BROWSER or xdg-open"}});
-    return {"report",
-            "Write a report of one or more scenes as an HTML page: verdict, "
-            "figures, tables",
-            std::move(options),
-            [request](const std::string& line) { return report(*request, line); }};
-}
+const Command report_command{
+    Group::pages, "report",
+    "Write a report of one or more scenes as an HTML page: verdict, "
+    "figures, tables",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<ReportRequest>();
+        as_file(command.add_option("SCENE", request->scenes, "scene files (YAML)"));
+        add_set(command, request->settings);
+        as_folder(command.add_option("-o,--output", request->folder,
+                                     "folder for report.html, report.md, result.json, curves.csv, "
+                                     "numbers.csv, figures/"))
+            ->required();
+        command.add_option("--tolerance", request->tolerance,
+                           "required accuracy (default: 0.01mm,0.001deg,1%)");
+        as_file(command.add_option("--measured", request->measured,
+                                   "CSV of measured curves, for comparison"));
+        command.add_option("--branch", request->branches, "only these branches of the scene");
+        as_word(command.add_option("--only", request->only,
+                                   "one part of the page: kinematics and compliance (without "
+                                   "studies), or the evidence"),
+                {"kc", "evidence"});
+        command.add_flag("--quick", request->quick,
+                         "without studies: the references, proved at the ends of the branches, "
+                         "kinematics and compliance");
+        add_running(command, request->running);
+        add_candidate(command, request->candidate);
+        command.add_flag("--against", request->against,
+                         "of two scenes: what the second has otherwise than the first, as a "
+                         "section");
+        command.add_flag("--live", request->live,
+                         "write live.html beside the page, which solves the scene again while its "
+                         "hardpoints are moved");
+        add_json(command, request->as_json);
+        command.add_flag("--open", request->open, "open the page with $BROWSER or xdg-open");
+        return [request](const std::string& line) { return report(*request, line); };
+    }};
 
 }  // namespace elastocheck::reports

@@ -3,11 +3,10 @@
 
 #include "compare/sensitivity/sensitivity.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/gradients_of.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
@@ -50,35 +49,50 @@ int sensitivity(const SensitivityRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command sensitivity_command() {
-    const auto request = std::make_shared<SensitivityRequest>();
-    using enum TextList::Form;
-    return {
-        "sensitivity",
-        "Derivatives of the outputs by the numbers of the scene, by all legs: what should I "
-        "change?",
-        {scene_option(request->scene),
-         {"--of", TextList{&request->gradients.of, commas},
-          "outputs, names or patterns with *: channels, characteristics such as bump_steer, forces "
-          "of elements (default: positions and angles of wheels and probes)"},
-         {"--to", TextList{&request->gradients.to, commas},
-          "numbers of the scene, names as for --set or patterns with * (default: all)"},
-         {"--branch", TextList{&request->gradients.branches, commas},
-          "names of branches, or patterns (default: all)"},
-         {"--points", Integer{&request->gradients.points, 1, 1000},
-          "stations per branch after its start (default: 4)"},
-         {"--at", TextList{&request->gradients.at, commas},
-          "stations BRANCH:VALUE in place of --points for that branch, such as jounce:1500"},
-         {"--most", Integer{&request->most, 0, 100000},
-          "numbers shown per output, those with the largest effect (default: 5; 0: all)"},
-         {"--csv", Text{&request->csv, a_file()}, "file of all derivatives at all stations"},
-         set_option(request->settings),
-         jobs_option(request->running),
-         quiet_option(request->running),
-         json_option(request->as_json)},
-        [request](const std::string& line) {
+const Command sensitivity_command{
+    Group::change, "sensitivity",
+    "Derivatives of the outputs by the numbers of the scene, by all legs: what should I "
+    "change?",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<SensitivityRequest>();
+        add_scene(command, request->scene);
+        command
+            .add_option("--of", request->gradients.of,
+                        "outputs, names or patterns with *: channels, characteristics such as "
+                        "bump_steer, forces of elements (default: positions and angles of wheels "
+                        "and probes)")
+            ->delimiter(',');
+        command
+            .add_option("--to", request->gradients.to,
+                        "numbers of the scene, names as for --set or patterns with * "
+                        "(default: all)")
+            ->delimiter(',');
+        command
+            .add_option("--branch", request->gradients.branches,
+                        "names of branches, or patterns (default: all)")
+            ->delimiter(',');
+        command
+            .add_option("--points", request->gradients.points,
+                        "stations per branch after its start (default: 4)")
+            ->check(CLI::Range(1, 1000));
+        command
+            .add_option("--at", request->gradients.at,
+                        "stations BRANCH:VALUE in place of --points for that branch, such as "
+                        "jounce:1500")
+            ->delimiter(',');
+        command
+            .add_option("--most", request->most,
+                        "numbers shown per output, those with the largest effect (default: 5; "
+                        "0: all)")
+            ->check(CLI::Range(0, 100000));
+        as_file(
+            command.add_option("--csv", request->csv, "file of all derivatives at all stations"));
+        add_set(command, request->settings);
+        add_running(command, request->running);
+        add_json(command, request->as_json);
+        return [request](const std::string& line) {
             return sensitivity(*request, {.as_json = request->as_json, .command = line});
-        }};
-}
+        };
+    }};
 
 }  // namespace elastocheck::reports

@@ -14,12 +14,11 @@
 #include "recursive/series/path.hpp"
 #include "recursive/soft_motion.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/recursion_options.hpp"
 #include "reports/command/options/solving.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -178,29 +177,34 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command solve_command() {
-    const auto given = std::make_shared<SolveRequest>();
-    std::vector<Option> options = given->options();
-    options.push_back(keep_all_option(given->keep_all));
-    add_recursion_options(options, given->solver.recursion);
-    options.insert(
-        options.end(),
-        {{"--method", Text{&given->solver.method, one_of(solvers())},
-          "equilibrium (default) or energy; a fast method: published (or recursive), closed, "
-          "balanced, tangent, chord, midpoint, adaptive or series"},
-         {"--arc-length", Flag{&given->solver.recursion.arc_length},
-          "series: continuation by arc length, through limit points"},
-         {"--rates", Text{&given->rates, a_file()},
-          "series: write derivatives of travel and outputs to this CSV file"},
-         {"--states", Text{&given->states, a_file()},
-          "write the poses of the bodies to this file (JSON lines)"},
-         {"--channels", TextList{&given->channels, TextList::Form::commas},
-          "outputs to write, in this order: NAME,... as in the CSV's head; * matches any letters"},
-         every_option(given->solver.every),
-         {"-o,--output", Text{&given->folder, a_file()}, "write the CSV to this file"}});
-    return {"solve", "Solve a scene with one method and print the curves as CSV",
-            std::move(options),
-            [given](const std::string& line) { return solve(*given, given->delivery(line)); }};
-}
+const Command solve_command{
+    Group::solve, "solve", "Solve a scene with one method and print the curves as CSV",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<SolveRequest>();
+        add_scene(command, *request);
+        add_keep_all(command, request->keep_all);
+        add_recursion(command, request->solver.recursion);
+        as_word(command.add_option(
+                    "--method", request->solver.method,
+                    "equilibrium (default) or energy; a fast method: published (or recursive), "
+                    "closed, balanced, tangent, chord, midpoint, adaptive or series"),
+                solvers());
+        command.add_flag("--arc-length", request->solver.recursion.arc_length,
+                         "series: continuation by arc length, through limit points");
+        as_file(
+            command.add_option("--rates", request->rates,
+                               "series: write derivatives of travel and outputs to this CSV file"));
+        as_file(command.add_option("--states", request->states,
+                                   "write the poses of the bodies to this file (JSON lines)"));
+        command
+            .add_option("--channels", request->channels,
+                        "outputs to write, in this order: NAME,... as in the CSV's head; * matches "
+                        "any letters")
+            ->delimiter(',');
+        add_every(command, request->solver.every);
+        as_file(command.add_option("-o,--output", request->folder, "write the CSV to this file"));
+        return
+            [request](const std::string& line) { return solve(*request, request->delivery(line)); };
+    }};
 
 }  // namespace elastocheck::reports

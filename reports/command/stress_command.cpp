@@ -11,10 +11,9 @@
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/command/templates.hpp"
 #include "reports/extremes/extremes.hpp"
 #include "reports/files/folder.hpp"
@@ -82,22 +81,23 @@ int stress(const StressRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command stress_command() {
-    const auto request = std::make_shared<StressRequest>();
-    return {"stress",
-            "Stress test: solve transformed and extreme scenes by every leg and method",
-            {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file()},
-              "scene files (YAML); default: all built-in scenes and those with extreme geometry"},
-             set_option(request->settings),
-             output_option(request->folder, "folder for stress.json and cells.csv"),
-             json_option(request->as_json),
-             jobs_option(request->running),
-             quiet_option(request->running)},
-            [request](const std::string& line) {
-                return stress(
-                    *request,
-                    {.folder = request->folder, .as_json = request->as_json, .command = line});
-            }};
-}
+const Command stress_command{
+    Group::prove, "stress",
+    "Stress test: solve transformed and extreme scenes by every leg and method",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<StressRequest>();
+        as_file(command.add_option(
+            "SCENE", request->scenes,
+            "scene files (YAML); default: all built-in scenes and those with extreme geometry"));
+        add_set(command, request->settings);
+        add_output(command, request->folder, "folder for stress.json and cells.csv");
+        add_json(command, request->as_json);
+        add_running(command, request->running);
+        return [request](const std::string& line) {
+            return stress(
+                *request,
+                {.folder = request->folder, .as_json = request->as_json, .command = line});
+        };
+    }};
 
 }  // namespace elastocheck::reports

@@ -18,13 +18,12 @@
 #include "compare/tables/rows.hpp"
 #include "elastocheck/recursive.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/recursion_options.hpp"
 #include "reports/command/options/running.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/inspection.hpp"
 #include "reports/files/files.hpp"
@@ -276,78 +275,91 @@ int trade(const TradeRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command inspect_command() {
-    const auto given = std::make_shared<InspectRequest>();
-    std::vector<Option> options = given->options();
-    options.push_back(
-        {"--verbose", Flag{&given->verbose},
-         "long lists whole, all numbers with their sides, and the size of the matrix, its "
-         "order and its fill-in"});
-    options.push_back(keep_all_option(given->keep_all));
-    return {"inspect", "Show the compiled scene: bodies, coordinates, constraints, idle modes",
-            std::move(options),
-            [given](const std::string& line) { return inspect(*given, given->delivery(line)); }};
-}
+const Command inspect_command{
+    Group::solve, "inspect",
+    "Show the compiled scene: bodies, coordinates, constraints, idle modes",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<InspectRequest>();
+        add_scene(command, *request);
+        command.add_flag("--verbose", request->verbose,
+                         "long lists whole, all numbers with their sides, and the size of the "
+                         "matrix, its order and its fill-in");
+        add_keep_all(command, request->keep_all);
+        return [request](const std::string& line) {
+            return inspect(*request, request->delivery(line));
+        };
+    }};
 
-Command compare_command() {
-    const auto given = std::make_shared<CompareRequest>();
-    std::vector<std::string> methods;
-    for (const auto& method : recursive::methods) methods.emplace_back(method.name);
-    std::vector<Option> options = given->options_of_a_run();
-    options.push_back(keep_all_option(given->keep_all));
-    options.push_back({"--formulations", Flag{&given->formulations},
-                       "add the spread of the outputs over the bushing formulations of tools"});
-    options.push_back({"--definitions", Flag{&given->definitions},
-                       "add the figures by other definitions, of standards and tools"});
-    options.push_back({"--within", Text{&given->within},
-                       "give a verdict by this accuracy: mm, deg, N, Nm, and % of the extent of "
-                       "forces, moments and rates (with --method: 0.01mm,0.001deg,1%)"});
-    add_recursion_options(options, given->recursion);
-    options.push_back({"--method", Text{&given->recursion.method, one_of(methods)},
-                       "give a verdict on this method: published (shown without a verdict by "
-                       "default), closed, balanced, tangent, chord, midpoint, adaptive or series"});
-    options.push_back(every_option(given->every));
-    options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
-    return {"compare", "Solve a scene with all three methods and show the deviations",
-            std::move(options), [given](const std::string& line) {
-                return compare_legs(*given, given->delivery(line));
-            }};
-}
+const Command compare_command{
+    Group::compare, "compare", "Solve a scene with all three methods and show the deviations",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<CompareRequest>();
+        std::vector<std::string> methods;
+        for (const auto& method : recursive::methods) methods.emplace_back(method.name);
+        add_scene_and_run(command, *request);
+        add_keep_all(command, request->keep_all);
+        command.add_flag("--formulations", request->formulations,
+                         "add the spread of the outputs over the bushing formulations of tools");
+        command.add_flag("--definitions", request->definitions,
+                         "add the figures by other definitions, of standards and tools");
+        command.add_option("--within", request->within,
+                           "give a verdict by this accuracy: mm, deg, N, Nm, and % of the extent "
+                           "of forces, moments and rates (with --method: 0.01mm,0.001deg,1%)");
+        add_recursion(command, request->recursion);
+        as_word(command.add_option(
+                    "--method", request->recursion.method,
+                    "give a verdict on this method: published (shown without a verdict by "
+                    "default), closed, balanced, tangent, chord, midpoint, adaptive or series"),
+                methods);
+        add_every(command, request->every);
+        add_output(command, request->folder, "folder for result.json and curves.csv");
+        return [request](const std::string& line) {
+            return compare_legs(*request, request->delivery(line));
+        };
+    }};
 
-Command converge_command() {
-    const auto given = std::make_shared<ConvergeRequest>();
-    std::vector<std::string> known{"all"};
-    for (const auto& method : recursive::methods)
-        if (!std::holds_alternative<recursive::Adaptive>(method.kind))
-            known.emplace_back(method.name);
-    std::vector<Option> options = given->options_of_a_run();
-    options.push_back(
-        {"--method", TextList{&given->methods, TextList::Form::commas, one_of(known)},
-         "published (default), closed, balanced, tangent, chord, midpoint, series, or all"});
-    options.push_back(
-        {"--steps", IntegerList{&given->steps, 1, most_steps},
-         "step counts per branch, at least five, increasing (default: 75,150,...,2400)"});
-    options.push_back(output_option(
-        given->folder,
-        "folder for result.json, convergence.csv, step_errors.csv and attribution.csv"));
-    add_candidate_options(options, given->candidate);
-    return {"converge",
-            "Convergence study: split the recursion's error into step error, formulation gap and "
-            "reference uncertainty",
-            std::move(options),
-            [given](const std::string& line) { return converge(*given, given->delivery(line)); }};
-}
+const Command converge_command{
+    Group::compare, "converge",
+    "Convergence study: split the recursion's error into step error, formulation gap and "
+    "reference uncertainty",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<ConvergeRequest>();
+        std::vector<std::string> known{"all"};
+        for (const auto& method : recursive::methods)
+            if (!std::holds_alternative<recursive::Adaptive>(method.kind))
+                known.emplace_back(method.name);
+        add_scene_and_run(command, *request);
+        as_word(command
+                    .add_option("--method", request->methods,
+                                "published (default), closed, balanced, tangent, chord, "
+                                "midpoint, series, or all")
+                    ->delimiter(','),
+                known);
+        command
+            .add_option("--steps", request->steps,
+                        "step counts per branch, at least five, increasing (default: "
+                        "75,150,...,2400)")
+            ->delimiter(',')
+            ->check(CLI::Range(1, most_steps));
+        add_output(command, request->folder,
+                   "folder for result.json, convergence.csv, step_errors.csv and attribution.csv");
+        add_candidate(command, request->candidate);
+        return [request](const std::string& line) {
+            return converge(*request, request->delivery(line));
+        };
+    }};
 
-Command trade_command() {
-    const auto given = std::make_shared<TradeRequest>();
-    std::vector<Option> options = given->options_of_a_run();
-    options.push_back({"--tolerance", Text{&given->tolerance},
-                       "required accuracy (default: 0.01mm,0.001deg,1%)"});
-    options.push_back(
-        output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
-    return {"trade", "Cost of accuracy: every method against both references, and a recommendation",
-            std::move(options),
-            [given](const std::string& line) { return trade(*given, given->delivery(line)); }};
-}
+const Command trade_command{
+    Group::compare, "trade",
+    "Cost of accuracy: every method against both references, and a recommendation",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<TradeRequest>();
+        add_scene_and_run(command, *request);
+        command.add_option("--tolerance", request->tolerance,
+                           "required accuracy (default: 0.01mm,0.001deg,1%)");
+        add_output(command, request->folder, "folder for result.json, trade.csv and precision.csv");
+        return
+            [request](const std::string& line) { return trade(*request, request->delivery(line)); };
+    }};
 
 }  // namespace elastocheck::reports

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "elastocheck/compare.hpp"
-#include "reports/command/grammar/command.hpp"
+#include "reports/command/options/load_scene.hpp"
 
 namespace elastocheck::python {
 

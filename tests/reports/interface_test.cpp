@@ -223,6 +223,16 @@ TEST(Version, IsThatOfTheArchiveWhereThereIsNoCheckoutAndNeverOfOneAround) {
     EXPECT_EQ(commit_of(copy), "unknown") << "the checkout around it is somebody else's";
 }
 
+TEST(Help, ListsTheCommandsInGroups) {
+    expect_parts(elastocheck_says("--help").out,
+                 {"\nSolve and look:\n  inspect  ", "\nCompare and judge:\n  compare  ",
+                  "\nProofs and extremes:\n  certify  ", "\nWhat should I change:\n  fit  ",
+                  "\nModels in and out:\n  export  ", "\nPages:\n  live  "},
+                 {"  man  "});
+    EXPECT_TRUE(
+        contains(elastocheck_says("man").out, ".SH Solve and look\n.SS elastocheck inspect\n"));
+}
+
 TEST(Help, PointsToFilesThatAreThere) {
     for (const char* arguments : {"--help", "gate --help"}) {
         const std::string said = elastocheck_says(arguments).out;

@@ -9,8 +9,8 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "reports/command/design/request.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/fitting.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
 
 namespace elastocheck::reports {
@@ -163,64 +163,70 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command tolerances_command() {
-    const auto request = std::make_shared<TolerancesRequest>();
-    auto options = request->options_of_a_run();
-    options.insert(
-        options.end(),
-        {{"TOLERANCES", Text{&request->file, a_file()},
-          "file with the tolerances, such as points.tie_rod_inner.z: {normal: {sd: 0.5}}", true},
-         {"--of", TextList{&request->of, TextList::Form::commas},
-          "outputs, OUTPUT or OUTPUT@BRANCH:PARAMETER (default: the characteristics at the "
-          "start of the first branch)"},
-         {"--most", Integer{&request->most, 0, 100000},
-          "shares shown per output (default: 5; 0: all)"}});
-    return {
-        "tolerances",
-        "Scatter of the figures by the tolerances of the numbers of a scene; exact rates by the "
-        "equilibrium leg",
-        std::move(options), [request](const std::string& line) {
+const Command tolerances_command{
+    Group::change, "tolerances",
+    "Scatter of the figures by the tolerances of the numbers of a scene; exact rates by the "
+    "equilibrium leg",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<TolerancesRequest>();
+        add_scene_and_run(command, *request);
+        as_file(command.add_option("TOLERANCES", request->file,
+                                   "file with the tolerances, such as points.tie_rod_inner.z: "
+                                   "{normal: {sd: 0.5}}"))
+            ->required();
+        command
+            .add_option("--of", request->of,
+                        "outputs, OUTPUT or OUTPUT@BRANCH:PARAMETER (default: the characteristics "
+                        "at the start of the first branch)")
+            ->delimiter(',');
+        command.add_option("--most", request->most, "shares shown per output (default: 5; 0: all)")
+            ->check(CLI::Range(0, 100000));
+        return [request](const std::string& line) {
             return tolerances(*request, request->delivery(line));
-        }};
-}
+        };
+    }};
 
-Command solve_for_command() {
-    const auto request = std::make_shared<SolveForRequest>();
-    auto options = request->options();
-    options.insert(
-        options.end(),
-        {{"--vary", TextList{&request->vary, TextList::Form::repeated},
-          "number that may change, with its limits: points.tie_rod_inner.z=260:340; repeat it",
-          true},
-         {"--want", TextList{&request->want, TextList::Form::repeated},
-          "figure and value: bump_steer=0 at the start of the first branch, "
-          "toe@jounce:3000=-0.1 elsewhere; repeat it",
-          true}});
-    return {"solve-for",
-            "Change numbers of a scene as little as possible so that figures have wanted values; "
-            "gradients by the equilibrium leg",
-            std::move(options), [request](const std::string& line) {
-                return solve_for(*request, request->delivery(line));
-            }};
-}
+const Command solve_for_command{
+    Group::change, "solve-for",
+    "Change numbers of a scene as little as possible so that figures have wanted values; "
+    "gradients by the equilibrium leg",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<SolveForRequest>();
+        add_design(command, *request);
+        repeated(command.add_option("--vary", request->vary,
+                                    "number that may change, with its limits: "
+                                    "points.tie_rod_inner.z=260:340; repeat it"))
+            ->required();
+        repeated(command.add_option("--want", request->want,
+                                    "figure and value: bump_steer=0 at the start of the first "
+                                    "branch, toe@jounce:3000=-0.1 elsewhere; repeat it"))
+            ->required();
+        return [request](const std::string& line) {
+            return solve_for(*request, request->delivery(line));
+        };
+    }};
 
-Command fit_command() {
-    const auto request = std::make_shared<FitRequest>();
-    auto options = request->options();
-    options.insert(options.end(),
-                   {{"--measured", Text{&request->measured, a_file()},
-                     "measured points (CSV), as for report", true},
-                    {"--vary", TextList{&request->vary, TextList::Form::repeated},
-                     "number to fit, or pattern with *; limits as NAME=LOW:HIGH; repeat it", true},
-                    {"--map", Text{&request->map, a_file()},
-                     "YAML file with the table's column names, units, signs and offsets"},
-                    {"--robust", Flag{&request->robust},
-                     "give gross outliers little weight (Cauchy's loss)"}});
-    return {"fit",
-            "Fit numbers of a scene to measured curves, with 95 % intervals; gradients "
-            "of the equilibrium leg",
-            std::move(options),
-            [request](const std::string& line) { return fit(*request, request->delivery(line)); }};
-}
+const Command fit_command{
+    Group::change, "fit",
+    "Fit numbers of a scene to measured curves, with 95 % intervals; gradients "
+    "of the equilibrium leg",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<FitRequest>();
+        add_design(command, *request);
+        as_file(command.add_option("--measured", request->measured,
+                                   "measured points (CSV), as for report"))
+            ->required();
+        repeated(command.add_option(
+                     "--vary", request->vary,
+                     "number to fit, or pattern with *; limits as NAME=LOW:HIGH; repeat it"))
+            ->required();
+        as_file(command.add_option(
+            "--map", request->map,
+            "YAML file with the table's column names, units, signs and offsets"));
+        command.add_flag("--robust", request->robust,
+                         "give gross outliers little weight (Cauchy's loss)");
+        return
+            [request](const std::string& line) { return fit(*request, request->delivery(line)); };
+    }};
 
 }  // namespace elastocheck::reports

@@ -8,8 +8,8 @@
 #include "compare/proofs/certify.hpp"
 #include "models/reader/document/yaml.hpp"
 #include "reports/command/design/request.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/goals_file.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
 
 namespace elastocheck::reports {
@@ -193,26 +193,28 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command optimise_command() {
-    const auto request = std::make_shared<OptimiseRequest>();
-    auto options = request->options();
-    options.insert(
-        options.end(),
-        {{"GOALS", Text{&request->file, a_file()},
-          "file with the numbers, their limits and the bands, such as vary: "
-          "{points.tie_rod_inner.z: [260, 340]} and goals: [{figure: toe, over: travel, from: "
-          "-80, to: 80, within: [-0.1, 0.1]}]",
-          true},
-         {"--starts", Integer{&request->starts, 1, 1000},
-          "points to search from: the scene, and others within the limits, the same on every "
-          "run (default: 4)"}});
-    return {"optimise",
-            "Change numbers of a scene within limits so that figures and curves stay within bands, "
-            "with the smallest change or the least value of a figure; the prices of the bounds "
-            "that hold, and proofs of the result",
-            std::move(options), [request](const std::string& line) {
-                return optimise(*request, request->delivery(line));
-            }};
-}
+const Command optimise_command{
+    Group::change, "optimise",
+    "Change numbers of a scene within limits so that figures and curves stay within bands, "
+    "with the smallest change or the least value of a figure; the prices of the bounds "
+    "that hold, and proofs of the result",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<OptimiseRequest>();
+        add_design(command, *request);
+        as_file(command.add_option(
+                    "GOALS", request->file,
+                    "file with the numbers, their limits and the bands, such as vary: "
+                    "{points.tie_rod_inner.z: [260, 340]} and goals: [{figure: toe, over: travel, "
+                    "from: -80, to: 80, within: [-0.1, 0.1]}]"))
+            ->required();
+        command
+            .add_option("--starts", request->starts,
+                        "points to search from: the scene, and others within the limits, the same "
+                        "on every run (default: 4)")
+            ->check(CLI::Range(1, 1000));
+        return [request](const std::string& line) {
+            return optimise(*request, request->delivery(line));
+        };
+    }};
 
 }  // namespace elastocheck::reports

@@ -13,12 +13,6 @@ namespace elastocheck::reports {
 struct DesignRequest : SceneRequest {
     std::string output;  // file of the changed scene; empty: none
 
-    std::vector<Option> options() {
-        auto list = options_of_a_run();
-        list.push_back({"-o,--output", Text{&output, a_file()},
-                        "write the scene with the changed numbers; the old ones are in comments"});
-        return list;
-    }
     // `line` becomes a comment at its head. The last of several writings is reported.
     void write(const std::string& line, const Varied& varied, const Eigen::VectorXd& p,
                bool last = true) const {
@@ -27,6 +21,14 @@ struct DesignRequest : SceneRequest {
         if (last) print_error("Written: {}\n", output);
     }
 };
+
+// SCENE, --set, --json, --jobs, --quiet, -o.
+inline void add_design(CLI::App& command, DesignRequest& request) {
+    add_scene_and_run(command, request);
+    as_file(command.add_option(
+        "-o,--output", request.output,
+        "write the scene with the changed numbers; the old ones are in comments"));
+}
 
 inline std::string why_no_start(const Scene& scene, std::span<const compare::Figure> figures,
                                 const compare::FigureGradient& gradient) {

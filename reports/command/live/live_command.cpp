@@ -2,9 +2,8 @@
 #include <memory>
 #include <string>
 
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/live/live_page.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 
@@ -22,19 +21,22 @@ int live(const std::string& scene, const Settings& settings, const std::string& 
 
 }  // namespace
 
-Command live_command() {
-    struct Request {
-        std::string scene, output;
-        Settings settings;
-    };
-    const auto given = std::make_shared<Request>();
-    return {
-        "live",
-        "Write a page that solves the scene again while hardpoints and rates are moved",
-        {scene_option(given->scene),
-         set_option(given->settings),
-         {"-o,--output", Text{&given->output, a_file()}, "write the page to this file", true}},
-        [given](const std::string&) { return live(given->scene, given->settings, given->output); }};
-}
+const Command live_command{
+    Group::pages, "live",
+    "Write a page that solves the scene again while hardpoints and rates are moved",
+    [](CLI::App& command) -> Run {
+        struct Request {
+            std::string scene, output;
+            Settings settings;
+        };
+        const auto given = std::make_shared<Request>();
+        add_scene(command, given->scene);
+        add_set(command, given->settings);
+        as_file(command.add_option("-o,--output", given->output, "write the page to this file"))
+            ->required();
+        return [given](const std::string&) {
+            return live(given->scene, given->settings, given->output);
+        };
+    }};
 
 }  // namespace elastocheck::reports

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "reports/command/grammar/command.hpp"
+#include "reports/command/options/load_scene.hpp"
 
 namespace elastocheck::reports {
 

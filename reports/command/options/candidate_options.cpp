@@ -50,20 +50,6 @@ std::vector<std::string> command_words(const std::string& command) {
 
 }  // namespace
 
-void add_candidate_options(std::vector<Option>& options, CandidateRequest& request) {
-    options.push_back({"--candidate", TextList{&request.files, TextList::Form::repeated, a_file()},
-                       "results of another solver: outputs (CSV) or states (JSON lines, CSV); "
-                       "STEPS=FILE where it has steps"});
-    options.push_back({"--candidate-command", Text{&request.command},
-                       "solver to run, without a shell: './mysolver {scene} {steps} {output}'"});
-    options.push_back({"--candidate-timeout", RealNumber{&request.timeout, 0.001, 86400},
-                       "seconds after which the command is killed (default: 60)"});
-    options.push_back({"--map", Text{&request.map, a_file()},
-                       "YAML file with the table's column names, units, signs and offsets"});
-    options.push_back({"--partial", Flag{&request.partial},
-                       "let a candidate pass that leaves out branches or parts of them"});
-}
-
 ColumnMap map_of(const CandidateRequest& request) {
     if (request.map.empty()) return {};
     return read_column_map(read_whole(request.map, largest_baseline), request.map);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "compare/candidate/candidate.hpp"
-#include "reports/command/grammar/command.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/document/candidate_file.hpp"
 
@@ -22,7 +21,6 @@ struct CandidateRequest {
 
     bool wanted() const { return !files.empty() || !command.empty(); }
 };
-void add_candidate_options(std::vector<Option>& options, CandidateRequest& request);
 
 // The file of --map; empty without one.
 ColumnMap map_of(const CandidateRequest& request);

@@ -9,7 +9,6 @@
 
 #include "compare/design/figures.hpp"
 #include "compare/design/tolerances.hpp"
-#include "reports/command/grammar/command.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/tables/studies/design_tables.hpp"

@@ -11,12 +11,15 @@
 #include "elastocheck/channels.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/model.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "elastocheck/scene.hpp"
 #include "elastocheck/trim.hpp"
 #include "models/reader/plausibility.hpp"
-#include "reports/command/grammar/command.hpp"
 
 namespace elastocheck::reports {
+
+// --set PATH=VALUE, repeatable: changes numbers of the scene file before it is read.
+using Settings = std::vector<Setting>;
 
 // A requested trim was not reached or not confirmed by the second reference; the scene is not
 // judged. what() reads "FILE:LINE: trim: ...".

@@ -7,21 +7,8 @@
 #include <stdexcept>
 
 #include "compare/studies/work_precision.hpp"
-#include "reports/command/options/limits.hpp"
 
 namespace elastocheck::reports {
-
-void add_recursion_options(std::vector<Option>& options, RecursionRequest& request) {
-    options.push_back({"--steps", Integer{&request.steps, 1, most_steps},
-                       "load steps per branch (default: of the scene)"});
-    options.push_back(
-        {"--tolerance", Text{&request.tolerance},
-         "error tolerance of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)"});
-    options.push_back({"--order", Integer{&request.order, 1, 60}, "of the series (default: 16)"});
-    options.push_back({"--expansions", Integer{&request.expansions, 1, 1'000'000},
-                       "largest number of expansions of the series; as many more for each knot "
-                       "passed (default: 200)"});
-}
 
 recursive::Options recursion(const RecursionRequest& request) {
     recursive::Options options;

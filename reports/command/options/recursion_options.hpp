@@ -2,10 +2,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "elastocheck/recursive.hpp"
-#include "reports/command/grammar/command.hpp"
 
 namespace elastocheck::reports {
 
@@ -15,10 +13,6 @@ struct RecursionRequest {
     std::string tolerance = {};
     bool arc_length = false;
 };
-
-// --steps, --tolerance, --order, --expansions; they write into `request`, which must outlive the
-// parsing.
-void add_recursion_options(std::vector<Option>& options, RecursionRequest& request);
 
 // Throws std::invalid_argument for an option that does not apply to the method.
 recursive::Options recursion(const RecursionRequest& request);

@@ -7,16 +7,6 @@
 
 namespace elastocheck::reports {
 
-Option jobs_option(Running& running) {
-    constexpr int most_threads = 1024;
-    return {"--jobs", Integer{&running.jobs, 1, most_threads},
-            "threads (default: one for each core); the results are the same"};
-}
-
-Option quiet_option(Running& running) {
-    return {"--quiet", Flag{&running.quiet}, "no progress on standard error"};
-}
-
 int threads_of(const Running& running) {
     if (running.quiet) hide_progress();
     if (running.jobs > 0) return running.jobs;

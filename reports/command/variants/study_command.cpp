@@ -9,9 +9,8 @@
 #include <stdexcept>
 
 #include "reports/command/delivery.hpp"
-#include "reports/command/grammar/command.hpp"
-#include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/running.hpp"
+#include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/study/output/study_output.hpp"
@@ -154,30 +153,39 @@ int study(const StudyRequest& request, const Delivery& delivery) {
 
 }  // namespace
 
-Command study_command() {
-    const auto request = std::make_shared<StudyRequest>();
-    return {
-        "study",
-        "Many variants of a scene, each with a row in a ledger, and the statistics of their "
-        "figures; the same command goes on where it was interrupted",
-        {{"STUDY", Text{&request->file, a_file()}, "file with variables, design and figures", true},
-         {"-o,--output", Text{&request->folder, a_folder()},
-          "folder of the ledger (ledger.sqlite), statistics.json and study.html", true},
-         {"--count", Integer{&request->count, 1, 1'000'000'000},
-          "number of variants, instead of that in the file; more than before extends the study"},
-         {"--shard", Text{&request->shard, Value{.name = "K/N"}},
-          "compute part K of N, into ledger-K-of-N.sqlite"},
-         {"--merge", TextList{&request->merge, TextList::Form::separate, a_folder()},
-          "add the rows of all shards in these folders, and compute nothing"},
-         {"--show", Flag{&request->show}, "compute nothing, write nothing: show what there is"},
-         {"--csv", Text{&request->csv, a_file()},
-          "write variables and figures of all variants as CSV"},
-         jobs_option(request->running),
-         quiet_option(request->running),
-         json_option(request->as_json)},
-        [request](const std::string& line) {
+const Command study_command{
+    Group::change, "study",
+    "Many variants of a scene, each with a row in a ledger, and the statistics of their "
+    "figures; the same command goes on where it was interrupted",
+    [](CLI::App& command) -> Run {
+        const auto request = std::make_shared<StudyRequest>();
+        as_file(
+            command.add_option("STUDY", request->file, "file with variables, design and figures"))
+            ->required();
+        as_folder(command.add_option(
+                      "-o,--output", request->folder,
+                      "folder of the ledger (ledger.sqlite), statistics.json and study.html"))
+            ->required();
+        command
+            .add_option("--count", request->count,
+                        "number of variants, instead of that in the file; more than before "
+                        "extends the study")
+            ->check(CLI::Range(1, 1'000'000'000));
+        command
+            .add_option("--shard", request->shard, "compute part K of N, into ledger-K-of-N.sqlite")
+            ->type_name("K/N");
+        as_folder(
+            command.add_option("--merge", request->merge,
+                               "add the rows of all shards in these folders, and compute nothing"));
+        command.add_flag("--show", request->show,
+                         "compute nothing, write nothing: show what there is");
+        as_file(command.add_option("--csv", request->csv,
+                                   "write variables and figures of all variants as CSV"));
+        add_running(command, request->running);
+        add_json(command, request->as_json);
+        return [request](const std::string& line) {
             return study(*request, {.as_json = request->as_json, .command = line});
-        }};
-}
+        };
+    }};
 
 }  // namespace elastocheck::reports
