@@ -130,6 +130,12 @@ Fields& Fields::add(std::string_view key, std::string_view value) {
     return *this;
 }
 
+Fields& Fields::add(const Fields& more) {
+    if (!text_.empty() && !more.text_.empty()) text_ += ", ";
+    text_ += more.text_;
+    return *this;
+}
+
 std::string Names::take(std::string_view wanted) {
     std::string name;
     for (const char c : wanted.substr(0, longest_name - 8)) {

@@ -36,6 +36,7 @@ class Fields {
   public:
     Fields& add(std::string_view key, std::string_view value);
     Fields& add(std::string_view key, double value) { return add(key, number(value)); }
+    Fields& add(const Fields& more);
     const std::string& text() const { return text_; }
     std::string braced() const { return "{" + text_ + "}"; }
 

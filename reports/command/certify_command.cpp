@@ -44,8 +44,7 @@ const Command certify_command{
         as_word(command
                     .add_option("--method", request->solvers,
                                 "solver of the points: equilibrium, energy, series (default: these "
-                                "three), or a "
-                                "method of the recursion")
+                                "three), or a method of the recursion")
                     ->delimiter(','),
                 certified_solvers());
         command.add_option("--tolerance", request->tolerance,

@@ -39,9 +39,9 @@
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/render/render.hpp"
 #include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/words.hpp"
 

@@ -29,9 +29,9 @@
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/render/render.hpp"
 #include "reports/tables/studies/study_tables.hpp"
 
 namespace elastocheck::reports {

@@ -44,11 +44,17 @@ struct Drive {
 struct Table {
     std::vector<double> x, y;
     bool goes_on = false;  // linear beyond its ends
-    const Statement* statement = nullptr;
+};
+
+// A damper does not hold its parts: it is written if something else holds both.
+struct DamperBetween {
+    int i, j;
+    Entry entry;
 };
 
 struct Conversion {
     const Dataset& data;
+    const std::string& file;
     const Geometry& geometry;
     const Options& options;
     Draft& draft;
@@ -59,6 +65,7 @@ struct Conversion {
     std::map<int, WrittenJoint> joints = {};
     std::map<int, Table> splines = {};
     std::vector<Drive> drives = {};
+    std::vector<DamperBetween> dampers = {};
     std::map<int, const Statement*> variables = {};
     // from 0 to the end of the functions of TIME: their events, and fine steps between
     std::vector<double> times = {};
@@ -68,8 +75,8 @@ struct Conversion {
     std::map<int, std::optional<std::string>> variable_functions = {};
 
     // ---- Look-up functions; throw SceneError for an undefined reference.
-    const Marker& marker(const Arguments& at, std::string_view name) const;
-    const Marker& marker(const Arguments& at, int id) const;
+    const Marker& marker(const Statement& s, std::string_view argument) const;
+    const Marker& marker(const Statement& s, int id) const;
     bool is_ground(int part) const { return geometry.parts.at(part).is_ground; }
     const std::string& body(int part) const { return bodies.at(part); }
     std::string pair(int i, int j) {
@@ -77,13 +84,23 @@ struct Conversion {
         return "[" + body(i) + ", " + body(j) + "]";
     }
     std::string point(const Marker& marker);
-    std::string name(Names& names, const Statement& statement) const;
+    std::string origin(int part);  // of a body
+    std::string name(Names& names, const Statement& s) const;
     bool is_flexible(const Marker& marker) const { return !geometry.parts.contains(marker.part); }
+    // Whether both parts exist and differ; else notes why the statement is not converted.
+    bool is_between_two(const Statement& s, const Marker& I, const Marker& J);
 
     // ---- Notes on a statement.
     void count(const std::string& kind) { draft.notes.count(kind); }
-    void warn(const Statement& s, const std::string& what) { draft.notes.warn(s.place(), what); }
+    template <class... A>
+    void warn(const Statement& s, fmt::format_string<A...> what, A&&... a) {
+        draft.notes.warn(s.place(), fmt::format(what, std::forward<A>(a)...));
+    }
     void miss(const Statement& s, const std::string& why) { draft.notes.miss(s.place(), why); }
+    template <class... A>
+    void miss(const Statement& s, fmt::format_string<A...> why, A&&... a) {
+        miss(s, fmt::format(why, std::forward<A>(a)...));
+    }
     void leave_out(const Statement& s, const std::string& why) {
         draft.notes.leave_out(why, s.place());
     }
@@ -97,14 +114,8 @@ struct Conversion {
     Programme programme(const std::string& text);
 };
 
-// Whether both parts exist and differ; else notes why the statement is not converted.
-bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
-                    const Arguments& at);
-
-// Allowed arguments of the statements with functions.
-const Shape& motion_shape();
-const Shape& sforce_shape();
-const Shape& vector_shape();
+// The angle of I about z of J, AZ.
+double turn_of(const Marker& I, const Marker& J);
 
 void read_splines(Conversion& c);
 void convert_joints(Conversion& c);  // JOINT, JPRIM, GCON, COUPLER, MOTION

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "models/import/adm/statements.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -17,17 +17,8 @@ constexpr int deepest = 100;
 constexpr std::size_t most_terms = 1000;
 constexpr std::size_t longest_function = 1 << 16;  // [bytes]
 
-Value unknown(std::string why) {
-    Value value;
-    value.unknown = std::move(why);
-    return value;
-}
-
-Value constant(double x) {
-    Value value;
-    value.constant = x;
-    return value;
-}
+Value unknown(std::string why) { return {.unknown = std::move(why)}; }
+Value constant(double x) { return {.constant = x}; }
 
 void inherit(Value& to, const Value& from) {
     to.of_time |= from.of_time;
@@ -62,21 +53,13 @@ Value sum(Value a, const Value& b) {
 }
 
 Value product(const Value& a, const Value& b) {
-    if (a.is_constant()) {
-        Value result = scaled(b, a.constant);
-        if (a.of_time) result.per_time = b.of_time ? NAN : a.per_time * b.constant;
-        inherit(result, a);
-        return result;
-    }
-    if (b.is_constant()) {
-        Value result = scaled(a, b.constant);
-        if (b.of_time) result.per_time = a.of_time ? NAN : a.constant * b.per_time;
-        inherit(result, b);
-        return result;
-    }
-    if (!a.is_known()) return a;
-    if (!b.is_known()) return b;
-    return unknown("a product of displacements");
+    if (!a.is_constant() && !b.is_constant())
+        return !a.is_known() ? a : !b.is_known() ? b : unknown("a product of displacements");
+    const auto& [factor, other] = a.is_constant() ? std::tie(a, b) : std::tie(b, a);
+    Value result = scaled(other, factor.constant);
+    if (factor.of_time) result.per_time = other.of_time ? NAN : factor.per_time * other.constant;
+    inherit(result, factor);
+    return result;
 }
 
 // STEP(x, x0, h0, x1, h1): a cubic from h0 to h1.
@@ -89,41 +72,29 @@ double step(const std::vector<double>& p) {
 }
 
 using Numbers = std::vector<double>;
+using Unary = double (*)(double);
+constexpr std::pair<std::string_view, Unary> unary[] = {
+    {"ABS", std::abs},   {"ACOS", std::acos}, {"AINT", std::trunc},  {"ANINT", std::round},
+    {"ASIN", std::asin}, {"ATAN", std::atan}, {"COS", std::cos},     {"COSH", std::cosh},
+    {"EXP", std::exp},   {"LOG", std::log},   {"LOG10", std::log10}, {"SIN", std::sin},
+    {"SINH", std::sinh}, {"SQRT", std::sqrt}, {"TAN", std::tan},     {"TANH", std::tanh}};
 struct Function {
     std::string_view name;
     std::size_t least, most;
     double (*f)(const Numbers&);
 };
-const Function functions[] = {
-    {"ABS", 1, 1, [](const Numbers& p) { return std::abs(p[0]); }},
-    {"ACOS", 1, 1, [](const Numbers& p) { return std::acos(p[0]); }},
-    {"AINT", 1, 1, [](const Numbers& p) { return std::trunc(p[0]); }},
-    {"ANINT", 1, 1, [](const Numbers& p) { return std::round(p[0]); }},
-    {"ASIN", 1, 1, [](const Numbers& p) { return std::asin(p[0]); }},
-    {"ATAN", 1, 1, [](const Numbers& p) { return std::atan(p[0]); }},
+constexpr Function functions[] = {
     {"ATAN2", 2, 2, [](const Numbers& p) { return std::atan2(p[0], p[1]); }},
-    {"COS", 1, 1, [](const Numbers& p) { return std::cos(p[0]); }},
-    {"COSH", 1, 1, [](const Numbers& p) { return std::cosh(p[0]); }},
     {"DIM", 2, 2, [](const Numbers& p) { return std::max(p[0] - p[1], 0.0); }},
-    {"EXP", 1, 1, [](const Numbers& p) { return std::exp(p[0]); }},
-    {"LOG", 1, 1, [](const Numbers& p) { return std::log(p[0]); }},
-    {"LOG10", 1, 1, [](const Numbers& p) { return std::log10(p[0]); }},
     {"MAX", 1, 64, [](const Numbers& p) { return *std::ranges::max_element(p); }},
     {"MIN", 1, 64, [](const Numbers& p) { return *std::ranges::min_element(p); }},
     {"MOD", 2, 2, [](const Numbers& p) { return std::fmod(p[0], p[1]); }},
     {"SIGN", 2, 2, [](const Numbers& p) { return p[1] < 0 ? -std::abs(p[0]) : std::abs(p[0]); }},
-    {"SIN", 1, 1, [](const Numbers& p) { return std::sin(p[0]); }},
-    {"SINH", 1, 1, [](const Numbers& p) { return std::sinh(p[0]); }},
-    {"SQRT", 1, 1, [](const Numbers& p) { return std::sqrt(p[0]); }},
-    {"STEP", 5, 5, step},
-    {"TAN", 1, 1, [](const Numbers& p) { return std::tan(p[0]); }},
-    {"TANH", 1, 1, [](const Numbers& p) { return std::tanh(p[0]); }},
-};
+    {"STEP", 5, 5, step}};
 
 constexpr std::string_view measures[] = {"DM", "DX", "DY", "DZ", "AX", "AY", "AZ"};
-constexpr std::string_view at_rest[] = {"VR",   "VM",   "VX",   "VY",   "VZ",   "WM",
-                                        "WX",   "WY",   "WZ",   "ACCM", "ACCX", "ACCY",
-                                        "ACCZ", "WDTM", "WDTX", "WDTY", "WDTZ"};
+constexpr std::string_view at_rest =
+    "VR VM VX VY VZ WM WX WY WZ ACCM ACCX ACCY ACCZ WDTM WDTX WDTY WDTZ";
 
 class Parser {
   public:
@@ -131,19 +102,14 @@ class Parser {
 
     Value whole() {
         Value value = expression();
-        if (!at_end())
-            return unknown(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
-        return value;
+        skip();
+        return text_.empty() ? value : unreadable();
     }
 
   private:
     void skip() {
         while (!text_.empty() && (text_.front() == ' ' || text_.front() == '\t'))
             text_.remove_prefix(1);
-    }
-    bool at_end() {
-        skip();
-        return text_.empty();
     }
     bool take(char c) {
         skip();
@@ -152,6 +118,7 @@ class Parser {
         return true;
     }
 
+    Value unreadable() { return give_up(reader::quote(text_.substr(0, 40)) + " cannot be read"); }
     Value give_up(const std::string& why) {
         text_ = {};
         return unknown(why);
@@ -240,20 +207,14 @@ class Parser {
         }
         std::size_t n = 0;
         while (n < text_.size() && reader::is_word(text_[n])) ++n;
-        if (n == 0)
-            return give_up(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
+        if (n == 0) return unreadable();
         const std::string name = capitals(text_.substr(0, n));
         text_.remove_prefix(n);
         if (take('(')) return call(name);
         if (name == "PI") return constant(std::numbers::pi);
         if (name == "RTOD") return constant(180 / std::numbers::pi);
         if (name == "DTOR") return constant(std::numbers::pi / 180);
-        if (name == "TIME") {
-            Value value = constant(context_.time);
-            value.of_time = true;
-            value.per_time = 1;
-            return value;
-        }
+        if (name == "TIME") return {.constant = context_.time, .of_time = true, .per_time = 1};
         return unknown(fmt::format("{} is not a known constant", reader::quote(name)));
     }
 
@@ -279,11 +240,7 @@ class Parser {
     }
 
     Value apply(const std::string& name, std::vector<Value>& p) const {
-        if (std::ranges::find(at_rest, name) != std::end(at_rest)) {
-            Value zero;
-            zero.of_velocity = true;
-            return zero;
-        }
+        if (has_word(at_rest, name)) return {.of_velocity = true};
         if (const auto found = std::ranges::find(measures, name); found != std::end(measures)) {
             Measure measure{.kind = static_cast<Measure::Kind>(found - std::begin(measures))};
             int* const to[] = {&measure.i, &measure.j, &measure.rm};
@@ -293,9 +250,7 @@ class Parser {
                 if (!marker) return unknown(name + " of something other than a marker");
                 *to[k] = *marker;
             }
-            Value value;
-            value.linear[measure] = 1;
-            return value;
+            return {.linear = {{measure, 1}}};
         }
         if (name == "IF") return choose(p);
         if (name == "AKISPL" || name == "CUBSPL") return spline(name, p);
@@ -309,8 +264,15 @@ class Parser {
                 return unknown("VARVAL of something other than a variable");
             return context_.variable(*variable);
         }
+        return of_numbers(name, p);
+    }
+
+    // A function that is known where its arguments are.
+    Value of_numbers(const std::string& name, const std::vector<Value>& p) const {
+        const auto one = std::ranges::find(unary, name, &std::pair<std::string_view, Unary>::first);
         const auto found = std::ranges::find(functions, name, &Function::name);
-        if (found == std::end(functions))
+        const bool is_unary = one != std::end(unary);
+        if (!is_unary && found == std::end(functions))
             return unknown(fmt::format("{}(...), an unsupported function", name));
         Numbers numbers;
         Value result;
@@ -326,14 +288,13 @@ class Parser {
                 "SIGN of a velocity: friction, which also acts at rest, and a scene has no "
                 "friction (--drop dynamics leaves it out)");
         }
-        if (name == "STEP" && p.size() == 5) {
-            note_event(p[0], p[1].constant);
-            note_event(p[0], p[3].constant);
-        }
+        if (name == "STEP" && p.size() == 5)
+            for (const std::size_t edge : {1, 3}) note_event(p[0], p[edge].constant);
         if (result.of_time) result.per_time = NAN;
-        if (numbers.size() < found->least || numbers.size() > found->most)
+        if (numbers.size() < (is_unary ? 1 : found->least) ||
+            numbers.size() > (is_unary ? 1 : found->most))
             return unknown(fmt::format("{} with {} arguments", name, numbers.size()));
-        result.constant = found->f(numbers);
+        result.constant = is_unary ? one->second(numbers[0]) : found->f(numbers);
         if (!std::isfinite(result.constant))
             return unknown(name + " of numbers for which it is not defined");
         return result;

@@ -9,14 +9,13 @@
 #include <Eigen/Geometry>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "models/import/adm/statements.hpp"
 
 namespace elastocheck::importer::adm {
 
-// Three numbers of a statement as a vector.
-Eigen::Vector3d vector(const std::vector<double>& v);
+// Three numbers of a statement; zeros if there are none.
+Eigen::Vector3d vector(const Statement& s, std::string_view argument);
 
 struct Units {
     double length = 1;  // scene units per unit of the file
@@ -49,6 +48,8 @@ struct Marker {
     int part = 0;
     bool floats = false;
     Frame pose;  // in the axes of ground
+
+    Eigen::Vector3d axis(int k) const { return pose.A.col(k); }
 };
 
 struct Geometry {
@@ -59,6 +60,6 @@ struct Geometry {
 };
 
 // Throws SceneError for missing, duplicate or circular definitions.
-Geometry read_geometry(const Dataset& data);
+Geometry read_geometry(const Dataset& data, const std::string& file);
 
 }  // namespace elastocheck::importer::adm

@@ -1,15 +1,12 @@
 #include "models/import/adm/statements.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <numbers>
-#include <optional>
-#include <span>
+#include <set>
 
-#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
 
@@ -18,141 +15,213 @@ namespace {
 
 using reader::is_blank, reader::is_digit, reader::trimmed;
 
-// All keywords of a dataset, to resolve abbreviations.
-constexpr std::string_view keywords[] = {
-    "ACCGRAV", "ADAMS",        "ARRAY",    "BEAM",        "BUSHING",    "CONTACT",
-    "CONTROL", "COSIM",        "COUPLER",  "CURVE",       "CVCV",       "DEACTIVATE",
-    "DEBUG",   "DIFF",         "END",      "EQUILIBRIUM", "EXECUTION",  "FE_LOAD",
-    "FE_NODE", "FE_PART",      "FIELD",    "FLEX_BODY",   "FRICTION",   "GCON",
-    "GEAR",    "GFORCE",       "GRAPHICS", "GSE",         "IC",         "INCLUDE",
-    "INFO",    "INTEGRATOR",   "JOINT",    "JPRIM",       "KINEMATICS", "LINEAR",
-    "LIST",    "LSE",          "LSSOLVER", "MARKER",      "MATERIAL",   "MATRIX",
-    "MFORCE",  "MODE",         "MOTION",   "NFORCE",      "OUTPUT",     "PART",
-    "PINPUT",  "POINT_MASS",   "POUTPUT",  "PREFERENCES", "PTCV",       "PTSF",
-    "REQUEST", "RESULTS",      "SECTION",  "SENSOR",      "SFORCE",     "SOLVER",
-    "SPLINE",  "SPRINGDAMPER", "STRING",   "SURFACE",     "TFSISO",     "TIRE",
-    "UCON",    "UNITS",        "VARIABLE", "VFORCE",      "VTORQUE",    "WHEEL"};
+// The arguments of each converted statement: FLAG, NAME= of values, NAME=f of an expression.
+const std::map<std::string_view, std::string> converted{
+    {"ACCGRAV", "IGRAV= JGRAV= KGRAV="},
+    {"BEAM",
+     "LINEAR STRING NONLINEAR I= J= LENGTH= AREA= IXX= IYY= IZZ= EMODULUS= GMODULUS= ASY= ASZ= "
+     "CRATIO= CMATRIX= FORMULATION="},
+    {"BUSHING", "I= J= K= KT= C= CT= FORCE= TORQUE="},
+    {"COUPLER", "JOINTS= TYPE= SCALES= FUNCTION=f"},
+    {"FIELD", "I= J= KMATRIX= CMATRIX= CRATIO= LENGTH= FORCE= FORMULATION= FUNCTION=f"},
+    {"GCON", "I= FUNCTION=f"},
+    {"GFORCE", "I= JFLOAT= RM= ROUTINE= FX=f FY=f FZ=f TX=f TY=f TZ=f FUNCTION=f"},
+    {"JOINT",
+     "REVOLUTE CYLINDRICAL TRANSLATIONAL SPHERICAL FIXED PLANAR HOOKE UNIVERSAL CONVEL RACKPIN "
+     "SCREW I= J= IC= ICTRAN= ICROT= PD= PITCH= " +
+         arguments_of_friction},
+    {"JPRIM", "ATPOINT INLINE INPLANE ORIENTATION PARALLEL_AXES PERPENDICULAR I= J="},
+    {"MARKER",
+     "USEXP FLOATING PART= POINT_MASS= FLEX_BODY= FE_PART= QP= REULER= ZP= XP= RM= NODE_ID= "
+     "NODE_LABEL="},
+    {"MOTION",
+     "TRANSLATIONAL ROTATIONAL X Y Z B1 B2 B3 DISPLACEMENT VELOCITY ACCELERATION JOINT= I= J= "
+     "ICDISP= ICVEL= FUNCTION=f"},
+    {"PART",
+     "GROUND MASS= CM= IM= IP= QG= REULER= ZG= XG= VX= VY= VZ= WX= WY= WZ= VM= WM= EXACT= "
+     "MATERIAL= VELOCITY="},
+    {"SFORCE", "TRANSLATIONAL ROTATIONAL ACTIONONLY I= J= ROUTINE= FUNCTION=f"},
+    {"SPLINE", "LINEAR_EXTRAPOLATE X= Y= Z= FILE= BLOCK= CHANNEL="},
+    {"SPRINGDAMPER", "TRANSLATIONAL ROTATIONAL I= J= K= C= KT= CT= LENGTH= ANGLE= FORCE= TORQUE="},
+    {"UNITS", "FORCE= MASS= LENGTH= TIME= SYSTEM= UCF="},
+    {"VARIABLE", "IC= ROUTINE= AUTOSCALE= FUNCTION=f"}};
 
-bool is_letter(char c) { return reader::is_letter(c) || c == '_'; }
-bool is_name(char c) { return reader::is_word(c); }
+constexpr std::string_view without_effect =
+    "GRAPHICS REQUEST OUTPUT RESULTS PREFERENCES INTEGRATOR EQUILIBRIUM KINEMATICS DEBUG STRING "
+    "MATERIAL ADAMS IC LSSOLVER LIST INFO SOLVER LINEAR EXECUTION";
+constexpr std::string_view if_used =
+    "VARIABLE ARRAY DIFF LSE GSE TFSISO MATRIX CURVE SURFACE SENSOR PINPUT POUTPUT CONTROL COSIM "
+    "SECTION FE_NODE";
+const std::map<std::string_view, std::string_view> without_equivalent{
+    {"CONTACT", "a contact between parts"},
+    {"PTCV", "a point on a curve"},
+    {"CVCV", "a curve on a curve"},
+    {"PTSF", "a point on a surface"},
+    {"UCON", "a user-written constraint"},
+    {"GEAR", "a gear"},
+    {"FLEX_BODY", "a flexible body"},
+    {"FE_PART", "a finite-element part"},
+    {"FE_LOAD", "a load on a finite-element part"},
+    {"NFORCE", "a force between many markers"},
+    {"MFORCE", "a modal force"},
+    {"TIRE", "a user-written tyre"},
+    {"WHEEL", "a user-written wheel"},
+    {"INCLUDE", "another file"},
+    {"DEACTIVATE", "a deactivated statement: remove both the statement and its deactivation"},
+    {"MODE", "a switch"}};
 
-// Words that an abbreviation can mean: the exact match alone, else all that begin with it.
+// The next word of a list, which is removed from it.
+std::string_view next_word(std::string_view& list) {
+    const std::string_view word = list.substr(0, list.find(' '));
+    list.remove_prefix(std::min(word.size() + 1, list.size()));
+    return word;
+}
+
+const std::vector<std::string>& keywords() {
+    static const std::vector<std::string> all = [] {
+        std::set<std::string> words{"END", "FRICTION", "POINT_MASS", "VFORCE", "VTORQUE"};
+        for (const auto& [word, form] : converted) words.emplace(word);
+        for (const auto& [word, what] : without_equivalent) words.emplace(word);
+        for (std::string_view list : {without_effect, if_used})
+            while (!list.empty()) words.emplace(next_word(list));
+        return std::vector<std::string>(words.begin(), words.end());
+    }();
+    return all;
+}
+
+// What an abbreviation can mean: the exact match alone, else all that begin with it.
 std::vector<std::string_view> meant(std::string_view beginning,
-                                    std::span<const std::string_view> words) {
+                                    const std::vector<std::string>& words) {
     std::vector<std::string_view> found;
-    for (const std::string_view word : words) {
+    for (const std::string& word : words) {
         if (word == beginning) return {word};
         if (word.starts_with(beginning)) found.push_back(word);
     }
     return found;
 }
 
-std::vector<std::string> strings(const std::vector<std::string_view>& words) {
-    return {words.begin(), words.end()};
+// The one word that an abbreviation means. `kind` and `label` complete the message.
+std::string_view resolved(std::string_view word, const std::vector<std::string>& words,
+                          std::string_view kind, const char* label, const auto& fail) {
+    const auto found = meant(word, words);
+    if (found.size() > 1)
+        fail(fmt::format("{} is ambiguous: {}", reader::quote(word), fmt::join(found, " or ")));
+    if (found.empty())
+        fail(fmt::format("{} is not a {}{}", reader::quote(word), kind,
+                         reader::did_you_mean(word, words, label)));
+    return found[0];
 }
 
-// The name in a comment adams_view_name='...'.
-std::optional<std::string> view_name(std::string_view comment) {
-    constexpr std::string_view key = "adams_view_name='";
-    const auto begin = comment.find(key);
-    if (begin == comment.npos) return std::nullopt;
-    comment.remove_prefix(begin + key.size());
-    return std::string(comment.substr(0, comment.find('\'')));
+bool is_letter(char c) { return reader::is_letter(c) || c == '_'; }
+bool is_in(char c, std::string_view set) { return set.find(c) != set.npos; }
+
+// How many characters from `from` on are of a kind.
+std::size_t length(std::string_view text, std::size_t from, const auto& is_of_kind) {
+    const auto end =
+        std::find_if_not(text.begin() + static_cast<std::ptrdiff_t>(from), text.end(), is_of_kind);
+    return static_cast<std::size_t>(end - text.begin()) - from;
+}
+void skip(std::string_view& text, std::string_view also) {
+    text.remove_prefix(length(text, 0, [&](char c) { return is_blank(c) || is_in(c, also); }));
 }
 
 struct Reading {
     Dataset& data;
+    const std::string& file;
     std::string name = {};      // of the next statement
     bool goes_on = false;       // the line before ended with "&"
     bool in_statement = false;  // a continuation is allowed
 
     [[noreturn]] void fail(const std::string& what) const {
-        reader::fail(data.file, data.last_line, "", what);
+        reader::fail(file, data.last_line, "", what);
     }
 
     void begin(std::string_view line) {
-        std::size_t n = 0;
-        while (n < line.size() && is_letter(line[n])) ++n;
-        std::size_t slash = n;
-        while (slash < line.size() && is_blank(line[slash])) ++slash;
+        const std::size_t n = length(line, 0, is_letter), slash = n + length(line, n, is_blank);
         if (n == 0 || slash == line.size() || line[slash] != '/')
             fail(
-                fmt::format("expected a statement KEYWORD/..., a line that begins with a comma, or "
-                            "a comment, found {}",
-                            reader::quote(line)));
-        const std::string word = capitals(line.substr(0, n));
-        const auto found = meant(word, keywords);
-        if (found.size() > 1)
-            fail(fmt::format("{} is ambiguous: {}", reader::quote(word), fmt::join(found, " or ")));
-        if (found.empty())
-            fail(fmt::format(
-                "{} is not a statement of a dataset{}", reader::quote(word),
-                reader::did_you_mean(word, strings({std::begin(keywords), std::end(keywords)}),
-                                     "there are")));
+                "expected a statement KEYWORD/..., a line that begins with a comma, or a "
+                "comment, found " +
+                reader::quote(line));
+        Statement s{.file = file, .line = data.last_line};
+        s.keyword = resolved(capitals(line.substr(0, n)), keywords(), "statement of a dataset",
+                             "there are", [&](const std::string& what) { fail(what); });
         if (data.statements.size() == most_statements)
             fail(fmt::format("more than {} statements", most_statements));
-        Statement statement;
-        statement.keyword = found[0];
-        statement.name = std::exchange(name, {});
-        statement.line = data.last_line;
+        s.name = std::exchange(name, {});
         line = trimmed(line.substr(slash + 1));
-        std::size_t digits = 0;
-        while (digits < line.size() && is_digit(line[digits])) ++digits;
-        if (digits > 0) {
-            const auto [end, error] =
-                std::from_chars(line.data(), line.data() + digits, statement.id);
-            if (error != std::errc{})
-                fail(fmt::format("{} is too large for an id",
-                                 reader::quote(line.substr(0, digits))));
-            line.remove_prefix(digits);
-        }
-        line = trimmed(line);
-        if (!line.empty() && line.front() == ',')
+        const std::size_t digits = length(line, 0, is_digit);
+        if (digits > 0 &&
+            std::from_chars(line.data(), line.data() + digits, s.id).ec != std::errc{})
+            fail(fmt::format("{} is too large for an id", reader::quote(line.substr(0, digits))));
+        line = trimmed(line.substr(digits));
+        if (line.starts_with(','))
             line.remove_prefix(1);
         else if (digits > 0 && !line.empty())
-            fail(fmt::format("expected a comma after the id {}, found {}", statement.id,
+            fail(fmt::format("expected a comma after the id {}, found {}", s.id,
                              reader::quote(line)));
-        statement.rest = line;
-        data.statements.push_back(std::move(statement));
+        s.rest = line;
+        data.statements.push_back(std::move(s));
         in_statement = true;
     }
 
     void read(std::string_view line) {
-        if (const auto mark = line.find('!'); mark != line.npos) {
-            if (auto found = view_name(line.substr(mark))) name = std::move(*found);
-            line = line.substr(0, mark);
+        constexpr std::string_view before_name = "adams_view_name='";
+        const auto mark = std::min(line.find('!'), line.size());
+        if (const auto at = line.find(before_name, mark); at != line.npos) {
+            const std::string_view named = line.substr(at + before_name.size());
+            name = named.substr(0, named.find('\''));
         }
-        line = trimmed(line);
+        line = trimmed(line.substr(0, mark));
         if (line.empty()) return;
         const bool continued = std::exchange(goes_on, line.ends_with('&'));
         if (goes_on) line = trimmed(line.substr(0, line.size() - 1));
-        if (line.starts_with(',') || continued) {
-            if (!in_statement) fail("continuation line without a statement before it");
-            if (line.starts_with(',')) line.remove_prefix(1);
-            Statement& statement = data.statements.back();
-            statement.rest += '\n';
-            statement.rest += line;
-            return;
-        }
-        begin(line);
+        if (!line.starts_with(',') && !continued) return begin(line);
+        if (!in_statement) fail("continuation line without a statement before it");
+        if (line.starts_with(',')) line.remove_prefix(1);
+        (data.statements.back().rest += '\n') += line;
     }
 };
 
 }  // namespace
+
+bool has_word(std::string_view list, std::string_view word) {
+    while (!list.empty())
+        if (const auto next = next_word(list); next.substr(0, next.find('=')) == word) return true;
+    return false;
+}
+
+std::string_view form_of(std::string_view keyword) {
+    if (keyword == "POINT_MASS") keyword = "PART";
+    if (keyword == "VFORCE" || keyword == "VTORQUE") keyword = "GFORCE";
+    const auto found = converted.find(keyword);
+    return found == converted.end() ? std::string_view() : std::string_view(found->second);
+}
+
+Role role_of(std::string_view keyword) {
+    if (has_word(if_used, keyword)) return Role::if_used;
+    if (!form_of(keyword).empty()) return Role::converted;
+    if (has_word(without_effect, keyword)) return Role::without_effect;
+    return keyword == "FRICTION" ? Role::friction : Role::missing;
+}
+
+std::string_view described(std::string_view missing_keyword) {
+    const auto found = without_equivalent.find(missing_keyword);
+    return found == without_equivalent.end() ? std::string_view() : found->second;
+}
 
 SourceLocation Statement::place() const {
     return {line, fmt::format("{}/{}{}", keyword, id ? std::to_string(id) : "",
                               name.empty() ? "" : fmt::format(" '{}'", reader::shown(name)))};
 }
 
+void Statement::fail(const std::string& what) const {
+    reader::fail(std::string(file), line, place().what, what);
+}
+
 Dataset read_statements(std::string_view text, const std::string& file) {
     Dataset data;
-    data.file = file;
-    if (text.size() > largest_dataset)
-        reader::fail(
-            file, 0, "",
-            fmt::format("larger than {} MiB, the limit for a dataset", largest_dataset >> 20));
-    Reading reading{data};
+    Reading reading{data, file};
     for (reader::Lines lines(text); lines.next();) {
         const std::string_view line = lines.line();
         data.last_line = lines.number();
@@ -161,105 +230,77 @@ Dataset read_statements(std::string_view text, const std::string& file) {
             data.title = trimmed(line);
             continue;
         }
-        const std::string_view word = trimmed(line.substr(0, line.find('!')));
-        if (capitals(word) == "END" || capitals(word) == "END/") {
-            data.has_end = true;
-            break;
-        }
+        const std::string word = capitals(trimmed(line.substr(0, line.find('!'))));
+        data.has_end = word == "END" || word == "END/";
+        if (data.has_end) break;
         reading.read(line);
     }
-    if (data.statements.empty())
-        reader::fail(file, data.last_line, "", "no statement: this is not a dataset");
+    if (data.statements.empty()) reading.fail("no statement: this is not a dataset");
     return data;
 }
 
-void fail(const std::string& file, const Statement& at, const std::string& what) {
-    reader::fail(file, at.line, at.place().what, what);
-}
-
 std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees) {
-    std::size_t n = 0;
-    std::string digits;  // in the format of from_chars
+    const auto is_at = [&](std::size_t n, std::string_view set) {
+        return n < text.size() && is_in(text[n], set);
+    };
+    const std::size_t sign = is_at(0, "+-") ? 1 : 0, whole = length(text, sign, is_digit);
+    std::size_t n = sign + whole, fraction = 0;
+    if (is_at(n, ".")) n += 1 + (fraction = length(text, n + 1, is_digit));
     is_in_degrees = false;
-    if (n < text.size() && (text[n] == '+' || text[n] == '-')) {
-        if (text[n] == '-') digits += '-';
-        ++n;
-    }
-    bool any = false;
-    for (bool point = false; n < text.size() && (is_digit(text[n]) || (text[n] == '.' && !point));
-         ++n) {
-        if (text[n] == '.') point = true;
-        any |= is_digit(text[n]);
-        digits += text[n];
-    }
-    if (!any) return 0;
-    if (n < text.size() && (text[n] == 'E' || text[n] == 'e' || text[n] == 'D' || text[n] == 'd')) {
-        std::size_t k = n + 1;
-        if (k < text.size() && (text[k] == '+' || text[k] == '-')) ++k;
-        const std::size_t first = k;
-        while (k < text.size() && is_digit(text[k])) ++k;
-        if (k > first) {
-            digits += 'e';
-            for (std::size_t l = n + 1; l < k; ++l)
-                if (text[l] != '+') digits += text[l];
-            n = k;
+    if (whole + fraction == 0) return 0;
+    std::string digits(text.substr(sign, n - sign));  // in the format of from_chars
+    if (is_at(n, "EeDd")) {
+        const std::size_t signed_at = n + 1, first = signed_at + (is_at(signed_at, "+-") ? 1 : 0),
+                          count = length(text, first, is_digit);
+        if (count > 0) {
+            digits += is_at(signed_at, "-") ? "e-" : "e";
+            digits += text.substr(first, count);
+            n = first + count;
         }
     }
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
-    if (n < text.size() && (text[n] == 'D' || text[n] == 'd') &&
-        (n + 1 == text.size() || !is_name(text[n + 1]))) {
-        is_in_degrees = true;
-        ++n;
-    }
-    return n;
+    const auto end = digits.data() + digits.size();
+    if (std::from_chars(digits.data(), end, value).ec == std::errc::result_out_of_range)
+        value = std::numeric_limits<double>::infinity();
+    if (is_at(0, "-")) value = -value;
+    is_in_degrees = is_at(n, "Dd") && (n + 1 == text.size() || !reader::is_word(text[n + 1]));
+    return n + (is_in_degrees ? 1 : 0);
 }
 
-// ---- Arguments, from left to right; text before `at` is consumed.
+// ---- Arguments, from left to right; text that was read is removed.
 
 namespace {
 
 struct Scanner {
-    const std::string& file;
     const Statement& statement;
-    const Shape& shape;
-    std::string_view text;
+    std::vector<std::string> flags = {}, names = {};
+    std::string_view text = statement.rest;
 
-    [[noreturn]] void fail(const std::string& what) const { adm::fail(file, statement, what); }
-    void skip_blanks() {
-        while (!text.empty() && (is_blank(text.front()) || text.front() == '\n'))
-            text.remove_prefix(1);
+    explicit Scanner(const Statement& s) : statement(s) {
+        for (std::string_view form = form_of(s.keyword); !form.empty();) {
+            const std::string_view word = next_word(form), name = word.substr(0, word.find('='));
+            (name == word ? flags : names).emplace_back(name);
+        }
     }
-    void skip_separators() {
-        while (!text.empty() && (is_blank(text.front()) || text.front() == '\n' ||
-                                 text.front() == ',' || text.front() == '\\'))
-            text.remove_prefix(1);
-    }
+
     // The word at the beginning, and whether "=" follows.
     static std::string_view word(std::string_view rest, bool& assigns) {
-        std::size_t n = 0;
-        if (n < rest.size() && is_letter(rest[n]))
-            while (n < rest.size() && is_name(rest[n])) ++n;
-        std::size_t k = n;
-        while (k < rest.size() && is_blank(rest[k])) ++k;
+        const bool begins = !rest.empty() && is_letter(rest[0]);
+        const std::size_t n = begins ? length(rest, 0, reader::is_word) : 0,
+                          k = n + length(rest, n, is_blank);
         assigns = n > 0 && k < rest.size() && rest[k] == '=';
         return rest.substr(0, n);
-    }
-    bool is_flag(std::string_view name) const {
-        return !name.empty() && !meant(capitals(name), shape.flags).empty();
     }
 
     // Whether another argument begins here, after a comma or on a new line of a complete
     // expression.
     bool is_argument(std::string_view rest) const {
-        while (!rest.empty() &&
-               (is_blank(rest.front()) || rest.front() == ',' || rest.front() == '\n'))
-            rest.remove_prefix(1);
+        skip(rest, ",\n");
         bool assigns = false;
         const std::string_view name = word(rest, assigns);
         if (assigns) return true;
         rest = trimmed(rest.substr(name.size()));
-        return is_flag(name) && (rest.empty() || rest.front() == ',' || rest.front() == '\n');
+        return !name.empty() && !meant(capitals(name), flags).empty() &&
+               (rest.empty() || is_in(rest.front(), ",\n"));
     }
 
     std::string expression() {
@@ -267,197 +308,157 @@ struct Scanner {
         int depth = 0;
         for (; !text.empty(); text.remove_prefix(1)) {
             const char c = text.front();
-            if (c == '\\' || (depth == 0 && c == ',')) break;
-            if (c == '\n') {
-                if (depth == 0 && is_argument(text)) break;
-                continue;
-            }
+            if (c == '\\' || (depth == 0 && (c == ',' || (c == '\n' && is_argument(text))))) break;
+            if (c == '\n') continue;
             depth += c == '(' ? 1 : c == ')' ? -1 : 0;
             if (depth < 0)
-                fail(fmt::format("{}: a closing bracket without an opening one",
-                                 reader::quote(result)));
+                statement.fail("{}: a closing bracket without an opening one",
+                               reader::quote(result));
             result += c;
         }
-        if (depth > 0) fail(fmt::format("{}: a bracket is not closed", reader::quote(result)));
+        if (depth > 0) statement.fail("{}: a bracket is not closed", reader::quote(result));
         return std::string(trimmed(result));
     }
 
     std::vector<std::string> values() {
         std::vector<std::string> list;
-        skip_blanks();
-        for (bool more = true; more;) {
-            std::size_t n = 0;
-            while (n < text.size() && text[n] != ',' && text[n] != ':' && text[n] != '\n' &&
-                   text[n] != '\\')
-                ++n;
+        skip(text, "\n");
+        for (;;) {
+            const std::size_t n = std::min(text.find_first_of(",:\n\\"), text.size());
             list.emplace_back(trimmed(text.substr(0, n)));
             text.remove_prefix(n);
-            more = false;
-            if (text.empty() || text.front() == '\\') break;
+            if (text.empty() || text.front() == '\\') return list;
             if (text.front() == ':') {
                 text.remove_prefix(1);
-                more = true;
                 continue;
             }
             // After a comma and/or a new line the following text is a value if it is a number.
             std::string_view rest = text;
             if (rest.front() == ',') rest.remove_prefix(1);
-            while (!rest.empty() && (is_blank(rest.front()) || rest.front() == '\n'))
-                rest.remove_prefix(1);
+            skip(rest, "\n");
             double ignored = 0;
             bool degrees = false;
-            if (number_at(rest, ignored, degrees) == 0) break;
+            if (number_at(rest, ignored, degrees) == 0) return list;
             text = rest;
-            more = true;
         }
-        return list;
+    }
+
+    void read(std::vector<Argument>& arguments) {
+        const std::string form = fmt::format(" {} ", form_of(statement.keyword));
+        for (skip(text, "\n,\\"); !text.empty(); skip(text, "\n,\\")) {
+            bool assigns = false;
+            const std::string_view written = word(text, assigns);
+            if (written.empty())
+                statement.fail("expected an argument, found {}",
+                               reader::quote(trimmed(text.substr(0, 80))));
+            Argument argument{
+                .name = std::string(resolved(
+                    capitals(written), assigns ? names : flags,
+                    assigns ? "known argument of this statement" : "known flag of this statement",
+                    "known", [&](const auto& what) { statement.fail(what); }))};
+            if (std::ranges::find(arguments, argument.name, &Argument::name) != arguments.end())
+                statement.fail("{} is given twice", argument.name);
+            text.remove_prefix(assigns ? text.find('=') + 1 : written.size());
+            if (assigns && form.find(" " + argument.name + "=f ") != form.npos)
+                argument.kind = Argument::Kind::expression, argument.values = {expression()};
+            else if (assigns)
+                argument.kind = Argument::Kind::values, argument.values = values();
+            arguments.push_back(std::move(argument));
+        }
     }
 };
 
 }  // namespace
 
-Arguments::Arguments(const std::string& file, const Statement& statement, const Shape& shape)
-    : file_(&file), statement_(&statement) {
-    std::vector<std::string_view> names = shape.values;
-    names.insert(names.end(), shape.expressions.begin(), shape.expressions.end());
-    Scanner scanner{file, statement, shape, statement.rest};
-    for (scanner.skip_separators(); !scanner.text.empty(); scanner.skip_separators()) {
-        bool assigns = false;
-        const std::string_view written = Scanner::word(scanner.text, assigns);
-        if (written.empty())
-            fail(fmt::format("expected an argument, found {}",
-                             reader::quote(trimmed(scanner.text.substr(0, 80)))));
-        const std::string name = capitals(written);
-        const auto& allowed = assigns ? names : shape.flags;
-        const auto found = meant(name, allowed);
-        if (found.size() > 1)
-            fail(fmt::format("{} is ambiguous: {}", reader::quote(name), fmt::join(found, " or ")));
-        if (found.empty())
-            fail(fmt::format("{} is not a known {} of this statement{}", reader::quote(name),
-                             assigns ? "argument" : "flag",
-                             reader::did_you_mean(name, strings(allowed), "known")));
-        if (find(found[0])) fail(fmt::format("{} is given twice", found[0]));
-        Argument argument;
-        argument.name = found[0];
-        argument.is_flag = !assigns;
-        scanner.text.remove_prefix(written.size());
-        if (assigns) {
-            scanner.text.remove_prefix(scanner.text.find('=') + 1);
-            if (std::ranges::find(shape.expressions, found[0]) != shape.expressions.end())
-                argument.values = {scanner.expression()};
-            else
-                argument.values = scanner.values();
-        }
-        if (statement.arguments.size() == arguments_.size())
-            statement.arguments.emplace_back(found[0], false);
-        arguments_.push_back(std::move(argument));
-    }
+const Argument* Statement::find(std::string_view argument) const {
+    if (!arguments) Scanner(*this).read(arguments.emplace());
+    const auto found = std::ranges::find(*arguments, argument, &Argument::name);
+    return found == arguments->end() ? nullptr : &*found;
 }
 
-void Arguments::fail(const std::string& what) const { adm::fail(*file_, *statement_, what); }
-
-const Argument* Arguments::find(std::string_view name) const {
-    const auto found = std::ranges::find(arguments_, name, &Argument::name);
-    return found == arguments_.end() ? nullptr : &*found;
+const Argument* Statement::mark_read(std::string_view argument) const {
+    const Argument* found = find(argument);
+    if (found) found->is_read = true;
+    return found;
 }
 
-void Arguments::mark_read(std::string_view name) const {
-    for (auto& [argument, is_read] : statement_->arguments) is_read |= argument == name;
+bool Statement::has(std::string_view argument) const {
+    const Argument* found = find(argument);
+    if (found && found->kind == Argument::Kind::flag) found->is_read = true;
+    return found != nullptr;
 }
 
-const Argument* Arguments::taken(std::string_view name) const {
-    mark_read(name);
-    return find(name);
-}
-
-bool Arguments::has(std::string_view name) const {
-    const Argument* argument = find(name);
-    if (argument && argument->is_flag) mark_read(name);
-    return argument != nullptr;
-}
-
-std::vector<std::string> Arguments::flags() const {
+std::vector<std::string> Statement::flags() const {
+    find("");
     std::vector<std::string> result;
-    for (const Argument& argument : arguments_)
-        if (argument.is_flag) {
-            mark_read(argument.name);
+    for (const Argument& argument : *arguments)
+        if (argument.kind == Argument::Kind::flag && has(argument.name))
             result.push_back(argument.name);
-        }
     return result;
 }
 
-double Arguments::read(const Argument& argument, const std::string& text, bool is_angle) const {
-    double value = 0;
-    bool degrees = false;
-    if (number_at(text, value, degrees) != text.size() || text.empty())
-        fail(fmt::format("{}: {} is not a number", argument.name, reader::quote(text)));
-    if (!std::isfinite(value) || std::abs(value) > 1e30)
-        fail(fmt::format("{}: {} is out of range; allowed: up to 1e30 in size", argument.name,
-                         reader::quote(text)));
-    if (degrees && !is_angle)
-        fail(fmt::format("{}: {} is in degrees, but the argument is not an angle", argument.name,
-                         reader::quote(text)));
-    return degrees ? value * std::numbers::pi / 180 : value;
+std::string Statement::word(std::string_view argument) const {
+    const Argument* found = mark_read(argument);
+    return found && !found->values.empty() ? capitals(found->values[0]) : "";
 }
 
-std::string Arguments::word(std::string_view name) const {
-    const Argument* argument = taken(name);
-    return argument && !argument->values.empty() ? capitals(argument->values[0]) : "";
-}
-
-std::vector<int> Arguments::ids(std::string_view name) const {
+std::vector<int> Statement::ids(std::string_view argument) const {
     std::vector<int> result;
-    if (const Argument* argument = taken(name))
-        for (const std::string& text : argument->values) {
-            int id = 0;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
-            if (error != std::errc{} || end != text.data() + text.size() || id <= 0)
-                fail(fmt::format("{}: {} is not an id; allowed: whole numbers above zero", name,
-                                 reader::quote(text)));
-            result.push_back(id);
+    if (const Argument* found = mark_read(argument))
+        for (const std::string& text : found->values) {
+            int number = 0;
+            const auto* const last = text.data() + text.size();
+            const auto [end, error] = std::from_chars(text.data(), last, number);
+            if (error != std::errc{} || end != last || number <= 0)
+                fail("{}: {} is not an id; allowed: whole numbers above zero", argument,
+                     reader::quote(text));
+            result.push_back(number);
         }
     return result;
 }
 
-int Arguments::id(std::string_view name) const {
-    const auto all = ids(name);
-    if (all.size() > 1) fail(fmt::format("{}: {} ids, expected one", name, all.size()));
+int Statement::id_of(std::string_view argument) const {
+    const auto all = ids(argument);
+    if (all.size() > 1) fail("{}: {} ids, expected one", argument, all.size());
     return all.empty() ? 0 : all[0];
 }
 
-std::vector<double> Arguments::list(std::string_view name, std::size_t least, std::size_t most,
-                                    bool angles) const {
-    const Argument* argument = taken(name);
+std::vector<double> Statement::numbers(std::string_view argument, std::size_t least,
+                                       std::size_t most, Unit unit) const {
+    const Argument* found = mark_read(argument);
     std::vector<double> result;
-    if (!argument) return result;
-    if (argument->values.size() < least || argument->values.size() > most)
-        fail(fmt::format(
-            "{}: {} numbers, expected {}", name, argument->values.size(),
-            least == most ? std::to_string(least) : fmt::format("{} to {}", least, most)));
-    for (const std::string& text : argument->values)
-        result.push_back(read(*argument, text, angles));
+    if (!found) return result;
+    if (found->values.size() < least || found->values.size() > most)
+        fail("{}: {} numbers, expected {}", argument, found->values.size(),
+             least == most ? std::to_string(least) : fmt::format("{} to {}", least, most));
+    for (const std::string& text : found->values) {
+        double value = 0;
+        bool degrees = false;
+        if (number_at(text, value, degrees) != text.size() || text.empty())
+            fail("{}: {} is not a number", argument, reader::quote(text));
+        if (!std::isfinite(value) || std::abs(value) > 1e30)
+            fail("{}: {} is out of range; allowed: up to 1e30 in size", argument,
+                 reader::quote(text));
+        if (degrees && unit != Unit::angle)
+            fail("{}: {} is in degrees, but the argument is not an angle", argument,
+                 reader::quote(text));
+        result.push_back(degrees ? value * std::numbers::pi / 180 : value);
+    }
     return result;
 }
 
-double Arguments::number(std::string_view name, double missing) const {
-    const auto one = list(name, 1, 1, false);
+double Statement::number(std::string_view argument, double missing) const {
+    const auto one = numbers(argument, 1, 1);
     return one.empty() ? missing : one[0];
 }
-double Arguments::angle(std::string_view name, double missing) const {
-    const auto one = list(name, 1, 1, true);
+double Statement::angle(std::string_view argument, double missing) const {
+    const auto one = numbers(argument, 1, 1, Unit::angle);
     return one.empty() ? missing : one[0];
-}
-std::vector<double> Arguments::numbers(std::string_view name, std::size_t least,
-                                       std::size_t most) const {
-    return list(name, least, most, false);
-}
-std::vector<double> Arguments::angles(std::string_view name, std::size_t count) const {
-    return list(name, count, count, true);
 }
 
-const std::string* Arguments::expression(std::string_view name) const {
-    const Argument* argument = taken(name);
-    return argument && !argument->values.empty() ? &argument->values[0] : nullptr;
+const std::string* Statement::expression(std::string_view argument) const {
+    const Argument* found = mark_read(argument);
+    return found && !found->values.empty() ? &found->values[0] : nullptr;
 }
 
 }  // namespace elastocheck::importer::adm

@@ -15,6 +15,9 @@
 // binary file.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,80 +27,78 @@
 
 namespace elastocheck::importer::adm {
 
-inline constexpr std::size_t largest_dataset = 16 << 20;  // [bytes]
 inline constexpr std::size_t most_statements = 200'000;
 
+// Whether a list "A B= C=f" has the word.
+bool has_word(std::string_view list, std::string_view word);
+
+// Arguments of a joint's friction: coefficients, torques, and the geometry of the contact.
+inline const std::string arguments_of_friction =
+    "FRICTION= MAXFRIC= MU1= MU_DYN_ROT= MU_STAT_ROT= MAX_FRIC_ROT= MU_DYN_TRANS= MU_STAT_TRANS= "
+    "MAX_FRIC_TRANS= DELTA_V= INNER_RADIUS= OUTER_RADIUS= HEIGHT= WIDTH= PRELOAD_RADIAL= "
+    "PRELOAD_AXIAL= MAXIMUM_DEFORMATION= IMPLICIT=";
+
+struct Argument {
+    std::string name;  // in full, in capitals
+    enum class Kind { flag, values, expression } kind = Kind::flag;
+    std::vector<std::string> values = {};  // an expression is one text, with lines joined
+    mutable bool is_read = false;
+};
+
+// A statement and its arguments by their full names. A function that returns a value of an argument,
+// and `has` for a flag, mark it as read. They throw SceneError for an argument that the statement does
+// not have, for a duplicate, and for a value of another kind.
 struct Statement {
-    std::string keyword;  // in full: "SPRINGDAMPER"
-    int id = 0;           // 0: none
-    std::string rest;     // text after the id; '\n' replaces the comma of a continuation
-    std::string name;     // from the comment adams_view_name='...' above it; or empty
+    std::string_view file, keyword = {};  // in full: "SPRINGDAMPER"
+    int id = 0;                           // 0: none
+    std::string rest = {};  // text after the id; '\n' replaces the comma of a continuation
+    std::string name = {};  // from the comment adams_view_name='...' above it; or empty
     int line = 0;
-    // The arguments found by Arguments, and whether each has been read.
-    mutable std::vector<std::pair<std::string_view, bool>> arguments = {};
+    mutable std::optional<std::vector<Argument>> arguments = {};  // once one of them was looked for
 
     SourceLocation place() const;  // "JOINT/1 'knuckle'"
+    [[noreturn]] void fail(const std::string& what) const;
+    template <class... A>
+    [[noreturn]] void fail(fmt::format_string<A...> what, A&&... a) const {
+        fail(fmt::format(what, std::forward<A>(a)...));
+    }
+    bool is(std::string_view keywords) const { return has_word(keywords, keyword); }
+
+    bool has(std::string_view argument) const;
+    const Argument* mark_read(std::string_view argument) const;  // null if there is none
+    std::vector<std::string> flags() const;
+    std::string word(std::string_view argument) const;  // one value, in capitals
+    int id_of(std::string_view argument) const;         // of another statement; 0 if missing
+    std::vector<int> ids(std::string_view argument) const;
+    double number(std::string_view argument, double missing) const;
+    double angle(std::string_view argument, double missing) const;  // [rad]; suffix D: degrees
+    enum class Unit { any, angle };
+    std::vector<double> numbers(std::string_view argument, std::size_t least, std::size_t most,
+                                Unit unit = Unit::any) const;
+    const std::string* expression(std::string_view argument) const;
+
+  private:
+    const Argument* find(std::string_view argument) const;
 };
 
 struct Dataset {
-    std::string file, title;
+    std::string title;
     std::vector<Statement> statements;
     int last_line = 0;
     bool has_end = false;
 };
 
-// Throws SceneError if the text is not a dataset.
+// Throws SceneError if the text is not a dataset. `file` must outlive the statements.
 Dataset read_statements(std::string_view text, const std::string& file);
 
-[[noreturn]] void fail(const std::string& file, const Statement& at, const std::string& what);
+// The argument list of a keyword that is converted, "FLAG NAME= NAME=f"; empty for others.
+std::string_view form_of(std::string_view keyword);
 
-// ---- Arguments.
-
-struct Argument {
-    std::string name;      // as written, in capitals
-    bool is_flag = false;  // no "="
-    // of an assignment; an expression has one text, with lines joined
-    std::vector<std::string> values;
-};
-
-// Arguments that a statement may have: flags, names with values, names with an expression.
-struct Shape {
-    std::vector<std::string_view> flags, values, expressions;
-};
-
-// The arguments of a statement by their full names. Throws SceneError for an argument that the
-// shape does not have, and for a duplicate. `has` and `flags` count as reading a flag, the
-// functions that return a value as reading it; Statement::arguments records which arguments were
-// read.
-class Arguments {
-  public:
-    Arguments(const std::string& file, const Statement& statement, const Shape& shape);
-
-    bool has(std::string_view name) const;
-    std::vector<std::string> flags() const;
-    void mark_read(std::string_view name) const;    // for an argument used in another way
-    std::string word(std::string_view name) const;  // one value, in capitals
-    // one value, the id of another statement; 0 if missing
-    int id(std::string_view name) const;
-    std::vector<int> ids(std::string_view name) const;
-    double number(std::string_view name, double missing) const;
-    double angle(std::string_view name, double missing) const;  // [rad]; the suffix D means degrees
-    std::vector<double> numbers(std::string_view name, std::size_t least, std::size_t most) const;
-    std::vector<double> angles(std::string_view name, std::size_t count) const;
-    const std::string* expression(std::string_view name) const;
-    [[noreturn]] void fail(const std::string& what) const;
-
-  private:
-    const Argument* find(std::string_view name) const;
-    const Argument* taken(std::string_view name) const;  // find(), marked as read
-    double read(const Argument& argument, const std::string& text, bool is_angle) const;
-    std::vector<double> list(std::string_view name, std::size_t least, std::size_t most,
-                             bool angles) const;
-
-    const std::string* file_;
-    const Statement* statement_;
-    std::vector<Argument> arguments_;
-};
+// What becomes of a keyword that is not converted: without effect on the mechanism, with an effect
+// only through a force or motion that uses it, or missing, as what a scene does not have.
+enum class Role { converted, without_effect, if_used, friction, missing };
+Role role_of(std::string_view keyword);
+std::string_view described(std::string_view missing_keyword);  // "a gear"; or empty
 
 // Reads "1", "-.4", "1.0E+05", "5.0D-02" or "90D" (degrees: sets the flag). Returns the length; 0
 // if none.

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "models/import/chrono/json.hpp"
 #include "models/import/chrono/suspension.hpp"
-#include "models/import/chrono/vehicle.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
@@ -23,32 +21,30 @@ using OuterEnd = Suspension::OuterEnd;
 // An arm on an axis through two points: chassis to arm at their middle.
 void arm(Suspension& s, const std::string& name, const std::string& part,
          const char* front = "Location Chassis Front", const char* back = "Location Chassis Back") {
-    s.body(name + "*", s.point(part + "/COM"), part);
+    s.body(name + "*", part);
     const FilePoint f = s.point(part + "/" + front), b = s.point(part + "/" + back);
-    const Vector3d middle = s.midpoint(name + ".axis", "front", f, "rear", b);
-    s.joint_or_bushing(Kind::revolute, name + ".axis*", "ground", name + "*", {middle, part},
+    s.joint_or_bushing(Kind::revolute, name + ".axis*", "ground", name + "*",
+                       s.midpoint(name + ".axis", "front", f, "rear", b),
                        frame_along(f - b, Vector3d::UnitZ()), s.optional(part + "/Bushing Data"));
 }
 
 // The same with a ball joint on the upright.
 void wishbone(Suspension& s, const std::string& name, const std::string& part) {
     arm(s, name, part);
-    s.spherical(name + ".ball_joint*", name + "*", "upright*", s.point(part + "/Location Upright"));
+    s.spherical(name + ".ball_joint*", name + "*", "upright*", part + "/Location Upright");
 }
 
-void upright_body(Suspension& s) { s.body("upright*", s.point("Upright/COM"), "Upright"); }
+// Links with the same joints, by their names in the scene and in the file.
+using Named = std::pair<std::string, std::string>;
 
 void spring_and_shock(Suspension& s, const std::string& end, const std::string& on,
                       const std::string& spring = "Spring") {
-    for (const std::string& part : {spring, std::string("Shock")}) {
-        const auto data = s.optional(part);
-        if (!data) continue;
-        const char* name = part == "Shock"    ? "damper*"
-                           : part == "Spring" ? "spring*"
-                                              : "auxiliary_spring*";
-        s.tsda(s.on_side(name), "ground", s.point(part + "/Location Chassis"), s.on_side(on),
-               s.point(part + "/" + end), *data);
-    }
+    for (const auto& [name, part] :
+         {Named{spring == "Spring" ? "spring*" : "auxiliary_spring*", spring},
+          {"damper*", "Shock"}})
+        if (const auto data = s.optional(part))
+            s.tsda(s.on_side(name), "ground", s.point(part + "/Location Chassis"), s.on_side(on),
+                   s.point(part + "/" + end), *data);
 }
 
 void wheel_on(Suspension& s, const char* carrier) { s.spindle(s.on_side(carrier)); }
@@ -63,48 +59,43 @@ void tierod_spring_and_wheel(Suspension& s, const char* end, const char* on) {
 }
 
 void double_wishbone(Suspension& s) {
-    upright_body(s);
+    s.body("upright*", "Upright");
     wishbone(s, "upper_arm", "Upper Control Arm");
     wishbone(s, "lower_arm", "Lower Control Arm");
     tierod_spring_and_wheel(s, "Location Arm", "lower_arm*");
 }
 
 void double_wishbone_reduced(Suspension& s) {
-    upright_body(s);
-    for (const std::string level : {"upper", "lower"}) {
-        const std::string part =
-            (level == "upper" ? "Upper" : "Lower") + std::string(" Control Arm/");
-        const FilePoint outer = s.point(part + "Location Upright");
-        s.distance(level + "_front*", "ground", s.point(part + "Location Chassis Front"),
-                   "upright*", outer);
-        s.distance(level + "_rear*", "ground", s.point(part + "Location Chassis Back"), "upright*",
-                   outer);
-    }
+    s.body("upright*", "Upright");
+    for (const auto& [level, part] :
+         {Named{"upper", "Upper Control Arm"}, {"lower", "Lower Control Arm"}})
+        for (const auto& [name, end] : {Named{"_front*", "Front"}, {"_rear*", "Back"}})
+            s.distance(level + name, "ground", s.point(part + "/Location Chassis " + end),
+                       "upright*", s.point(part + "/Location Upright"));
     tierod_spring_and_wheel(s, "Location Upright", "upright*");
 }
 
 void mcpherson(Suspension& s) {
-    upright_body(s);
+    s.body("upright*", "Upright");
     wishbone(s, "arm", "Control Arm");
     const FilePoint top = s.point("Spring/Location Chassis"),
                     seat = s.point("Spring/Location Upright");
     s.body("strut*", 0.5 * (top + seat), "Strut");
     const Matrix3d A = frame_along(seat - top, Vector3d::UnitX());
     s.universal("strut.mount*", "ground", "strut*", top, A);
-    s.joint("strut.tube*", "cylindrical", "strut*", "upright*",
-            Fields{}.add("at", s.hardpoint("strut.tube*", seat)).add("axis", direction(A.col(2))),
-            s.place(seat.path));
+    s.joint("strut.tube*", "cylindrical", "strut*", "upright*", seat,
+            Fields{}.add("axis", direction(A.col(2))));
     tierod_spring_and_wheel(s, "Location Upright", "upright*");
 }
 
 void multi_link(Suspension& s) {
-    upright_body(s);
+    s.body("upright*", "Upright");
     wishbone(s, "upper_arm", "Upper Arm");
     // x of the universal joint is fixed to the link, y to the chassis.
-    for (const auto& [name, part] : {std::pair<std::string, std::string>{"lateral", "Lateral"},
-                                     {"trailing_link", "Trailing Link"}}) {
-        s.body(name + "*", s.point(part + "/COM"), part);
-        s.spherical(name + ".outer*", name + "*", "upright*", s.point(part + "/Location Upright"));
+    for (const auto& [name, part] :
+         {Named{"lateral", "Lateral"}, {"trailing_link", "Trailing Link"}}) {
+        s.body(name + "*", part);
+        s.spherical(name + ".outer*", name + "*", "upright*", part + "/Location Upright");
         s.universal(name + ".inner*", name + "*", "ground", s.point(part + "/Location Chassis"),
                     s.point(part + "/Universal Joint Axis Chassis"),
                     s.point(part + "/Universal Joint Axis Link"));
@@ -113,23 +104,22 @@ void multi_link(Suspension& s) {
 }
 
 void semi_trailing_arm(Suspension& s) {
-    s.left("Trailing Arm/Location Spindle");
+    s.point("Trailing Arm/Location Spindle");
     arm(s, "arm", "Trailing Arm", "Location Chassis Outer", "Location Chassis Inner");
     spring_and_shock(s, "Location Arm", "arm*");
     wheel_on(s, "arm*");
 }
 
 void three_link_irs(Suspension& s) {
-    s.left("Trailing Arm/Location Spindle");
-    s.body("arm*", s.point("Trailing Arm/COM"), "Trailing Arm");
+    s.point("Trailing Arm/Location Spindle");
+    s.body("arm*", "Trailing Arm");
     const auto on_chassis = s.optional("Bushing Data Chassis"),
                on_arm = s.optional("Bushing Data Arm");
     s.joint_or_bushing(Kind::spherical, "arm.joint*", "ground", "arm*",
                        s.point("Trailing Arm/Location Chassis"), no_turn, on_chassis);
     for (const auto& [name, part] :
-         {std::pair<std::string, std::string>{"upper_link", "Upper Link"},
-          {"lower_link", "Lower Link"}}) {
-        s.body(name + "*", s.point(part + "/COM"), part);
+         {Named{"upper_link", "Upper Link"}, {"lower_link", "Lower Link"}}) {
+        s.body(name + "*", part);
         const FilePoint c = s.point(part + "/Location Chassis"),
                         a = s.point(part + "/Location Arm");
         s.joint_or_bushing(Kind::spherical, name + ".outer*", name + "*", "arm*", a, no_turn,
@@ -142,8 +132,8 @@ void three_link_irs(Suspension& s) {
 }
 
 void single_wishbone(Suspension& s) {
-    upright_body(s);
-    s.body("arm*", s.point("Control Arm/COM"), "Control Arm");
+    s.body("upright*", "Upright");
+    s.body("arm*", "Control Arm");
     s.joint_or_bushing(
         Kind::revolute, "arm.axis*", "ground", "arm*", s.point("Control Arm/Location Chassis"),
         frame_along(Vector3d::UnitX(), Vector3d::UnitZ()), s.optional("Control Arm/Bushing Data"));
@@ -162,15 +152,13 @@ void both(Suspension& s, const std::function<void()>& make) {
     s.side = +1;
 }
 
-void axle_tube(Suspension& s) { s.body("axle", s.left("Axle Tube/COM"), "Axle Tube"); }
-
 // A knuckle on the axle's king pin.
 void knuckle(Suspension& s, const char* lower = "Knuckle/Location Lower",
              const char* upper = "Knuckle/Location Upper") {
-    s.body("knuckle*", s.point("Knuckle/COM"), "Knuckle");
+    s.body("knuckle*", "Knuckle");
     const FilePoint low = s.point(lower), high = s.point(upper);
-    const Vector3d middle = s.midpoint("king_pin", "lower", low, "upper", high);
-    s.revolute("king_pin*", "axle", "knuckle*", {middle, "Knuckle"}, low - high);
+    s.revolute("king_pin*", "axle", "knuckle*", s.midpoint("king_pin", "lower", low, "upper", high),
+               low - high);
 }
 
 // Spring, shock and wheel of both sides, and the knuckles of a steered axle.
@@ -183,10 +171,8 @@ void spring_and_wheel(Suspension& s, Axle axle, const char* spring = "Spring") {
 
 // The track rod between both knuckles.
 void shared_tierod(Suspension& s) {
-    const FilePoint end = s.left("Tierod/Location Knuckle");
-    s.side = -1;
-    const FilePoint other = s.point("Tierod/Location Knuckle");
-    s.side = +1;
+    const FilePoint end = s.point("Tierod/Location Knuckle"),
+                    other{Vector3d(end.x(), -end.y(), end.z()), end.path};
     s.body("tierod", 0.5 * (end + other), "Tierod");
     s.spherical("tierod.left", "tierod", "knuckle_left", end);
     s.universal("tierod.right", "tierod", "knuckle_right", other, Vector3d::UnitX(),
@@ -195,22 +181,22 @@ void shared_tierod(Suspension& s) {
 
 // The drag link from ground to one of the knuckles, as the sign of y says.
 void draglink(Suspension& s, OuterEnd outer) {
-    const FilePoint end = s.left("Knuckle/Location Draglink");
-    s.link("draglink", "Draglink", s.steering(), s.left("Draglink/Location Chassis"),
+    const FilePoint end = s.point("Knuckle/Location Draglink");
+    s.link("draglink", "Draglink", s.steering(), s.point("Draglink/Location Chassis"),
            end.y() > 0 ? "knuckle_left" : "knuckle_right", end, outer);
 }
 
 void solid_axle(Suspension& s) {
-    axle_tube(s);
+    s.body("axle", "Axle Tube");
     both(s, [&] {
         knuckle(s);
-        for (const std::string level : {"upper", "lower"}) {
-            const std::string name = level + "_link",
-                              part = level == "upper" ? "Upper Link" : "Lower Link",
-                              beside = level == "upper" ? "Lower Link" : "Upper Link";
+        for (const auto& [level, part, beside] : {std::tuple<std::string, std::string, std::string>{
+                                                      "upper", "Upper Link", "Lower Link"},
+                                                  {"lower", "Lower Link", "Upper Link"}}) {
+            const std::string name = level + "_link";
             const FilePoint c = s.point(part + "/Location Chassis"),
                             a = s.point(part + "/Location Axle");
-            s.body(name + "*", s.point(part + "/COM"), part);
+            s.body(name + "*", part);
             s.universal(name + ".inner*", "ground", name + "*", c,
                         frame_along(c - a, a - s.point(beside + "/Location Axle")));
             s.spherical(name + ".outer*", "axle", name + "*", a);
@@ -225,27 +211,27 @@ void solid_axle(Suspension& s) {
             s.place("Trackbar"),
             "links and track bar leave the axle a single, poorly determined degree of freedom: the "
             "branch drives the left wheel, the right one follows");
-        s.link("trackbar", "Trackbar", "ground", s.left("Trackbar/Location Chassis"), "axle",
-               s.left("Trackbar/Location Axle"));
+        s.link("trackbar", "Trackbar", "ground", s.point("Trackbar/Location Chassis"), "axle",
+               s.point("Trackbar/Location Axle"));
     }
     // Drag link, bell crank, and the pin of the bell crank in the track rod's plane.
-    const FilePoint d = s.left("Draglink/Location Bell Crank"),
-                    pivot = s.left("Bell Crank/Location Axle"),
-                    pin = s.left("Bell Crank/Location Tierod");
+    const FilePoint d = s.point("Draglink/Location Bell Crank"),
+                    pivot = s.point("Bell Crank/Location Axle"),
+                    pin = s.point("Bell Crank/Location Tierod");
     s.body("bell_crank", (d + pivot + pin) / 3, "Bell Crank");
-    s.link("draglink", "Draglink", s.steering(), s.left("Draglink/Location Chassis"), "bell_crank",
+    s.link("draglink", "Draglink", s.steering(), s.point("Draglink/Location Chassis"), "bell_crank",
            d, OuterEnd::universal);
     const Vector3d axis = (d - pivot).cross(pin - pivot);
     if (!(axis.norm() > 1e-12))
         s.at(pivot.path).fail("on one line with the other points of the bell crank");
     s.revolute("bell_crank.pivot", "bell_crank", "axle", pivot, axis);
-    s.in_plane("bell_crank.pin", "bell_crank", "tierod", pin, Vector3d::UnitY(), pin.path);
+    s.in_plane("bell_crank.pin", "bell_crank", "tierod", pin, Vector3d::UnitY());
 }
 
 // Triangle and links of the three-link axles.
 void three_links(Suspension& s) {
-    FilePoint c = s.left("Triangular Link/Location Chassis"),
-              a = s.left("Triangular Link/Location Axle");
+    FilePoint c = s.point("Triangular Link/Location Chassis"),
+              a = s.point("Triangular Link/Location Axle");
     c.y() = a.y() = 0;  // the middle of both sides
     s.draft().points.at(c, "triangle.axis", {0, c.path + ", at y = 0"});
     s.draft().points.at(a, "triangle.ball_joint", {0, a.path + ", at y = 0"});
@@ -263,19 +249,19 @@ void three_links(Suspension& s) {
 }
 
 void solid_three_link(Suspension& s) {
-    axle_tube(s);
+    s.body("axle", "Axle Tube");
     three_links(s);
     both(s, [&] { spring_and_wheel(s, Axle::rigid); });
 }
 
 void solid_bellcrank_three_link(Suspension& s) {
-    axle_tube(s);
+    s.body("axle", "Axle Tube");
     three_links(s);
-    const FilePoint pivot = s.left("Bellcrank/Location Axle");
+    const FilePoint pivot = s.point("Bellcrank/Location Axle");
     s.body("bellcrank", pivot, "Bellcrank");
     s.revolute("bellcrank.pivot", "axle", "bellcrank", pivot, Vector3d::UnitZ());
-    s.link("draglink", "Draglink", s.steering(), s.left("Draglink/Location Steering"), "bellcrank",
-           s.left("Draglink/Location Bellcrank"), OuterEnd::universal);
+    s.link("draglink", "Draglink", s.steering(), s.point("Draglink/Location Steering"), "bellcrank",
+           s.point("Draglink/Location Bellcrank"), OuterEnd::universal);
     both(s, [&] {
         knuckle(s);
         s.link("tierod*", "Tierod", "bellcrank", s.point("Bellcrank/Location Tierod"), "knuckle*",
@@ -287,9 +273,8 @@ void solid_bellcrank_three_link(Suspension& s) {
 
 // The axle's ball joint on the chassis.
 void axle_on_a_ball(Suspension& s) {
-    axle_tube(s);
-    s.spherical("axle.ball_joint", "axle", "ground",
-                s.left("Axle Tube/Location Connector Chassis"));
+    s.body("axle", "Axle Tube");
+    s.spherical("axle.ball_joint", "axle", "ground", "Axle Tube/Location Connector Chassis");
 }
 
 // De Dion axle, with a Watt linkage for lateral guidance.
@@ -297,17 +282,17 @@ void dedion(Suspension& s) {
     axle_on_a_ball(s);
     const std::string watt = "Watt Mechanism/Location ";
     const Vector3d middle =
-        0.5 * (s.left(watt + "Left Link to Center") + s.left(watt + "Right Link to Center"));
+        0.5 * (s.point(watt + "Left Link to Center") + s.point(watt + "Right Link to Center"));
     s.draft().points.at(
         middle, "watt_centre.pivot",
         {0, "midpoint of Watt Mechanism/Location Left Link to Center and Right Link to Center"});
     s.body("watt_centre", middle, "Watt Mechanism", "Center Link Mass");
     s.revolute("watt_centre.pivot", "watt_centre", "axle", {middle, "Watt Mechanism"},
                Vector3d::UnitX());
-    for (const std::string side : {"Left", "Right"}) {
-        const std::string name = side == "Left" ? "watt_link_left" : "watt_link_right";
-        const FilePoint centre = s.left(watt + side + " Link to Center"),
-                        chassis = s.left(watt + side + " Link to Chassis");
+    for (const auto& [name, side] :
+         {Named{"watt_link_left", "Left"}, {"watt_link_right", "Right"}}) {
+        const FilePoint centre = s.point(watt + side + " Link to Center"),
+                        chassis = s.point(watt + side + " Link to Chassis");
         s.body(name, 0.5 * (centre + chassis), "Watt Mechanism", "Side Link Mass");
         s.spherical(name + ".inner", name, "watt_centre", centre);
         s.spherical(name + ".outer", name, "ground", chassis);
@@ -316,18 +301,18 @@ void dedion(Suspension& s) {
 
 // Allows only heave along z and roll about x.
 void leafspring_guide(Suspension& s) {
-    axle_tube(s);
-    const Vector3d p = s.left("Axle Tube/COM");
-    s.in_plane("axle.fore_aft", "axle", "ground", p, Vector3d::UnitX(), "Axle Tube");
-    s.in_plane("axle.lateral", "axle", "ground", p, Vector3d::UnitY(), "Axle Tube");
+    s.body("axle", "Axle Tube");
+    const FilePoint p{s.point("Axle Tube/COM"), "Axle Tube"};
+    s.in_plane("axle.fore_aft", "axle", "ground", p, Vector3d::UnitX());
+    s.in_plane("axle.lateral", "axle", "ground", p, Vector3d::UnitY());
     s.joint("axle.roll_axis", "parallel", "axle", "ground", Fields{}.add("axis", "x"),
             s.place("Axle Tube"));
 }
 
 // `on`: how the fields of its ends begin.
 void panhard_rod(Suspension& s, const std::string& on) {
-    s.link("panhard_rod", "Panhard Rod", "ground", s.left(on + "Chassis"), "axle",
-           s.left(on + "Axle"));
+    s.link("panhard_rod", "Panhard Rod", "ground", s.point(on + "Chassis"), "axle",
+           s.point(on + "Axle"));
 }
 
 void push_pipe(Suspension& s) {
@@ -339,15 +324,15 @@ void push_pipe(Suspension& s) {
 }
 
 void rigid_panhard(Suspension& s) {
-    axle_tube(s);
+    s.body("axle", "Axle Tube");
     s.joint(
         "axle.guide", "planar", "ground", "axle",
-        Fields{}.add("at", s.hardpoint("axle.guide", s.left("Axle Tube/COM"))).add("normal", "x"),
+        Fields{}.add("at", s.hardpoint("axle.guide", s.point("Axle Tube/COM"))).add("normal", "x"),
         s.place("Axle Tube"));
     panhard_rod(s, "Panhard Rod/Location ");
     // An anti-roll bar in two halves: the left one rotates in the chassis, the right one relative
     // to it.
-    const FilePoint chassis = s.left("Anti Roll Bar/Location Chassis"),
+    const FilePoint chassis = s.point("Anti Roll Bar/Location Chassis"),
                     middle{Vector3d(chassis.x(), 0, chassis.z()), chassis.path};
     s.draft().points.at(middle, "antiroll_bar.bearing", {0, chassis.path + ", at y = 0"});
     both(s, [&] {
@@ -359,11 +344,10 @@ void rigid_panhard(Suspension& s) {
                Vector3d::UnitY());
     const char* const rate = "Anti Roll Bar/Rotational Stiffness";
     s.torsion("antiroll_bar.twist", "antiroll_bar_left", "antiroll_bar_right", {middle, rate},
-              Vector3d::UnitY(), s.real(rate), 0);
+              Vector3d::UnitY(), s.real(rate));
     both(s, [&] {
-        const FilePoint end = s.point("Anti Roll Bar/Location Axle");
-        s.in_plane("antiroll_bar.slide*", "antiroll_bar*", "axle", end, Vector3d::UnitZ(),
-                   end.path);
+        s.in_plane("antiroll_bar.slide*", "antiroll_bar*", "axle",
+                   s.point("Anti Roll Bar/Location Axle"), Vector3d::UnitZ());
     });
 }
 
@@ -415,7 +399,7 @@ void leaf(Suspension& s) {
         s.joint_or_bushing(Kind::revolute, name + ".yaw*", name + "*", "axle", p, no_turn,
                            on_clamp);
         s.torsion(name + ".lateral*", name + "*", "axle", p, Vector3d::UnitZ(),
-                  share * lateral * square, 0);
+                  share * lateral * square);
         s.joint_or_bushing(Kind::revolute, name + ".pitch*", name + "*", half, p, about_y, on_leaf);
         // Moment about y on the leaf whose far end then pushes the chassis up with half the
         // preload: arm × force.
@@ -429,7 +413,7 @@ void leaf(Suspension& s) {
 }
 
 void sae_leafspring(Suspension& s, Axle axle) {
-    axle_tube(s);
+    s.body("axle", "Axle Tube");
     both(s, [&] {
         leaf(s);
         spring_and_wheel(s, axle, "Auxiliary Spring");
@@ -445,28 +429,25 @@ void hendrickson(Suspension& s) {
     s.draft().notes.warn(s.place("Lower Beam"),
                          "beams and rods that rotate only about y prevent roll of the axle: the "
                          "branch drives the left wheel, the right one follows");
-    s.body("axle", s.left("Axle Housing/COM"), "Axle Housing");
-    s.body("transverse_beam", s.left("Transverse Beam/COM"), "Transverse Beam");
+    s.body("axle", "Axle Housing");
+    s.body("transverse_beam", "Transverse Beam");
     both(s, [&] {
         knuckle(s, "Knuckle/Lower Attachment Point", "Knuckle/Upper Attachment Point");
         for (const auto& [name, part] :
-             {std::pair<std::string, std::string>{"torque_rod", "Torque Rod"},
-              {"lower_beam", "Lower Beam"}}) {
-            s.body(name + "*", s.point(part + "/COM"), part);
+             {Named{"torque_rod", "Torque Rod"}, {"lower_beam", "Lower Beam"}}) {
+            s.body(name + "*", part);
             s.revolute(name + ".inner*", "ground", name + "*",
                        s.point(part + "/Chassis Attachment Point"), Vector3d::UnitY());
             s.spherical(name + ".outer*", "axle", name + "*",
-                        s.point(part + "/Axle Housing Attachment Point"));
+                        part + "/Axle Housing Attachment Point");
         }
         s.spherical("transverse_beam.end*", "lower_beam*", "transverse_beam",
-                    s.point("Lower Beam/Transverse Beam Attachment Point"));
+                    "Lower Beam/Transverse Beam Attachment Point");
         s.tierod("Location Chassis", "Location Knuckle", "knuckle*");
-        for (const std::string end : {"Axle Housing", "Lower Beam"}) {
-            const std::string part = "Shock " + end;
-            s.tsda(s.sided(end == "Lower Beam" ? "beam_shock" : "housing_shock"), "ground",
-                   s.point(part + "/Location Chassis"), "axle", s.point(part + "/Location " + end),
-                   s.at(part));
-        }
+        for (const auto& [name, end] :
+             {Named{"housing_shock", "Axle Housing"}, {"beam_shock", "Lower Beam"}})
+            s.tsda(s.sided(name), "ground", s.point("Shock " + end + "/Location Chassis"), "axle",
+                   s.point("Shock " + end + "/Location " + end), s.at("Shock " + end));
         wheel_on(s, "knuckle*");
     });
 }
@@ -474,16 +455,12 @@ void hendrickson(Suspension& s) {
 // ---- GenericWheeledSuspension: parts and joints by name.
 
 // On the right side the y components of the frame's x and z change sign; y completes the frame.
-Matrix3d rotation(const Suspension& s, const Cursor& at) {
-    const auto q = at.list(4, "numbers, a quaternion");
-    const Eigen::Quaterniond p(q[0].number(), q[1].number(), q[2].number(), q[3].number());
-    if (!(p.norm() > 1e-6)) at.fail("not a quaternion: all components are zero");
-    const Matrix3d A = p.normalized().toRotationMatrix();
+Matrix3d rotation_on_side(const Suspension& s, const Cursor& at) {
+    const Matrix3d A = rotation(at);
     if (s.side > 0) return A;
+    const Vector3d x = s.mirrored(A.col(0)), z = s.mirrored(A.col(2));
     Matrix3d B;
-    B.col(0) = s.mirrored(A.col(0));
-    B.col(2) = s.mirrored(A.col(2));
-    B.col(1) = Vector3d(B.col(2)).cross(Vector3d(B.col(0)));
+    B << x, z.cross(x), z;
     return B;
 }
 
@@ -529,16 +506,10 @@ struct Generic {
         if (!s.has(section)) return;
         for (const Cursor& entry : s.at(section).items()) {
             const std::string name = scene_name(entry.require("Name").text("a name"));
-            s.side = +1;
-            if (!is_mirrored(entry)) {
+            if (is_mirrored(entry))
+                both(s, [&] { make(entry, s.sided(name)); });
+            else
                 make(entry, name);
-                continue;
-            }
-            for (const int side : {+1, -1}) {
-                s.side = side;
-                make(entry, s.sided(name));
-            }
-            s.side = +1;
         }
     }
 
@@ -580,7 +551,7 @@ void generic(Suspension& s) {
         if (const auto mass = entry.optional("Mass")) fields.add("mass", mass->number());
         if (const auto turned = entry.optional("Rotation"))
             s.leave_out(*turned, "axes of the inertia, without effect at rest");
-        draft.bodies.push_back({name, "{" + fields.text() + "}", from});
+        draft.bodies.push_back({name, fields.braced(), from});
         draft.notes.count("bodies");
     });
     g.each("Joints", [&](const Cursor& entry, const std::string& name) {
@@ -588,7 +559,7 @@ void generic(Suspension& s) {
         const std::string i = g.body(entry.require("Body1")), j = g.body(entry.require("Body2"));
         const Vector3d p = g.at(entry, "Position");
         const Matrix3d A =
-            entry.optional("Rotation") ? rotation(s, entry.require("Rotation")) : no_turn;
+            entry.optional("Rotation") ? rotation_on_side(s, entry.require("Rotation")) : no_turn;
         const SourceLocation from{entry.value->line, "Joints/" + name};
         const auto data = entry.optional("Bushing Data");
         const std::string at = draft.points.at(p, name, from);

@@ -1,10 +1,9 @@
-#include "models/import/chrono/json.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "models/import/chrono/suspension.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 
@@ -12,6 +11,8 @@ namespace elastocheck::importer::chrono {
 namespace {
 
 using reader::Value;
+
+constexpr int deepest_json = 32;
 
 // How far a text was read.
 struct Position {
@@ -130,8 +131,6 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     std::vector<Open> open_;
 };
 
-}  // namespace
-
 Value parse_json(std::string_view text, const std::string& file) {
     if (text.size() > largest_json)
         reader::fail(file, 0, "", "larger than 1 MiB, the limit for a suspension");
@@ -145,6 +144,14 @@ Value parse_json(std::string_view text, const std::string& file) {
                               Characters{text.data() + text.size(), &position}, &builder,
                               nlohmann::json::input_format_t::json, strict, ignore_comments);
     return std::move(builder.root);
+}
+
+}  // namespace
+
+JsonFile::JsonFile(std::string_view text, const std::string& file)
+    : name(file), tree(parse_json(text, name)), root{&tree, "", &name, &numbers, {}, &accesses} {
+    if (tree.kind != Value::Kind::map)
+        root.fail("expected an object: this is not a file of Chrono::Vehicle");
 }
 
 }  // namespace elastocheck::importer::chrono

@@ -9,7 +9,6 @@
 #include <map>
 #include <numbers>
 
-#include "models/import/curves.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
@@ -19,11 +18,7 @@ using reader::Cursor;
 
 // Fields that Chrono has and that do not influence an equilibrium, by their name in any object.
 constexpr std::string_view of_motion = "without effect at rest";
-struct WithoutInfluence {
-    std::string_view why;
-    std::vector<std::string> keys;
-};
-const WithoutInfluence without_influence[] = {
+const std::pair<std::string_view, std::vector<std::string>> without_influence[] = {
     {of_motion,
      {"Inertia", "Moments of Inertia", "Products of Inertia", "Vehicle-Frame Inertia",
       "Center Link Inertia", "Side Link Inertia", "Damping Coefficient", "Damping Curve Data",
@@ -65,6 +60,18 @@ Vector3d vector(const Cursor& at) {
     return {items[0].number(), items[1].number(), items[2].number()};
 }
 
+Matrix3d rotation(const Cursor& at) {
+    const auto q = at.list(4, "numbers, a quaternion");
+    const Eigen::Quaterniond p(q[0].number(), q[1].number(), q[2].number(), q[3].number());
+    if (!(p.norm() > 1e-6)) at.fail("not a quaternion: all components are zero");
+    return p.normalized().toRotationMatrix();
+}
+
+double number_or_zero(const Cursor& object, const std::string& key) {
+    const auto field = object.optional(key);
+    return field ? field->number() : 0;
+}
+
 std::optional<Cursor> Suspension::find(const std::string& path, bool required) const {
     std::optional<Cursor> found = file_;
     for (std::string_view rest(path);;) {
@@ -77,7 +84,9 @@ std::optional<Cursor> Suspension::find(const std::string& path, bool required) c
     }
 }
 
-FilePoint Suspension::left(const std::string& path) const { return {vector(at(path)), path}; }
+FilePoint Suspension::point(const std::string& path) const {
+    return placed(vector(at(path)), path);
+}
 
 namespace {
 
@@ -114,18 +123,22 @@ void find_unread(const reader::Accesses& accesses, const reader::Value& object,
     }
 }
 
+void mark_read(const Cursor& field) {
+    visit_scalars(*field.value,
+                  [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
+}
+
 }  // namespace
 
 void Suspension::leave_out(const Cursor& field, const std::string& why) {
-    visit_scalars(*field.value,
-                  [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
+    mark_read(field);
     if (side > 0) draft_.notes.leave_out(why, {field.value->line, field.path});
 }
 
-void Suspension::ignore(const Cursor& field, const std::string& why) {
-    visit_scalars(*field.value,
-                  [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
-    if (side > 0) draft_.notes.warn({field.value->line, field.path}, "not used: " + why);
+void Suspension::ignore(const std::optional<Cursor>& field, const std::string& why) {
+    if (!field) return;
+    mark_read(*field);
+    if (side > 0) draft_.notes.warn({field->value->line, field->path}, "not used: " + why);
 }
 
 void Suspension::report_unread() {
@@ -137,26 +150,23 @@ void Suspension::report_unread() {
     std::map<std::pair<std::string_view, std::string>, std::string> omitted;
     for (const auto& [object, value, path, key] : unread) {
         const auto known = std::ranges::find_if(without_influence, [&key = key](const auto& some) {
-            return std::ranges::find(some.keys, key) != some.keys.end();
+            return std::ranges::find(some.second, key) != some.second.end();
         });
         if (known != std::end(without_influence)) {
-            const std::string of =
-                path.size() > key.size() ? path.substr(0, path.size() - key.size() - 1) : "";
-            std::string& parts = omitted[{known->why, key}];
-            if (!of.empty()) parts += (parts.empty() ? " of " : ", ") + of;
+            std::string& parts = omitted[{known->first, key}];
+            if (path.size() > key.size())
+                parts +=
+                    (parts.empty() ? " of " : ", ") + path.substr(0, path.size() - key.size() - 1);
             continue;
         }
+        const auto& looked_for = file_.accesses->looked_for[object];
         std::vector<std::string> allowed;
-        if (const auto found = file_.accesses->looked_for.find(object);
-            found != file_.accesses->looked_for.end())
-            allowed.assign(found->second.begin(), found->second.end());
-        const bool is_known = std::ranges::find(allowed, key) != allowed.end();
-        std::erase_if(allowed, [&object = object](const std::string& name) {
-            return std::ranges::find(object->keys, name) != object->keys.end();
-        });
-        for (const auto& some : without_influence)
-            allowed.insert(allowed.end(), some.keys.begin(), some.keys.end());
-        notes.miss({value->line, path}, is_known
+        for (const std::string& name : looked_for)
+            if (std::ranges::find(object->keys, name) == object->keys.end())
+                allowed.push_back(name);
+        for (const auto& [why, keys] : without_influence)
+            allowed.insert(allowed.end(), keys.begin(), keys.end());
+        notes.miss({value->line, path}, looked_for.contains(key)
                                             ? "not used in combination with the other fields"
                                             : "not a field of this template" +
                                                   reader::did_you_mean(key, allowed, "not given"));
@@ -167,14 +177,14 @@ void Suspension::report_unread() {
 
 // ---- Writing
 
-Vector3d Suspension::midpoint(const std::string& name, const std::string& first, const FilePoint& a,
-                              const std::string& second, const FilePoint& b) {
+FilePoint Suspension::midpoint(const std::string& name, const std::string& first,
+                               const FilePoint& a, const std::string& second, const FilePoint& b) {
     const Vector3d middle = 0.5 * (a + b);
     hardpoint(sided(name + "." + first), a);
     hardpoint(sided(name + "." + second), b);
     draft_.points.at(middle, sided(name),
                      {0, fmt::format("midpoint of {} and {}", a.path, b.path)});
-    return middle;
+    return {middle, a.path.substr(0, a.path.find('/'))};
 }
 
 std::string Suspension::hardpoint(const std::string& name, const Vector3d& p,
@@ -191,22 +201,21 @@ void Suspension::body(const std::string& name, const Vector3d& com, const std::s
         const double m = given->number();
         if (!options_.drop_dynamics && m > 0) fields.add("mass", m);
     }
-    draft_.bodies.push_back({body_names_.take(called), "{" + fields.text() + "}", place(part)});
+    draft_.bodies.push_back({body_names_.take(called), fields.braced(), place(part)});
     draft_.notes.count("bodies");
 }
 
 void Suspension::joint(const std::string& name, const char* type, const std::string& i,
                        const std::string& j, const Fields& fields, const SourceLocation& from) {
     Fields all;
-    all.add("type", type).add("bodies", "[" + on_side(i) + ", " + on_side(j) + "]");
-    draft_.joints.push_back(
-        {joint_names_.take(on_side(name)), "{" + all.text() + ", " + fields.text() + "}", from});
+    all.add("type", type).add("bodies", "[" + on_side(i) + ", " + on_side(j) + "]").add(fields);
+    draft_.joints.push_back({joint_names_.take(on_side(name)), all.braced(), from});
     draft_.notes.count("joints");
 }
 
-void Suspension::spherical(const std::string& name, const std::string& i, const std::string& j,
-                           const FilePoint& at) {
-    joint(name, "spherical", i, j, Fields{}.add("at", hardpoint(name, at)), place(at.path));
+void Suspension::joint(const std::string& name, const char* type, const std::string& i,
+                       const std::string& j, const FilePoint& at, const Fields& fields) {
+    joint(name, type, i, j, Fields{}.add("at", hardpoint(name, at)).add(fields), place(at.path));
 }
 
 void Suspension::universal(const std::string& name, const std::string& i, const std::string& j,
@@ -217,24 +226,8 @@ void Suspension::universal(const std::string& name, const std::string& i, const 
                           fmt::format("the axes of the universal joint deviate from the right "
                                       "angle by {:.2g} deg; the scene has a corrected second axis",
                                       std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
-    joint(name, "universal", i, j,
-          Fields{}
-              .add("at", hardpoint(name, at))
-              .add("axis_i", direction(u))
-              .add("axis_j", direction(v)),
-          place(at.path));
-}
-
-void Suspension::revolute(const std::string& name, const std::string& i, const std::string& j,
-                          const FilePoint& at, const Vector3d& axis) {
-    joint(name, "revolute", i, j,
-          Fields{}.add("at", hardpoint(name, at)).add("axis", direction(axis.normalized())),
-          place(at.path));
-}
-
-void Suspension::fixed(const std::string& name, const std::string& i, const std::string& j,
-                       const Vector3d& p, const std::string& path) {
-    joint(name, "fixed", i, j, Fields{}.add("at", hardpoint(name, p, path)), place(path));
+    joint(name, "universal", i, j, at,
+          Fields{}.add("axis_i", direction(u)).add("axis_j", direction(v)));
 }
 
 void Suspension::distance(const std::string& name, const std::string& i, const FilePoint& from,
@@ -248,10 +241,10 @@ void Suspension::distance(const std::string& name, const std::string& i, const F
 }
 
 void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j,
-                          const Vector3d& p, const Vector3d& normal, const std::string& path) {
+                          const FilePoint& p, const Vector3d& normal) {
     joint(name, "in_plane", i, j,
           Fields{}.add("at", hardpoint(name, p, "")).add("normal", direction(normal.normalized())),
-          place(path));
+          place(p.path));
 }
 
 // A bushing with its frame fixed in body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both
@@ -269,7 +262,7 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
                  rotational = data->require("Stiffness Rotational").number();
     double free = 0;
     if (const auto dof = data->optional("DOF")) {
-        if (const auto k = dof->optional("Stiffness Rotational")) free = k->number();
+        free = number_or_zero(*dof, "Stiffness Rotational");
         if (const auto unused = dof->optional("Stiffness Linear"))
             leave_out(*unused, "since Chrono reads it but does not use it");
     }
@@ -290,7 +283,7 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
              fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
     if (!is_round) fields.add("formulation", "{conjugate: false}");
     draft_.bushings.push_back(
-        {element_names_.take(on_side(name)), "{" + fields.text() + "}", place(at.path)});
+        {element_names_.take(on_side(name)), fields.braced(), place(at.path)});
     draft_.notes.count("bushings");
 }
 
@@ -306,35 +299,27 @@ Suspension::Law Suspension::law_of(const Cursor& data) {
                     : k                                    ? Law::linear
                     : data.optional("Damping Coefficient") ? Law::damper
                                                            : Law::none;
-    const auto leave_out_unused = [&](const char* field, const char* why) {
-        if (const auto found = data.optional(field)) ignore(*found, why);
+    const auto unused = [&](const char* field, const char* why) {
+        ignore(data.optional(field), why);
     };
-    if (law == Law::map) leave_out_unused("Spring Curve Data", "Chrono uses the Map Data instead");
-    if (law != Law::map) leave_out_unused("Deformation", "Chrono uses it with Map Data only");
+    if (law == Law::map) unused("Spring Curve Data", "Chrono uses the Map Data instead");
+    if (law != Law::map) unused("Deformation", "Chrono uses it with Map Data only");
     if (law != Law::linear)
-        leave_out_unused("Spring Coefficient",
-                         law == Law::map ? "Chrono uses the Map Data instead"
-                         : law == Law::curve
-                             ? "Chrono uses the Spring Curve Data instead"
-                             : "Chrono uses the Damping Curve Data instead: there is no spring");
+        unused("Spring Coefficient",
+               law == Law::map     ? "Chrono uses the Map Data instead"
+               : law == Law::curve ? "Chrono uses the Spring Curve Data instead"
+                                   : "Chrono uses the Damping Curve Data instead: there is no "
+                                     "spring");
     if (law == Law::damper)
         for (const char* field :
              {"Free Length", "Free Angle", "Preload", "Minimum Length", "Maximum Length"})
-            leave_out_unused(field, "Chrono does not use it for a damper");
+            unused(field, "Chrono does not use it for a damper");
     return law;
 }
 
-Rows Suspension::rows_of(const Cursor& curve, double offset, double preload) {
-    Rows rows;
-    for (const Cursor& row : curve.items()) {
-        const auto cells = row.list(2, "numbers, deflection and force");
-        rows.emplace_back(cells[0].number() + offset, cells[1].number() - preload);
-    }
-    require_rising(curve, rows);
-    return rows;
-}
+namespace {
 
-void Suspension::require_rising(const Cursor& at, const Rows& rows) {
+void require_rising(const Cursor& at, const Rows& rows) {
     if (rows.size() < 2) at.fail("a curve needs at least two rows");
     for (std::size_t n = 1; n < rows.size(); ++n)
         if (!(rows[n].first > rows[n - 1].first) || rows[n].second < rows[n - 1].second)
@@ -344,46 +329,83 @@ void Suspension::require_rising(const Cursor& at, const Rows& rows) {
                             n + 1));
 }
 
+Rows rows_of(const Cursor& curve, double offset, double preload) {
+    Rows rows;
+    for (const Cursor& row : curve.items()) {
+        const auto cells = row.list(2, "numbers, deflection and force");
+        rows.emplace_back(cells[0].number() + offset, cells[1].number() - preload);
+    }
+    require_rising(curve, rows);
+    return rows;
+}
+
 // Rows of the map over speed (rows) and deformation (columns) at speed zero, by linear
 // interpolation between the neighbouring speeds, or extrapolation from the first or last two.
-Rows Suspension::map_at_rest(const Cursor& data, double offset, double preload) {
+Rows map_at_rest(const Cursor& data, double offset, double preload) {
     const Cursor map = data.require("Map Data");
     const auto columns = data.require("Deformation").items();
-    std::vector<double> speeds;
-    std::vector<std::vector<double>> forces;
+    std::vector<std::vector<double>> lines;  // a speed and its forces
     for (const Cursor& line : map.items()) {
-        const auto cells =
-            line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
-        speeds.push_back(cells[0].number());
-        if (speeds.size() > 1 && !(speeds.back() > speeds[speeds.size() - 2]))
+        lines.emplace_back();
+        for (const Cursor& cell :
+             line.list(columns.size() + 1, "numbers, a speed and a force for each deformation"))
+            lines.back().push_back(cell.number());
+        if (lines.size() > 1 && !(lines.back()[0] > lines[lines.size() - 2][0]))
             line.fail("its speed does not increase from row to row");
-        forces.emplace_back();
-        for (std::size_t n = 1; n < cells.size(); ++n) forces.back().push_back(cells[n].number());
     }
-    if (speeds.size() < 2) map.fail("a map needs at least two speeds");
-    const auto at_least = std::ranges::lower_bound(speeds, 0.0) - speeds.begin();
-    const std::size_t v =
-        std::clamp<std::size_t>(static_cast<std::size_t>(at_least), 1, speeds.size() - 1);
-    const double t = -speeds[v - 1] / (speeds[v] - speeds[v - 1]);
+    if (lines.size() < 2) map.fail("a map needs at least two speeds");
+    std::size_t v = 1;
+    while (v + 1 < lines.size() && lines[v][0] < 0) ++v;
+    const auto &below = lines[v - 1], &above = lines[v];
+    const double t = -below[0] / (above[0] - below[0]);
     Rows rows;
     for (std::size_t n = 0; n < columns.size(); ++n)
         rows.emplace_back(columns[n].number() + offset,
-                          (1 - t) * forces[v - 1][n] + t * forces[v][n] - preload);
+                          (1 - t) * below[n + 1] + t * above[n + 1] - preload);
     require_rising(map, rows);
     return rows;
+}
+
+// A table as in Chrono, with straight lines between the rows.
+std::string linear(const Rows& rows, bool known_outside) {
+    return "{table: " + table(rows) + ", interpolation: linear" +
+           (known_outside ? "}" : ", outside: unknown}");
+}
+
+}  // namespace
+
+// Stops at the lengths of the file; `alone`: without a spring.
+void Suspension::add_stops(const Cursor& data, double drawn, bool alone, Fields& fields) {
+    const auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
+    if (!least || !most) return;
+    const double shortest = least->number(), longest = most->number();
+    const SourceLocation here{data.value->line, data.path};
+    if (side > 0 && shortest > longest)
+        draft_.notes.warn(here, fmt::format("its minimum length {} is above its maximum length "
+                                            "{}: both stops are always closed",
+                                            least->value->text, most->value->text));
+    else if (side > 0 && (shortest > drawn || longest < drawn))
+        draft_.notes.warn(here,
+                          fmt::format("a stop is closed at the design length {:.4g} m", drawn));
+    const std::string ending = alone ? "" : "_stop";
+    for (const auto& [name, clearance] :
+         {std::pair{"bump", drawn - shortest}, {"rebound", longest - drawn}})
+        fields.add(name + ending, Fields{}
+                                      .add("clearance", computed(clearance))
+                                      .add("curve", linear(stop_table, true))
+                                      .braced());
 }
 
 void Suspension::tsda(const std::string& name, const std::string& i, const Vector3d& from,
                       const std::string& j, const Vector3d& to, const Cursor& data) {
     const SourceLocation here{data.value->line, data.path};
     const double drawn = (to - from).norm();
-    Fields fields;
-    fields.add("bodies", "[" + i + ", " + j + "]")
+    Fields ends, law_fields;
+    ends.add("bodies", "[" + i + ", " + j + "]")
         .add("from", draft_.points.at(from, name + ".top", here))
         .add("to", draft_.points.at(to, name + ".seat", here));
-    const Fields ends = fields;
     const auto put = [&](std::vector<Entry>& list) {
-        list.push_back({element_names_.take(name), "{" + fields.text() + "}", here});
+        list.push_back({element_names_.take(name), ends.braced(), here});
     };
     const auto put_damper = [&] {
         if (options_.drop_dynamics)
@@ -391,23 +413,18 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
         else
             put(draft_.dampers);
     };
-    const auto linear = [](const Rows& rows, bool known_outside) {
-        return "{table: " + table(rows) + ", interpolation: linear" +
-               (known_outside ? "}" : ", outside: unknown}");
-    };
     const Law law = law_of(data);
     if (law == Law::none)
         return draft_.notes.miss(
             here, "neither a spring nor a damper: Chrono has no element of these fields");
     if (law == Law::damper) return put_damper();
-    const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
-    auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
-    if (least.has_value() != most.has_value()) {
-        ignore(least ? *least : *most,
+    const double preload = number_or_zero(data, "Preload");
+    const auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
+    const bool has_stops = least && most;
+    if (!has_stops)
+        ignore(least ? least : most,
                "Chrono has stops only if both lengths are given, so here it has none");
-        least = most = std::nullopt;
-    }
-    // The force at the design position, pushing apart, and the rows from l - L0 on.
+    // The force at the design position, pushing apart.
     double force = 0;
     bool is_nothing = false;
     if (law == Law::linear) {
@@ -415,18 +432,15 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
         const double rate = k.number(), free = data.require("Free Length").number();
         if (rate < 0) k.fail("negative, which a scene does not allow");
         force = preload - rate * (drawn - free);
-        if (rate == 0) {
-            is_nothing = preload == 0;
-            if (!is_nothing)
-                fields.add("curve",
+        is_nothing = rate == 0 && preload == 0;
+        const double length = preload == 0 ? free : free + preload / rate;
+        if (rate == 0)
+            law_fields.add("curve",
                            linear({{-0.5 * drawn, -preload}, {0.5 * drawn, -preload}}, true));
-        } else if (preload == 0) {
-            fields.add("rate", rate).add("free_length", free);
-        } else if (const double length = free + preload / rate; length > 0) {
-            fields.add("rate", rate).add("free_length", length);
-        } else {
-            fields.add("rate", rate).add("preload", force);
-        }
+        else if (preload == 0 || length > 0)
+            law_fields.add("rate", rate).add("free_length", length);
+        else
+            law_fields.add("rate", rate).add("preload", force);
     } else {
         // Beyond the ends Chrono keeps a table constant and extrapolates a map linearly. The
         // deformation of a map is the length itself.
@@ -435,37 +449,21 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
             rows = rows_of(data.require("Spring Curve Data"), 0, preload);
             const double free = data.require("Free Length").number();
             force = -value_at(rows, drawn - free);
-            fields.add("curve", linear(rows, false)).add("free_length", free);
+            law_fields.add("curve", linear(rows, false)).add("free_length", free);
         } else {
-            if (const auto free = data.optional("Free Length"))
-                ignore(*free, "Chrono counts the deformation of a map from length zero");
+            ignore(data.optional("Free Length"),
+                   "Chrono counts the deformation of a map from length zero");
             rows = map_at_rest(data, -drawn, preload);
             force = -value_at(rows, 0);
-            fields.add("curve", linear(rows, true));
+            law_fields.add("curve", linear(rows, true));
         }
         is_nothing = std::ranges::all_of(rows, [](const auto& row) { return row.second == 0; });
     }
-    if (is_nothing) fields = ends;
-    if (is_nothing && !least) return put_damper();
-    if (side > 0) {
-        if (force < 0 && !is_nothing)
-            draft_.notes.warn(here,
-                              fmt::format("in tension at the design position: {:.4g} N", -force));
-        if (least && least->number() > most->number())
-            draft_.notes.warn(here, fmt::format("its minimum length {} is above its maximum length "
-                                                "{}: both stops are always closed",
-                                                least->value->text, most->value->text));
-        else if (least && (least->number() > drawn || most->number() < drawn))
-            draft_.notes.warn(here,
-                              fmt::format("a stop is closed at the design length {:.4g} m", drawn));
-    }
-    const auto stop = [&](double clearance) {
-        return fmt::format("{{clearance: {}, curve: {}}}", computed(clearance),
-                           linear(stop_table, true));
-    };
-    if (least)
-        fields.add(is_nothing ? "bump" : "bump_stop", stop(drawn - least->number()))
-            .add(is_nothing ? "rebound" : "rebound_stop", stop(most->number() - drawn));
+    if (is_nothing && !has_stops) return put_damper();
+    if (side > 0 && force < 0 && !is_nothing)
+        draft_.notes.warn(here, fmt::format("in tension at the design position: {:.4g} N", -force));
+    if (!is_nothing) ends.add(law_fields);
+    if (has_stops) add_stops(data, drawn, is_nothing, ends);
     put(is_nothing ? draft_.stops : draft_.springs);
     draft_.notes.count("springs");
 }
@@ -479,12 +477,9 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
     if (law == Law::none || law == Law::map)
         return draft_.notes.miss(
             here, "neither a spring nor a damper: Chrono has no element of these fields");
-    if (law == Law::damper) {
-        draft_.notes.leave_out("without effect at rest", here);
-        return;
-    }
-    const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
-    const double free = data.optional("Free Angle") ? data.require("Free Angle").number() : 0;
+    if (law == Law::damper) return draft_.notes.leave_out("without effect at rest", here);
+    const double preload = number_or_zero(data, "Preload"),
+                 free = number_or_zero(data, "Free Angle");
     if (side < 0 && (preload != 0 || free != 0))
         draft_.notes.warn(
             here,
@@ -497,9 +492,8 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
         if (const double moment = -rate * free - preload; moment != 0)
             law_fields.add("preload_moment", computed(moment));
     } else {
-        law_fields.add(
-            "curve", "{table: " + table(rows_of(data.require("Spring Curve Data"), free, preload)) +
-                         ", interpolation: linear, outside: unknown}");
+        law_fields.add("curve",
+                       linear(rows_of(data.require("Spring Curve Data"), free, preload), false));
     }
     torsion(name, i, j, p, axis, law_fields, here);
 }
@@ -518,9 +512,9 @@ void Suspension::torsion(const std::string& name, const std::string& i, const st
     Fields fields;
     fields.add("bodies", "[" + on_side(i) + ", " + on_side(j) + "]")
         .add("at", hardpoint(name, p, ""))
-        .add("axis", direction(axis));
-    draft_.torsion_springs.push_back(
-        {element_names_.take(on_side(name)), "{" + fields.text() + ", " + law.text() + "}", from});
+        .add("axis", direction(axis))
+        .add(law);
+    draft_.torsion_springs.push_back({element_names_.take(on_side(name)), fields.braced(), from});
     draft_.notes.count("torsion springs");
 }
 
@@ -528,28 +522,23 @@ void Suspension::torsion(const std::string& name, const std::string& i, const st
 // resists it.
 void Suspension::spindle(const std::string& carrier) {
     const std::string name = sided("spindle");
-    const Vector3d centre = point("Spindle/COM");
+    const FilePoint centre = point("Spindle/COM");
     body(name, centre, "Spindle");
-    draft_.points.at(centre, name, place("Spindle/COM"));
-    fixed(sided("wheel_bearing"), name, carrier, centre, "Spindle/COM");
-    const auto angle = [&](const char* key) {
-        const auto given = file_.optional(key);
-        return given ? given->number() * std::numbers::pi / 180 : 0.0;
-    };
-    const double toe = angle("Toe Angle (deg)"), camber = angle("Camber Angle (deg)");
-    Vector3d axis =
+    hardpoint(name, centre);
+    joint(sided("wheel_bearing"), "fixed", name, carrier, centre);
+    const double toe = number_or_zero(file_, "Toe Angle (deg)") * std::numbers::pi / 180,
+                 camber = number_or_zero(file_, "Camber Angle (deg)") * std::numbers::pi / 180;
+    const Vector3d axis =
         Eigen::AngleAxisd(-side * toe, Vector3d::UnitZ()) *
         (Eigen::AngleAxisd(-side * camber, Vector3d::UnitX()) * Vector3d(Vector3d::UnitY()));
-    axis *= side;
-    draft_.wheels.push_back({side > 0 ? "left" : "right",
-                             "{" +
-                                 Fields{}
-                                     .add("body", name)
-                                     .add("centre", hardpoint(name, centre, "Spindle/COM"))
-                                     .add("spin_axis", direction(axis))
-                                     .add("side", side > 0 ? "left" : "right")
-                                     .text() +
-                                 "}",
+    const char* const called = side > 0 ? "left" : "right";
+    draft_.wheels.push_back({called,
+                             Fields{}
+                                 .add("body", name)
+                                 .add("centre", hardpoint(name, centre))
+                                 .add("spin_axis", direction(axis * static_cast<double>(side)))
+                                 .add("side", called)
+                                 .braced(),
                              place("Spindle")});
 }
 
@@ -570,10 +559,9 @@ void Suspension::tierod(const std::string& chassis_end, const std::string& outer
     const auto bushing = optional("Tierod/Bushing Data");
     if (!has("Tierod/Mass") || !has("Tierod/Inertia") || !has("Tierod/Radius")) {
         for (const auto& field : {optional("Tierod/Mass"), bushing})
-            if (field)
-                ignore(*field,
-                       "a tie rod without Mass, Inertia and Radius is a rigid massless distance in "
-                       "Chrono");
+            ignore(field,
+                   "a tie rod without Mass, Inertia and Radius is a rigid massless distance in "
+                   "Chrono");
         return distance(name, steering(), inner, on_outer, outer);
     }
     body(name, 0.5 * (inner + outer), "Tierod");

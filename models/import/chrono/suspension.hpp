@@ -12,8 +12,24 @@
 
 namespace elastocheck::importer::chrono {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
+
+inline constexpr std::size_t largest_json = 1 << 20;  // [bytes]
+
+// A parsed file, RFC 8259 with // and /* */ comments, as a tree as of YAML, so that error messages
+// name file, line and field. Its cursors refer to it.
+struct JsonFile {
+    // Throws SceneError "file:line: ..." for invalid JSON, duplicate keys, excessive nesting, and
+    // anything but an object.
+    JsonFile(std::string_view text, const std::string& file);
+    JsonFile(const JsonFile&) = delete;
+
+    std::string name;
+    reader::Value tree;
+    mutable std::vector<Number> numbers;
+    mutable reader::Accesses accesses;
+    reader::Cursor root;
+};
 
 // Force of a stop in Chrono::Vehicle ("from an ADAMS/Car example") over its penetration [m, N];
 // constant beyond the last row.
@@ -69,8 +85,7 @@ class Suspension {
         return find(path, false);
     }
     bool has(const std::string& path) const { return optional(path).has_value(); }
-    FilePoint left(const std::string& path) const;  // as in the file
-    FilePoint point(const std::string& path) const { return placed(left(path), path); }
+    FilePoint point(const std::string& path) const;
     FilePoint placed(const Vector3d& p, const std::string& path) const {
         return {mirrored(origin + turn * p), path};
     }
@@ -79,18 +94,31 @@ class Suspension {
 
     // ---- Writing.
     // The midpoint of two points of the file. Both stay hardpoints, "name.first" and "name.second".
-    Vector3d midpoint(const std::string& name, const std::string& first, const FilePoint& a,
-                      const std::string& second, const FilePoint& b);
+    FilePoint midpoint(const std::string& name, const std::string& first, const FilePoint& a,
+                       const std::string& second, const FilePoint& b);
+    // At a position, in the field `path`; without a field it is calculated.
     std::string hardpoint(const std::string& name, const Vector3d& p, const std::string& path);
     std::string hardpoint(const std::string& name, const FilePoint& p) {
         return hardpoint(name, p, p.path);
     }
     void body(const std::string& name, const Vector3d& com, const std::string& part,
               const char* mass = "Mass");
+    void body(const std::string& name, const std::string& part) {
+        body(name, point(part + "/COM"), part);
+    }
     void joint(const std::string& name, const char* type, const std::string& i,
                const std::string& j, const Fields& fields, const SourceLocation& from);
+    // At a point of the file; `fields` follow it.
+    void joint(const std::string& name, const char* type, const std::string& i,
+               const std::string& j, const FilePoint& at, const Fields& fields = {});
     void spherical(const std::string& name, const std::string& i, const std::string& j,
-                   const FilePoint& at);
+                   const FilePoint& at) {
+        joint(name, "spherical", i, j, at);
+    }
+    void spherical(const std::string& name, const std::string& i, const std::string& j,
+                   const std::string& path) {
+        joint(name, "spherical", i, j, point(path));
+    }
     // x is fixed to body i and y to body j.
     void universal(const std::string& name, const std::string& i, const std::string& j,
                    const FilePoint& at, const Vector3d& x, const Vector3d& y);
@@ -99,13 +127,13 @@ class Suspension {
         universal(name, i, j, at, frame.col(0), frame.col(1));
     }
     void revolute(const std::string& name, const std::string& i, const std::string& j,
-                  const FilePoint& at, const Vector3d& axis);
-    void fixed(const std::string& name, const std::string& i, const std::string& j,
-               const Vector3d& p, const std::string& path);
+                  const FilePoint& at, const Vector3d& axis) {
+        joint(name, "revolute", i, j, at, Fields{}.add("axis", direction(axis.normalized())));
+    }
     void distance(const std::string& name, const std::string& i, const FilePoint& from,
                   const std::string& j, const FilePoint& to);
     void in_plane(const std::string& name, const std::string& i, const std::string& j,
-                  const Vector3d& p, const Vector3d& normal, const std::string& path);
+                  const FilePoint& p, const Vector3d& normal);
 
     // A joint of Chrono: with `data`, its "Bushing Data", a bushing at its frame, else a joint of
     // the given kind.
@@ -119,7 +147,7 @@ class Suspension {
     void rsda(const std::string& name, const std::string& i, const std::string& j,
               const Vector3d& p, const Vector3d& axis, const reader::Cursor& data);
     void torsion(const std::string& name, const std::string& i, const std::string& j,
-                 const FilePoint& at, const Vector3d& axis, double rate, double moment);
+                 const FilePoint& at, const Vector3d& axis, double rate, double moment = 0);
 
     // The spindle, held on `carrier`, and the wheel on it.
     void spindle(const std::string& carrier);
@@ -135,7 +163,7 @@ class Suspension {
     // Notes a field without influence, with the reason. ignore() warns, for a field that a user may
     // expect to have an influence.
     void leave_out(const reader::Cursor& field, const std::string& why);
-    void ignore(const reader::Cursor& field, const std::string& why);
+    void ignore(const std::optional<reader::Cursor>& field, const std::string& why);
     // Notes every field that was neither read nor left out: as without influence if its name is
     // known to be so, else as missing.
     void report_unread();
@@ -144,9 +172,7 @@ class Suspension {
     std::optional<reader::Cursor> find(const std::string& path, bool required) const;
     enum class Law { none, damper, linear, curve, map };
     Law law_of(const reader::Cursor& data);
-    static Rows rows_of(const reader::Cursor& curve, double offset, double preload);
-    static Rows map_at_rest(const reader::Cursor& data, double offset, double preload);
-    static void require_rising(const reader::Cursor& at, const Rows& rows);
+    void add_stops(const reader::Cursor& data, double drawn, bool alone, Fields& fields);
     void torsion(const std::string& name, const std::string& i, const std::string& j,
                  const Vector3d& p, const Vector3d& axis, const Fields& law,
                  const SourceLocation& from);
@@ -159,8 +185,27 @@ class Suspension {
 
 // Three numbers of the file.
 Vector3d vector(const reader::Cursor& at);
+// A rotation by four numbers, a quaternion.
+Matrix3d rotation(const reader::Cursor& at);
+// A number of an object; 0 if it does not have it.
+double number_or_zero(const reader::Cursor& object, const std::string& key);
 
 // Right-handed frame with the third axis along w and the second closest to w × towards.
 Matrix3d frame_along(const Vector3d& w, const Vector3d& towards);
+
+// Adds a suspension of any template to the draft of `s`.
+struct Made {
+    bool mirrors;               // the left side is written, the scene mirrors it
+    std::string antiroll_body;  // "lower_arm*", of one that mirrors; empty: unknown
+};
+Made make(Suspension& s);
+
+// Adds the branch of travel, and that of roll.
+void add_travel(const Suspension& s, bool roll, Draft& draft);
+
+// The axle in `options` of a vehicle, with its steering and anti-roll bar from their files, which are
+// in the data folder, the closest folder above the vehicle's that has the file of the suspension.
+// Throws SceneError "file:line: ...".
+Draft import_vehicle(const JsonFile& vehicle, const Options& options);
 
 }  // namespace elastocheck::importer::chrono

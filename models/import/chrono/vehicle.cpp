@@ -1,16 +1,13 @@
-#include "models/import/chrono/vehicle.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
 
-#include "models/import/chrono/json.hpp"
+#include "models/import/chrono/suspension.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
 
@@ -18,12 +15,6 @@ namespace elastocheck::importer::chrono {
 
 using reader::Cursor;
 namespace fs = std::filesystem;
-
-JsonFile::JsonFile(std::string_view text, const std::string& file)
-    : name(file), tree(parse_json(text, name)), root{&tree, "", &name, &numbers, {}, &accesses} {
-    if (tree.kind != reader::Value::Kind::map)
-        root.fail("expected an object: this is not a file of Chrono::Vehicle");
-}
 
 namespace {
 
@@ -84,17 +75,15 @@ void from_file(Draft& draft, const std::string& file) {
         for (auto& [place, what] : *list) mark(place);
 }
 
-std::size_t axle_of(const Options& options, const Cursor& axles, std::size_t count,
-                    const std::string& file) {
+// Position of the axle that --axle chooses.
+std::size_t axle_of(const Options& options, const Cursor& axles, const std::string& file) {
+    const std::size_t count = axles.items().size();
     if (count == 0) axles.fail("expected a list with at least one axle");
     const std::string& wanted = options.axle;
     if (wanted == "front" || (wanted.empty() && count == 1)) return 0;
     if (wanted == "rear") return count - 1;
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-    if (!wanted.empty() && error == std::errc{} && end == wanted.data() + wanted.size() &&
-        number >= 1 && number <= count)
-        return number - 1;
+    for (std::size_t number = 1; number <= count; ++number)
+        if (wanted == std::to_string(number)) return number - 1;
     const std::string allowed = fmt::format("front, rear, or a number from 1 to {}", count);
     if (wanted.empty())
         axles.fail(fmt::format("there are {}; choose one with --axle: {}", count, allowed));
@@ -163,7 +152,7 @@ Steering pitman_arm(Suspension& s) {
                              "not perpendicular to its axis, as Chrono requires; the scene keeps "
                              "the link's point in the plane through its position in the file");
     s.distance("idler_arm", "ground", inner, "steering_link", outer);
-    s.in_plane("idler_arm.plane", "steering_link", "ground", outer, axis, outer.path);
+    s.in_plane("idler_arm.plane", "steering_link", "ground", outer, axis);
     if (const auto ends = s.optional("Tierod Locations"))
         s.leave_out(*ends, "only for visualisation");
     return {"pitman_arm", largest_angle(s, "Revolute Joint")};
@@ -183,14 +172,7 @@ void antiroll_bar(Suspension& s, const std::string& on) {
                s.placed({W, L, H}, "Droplink/Height"));
     s.torsion("antiroll_bar.twist", "antiroll_bar_left", "antiroll_bar_right",
               s.placed(Vector3d::Zero(), "RSD/Spring Coefficient"), Vector3d::UnitY(),
-              s.real("RSD/Spring Coefficient"), 0);
-}
-
-Matrix3d rotation(const Cursor& at) {
-    const auto q = at.list(4, "numbers, a quaternion");
-    const Eigen::Quaterniond p(q[0].number(), q[1].number(), q[2].number(), q[3].number());
-    if (!(p.norm() > 1e-6)) at.fail("not a quaternion: all components are zero");
-    return p.normalized().toRotationMatrix();
+              s.real("RSD/Spring Coefficient"));
 }
 
 }  // namespace
@@ -205,7 +187,7 @@ Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
     Suspension whole(root, options, draft);  // for its notes
     const Cursor axles = root.require("Axles");
     const auto entries = axles.items();
-    const std::size_t chosen = axle_of(options, axles, entries.size(), vehicle.name);
+    const std::size_t chosen = axle_of(options, axles, vehicle.name);
     const Cursor& axle = entries[chosen];
     const Vector3d location = vector(axle.require("Suspension Location"));
     DataFolder data(vehicle.name);

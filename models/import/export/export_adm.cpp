@@ -36,20 +36,35 @@ Vector3d euler_313(const Matrix3d& A) {
 
 // Axes with z along u.
 Matrix3d along(const Vector3d& u) {
+    const Vector3d z = u.normalized(), x = z.unitOrthogonal();
     Matrix3d A;
-    A.col(2) = u.normalized();
-    A.col(0) = A.col(2).unitOrthogonal();
-    A.col(1) = Vector3d(A.col(2)).cross(Vector3d(A.col(0)));
+    A << x, z.cross(x), z;
     return A;
 }
 // With x along u and z across u and v.
 Matrix3d with_x(const Vector3d& u, const Vector3d& v) {
+    const Vector3d x = u.normalized(), y = (v - v.dot(x) * x).normalized();
     Matrix3d A;
-    A.col(0) = u.normalized();
-    A.col(1) = (v - v.dot(A.col(0)) * A.col(0)).normalized();
-    A.col(2) = Vector3d(A.col(0)).cross(Vector3d(A.col(1)));
+    A << x, y, x.cross(y);
     return A;
 }
+
+// The statement of each kind of joint of a scene.
+struct JointStatement {
+    std::string_view kind;
+    const char *keyword, *type;
+};
+constexpr JointStatement joint_statements[] = {{"spherical", "JOINT", "SPHERICAL"},
+                                               {"revolute", "JOINT", "REVOLUTE"},
+                                               {"universal", "JOINT", "UNIVERSAL"},
+                                               {"cylindrical", "JOINT", "CYLINDRICAL"},
+                                               {"translational", "JOINT", "TRANSLATIONAL"},
+                                               {"planar", "JOINT", "PLANAR"},
+                                               {"fixed", "JOINT", "FIXED"},
+                                               {"in_plane", "JPRIM", "INPLANE"},
+                                               {"in_line", "JPRIM", "INLINE"},
+                                               {"perpendicular", "JPRIM", "PERPENDICULAR"},
+                                               {"parallel", "JPRIM", "PARALLEL_AXES"}};
 
 // The weight of a body; null if it has none.
 const DeadForce* weight_of(const Scene& scene, const std::string& body) {
@@ -76,21 +91,18 @@ class AdmWriter {
         : scene_(scene), result_(result), gravity_(gravity_of(scene)) {}
 
     void whole() {
-        std::string& t = result_.text;
         // A fixed form of title, with unprintable characters replaced.
         std::string title = scene_.name;
         for (char& c : title)
             if (c < 0x20 || c > 0x7E) c = '?';
-        t = fmt::format(
-            "Exported model name: {}\n!\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = "
-            "METER\n, "
-            "TIME = SECOND\n!\n",
+        put("Exported model name: {}\n!\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = "
+            "METER\n, TIME = SECOND\n!\n",
             title);
         if (!gravity_.isZero(0))
-            t += fmt::format("ACCGRAV/\n, IGRAV = {}\n, JGRAV = {}\n, KGRAV = {}\n!\n",
-                             real(gravity_.x()), real(gravity_.y()), real(gravity_.z()));
+            put("ACCGRAV/\n, IGRAV = {}\n, JGRAV = {}\n, KGRAV = {}\n!\n", real(gravity_.x()),
+                real(gravity_.y()), real(gravity_.z()));
         called("ground");
-        t += "PART/1\n, GROUND\n!\n";
+        put("PART/1\n, GROUND\n!\n");
         for (std::size_t b = 0; b < scene_.bodies.size(); ++b) part(static_cast<BodyId>(b));
         for (const Joint& joint : scene_.joints) write(joint);
         for (const Elastic& elastic : scene_.elastics) write(elastic);
@@ -99,27 +111,33 @@ class AdmWriter {
         for (const Wheel& wheel : scene_.wheels) {
             const std::string axis = wheel.name.empty() ? "wheel_axis" : "wheel_axis_" + wheel.name;
             marker(wheel.body, wheel.centre_local, along(wheel.spin_axis_local), axis);
-            result_.notes.leave_out(
-                "without a statement",
-                {0, fmt::format("wheel {} (import --wheel {}, the marker at its centre)",
-                                wheel.name, axis)});
+            leave_out("without a statement",
+                      fmt::format("wheel {} (import --wheel {}, the marker at its centre)",
+                                  wheel.name, axis));
         }
         for (const Branch& branch : scene_.branches)
-            result_.notes.leave_out("without a statement", {0, "branch '" + branch.name + "'"});
+            leave_out("without a statement", "branch '" + branch.name + "'");
         for (const Damper& damper : scene_.dampers)
-            result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
-        for (const auto& line : described(result_.notes)) t += fmt::format("! {}\n", line);
-        t += "END\n";
+            leave_out("exerting nothing", "damper '" + damper.name + "'");
+        for (const auto& line : described(result_.notes)) put("! {}\n", line);
+        put("END\n");
     }
 
   private:
-    void called(const std::string& name) {
-        result_.text += fmt::format("! adams_view_name='{}'\n", name);
+    template <class... A>
+    void put(fmt::format_string<A...> text, A&&... a) {
+        result_.text += fmt::format(text, std::forward<A>(a)...);
     }
+    void called(const std::string& name) { put("! adams_view_name='{}'\n", name); }
     static int id_of(BodyId body) { return body + 2; }  // ground is 1
     void miss(const std::string& what, const std::string& why) {
         result_.notes.miss({0, what}, why);
     }
+    void leave_out(const char* why, const std::string& what) {
+        result_.notes.leave_out(why, {0, what});
+    }
+    // Statements of one kind, or of a group, are counted from 1.
+    int next_id(const std::string& kind) { return ++ids_[kind]; }
 
     // Weights are written as ACCGRAV and masses of the parts.
     bool is_weight(const Load& load) const {
@@ -132,15 +150,15 @@ class AdmWriter {
         const double mass = weight && !weight->f.isZero(0) ? weight->f.norm() / gravity_.norm() : 0;
         const Vector3d cm = weight ? Vector3d(weight->at.s_local) : Vector3d(Vector3d::Zero());
         called(name);
-        result_.text += fmt::format("PART/{}\n, MASS = {}\n, CM = {}\n, QG = {}\n", id_of(body),
-                                    real(std::max(mass, least_mass)), next_marker_, list(pose.r));
+        put("PART/{}\n, MASS = {}\n, CM = {}\n, QG = {}\n", id_of(body),
+            real(std::max(mass, least_mass)), ids_["MARKER"] + 1, list(pose.r));
         marker(body, cm, Matrix3d::Identity(), name + ".cm");
     }
 
     // With the name of the hardpoint at its place, else the given one.
     int marker(BodyId body, const Vector3d& s, const Matrix3d& A = Matrix3d::Identity(),
                std::string name = {}) {
-        const int id = next_marker_++;
+        const int id = next_id("MARKER");
         const Vector3d at =
             s + (body == ground ? Vector3d(Vector3d::Zero())
                                 : Vector3d(scene_.bodies[static_cast<std::size_t>(body)].design.r));
@@ -150,36 +168,60 @@ class AdmWriter {
         if (hardpoint != scene_.hardpoints.end() && !name.starts_with("wheel_axis"))
             name = hardpoint->name;
         if (!name.empty()) called(name);
-        result_.text +=
-            fmt::format("MARKER/{}\n, PART = {}\n, QP = {}\n", id, id_of(body), list(s));
-        if (!A.isIdentity(0)) result_.text += fmt::format(", REULER = {}\n", list(euler_313(A)));
+        put("MARKER/{}\n, PART = {}\n, QP = {}\n", id, id_of(body), list(s));
+        if (!A.isIdentity(0)) put(", REULER = {}\n", list(euler_313(A)));
         return id;
     }
     int floating(BodyId body) {
-        const int id = next_marker_++;
-        result_.text += fmt::format("MARKER/{}\n, PART = {}\n, FLOATING\n", id, id_of(body));
+        const int id = next_id("MARKER");
+        put("MARKER/{}\n, PART = {}\n, FLOATING\n", id, id_of(body));
         return id;
     }
 
-    void statement(const char* keyword, int id, const std::string& name, const std::string& kind,
-                   int i, int j) {
+    void statement(const char* keyword, int id, const std::string& name, const char* type, int i,
+                   int j) {
         called(name);
-        result_.text += fmt::format("{}/{}\n", keyword, id);
-        if (!kind.empty()) result_.text += fmt::format(", {}\n", kind);
-        result_.text += fmt::format(", I = {}\n, J = {}\n", i, j);
+        put("{}/{}\n", keyword, id);
+        if (*type) put(", {}\n", type);
+        put(", I = {}\n, J = {}\n", i, j);
+    }
+    // Springs and bushings are counted together.
+    void elastic_statement(const char* keyword, const std::string& name, const char* type, int i,
+                           int j) {
+        statement(keyword, next_id("SPRINGDAMPER"), name, type, i, j);
+    }
+    void force_statement(const std::string& name, const char* type, int i, int j) {
+        statement("SFORCE", next_id("SFORCE"), name, type, i, j);
     }
 
     // ---- Joints. Bodies start parallel to ground: a direction has the same components on both.
 
-    void on_axis(const Joint& joint, const char* kind, const Point& i, const Point& j,
-                 const Direction& axis_i, const Direction& axis_j) {
-        const int I = marker(i.body, i.s_local, along(axis_i.u_local)),
-                  J = marker(j.body, j.s_local, along(axis_j.u_local));
-        joints_[joint.name] = next_joint_;
-        statement("JOINT", next_joint_++, joint.name, kind, I, J);
-    }
-    void primitive(const Joint& joint, const char* kind, int I, int J) {
-        statement("JPRIM", next_primitive_++, joint.name, kind, I, J);
+    // The markers have z along the joint's directions, or x and y; one direction is for both.
+    template <class K>
+    void write_pair(const Joint& joint, const K& kind) {
+        std::vector<Point> points;
+        std::vector<Direction> axes;
+        each_member(kind, overloaded{[&](const Point& p) { points.push_back(p); },
+                                     [&](const Direction& d) { axes.push_back(d); }});
+        if (points.empty())
+            for (const Direction& d : axes) points.push_back({d.body, Vector3d::Zero()});
+        if constexpr (std::is_same_v<K, InPlane>)
+            points[1].s_local += kind.offset * kind.normal_j.u_local;
+        int ids[2];
+        for (const std::size_t end : {0, 1}) {
+            Matrix3d A = Matrix3d::Identity();
+            if (axes.size() == 4)
+                A = with_x(axes[2 * end].u_local, axes[2 * end + 1].u_local);
+            else if (!axes.empty())
+                A = along(axes[axes.size() == 2 ? end : 0].u_local);
+            ids[end] = marker(points[end].body, points[end].s_local, A);
+        }
+        using Its = elastocheck::Kind<K>;
+        const auto& [name, keyword, type] =
+            *std::ranges::find(joint_statements, Its::name, &JointStatement::kind);
+        const int id = next_id(keyword);
+        if (Its::drive != JointDrive::none) joints_[joint.name] = id;
+        statement(keyword, id, joint.name, type, ids[0], ids[1]);
     }
 
     // Rate of a joint's drive: the first branch that drives it takes one second; 0 if it is held.
@@ -196,86 +238,38 @@ class AdmWriter {
     // such as jacks, are left out.
     void drive(const Joint& joint, const char* kind, double offset) {
         if (joint.active_only_where_driven)
-            return result_.notes.leave_out("active only where a branch drives it",
-                                           {0, "drive '" + joint.name + "'"});
-        const auto found = joints_.find(joint.name.substr(0, joint.name.rfind('.')));
+            return leave_out("active only where a branch drives it", "drive '" + joint.name + "'");
+        const auto found = joints_.find(driven_by(joint));
         if (found == joints_.end())
             return miss("drive '" + joint.name + "'", "the joint that it drives has no statement");
         called(joint.name);
         const double rate = rate_of(joint);
-        result_.text += fmt::format("MOTION/{}\n, {}\n, JOINT = {}\n, FUNCTION = {}{}\n",
-                                    next_motion_++, kind, found->second, real(offset),
-                                    rate == 0 ? "" : fmt::format(" + {} * TIME", real(rate)));
+        put("MOTION/{}\n, {}\n, JOINT = {}\n, FUNCTION = {}{}\n", next_id("MOTION"), kind,
+            found->second, real(offset), rate == 0 ? "" : fmt::format(" + {} * TIME", real(rate)));
+    }
+    static std::string driven_by(const Joint& drive) {
+        return drive.name.substr(0, drive.name.rfind('.'));
     }
 
     void write(const Joint& joint) {
-        const auto z = [](const Direction& d) { return along(d.u_local); };
-        std::visit(
-            overloaded{
-                [&](const Spherical& j) {
-                    const int I = marker(j.i.body, j.i.s_local), J = marker(j.j.body, j.j.s_local);
-                    statement("JOINT", next_joint_++, joint.name, "SPHERICAL", I, J);
-                },
-                [&](const Revolute& j) {
-                    on_axis(joint, "REVOLUTE", j.i, j.j, j.axis_i, j.axis_j);
-                },
-                [&](const Universal& j) {
-                    const int I = marker(j.i.body, j.i.s_local, z(j.axis_i)),
-                              J = marker(j.j.body, j.j.s_local, z(j.axis_j));
-                    statement("JOINT", next_joint_++, joint.name, "UNIVERSAL", I, J);
-                },
-                [&](const Cylindrical& j) {
-                    on_axis(joint, "CYLINDRICAL", j.i, j.j, j.axis_i, j.axis_j);
-                },
-                [&](const Translational& j) {
-                    on_axis(joint, "TRANSLATIONAL", j.i, j.j, j.axis_i, j.axis_j);
-                },
-                [&](const Planar& j) {
-                    on_axis(joint, "PLANAR", j.i, j.j, j.normal_i, j.normal_j);
-                },
-                [&](const Fixed& j) {
-                    const int I = marker(j.i.body, j.i.s_local,
-                                         with_x(j.x_i.u_local, j.y_i.u_local)),
-                              J = marker(j.j.body, j.j.s_local,
-                                         with_x(j.x_j.u_local, j.y_j.u_local));
-                    statement("JOINT", next_joint_++, joint.name, "FIXED", I, J);
-                },
-                [&](const Distance& j) {
-                    if (joint.active_only_where_driven) return drive(joint, "", 0);
-                    const int I = marker(j.i.body, j.i.s_local), J = marker(j.j.body, j.j.s_local);
-                    called(joint.name);
-                    result_.text += fmt::format("GCON/{}\n, FUNCTION = DM({}, {}) - {}\n",
-                                                next_gcon_++, I, J, real(j.length));
-                },
-                [&](const InPlane& j) {
-                    const bool is_drive =
-                        joint.name.ends_with(".drive") &&
-                        joints_.contains(joint.name.substr(0, joint.name.rfind('.')));
-                    if (joint.active_only_where_driven || is_drive)
-                        return drive(joint, "TRANSLATIONAL", j.offset);
-                    const Matrix3d A = z(j.normal_j);
-                    const int I = marker(j.i.body, j.i.s_local, A),
-                              J = marker(j.j.body, j.j.s_local + j.offset * j.normal_j.u_local, A);
-                    primitive(joint, "INPLANE", I, J);
-                },
-                [&](const InLine& j) {
-                    const Matrix3d A = z(j.axis_j);
-                    const int I = marker(j.i.body, j.i.s_local, A),
-                              J = marker(j.j.body, j.j.s_local, A);
-                    primitive(joint, "INLINE", I, J);
-                },
-                [&](const Perpendicular& j) {
-                    const int I = marker(j.i.body, Vector3d::Zero(), z(j.i)),
-                              J = marker(j.j.body, Vector3d::Zero(), z(j.j));
-                    primitive(joint, "PERPENDICULAR", I, J);
-                },
-                [&](const Parallel& j) {
-                    const int I = marker(j.i.body, Vector3d::Zero(), z(j.i)),
-                              J = marker(j.j.body, Vector3d::Zero(), z(j.j));
-                    primitive(joint, "PARALLEL_AXES", I, J);
-                },
-                [&](const Angle& j) { drive(joint, "ROTATIONAL", j.angle); }},
-            joint.kind);
+        std::visit(overloaded{[&](const Angle& j) { drive(joint, "ROTATIONAL", j.angle); },
+                              [&](const Distance& j) {
+                                  if (joint.active_only_where_driven) return drive(joint, "", 0);
+                                  const int I = marker(j.i.body, j.i.s_local),
+                                            J = marker(j.j.body, j.j.s_local);
+                                  called(joint.name);
+                                  put("GCON/{}\n, FUNCTION = DM({}, {}) - {}\n", next_id("GCON"), I,
+                                      J, real(j.length));
+                              },
+                              [&](const InPlane& j) {
+                                  const bool is_drive = joint.name.ends_with(".drive") &&
+                                                        joints_.contains(driven_by(joint));
+                                  if (joint.active_only_where_driven || is_drive)
+                                      return drive(joint, "TRANSLATIONAL", j.offset);
+                                  write_pair(joint, j);
+                              },
+                              [&](const auto& j) { write_pair(joint, j); }},
+                   joint.kind);
     }
 
     // ---- Elements
@@ -303,15 +297,15 @@ class AdmWriter {
                             straight ? "straight lines" : "the monotone interpolant", apart.force,
                             apart.of));
         called(name + ".spline");
-        result_.text += fmt::format("SPLINE/{}\n{}, X = {}\n, Y = {}\n", next_spline_,
-                                    law.known_outside ? ", LINEAR_EXTRAPOLATE\n" : "", x, y);
-        return next_spline_++;
+        const int id = next_id("SPLINE");
+        put("SPLINE/{}\n{}, X = {}\n, Y = {}\n", id,
+            law.known_outside ? ", LINEAR_EXTRAPOLATE\n" : "", x, y);
+        return id;
     }
 
     void write(const Elastic& elastic) {
         if (elastic.active_only_where_driven)
-            return result_.notes.leave_out("active only where a branch drives it",
-                                           {0, "tyre '" + elastic.name + "'"});
+            return leave_out("active only where a branch drives it", "tyre '" + elastic.name + "'");
         std::visit([&](const auto& kind) { write(elastic, kind); }, elastic.kind);
     }
 
@@ -326,10 +320,9 @@ class AdmWriter {
         const int I = marker(spring.i.body, spring.i.s_local),
                   J = marker(spring.j.body, spring.j.s_local);
         if (!curve) {
-            statement("SPRINGDAMPER", next_force_++, elastic.name, "TRANSLATIONAL", I, J);
-            result_.text +=
-                fmt::format(", K = {}\n, LENGTH = {}\n", real(std::get<LinearRate>(spring.law).k),
-                            real(spring.free_length));
+            elastic_statement("SPRINGDAMPER", elastic.name, "TRANSLATIONAL", I, J);
+            put(", K = {}\n, LENGTH = {}\n", real(std::get<LinearRate>(spring.law).k),
+                real(spring.free_length));
             return;
         }
         if (is_contact && curve->knots.size() > 1)
@@ -337,36 +330,72 @@ class AdmWriter {
         if (is_contact) {  // one knot: a rate on one side of it, zero force on the other
             const double touches = spring.free_length + curve->knots[0];
             const double below = curve->pieces[0][1], above = curve->pieces[1][1];
-            statement("SFORCE", next_sforce_++, elastic.name, "TRANSLATIONAL", I, J);
-            if (above == 0)
-                result_.text +=
-                    fmt::format(", FUNCTION = IMPACT(DM({}, {}), VR({}, {}), {}, {}, 1, 0, 1)\n", I,
-                                J, I, J, real(touches), real(below));
-            else
-                result_.text +=
-                    fmt::format(", FUNCTION = -IMPACT(-DM({}, {}), -VR({}, {}), {}, {}, 1, 0, 1)\n",
-                                I, J, I, J, real(-touches), real(above));
+            const bool is_bump = above == 0;
+            const char* const minus = is_bump ? "" : "-";
+            force_statement(elastic.name, "TRANSLATIONAL", I, J);
+            put(", FUNCTION = {0}IMPACT({0}DM({1}, {2}), {0}VR({1}, {2}), {3}, {4}, 1, 0, 1)\n",
+                minus, I, J, real(is_bump ? touches : -touches), real(is_bump ? below : above));
             return;
         }
         const int points_of = spline(points(*curve), *curve, elastic.name);
-        statement("SFORCE", next_sforce_++, elastic.name, "TRANSLATIONAL", I, J);
-        result_.text += fmt::format(", FUNCTION = -AKISPL(DM({}, {}) - {}, 0, {})\n", I, J,
-                                    real(spring.free_length), points_of);
+        force_statement(elastic.name, "TRANSLATIONAL", I, J);
+        put(", FUNCTION = -AKISPL(DM({}, {}) - {}, 0, {})\n", I, J, real(spring.free_length),
+            points_of);
     }
 
     // Writes a stop with a table over its penetration, DIM(a, b) = max(a - b, 0).
     void write_contact(const std::string& name, const AxialSpring& spring, const Curve& law, int I,
                        int J) {
         const Contact contact = contact_of(law);
-        const double touches = spring.free_length + contact.touches;
+        const std::string touches = real(spring.free_length + contact.touches),
+                          length = fmt::format("DM({}, {})", I, J);
         const int points_of = spline(contact.rows, law, name);
-        statement("SFORCE", next_sforce_++, name, "TRANSLATIONAL", I, J);
-        if (contact.is_bump)
-            result_.text += fmt::format(", FUNCTION = AKISPL(DIM({}, DM({}, {})), 0, {})\n",
-                                        real(touches), I, J, points_of);
-        else
-            result_.text += fmt::format(", FUNCTION = -AKISPL(DIM(DM({}, {}), {}), 0, {})\n", I, J,
-                                        real(touches), points_of);
+        force_statement(name, "TRANSLATIONAL", I, J);
+        put(", FUNCTION = {}AKISPL(DIM({}, {}), 0, {})\n", contact.is_bump ? "" : "-",
+            contact.is_bump ? touches : length, contact.is_bump ? length : touches, points_of);
+    }
+
+    // One axis through one point: the angle is the same in every formulation.
+    void write_torsion(const std::string& name, const Bushing& b, const Matrix6* stiffness, int I,
+                       int J) {
+        if (stiffness) {
+            elastic_statement("SPRINGDAMPER", name, "ROTATIONAL", I, J);
+            put(", KT = {}\n, TORQUE = {}\n", real((*stiffness)(5, 5)), real(-b.preload[5]));
+            return;
+        }
+        const auto& law = std::get<Curve>(std::get<PerAxis>(b.law).axis[5]);
+        const int points_of = spline(points(law), law, name);
+        force_statement(name, "ROTATIONAL", I, J);
+        put(", FUNCTION = {} - AKISPL(AZ({}, {}), 0, {})\n", real(-b.preload[5]), I, J, points_of);
+    }
+
+    // A rate or a curve along each axis.
+    void write_per_axis(const std::string& name, const PerAxis& axes, const Bushing& b, int I,
+                        int J) {
+        if (!b.undeformed.tail<3>().isZero(0))
+            return miss("element '" + name + "'",
+                        "curves over angles with a nonzero undeformed position");
+        const int float_j = floating(b.i.body);
+        constexpr const char* components[] = {"FX", "FY", "FZ", "TX", "TY", "TZ"};
+        constexpr const char* measures[] = {"DX", "DY", "DZ", "AX", "AY", "AZ"};
+        std::string functions;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const std::string x = k < 3 ? fmt::format("{}({}, {}, {})", measures[k], I, J, J)
+                                        : fmt::format("{}({}, {})", measures[k], I, J),
+                              at_zero = real(-b.preload[static_cast<Eigen::Index>(k)]);
+            std::string law;
+            if (const double* rate = elastocheck::rate_of(axes.axis[k])) {
+                law = fmt::format("{} * {}", real(*rate), x);
+            } else {
+                const auto& curve = std::get<Curve>(axes.axis[k]);
+                law = fmt::format("AKISPL({}, 0, {})", x,
+                                  spline(points(curve), curve, name + "." + components[k]));
+            }
+            functions += fmt::format(", {} = {} - {}\\\n", components[k], at_zero, law);
+        }
+        called(name);
+        put("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n{}", next_id("GFORCE"), I, float_j, J,
+            functions);
     }
 
     void write(const Elastic& elastic, const Bushing& bushing) {
@@ -375,23 +404,11 @@ class AdmWriter {
         const bool is_on_j = bushing.formulation.frame == Formulation::Frame::on_j;
         const Bushing b = is_on_j ? markers_swapped(bushing) : bushing;
         const Matrix3d A_i = b.i.A_local.toRotationMatrix(), A_j = b.j.A_local.toRotationMatrix();
-        // One axis through one point: the angle is the same in every formulation.
         const Matrix6* stiffness = matrix_of(b.law);
         if (elastic.written_as == WrittenAs::torsion_spring) {
             const int J = marker(b.i.body, b.i.s_local, A_i),
                       I = marker(b.j.body, b.j.s_local, A_j);
-            if (stiffness) {
-                statement("SPRINGDAMPER", next_force_++, elastic.name, "ROTATIONAL", I, J);
-                result_.text += fmt::format(", KT = {}\n, TORQUE = {}\n", real((*stiffness)(5, 5)),
-                                            real(-b.preload[5]));
-                return;
-            }
-            const auto& law = std::get<Curve>(std::get<PerAxis>(b.law).axis[5]);
-            const int points_of = spline(points(law), law, elastic.name);
-            statement("SFORCE", next_sforce_++, elastic.name, "ROTATIONAL", I, J);
-            result_.text += fmt::format(", FUNCTION = {} - AKISPL(AZ({}, {}), 0, {})\n",
-                                        real(-b.preload[5]), I, J, points_of);
-            return;
+            return write_torsion(elastic.name, b, stiffness, I, J);
         }
         if (!(b.formulation == adams_bushing)) {
             miss("element '" + elastic.name + "'",
@@ -404,50 +421,24 @@ class AdmWriter {
         // holds the undeformed angles.
         const int J = marker(b.i.body, b.i.s_local + A_i * b.undeformed.head<3>(), A_i),
                   I = marker(b.j.body, b.j.s_local, A_j);
+        if (const PerAxis* axes = axes_of(b.law))
+            return write_per_axis(elastic.name, *axes, b, I, J);
         const Vector6 force = -b.preload;
-        if (const PerAxis* axes = axes_of(b.law)) {
-            if (!b.undeformed.tail<3>().isZero(0))
-                return miss("element '" + elastic.name + "'",
-                            "curves over angles with a nonzero undeformed position");
-            const int float_j = floating(b.i.body);
-            constexpr const char* components[] = {"FX", "FY", "FZ", "TX", "TY", "TZ"};
-            constexpr const char* measures[] = {"DX", "DY", "DZ", "AX", "AY", "AZ"};
-            std::string functions;
-            for (std::size_t k = 0; k < 6; ++k) {
-                const std::string x = k < 3 ? fmt::format("{}({}, {}, {})", measures[k], I, J, J)
-                                            : fmt::format("{}({}, {})", measures[k], I, J);
-                const auto at_zero = force[static_cast<Eigen::Index>(k)];
-                if (const double* rate = elastocheck::rate_of(axes->axis[k]))
-                    functions += fmt::format(", {} = {} - {} * {}\\\n", components[k],
-                                             real(at_zero), real(*rate), x);
-                else {
-                    const auto& curve = std::get<Curve>(axes->axis[k]);
-                    functions += fmt::format(
-                        ", {} = {} - AKISPL({}, 0, {})\\\n", components[k], real(at_zero), x,
-                        spline(points(curve), curve, elastic.name + "." + components[k]));
-                }
-            }
-            called(elastic.name);
-            result_.text += fmt::format("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n{}",
-                                        next_gforce_++, I, float_j, J, functions);
-            return;
-        }
         const Matrix6& K = *stiffness;
+        const Vector6 rates = K.diagonal();
+        const std::string force_text = list(force.head<3>()), torque_text = list(force.tail<3>());
         if (K.isDiagonal(0) && b.undeformed.tail<3>().isZero(0)) {
-            statement("BUSHING", next_force_++, elastic.name, "", I, J);
-            result_.text += fmt::format(", K = {}\n, KT = {}\n, FORCE = {}\n, TORQUE = {}\n",
-                                        list(K.diagonal().head<3>()), list(K.diagonal().tail<3>()),
-                                        list(force.head<3>()), list(force.tail<3>()));
+            elastic_statement("BUSHING", elastic.name, "", I, J);
+            put(", K = {}\n, KT = {}\n, FORCE = {}\n, TORQUE = {}\n", list(rates.head<3>()),
+                list(rates.tail<3>()), force_text, torque_text);
             return;
         }
-        statement("FIELD", next_force_++, elastic.name, "", I, J);
-        result_.text += ", KMATRIX =\n";
+        elastic_statement("FIELD", elastic.name, "", I, J);
+        put(", KMATRIX =\n");
         for (int column = 0; column < 6; ++column)
-            result_.text += fmt::format(", {}, {}\n", list(K.col(column).head<3>()),
-                                        list(K.col(column).tail<3>()));
-        result_.text +=
-            fmt::format(", LENGTH = 0, 0, 0, {}\n, FORCE = {}, {}\n", list(b.undeformed.tail<3>()),
-                        list(force.head<3>()), list(force.tail<3>()));
+            put(", {}, {}\n", list(K.col(column).head<3>()), list(K.col(column).tail<3>()));
+        put(", LENGTH = 0, 0, 0, {}\n, FORCE = {}, {}\n", list(b.undeformed.tail<3>()), force_text,
+            torque_text);
     }
 
     // ---- Loads; their reactions act on ground and are not used.
@@ -457,12 +448,11 @@ class AdmWriter {
         const int I = marker(body, s), J = floating(ground),
                   RM = follows ? I : marker(ground, Vector3d::Zero());
         called(name);
-        result_.text += fmt::format(
-            "GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n, FX = {}\\\n, FY = {}\\\n, FZ = "
-            "{}\\\n, TX = "
-            "{}\\\n, TY = {}\\\n, TZ = {}\n",
-            next_gforce_++, I, J, RM, real(force.x()), real(force.y()), real(force.z()),
-            real(moment.x()), real(moment.y()), real(moment.z()));
+        put("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n", next_id("GFORCE"), I, J, RM);
+        put(", FX = {}\\\n, FY = {}\\\n, FZ = {}\\\n", real(force.x()), real(force.y()),
+            real(force.z()));
+        put(", TX = {}\\\n, TY = {}\\\n, TZ = {}\n", real(moment.x()), real(moment.y()),
+            real(moment.z()));
     }
     void write(const Load& l) {
         const Vector3d none = Vector3d::Zero();
@@ -477,18 +467,16 @@ class AdmWriter {
                 },
                 [&](const FollowerMoment& m) { load(l.name, m.body, none, none, m.m_local, true); },
                 [&](const BrakeForce&) {
-                    result_.notes.miss({0, "load '" + l.name + "'"},
-                                       "acts through a point of another body");
+                    miss("load '" + l.name + "'", "acts through a point of another body");
                 }},
             l.kind);
     }
 
     const Scene& scene_;
     Exported& result_;
-    Vector3d gravity_;  // [m/s²]
-    std::map<std::string, int> joints_;
-    int next_marker_ = 1, next_joint_ = 1, next_primitive_ = 1, next_gcon_ = 1, next_motion_ = 1,
-        next_force_ = 1, next_sforce_ = 1, next_gforce_ = 1, next_spline_ = 1;
+    Vector3d gravity_;                   // [m/s²]
+    std::map<std::string, int> joints_;  // ids of those that may be driven
+    std::map<std::string, int> ids_;     // the last of each kind
 };
 
 }  // namespace
