@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -32,7 +33,7 @@ int point_at(double at, double to, int increments) {
     return std::abs(k - nearest) <= 1e-9 * increments ? static_cast<int>(nearest) : -1;
 }
 
-bool is_extreme(const StudyFigure& figure) { return figure.over != Over::station; }
+bool is_extreme(const VariantFigure& figure) { return figure.over != Over::station; }
 
 // Whether the channel holds numbers of the design position, of which a variant has its own.
 bool holds_numbers(const Channel& channel) {
@@ -63,36 +64,26 @@ Model without_joints(const Model& model) {
 
 }  // namespace
 
-const char* name(VariantOutcome outcome) {
-    switch (outcome) {
-        case VariantOutcome::solved: return "solved";
-        case VariantOutcome::no_scene: return "no scene";
-        case VariantOutcome::not_trimmed: return "not trimmed";
-        case VariantOutcome::ended_early: return "ended early";
-        case VariantOutcome::no_value: return "no value";
-    }
-    return "";
-}
-
-VariantSolver::VariantSolver(const Model& design, std::vector<StudyFigure> figures)
+VariantSolver::VariantSolver(const Model& design, std::vector<VariantFigure> figures)
     : figures_(std::move(figures)) {
     const auto all = figure_outputs(design);
-    for (const StudyFigure& figure : figures_) {
+    std::vector<Channel> own;
+    for (const VariantFigure& figure : figures_) {
         const int c = find_channel(all, figure.output);
         if (c < 0)
             throw std::invalid_argument(
                 fmt::format("{}: the scene has no output '{}'", figure.name, figure.output));
-        outputs_.push_back(all[static_cast<std::size_t>(c)]);
-        outputs_.back().definition.clear();
-        only_motion_ = only_motion_ && outputs_.back().kinematic();
-        with_sums_ = with_sums_ || std::holds_alternative<Total>(outputs_.back().reads);
+        own.push_back(all[static_cast<std::size_t>(c)]);
+        only_motion_ = only_motion_ && own.back().kinematic();
+        with_sums_ = with_sums_ || std::holds_alternative<Total>(own.back().reads);
     }
+    outputs_ = std::make_shared<const std::vector<Channel>>(std::move(own));
     elastocheck::structure(design, structure_);
     place(design);
     for (Group& group : groups_) {
         for (Way& way : group.ways)
             if (std::ranges::any_of(way.readings, [&](const Reading& reading) {
-                    return outputs_[reading.figure].kind() == ChannelKind::characteristic;
+                    return (*outputs_)[reading.figure].kind() == ChannelKind::characteristic;
                 })) {
                 const Branch side = ways(design.branches[way.branch])[way.side];
                 const BranchSide whole{side.name, on_branch(design, side), side};
@@ -118,7 +109,7 @@ void VariantSolver::place(const Model& design) {
     };
     std::vector<Station> stations;
     for (std::size_t k = 0; k < figures_.size(); ++k) {
-        const StudyFigure& figure = figures_[k];
+        const VariantFigure& figure = figures_[k];
         const auto branch = std::ranges::find(design.branches, figure.branch, &Branch::name);
         if (branch == design.branches.end())
             throw std::invalid_argument(
@@ -176,32 +167,32 @@ bool VariantSolver::is_as_design(const Model& variant) const {
 }
 
 // Those of the design with the numbers of the variant, one a figure; none where it has others.
-std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& variant) const {
-    const bool same = is_as_design(variant);
-    std::vector<Channel> own = outputs_;
-    if (same && std::ranges::none_of(own, holds_numbers)) return own;
+std::shared_ptr<const std::vector<Channel>> VariantSolver::outputs(const Model& variant,
+                                                                   bool same) const {
+    if (same && std::ranges::none_of(*outputs_, holds_numbers)) return outputs_;
     const auto all = same ? channels(without_joints(variant)) : figure_outputs(variant, with_sums_);
-    for (std::size_t k = 0; k < own.size(); ++k) {
-        if (same && !holds_numbers(own[k])) continue;
+    auto own = std::make_shared<std::vector<Channel>>(*outputs_);
+    for (std::size_t k = 0; k < own->size(); ++k) {
+        if (same && !holds_numbers((*own)[k])) continue;
         const int c = find_channel(all, figures_[k].output);
-        if (c < 0) return std::nullopt;
-        own[k] = all[static_cast<std::size_t>(c)];
+        if (c < 0) return nullptr;
+        (*own)[k] = all[static_cast<std::size_t>(c)];
     }
     return own;
 }
 
-void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs, const Way& way,
+void VariantSolver::read(const Model& model, const Branch& side,
+                         const std::vector<Channel>& outputs, const Way& way,
                          const EquilibriumPath& path, Analyses analyses,
                          VariantFigures& into) const {
     const Branch& branch = model.branches[way.branch];
-    const Branch side = ways(branch)[way.side];
     std::string ended;
     std::size_t reached = 0;
     for (; reached < path.points.size() && ended.empty(); ++reached)
         ended = ends_at_table(model, side, path.points[reached]);
     if (!ended.empty()) --reached;
     if (reached <= static_cast<std::size_t>(points_) && into.reason.empty()) {
-        into.outcome = VariantOutcome::ended_early;
+        into.outcome = outcome::ended_early;
         into.reason = !ended.empty() ? ended
                                      : fmt::format("branch '{}': {}: {}", branch.name,
                                                    elastocheck::name(path.outcome), path.detail);
@@ -210,20 +201,21 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
     // The figures of one point at a time, so that a response is computed once.
     std::optional<BranchSide> whole;
     std::vector<std::size_t> here;
-    std::vector<Channel> wanted;
+    std::vector<double> values;
     for (std::size_t p = 0; p < reached; ++p) {
-        here.clear(), wanted.clear();
+        here.clear(), values.clear();
         bool responds = false;
         for (const Reading& reading : way.readings) {
             if (reading.point >= 0 && reading.point != static_cast<int>(p)) continue;
             here.push_back(reading.figure);
-            wanted.push_back(outputs[reading.figure]);
-            responds = responds || wanted.back().kind() == ChannelKind::characteristic ||
-                       !wanted.back().joints().empty();
+            const Channel& output = outputs[reading.figure];
+            responds = responds || output.kind() == ChannelKind::characteristic ||
+                       !output.joints().empty();
         }
         if (here.empty()) continue;
-        std::vector<double> values;
         if (responds) {
+            std::vector<Channel> wanted;
+            for (const std::size_t k : here) wanted.push_back(outputs[k]);
             if (!whole) {
                 Branch steps = side;
                 steps.steps = points_;
@@ -238,7 +230,9 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
             if (std::ranges::any_of(values, [](double x) { return std::isnan(x); }))
                 analyses = {}, values = row();
         } else {
-            values = evaluate(model, side, wanted, path.points[p]);
+            for (const std::size_t k : here)
+                values.push_back(
+                    evaluate(model, side, std::span(&outputs[k], 1), path.points[p]).front());
         }
         for (std::size_t i = 0; i < here.size(); ++i) {
             const Over over = figures_[here[i]].over;
@@ -256,10 +250,10 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
 
 // A figure without a value, of a branch that is complete.
 void VariantSolver::finish(VariantFigures& figures) const {
-    if (figures.outcome != VariantOutcome::solved) return;
+    if (figures.outcome != outcome::solved) return;
     for (std::size_t k = 0; k < figures_.size(); ++k) {
         if (!std::isnan(figures.values[k])) continue;
-        figures.outcome = VariantOutcome::no_value;
+        figures.outcome = outcome::no_value;
         figures.reason =
             fmt::format("{}: {} could not be computed", figures_[k].name, figures_[k].output);
         return;
@@ -269,14 +263,17 @@ void VariantSolver::finish(VariantFigures& figures) const {
 std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants) const {
     std::vector<VariantFigures> results(variants.size(),
                                         {.values = std::vector<double>(figures_.size(), nan)});
-    std::vector<std::vector<Channel>> all_outputs;
+    std::vector<std::shared_ptr<const std::vector<Channel>>> all_outputs;
     std::vector<std::size_t> which;  // have these outputs
+    std::vector<bool> as_design;     // of these
     for (std::size_t v = 0; v < variants.size(); ++v) {
-        if (auto own = outputs(variants[v])) {
-            all_outputs.push_back(std::move(*own));
+        const bool same = is_as_design(variants[v]);
+        if (auto own = outputs(variants[v], same)) {
+            all_outputs.push_back(std::move(own));
             which.push_back(v);
+            as_design.push_back(same);
         } else {
-            results[v].outcome = VariantOutcome::no_value;
+            results[v].outcome = outcome::no_value;
             results[v].reason = other_outputs;
         }
     }
@@ -288,17 +285,16 @@ std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants
             group.design, group.analysis, models, {.points = points_, .wrenches = !only_motion_},
             [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
                 declined[v] = declined[v] || declines(path.outcome);
-                const bool same = is_as_design(variants[which[v]]);
-                read(variants[which[v]], all_outputs[v], group.ways[w], path,
-                     same ? group.ways[w].responses : Analyses{}, results[which[v]]);
+                read(variants[which[v]], models[v].branches[w], *all_outputs[v], group.ways[w],
+                     path, as_design[v] ? group.ways[w].responses : Analyses{}, results[which[v]]);
             });
     }
     for (std::size_t k = 0; k < which.size(); ++k) {
         VariantFigures& result = results[which[k]];
         finish(result);
-        if (!declined[k] || result.outcome != VariantOutcome::ended_early) continue;
+        if (!declined[k] || result.outcome != outcome::ended_early) continue;
         VariantFigures other = solve_alone(variants[which[k]], Leg::equilibrium);
-        if (other.outcome != VariantOutcome::solved) continue;
+        if (other.outcome != outcome::solved) continue;
         other.reason = "by the equilibrium leg, since series: " + result.reason;
         result = std::move(other);
     }
@@ -307,9 +303,9 @@ std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants
 
 VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
     VariantFigures result{.values = std::vector<double>(figures_.size(), nan), .leg = leg};
-    const auto own = outputs(variant);
+    const auto own = outputs(variant, is_as_design(variant));
     if (!own) {
-        result.outcome = VariantOutcome::no_value;
+        result.outcome = outcome::no_value;
         result.reason = other_outputs;
         return result;
     }
@@ -319,7 +315,7 @@ VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
             side.steps = points_;
             const EquilibriumPath path =
                 walk(BranchSide{side.name, on_branch(variant, side), side}, {.leg = leg});
-            read(variant, *own, way, path, {}, result);
+            read(variant, side, *own, way, path, {}, result);
         }
     finish(result);
     return result;

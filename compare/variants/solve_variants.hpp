@@ -6,32 +6,30 @@
 // parameter, as few as have all stations among them; extremes are those of at least 21 points.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "compare/comparison/compliance.hpp"
-#include "compare/variants/study.hpp"
+#include "compare/variants/variant_figure.hpp"
 #include "elastocheck/legs.hpp"
 #include "elastocheck/model.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 
 namespace elastocheck::compare::variants {
 
-// The numbers are those in a ledger.
-enum class VariantOutcome {
-    solved = 0,
-    no_scene = 1,     // the drawn numbers make the scene invalid, such as a negative rate
-    not_trimmed = 2,  // its trim was not reached
-    ended_early = 3,  // a branch ends before a station
-    no_value = 4,     // a figure could not be computed
-};
-inline constexpr int variant_outcomes = 5;
-const char* name(VariantOutcome outcome);
+// As they are in a ledger.
+namespace outcome {
+inline constexpr const char *solved = "solved",
+                            *no_scene = "no scene",            // the numbers make the scene invalid
+                                *not_trimmed = "not trimmed",  // its trim was not reached
+                                    *ended_early = "ended early",  // a branch ends before a station
+                                        *no_value = "no value";    // a figure could not be computed
+}  // namespace outcome
 
 struct VariantFigures {
-    VariantOutcome outcome = VariantOutcome::solved;
+    std::string outcome = outcome::solved;
     // why it is not solved, or, of a variant that the equilibrium leg solved, why series did not
     std::string reason = {};
     std::vector<double> values = {};  // per figure; NaN where there is none, infinite: undefined
@@ -42,7 +40,7 @@ class VariantSolver {
   public:
     // Throws std::invalid_argument for an output or a branch that the model has not, and for stations
     // that no 1000 equal increments have among them.
-    VariantSolver(const Model& design, std::vector<StudyFigure> figures);
+    VariantSolver(const Model& design, std::vector<VariantFigure> figures);
 
     // Compiled models of the variants. Thread-safe; a result does not depend on the other variants.
     std::vector<VariantFigures> solve(std::span<const Model> variants) const;
@@ -69,17 +67,18 @@ class VariantSolver {
 
     void place(const Model& design);
     Model followed(const Model& model, const std::vector<Way>& ways) const;
-    std::optional<std::vector<Channel>> outputs(const Model& model) const;
-    void read(const Model& model, const std::vector<Channel>& outputs, const Way& way,
-              const EquilibriumPath& path, Analyses analyses, VariantFigures& into) const;
+    std::shared_ptr<const std::vector<Channel>> outputs(const Model& model, bool same) const;
+    void read(const Model& model, const Branch& side, const std::vector<Channel>& outputs,
+              const Way& way, const EquilibriumPath& path, Analyses analyses,
+              VariantFigures& into) const;
     bool is_as_design(const Model& model) const;  // but for numbers
     void finish(VariantFigures& figures) const;
 
-    std::vector<StudyFigure> figures_;
-    std::vector<Channel> outputs_ = {};  // of the design, one a figure
-    std::vector<int> structure_ = {};    // of the design
-    bool only_motion_ = true;            // every output is a position or an angle
-    bool with_sums_ = false;             // an output is a sum of redundant joints
+    std::vector<VariantFigure> figures_;
+    std::shared_ptr<const std::vector<Channel>> outputs_ = {};  // of the design, one a figure
+    std::vector<int> structure_ = {};                           // of the design
+    bool only_motion_ = true;  // every output is a position or an angle
+    bool with_sums_ = false;   // an output is a sum of redundant joints
     bool together_ = true;
     int points_ = 1;
     std::vector<Group> groups_ = {};

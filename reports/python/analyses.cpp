@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -29,8 +28,6 @@
 #include "reports/python/convert.hpp"
 #include "reports/python/scene.hpp"
 #include "reports/render/render.hpp"
-#include "reports/study/output/study_output.hpp"
-#include "reports/study/run_study.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
@@ -177,34 +174,6 @@ Report fit(const SceneOfFile& scene, const std::string& measured,
             .exit_code = determined ? fine : could_not_judge};
 }
 
-Report study(const std::string& file, const std::string& folder, std::optional<std::uint64_t> count,
-             int threads, const compare::Progress& progress) {
-    const reports::StudyFile study = reports::read_study(file, count);
-    std::filesystem::create_directories(folder);
-    const auto ledger_file = std::filesystem::path(folder) / "ledger.sqlite";
-    const reports::LedgerLock lock(ledger_file);
-    reports::Ledger ledger(ledger_file, study.identity, study.study.figures,
-                           reports::Ledger::Access::write);
-    reports::OpenRanges open(
-        ledger, study.study.design.count, {},
-        progress ? progress : [](std::string_view, double) {});
-    if (open.variants() > 0) reports::run_study(study, ledger, open, threads_of(threads));
-    const reports::StudyResult result = reports::evaluate_study(study, ledger);
-    const bool judged = result.summary.by_outcome.front() > 0 && result.disagreements.empty();
-    return {.text = reports::study_text(study, result),
-            .document = reports::study_json(study, result),
-            .exit_code = judged ? fine : could_not_judge};
-}
-
-// Rows of the ledger as CSV, in a file.
-void write_study_rows(const std::string& file, const std::string& folder,
-                      std::optional<std::uint64_t> count, const std::string& csv) {
-    const reports::StudyFile study = reports::read_study(file, count);
-    const reports::Ledger ledger(std::filesystem::path(folder) / "ledger.sqlite", study.identity,
-                                 study.study.figures, reports::Ledger::Access::read);
-    reports::write_study_csv(study, ledger, csv);
-}
-
 // ---- A candidate: a Python function as a leg.
 
 EquilibriumPath path_of(const py::object& returned, const Model& model,
@@ -326,18 +295,6 @@ void bind_analyses(py::module_& module) {
     module.def("fit", &fit, py::call_guard<py::gil_scoped_release>(), py::arg("scene"),
                py::arg("measured"), py::arg("vary"), py::arg("map"), py::arg("robust"),
                py::arg("threads"));
-    module.def(
-        "study",
-        [](const std::string& file, const std::string& folder, std::optional<std::uint64_t> count,
-           int threads, const py::object& progress) {
-            const auto told = progress_to(progress);
-            const py::gil_scoped_release unlocked;
-            return study(file, folder, count, threads, told);
-        },
-        py::arg("file"), py::arg("folder"), py::arg("count"), py::arg("threads"),
-        py::arg("progress"));
-    module.def("write_study_rows", &write_study_rows, py::call_guard<py::gil_scoped_release>(),
-               py::arg("file"), py::arg("folder"), py::arg("count"), py::arg("csv"));
     module.def(
         "judge",
         [](const std::shared_ptr<SceneOfFile>& scene, const py::function& solver,

@@ -65,7 +65,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     info = f"elastocheck-{_version()}.dist-info"
     with tempfile.TemporaryDirectory() as prefix:
         package = _installed(build, pathlib.Path(prefix))
-        files = {f"elastocheck/{file.name}": file.read_bytes() for file in sorted(package.iterdir())}
+        files = {f"elastocheck/{file.relative_to(package)}": file.read_bytes()
+                 for file in sorted(package.rglob("*")) if file.is_file()}
     files[f"{info}/METADATA"] = _metadata().encode()
     files[f"{info}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: elastocheck\nRoot-Is-Purelib: false\n"
                               f"Tag: {_tag()}\n").encode()

@@ -8,6 +8,7 @@
 #include "reports/python/analyses.hpp"
 #include "reports/python/errors.hpp"
 #include "reports/python/scene.hpp"
+#include "reports/python/variants.hpp"
 
 PYBIND11_MODULE(_core, module) {
     using namespace elastocheck;
@@ -15,6 +16,8 @@ PYBIND11_MODULE(_core, module) {
     python::translate_exceptions();
     python::bind_scene(module);
     python::bind_analyses(module);
+    python::bind_variants(module);
+    python::bind_study(module);
     module.attr("version") = reports::provenance().version;
     module.def("templates", &reports::templates);
     module.def(

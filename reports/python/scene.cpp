@@ -44,11 +44,12 @@ SharedScene loaded(std::string file, reports::Settings settings,
 
 }  // namespace
 
-SharedScene read(const std::string& file, const reports::Settings& settings) {
+SharedScene read(const std::string& file, const reports::Settings& settings,
+                 const std::string& name) {
     const reader::TextFile text = reader::read_text(file, reader::Pipes::allowed);
     if (!text.trouble.empty()) throw SceneError(fmt::format("{}: {}", file, text.trouble));
     return loaded(file, settings,
-                  std::make_shared<reader::ParsedScene>(text.text, file,
+                  std::make_shared<reader::ParsedScene>(text.text, name.empty() ? file : name,
                                                         std::filesystem::path(file).parent_path()));
 }
 
@@ -300,6 +301,15 @@ void bind_scene(py::module_& module) {
         .def_property_readonly("name", [](const SceneOfFile& s) { return s.loaded.model.name; })
         .def_property_readonly("numbers", &numbers_of)
         .def_property_readonly("units", &units_of)
+        .def(
+            "number",  // value and unit, also of one side; None where there is none
+            [](const SceneOfFile& s, const std::string& path) {
+                std::optional<std::pair<double, std::string>> found;
+                if (const auto number = find_number(s.loaded.scene, path))
+                    found = {number->value, number->unit};
+                return found;
+            },
+            py::arg("path"))
         .def_property_readonly("_branches", &branches_of)
         .def_property_readonly("_outputs", &outputs_of)
         .def_property_readonly("bodies",
@@ -359,12 +369,12 @@ void bind_scene(py::module_& module) {
             py::arg("states"), py::arg("characteristics"), py::arg("branches"));
     module.def(
         "read",
-        [](const std::string& file, const py::dict& settings) {
+        [](const std::string& file, const py::dict& settings, const std::string& name) {
             const auto all = settings_of(settings);
             const py::gil_scoped_release unlocked;
-            return std::const_pointer_cast<SceneOfFile>(read(file, all));
+            return std::const_pointer_cast<SceneOfFile>(read(file, all, name));
         },
-        py::arg("file"), py::arg("settings"));
+        py::arg("file"), py::arg("settings"), py::arg("name") = "");
 }
 
 }  // namespace elastocheck::python

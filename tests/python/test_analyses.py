@@ -79,34 +79,6 @@ def test_fit_is_that_of_the_command(scenes, command, tmp_path):
         elastocheck.fit(elastocheck.read(file), measured, "springs.coil.rate")
 
 
-STUDY = """elastocheck_study: 1
-scene: mine.yaml
-variables:
-  bushings.tip.rates.z: {list: [18, 19, 20, 21, 22]}
-design: {kind: grid}
-figures: {tip: "tip_z@up:5000"}
-"""
-
-
-def test_study_goes_on_and_is_that_of_the_command(tmp_path, command):
-    elastocheck.new("pinned_bar", tmp_path / "mine.yaml")
-    study = tmp_path / "study.yaml"
-    study.write_text(STUDY)
-    said, code, _ = command("study", study, "-o", tmp_path / "command")
-    if "OpenTURNS" in said:
-        pytest.skip("built without OpenTURNS")
-    report = elastocheck.study(study, tmp_path / "python")
-    assert report.exit_code == code
-    frame = report.frame()
-    assert len(frame) == 5
-    again = elastocheck.study(study, tmp_path / "python")
-    assert again.text == report.text
-    study.write_text(STUDY.replace("rates.z", "rates.up"))
-    with pytest.raises(elastocheck.SceneError) as error:
-        elastocheck.study(study, tmp_path / "other")
-    assert error.value.line == 4
-
-
 def test_what_progress_raises_ends_the_computation():
     class Enough(Exception):
         pass

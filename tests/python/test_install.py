@@ -48,7 +48,7 @@ def test_the_debian_package_works_elsewhere(tmp_path):
     assert f"python3 (>= 3.{sys.version_info.minor})" in depends and "python3-numpy" in depends and "libfmt9" in depends
     (tmp_path / "study.yaml").write_text(STUDY)
     program = ("import elastocheck; elastocheck.new('pinned_bar', 'mine.yaml');"
-               "print(len(elastocheck.study('study.yaml', 'out').frame()), elastocheck.__file__)")
+               "print(len(elastocheck.study.run('study.yaml', 'out').frame()), elastocheck.__file__)")
     ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, cwd=tmp_path,
                          env={**os.environ, "PYTHONPATH": str(tmp_path / "root/usr/lib/python3/dist-packages")})
     assert ran.stdout.startswith(f"20 {tmp_path / 'root'}"), ran.stderr

@@ -97,17 +97,6 @@ TEST(Redundant, TheSumOfTheJointsIsAnOutputOfEveryCommand) {
     const std::string scatter = "tolerances " + scene + " " + (folder.path / "t.yaml").string();
     expect_says(scatter + " --of " + sum + "@b:3000", 0, {.out = {sum}});
     expect_says(scatter + " --of front.force_y@b:3000", 3, {.err = {"redundant joints share it"}});
-    const auto study = [&](const std::string& figure) {
-        folder.write("s.yaml", "elastocheck_study: 1\nscene: " + scene +
-                                   "\nvariables: {springs.coil.rate: {uniform: {half_width: 5}}}\n"
-                                   "design: {kind: monte_carlo, count: 5, seed: 1}\nfigures: {f: " +
-                                   figure + "@b:3000}\n");
-        return "study " + (folder.path / "s.yaml").string() + " -o " +
-               (folder.path / "study").string();
-    };
-    expect_says(study("front.force_y"), 2,
-                {.err = {"s.yaml:5: figures.f: front.force_y: redundant joints share it"}});
-    expect_says(study(sum), 0, {.out = {"5 of 5 variants: 5 solved"}});
     const std::string table = (folder.path / "c.csv").string();
     expect_says("solve " + scene + " -o " + table, 0);
     folder.write("c.csv", std::regex_replace(text_of(table), std::regex(",,"), ",0,"));

@@ -1,154 +1,60 @@
-// `elastocheck study`: many variants of a scene, and the statistics of their figures.
-#include <fmt/format.h>
+// `elastocheck study`: many variants of a scene, by the Python package beside the program
+// (reports/python/package/study/).
+#include <unistd.h>
 
-#include <algorithm>
-#include <charconv>
-#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 
-#include "reports/command/delivery.hpp"
-#include "reports/command/options/running.hpp"
 #include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
-#include "reports/files/terminal.hpp"
-#include "reports/study/output/study_output.hpp"
-#include "reports/study/output/study_page.hpp"
-#include "reports/study/run_study.hpp"
+#include "reports/files/subprocess.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-struct StudyRequest {
-    std::string file, folder, shard, csv;
-    std::vector<std::string> merge;
-    int count = 0;
-    bool show = false, as_json = false;
-    Running running;
-};
+namespace fs = std::filesystem;
 
-constexpr FileKind statistics_file{"statistics of a study", R"({"schema":"elastocheck/study/)"};
+constexpr const char* program = R"(import sys
+try:
+    from elastocheck.study.__main__ import main
+except ImportError as error:
+    print(f"elastocheck: study: {error}; `./dev study` builds and installs what it needs", file=sys.stderr)
+    sys.exit(2)
+sys.exit(main())
+)";
 
-Shard parse_shard(const std::string& word) {
-    Shard shard;
-    if (word.empty()) return shard;
-    const char *at = word.data(), *end = at + word.size();
-    const auto first = std::from_chars(at, end, shard.at);
-    const bool has_slash = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
-    const auto second = has_slash ? std::from_chars(first.ptr + 1, end, shard.of) : first;
-    if (!has_slash || second.ec != std::errc() || second.ptr != end || shard.at < 1 ||
-        shard.at > shard.of || shard.of > 1'000'000)
-        throw std::invalid_argument(
-            fmt::format("--shard '{}': allowed: K/N, such as 2/8, K from 1 to N", word));
-    return shard;
-}
-
-// Variants of the shard that have no row.
-std::uint64_t missing(const Ledger& ledger, std::uint64_t count, const Shard& shard,
-                      std::vector<std::string>& ranges) {
-    std::uint64_t all = 0;
-    const auto rows = ledger.rows_by_batch(batch_size, count);
-    for (std::uint64_t b = shard.at - 1; b < rows.size(); b += shard.of) {
-        const std::uint64_t first = b * batch_size, end = std::min(first + batch_size, count);
-        if (rows[b] == end - first) continue;
-        all += end - first - rows[b];
-        if (ranges.size() < 10)
-            ranges.push_back(fmt::format("{} of {} to {}", end - first - rows[b], first, end - 1));
-        else if (ranges.size() == 10)
-            ranges.emplace_back("...");
-    }
-    return all;
-}
-
-StudyFile read(const StudyRequest& request) {
-    return read_study(request.file, request.count > 0
-                                        ? std::optional(static_cast<std::uint64_t>(request.count))
-                                        : std::nullopt);
-}
-
-// Those of all shards in a folder.
-std::vector<std::string> ledgers_in(const std::string& folder) {
-    std::vector<std::string> files;
+// The folder with the package, of the build tree or of an installed program; empty where Python has
+// to find it.
+std::string package_folder() {
     std::error_code failed;
-    for (auto at = std::filesystem::directory_iterator(folder, failed);
-         !failed && at != std::filesystem::end(at); at.increment(failed))
-        if (const std::string name = at->path().filename().string();
-            name.starts_with("ledger-") && name.ends_with(".sqlite"))
-            files.push_back(at->path().string());
-    if (failed) throw FileError(folder + ": " + failed.message());
-    if (files.empty())
-        throw FileError(folder + ": no ledger of a shard, ledger-K-of-N.sqlite, in it");
-    std::ranges::sort(files);
-    return files;
+    for (fs::path file = fs::read_symlink("/proc/self/exe", failed), folder = file.parent_path();
+         !failed && folder != file; file = folder, folder = folder.parent_path())
+        for (const char* place : {"reports/python/package", "lib/python3/dist-packages"})
+            if (std::error_code unseen;
+                fs::exists(folder / place / "elastocheck/study/__main__.py", unseen))
+                return (folder / place).string();
+    return {};
 }
 
-void compute(const StudyRequest& request, const StudyFile& file, Ledger& ledger,
-             const Shard& shard) {
-    const auto start = std::chrono::steady_clock::now();
-    OpenRanges open(ledger, file.study.design.count, shard, progress);
-    if (open.variants() == 0) return;
-    run_study(file, ledger, open, threads_of(request.running));
-    progress("");
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    print_error("{} variants computed in {:.1f} s, {:.0f} per second\n", open.variants(), seconds,
-                static_cast<double>(open.variants()) / seconds);
-}
-
-// Exit code 0: every variant has a row; 3: some have none, none is solved, or witnesses disagree.
-int study(const StudyRequest& request, const Delivery& delivery) {
-    const Shard shard = parse_shard(request.shard);
-    if (request.show && (!request.merge.empty() || !request.shard.empty()))
-        throw std::invalid_argument("--show computes nothing: not with --merge or --shard");
-    if (!request.shard.empty() && !request.merge.empty())
-        throw std::invalid_argument("--merge is for the whole study: not with --shard");
-    const StudyFile file = read(request);
-    for (const auto& warning : file.warnings) print_error("{} (warning)\n", warning);
-    const std::filesystem::path folder = request.folder;
-    const auto ledger_file = folder / (request.shard.empty() ? std::string("ledger.sqlite")
-                                                             : fmt::format("ledger-{}-of-{}.sqlite",
-                                                                           shard.at, shard.of));
-    const auto statistics_json = folder / "statistics.json";
-    if (!request.show) {
-        std::filesystem::create_directories(folder);
-        if (request.shard.empty()) check_may_write(statistics_json, statistics_file);
+// Becomes the Python program, which reads the options of this command line again.
+int study(const std::string& line, const Running& running) {
+    const std::string python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+    if (std::string path = package_folder(); !path.empty()) {
+        if (const char* const before = std::getenv("PYTHONPATH"); before != nullptr)
+            path += ":" + std::string(before);
+        ::setenv("PYTHONPATH", path.c_str(), 1);
     }
-    std::optional<LedgerLock> lock;
-    if (!request.show) lock.emplace(ledger_file);
-    Ledger ledger(ledger_file, file.identity, file.study.figures,
-                  request.show ? Ledger::Access::read : Ledger::Access::write);
-    for (const std::string& shards : request.merge)
-        for (const std::string& other : ledgers_in(shards))
-            ledger.merge({other, file.identity, file.study.figures, Ledger::Access::merge});
-    if (!request.show && request.merge.empty()) compute(request, file, ledger, shard);
-    std::vector<std::string> ranges;
-    const std::uint64_t open = missing(ledger, file.study.design.count, shard, ranges);
-    if (open > 0) print_error("{} variants are missing: {}\n", open, fmt::join(ranges, ", "));
-    if (!request.csv.empty()) {
-        write_study_csv(file, ledger, request.csv);
-        print_error("Written: {}\n", request.csv);
-    }
-    if (!request.shard.empty()) {
-        delivery.print_text(fmt::format("Shard {}/{}: {} variants in {}\n", shard.at, shard.of,
-                                        ledger.summary(file.study.design.count).rows,
-                                        ledger_file.string()));
-        return open > 0 ? could_not_judge : fine;
-    }
-    const StudyResult result = evaluate_study(file, ledger);
-    auto document = document_head(study_schema, delivery.command);
-    document.update(study_json(file, result));
-    if (!request.show) {
-        write_whole(statistics_json, document.dump(1) + "\n", statistics_file);
-        const auto page = folder / "study.html";
-        write_study_page(file, result, ledger, delivery.command, page);
-        print_error("Written: {}, {}\n", statistics_json.string(), page.string());
-    }
-    delivery.print_text(study_text(file, result));
-    if (delivery.as_json) print_document(document);
-    for (const std::string& sentence : result.disagreements) print_error("{}\n", sentence);
-    const bool nothing_solved = result.summary.by_outcome.front() == 0;
-    return open > 0 || nothing_solved || !result.disagreements.empty() ? could_not_judge : fine;
+    std::vector<std::string> words = words_of(line);  // elastocheck study ...
+    words.front() = "-c", words[1] = program;
+    words.insert(words.begin(), python);
+    words.insert(words.end(), {"--reproduce", line, "--jobs", std::to_string(running.jobs)});
+    if (running.quiet) words.emplace_back("--quiet");
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    ::execvp(pointers.front(), pointers.data());
+    throw FileError("study: there is no python3; `./dev study` installs it");
 }
 
 }  // namespace
@@ -158,34 +64,35 @@ const Command study_command{
     "Many variants of a scene, each with a row in a ledger, and the statistics of their "
     "figures; the same command goes on where it was interrupted",
     [](CLI::App& command) -> Run {
-        const auto request = std::make_shared<StudyRequest>();
-        as_file(
-            command.add_option("STUDY", request->file, "file with variables, design and figures"))
-            ->required();
+        const auto running = std::make_shared<Running>();
+        as_file(command.add_option("STUDY", "file with variables, design and figures"))->required();
         as_folder(command.add_option(
-                      "-o,--output", request->folder,
+                      "-o,--output",
                       "folder of the ledger (ledger.sqlite), statistics.json and study.html"))
             ->required();
         command
-            .add_option("--count", request->count,
+            .add_option("--count",
                         "number of variants, instead of that in the file; more than before "
                         "extends the study")
             ->check(CLI::Range(1, 1'000'000'000));
-        command
-            .add_option("--shard", request->shard, "compute part K of N, into ledger-K-of-N.sqlite")
+        command.add_option("--shard", "compute part K of N, into ledger-K-of-N.sqlite")
             ->type_name("K/N");
         as_folder(
-            command.add_option("--merge", request->merge,
-                               "add the rows of all shards in these folders, and compute nothing"));
-        command.add_flag("--show", request->show,
-                         "compute nothing, write nothing: show what there is");
-        as_file(command.add_option("--csv", request->csv,
-                                   "write variables and figures of all variants as CSV"));
-        add_running(command, request->running);
-        add_json(command, request->as_json);
-        return [request](const std::string& line) {
-            return study(*request, {.as_json = request->as_json, .command = line});
-        };
+            command.add_option("--merge",
+                               "add the rows of all shards in these folders, and compute nothing"))
+            ->expected(1, -1);
+        command.add_option("--scheduler", "compute on the workers of a dask cluster")
+            ->type_name("tcp://HOST:8786");
+        command.add_flag("--show")->description(
+            "compute nothing, write nothing: show what there is");
+        command.add_flag("--rare")->description(
+            "probabilities that figures leave their limits, by FORM and importance sampling");
+        as_file(command.add_option("--csv", "write variables and figures of all variants as CSV"));
+        as_file(command.add_option("--hdf5", "write the same as HDF5"));
+        command.add_flag("--json")->description(
+            "print the document, and nothing else, to standard output");
+        add_running(command, *running);
+        return [running](const std::string& line) { return study(line, *running); };
     }};
 
 }  // namespace elastocheck::reports

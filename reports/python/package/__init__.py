@@ -29,13 +29,14 @@ def _listed(names):
 
 # ---- Scenes.
 
-def read(file, settings=None):
+def read(file, settings=None, *, name=""):
     """The scene of a YAML file, with some numbers of it changed: {"springs.coil.rate": 28}.
 
     Settings are in the units of the file, as `--set` of the command. Warnings of the reader are
-    SceneWarning. Throws SceneError, NotTrimmed.
+    SceneWarning. `name`: of the file in messages, instead of its path. Throws SceneError,
+    NotTrimmed.
     """
-    scene = _core.read(os.fspath(file), dict(settings or {}))
+    scene = _core.read(os.fspath(file), dict(settings or {}), name)
     for warning in scene.warnings:
         warnings.warn(warning, SceneWarning, stacklevel=2)
     return scene
@@ -333,19 +334,33 @@ def fit(scene, measured, vary, *, map="", robust=False, threads=0):
                             threads), "numbers")
 
 
-def study(file, folder, count=None, *, threads=0, progress=None):
-    """Many variants of a scene by a study file; the same call goes on where it was interrupted.
+# ---- Many variants.
 
-    Rows are kept in ledger.sqlite in the folder, as by `elastocheck study`. frame() has a row per
-    variant: its numbers, outcome, figures.
+def _variants(self, numbers, figures, method="series", *, threads=0):
+    """Figures of many variants of the scene: values [variants, figures] and an outcome for each.
+
+    `numbers`: a column of values for each number that varies, {"springs.coil.rate": [27, 28, 29]}
+    or a pandas.DataFrame, in the units of the file. `figures`: "toe@jounce:3000",
+    "min toe@jounce", "bump_steer"; or such by names of your own. A figure without a value is nan.
+    An outcome is "solved", or says why not. `method`: "series" (what it declines is solved by the
+    equilibrium leg) or a reference leg; `threads`: 0 for one per core. elastocheck.study keeps the
+    rows of long computations. Throws ArgumentError.
     """
-    file, folder = os.fspath(file), os.fspath(folder)
+    import numpy
 
-    def rows():
-        with tempfile.TemporaryDirectory(prefix="elastocheck-") as temporary:
-            csv = os.path.join(temporary, "study.csv")
-            _core.write_study_rows(file, folder, count, csv)
-            with open(csv, encoding="utf-8") as text:
-                return _frame_of_csv(text.read())
+    words = figures.items() if isinstance(figures, Mapping) else zip(*2 * [_listed(figures)])
+    columns = [numpy.asarray(numbers[name], dtype=float) for name in numbers]
+    values, outcomes, _, reasons = _core.Variants(self, list(numbers), list(words)).solve(
+        numpy.column_stack(columns), method, threads)
+    return values, [outcome + (": " + reason if reason and outcome != "solved" else "")
+                    for outcome, reason in zip(outcomes, reasons)]
 
-    return Report(_core.study(file, folder, count, threads, progress), rows)
+
+Scene.variants = _variants
+
+
+def __getattr__(name):
+    if name == "study":  # loaded when it is asked for
+        import importlib
+        return importlib.import_module("elastocheck.study")
+    raise AttributeError(f"module 'elastocheck' has no attribute {name!r}")

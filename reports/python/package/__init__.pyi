@@ -7,6 +7,7 @@ import pandas
 
 from elastocheck._core import Curves as Curves
 from elastocheck._core import Scene as Scene
+from elastocheck import study as study
 from elastocheck._core import templates as templates
 from elastocheck._errors import ArgumentError as ArgumentError
 from elastocheck._errors import Error as Error
@@ -20,7 +21,7 @@ Progress = Optional[Callable[[str, float], Any]]
 __version__: str
 
 def read(file: str | PathLike[str],
-         settings: Optional[Mapping[str, float | str]] = None) -> Scene: ...
+         settings: Optional[Mapping[str, float | str]] = None, *, name: str = "") -> Scene: ...
 def new(template: str, file: Optional[str | PathLike[str]] = None,
         settings: Optional[Mapping[str, float | str]] = None) -> Scene: ...
 
@@ -88,5 +89,3 @@ def sensitivity(scene: Scene, of: str | Sequence[str] = (), to: str | Sequence[s
 def fit(scene: Scene, measured: str | PathLike[str] | pandas.DataFrame,
         vary: str | Sequence[str], *, map: str | PathLike[str] = "", robust: bool = False,
         threads: int = 0) -> Report: ...
-def study(file: str | PathLike[str], folder: str | PathLike[str], count: Optional[int] = None, *,
-          threads: int = 0, progress: Progress = None) -> Report: ...

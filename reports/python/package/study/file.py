@@ -1,0 +1,313 @@
+"""Reads the file of a study: reports/README.md, "Studies"."""
+import fnmatch
+import hashlib
+import math
+import os
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from elastocheck import _core
+from elastocheck._errors import ArgumentError, FileError
+
+MOST = 1_000_000_000  # variants
+# Of a distribution: the fields besides low and high, and how it is described by its numbers.
+DISTRIBUTIONS = {"normal": (["mean", "sd"], "normal, {:g}, sd {:g}"),
+                 "uniform": ([], "uniform, {:g} to {:g}"),
+                 "triangular": (["mode"], "triangular, {0:g} to {2:g}, mode {1:g}"),
+                 "truncated_normal": (["mean", "sd"], "normal, {:g}, sd {:g}, between {:g} and {:g}"),
+                 "list": ([], "list of {count}, {low:g} to {high:g}"),
+                 "": ([], "as listed")}
+DESIGNS = ["grid", "list", "monte_carlo", "latin_hypercube", "sobol"]
+
+
+@dataclass
+class Variable:
+    """A number of the scene, or a factor of several; `kind` "": given by a list of variants."""
+    name: str
+    unit: str = ""
+    nominal: float = 1.0
+    kind: str = ""
+    numbers: tuple = ()  # mean, sd | low, high | low, mode, high | mean, sd, low, high | values
+    scaled: dict = field(default_factory=dict)  # numbers of the scene and their nominal values
+
+    @property
+    def continuous(self):
+        return self.kind not in ("", "list")
+
+    @property
+    def ends(self):
+        """Of a bounded distribution; the mean of an unbounded one."""
+        if self.kind == "normal":
+            return self.numbers[:1]
+        bounded = self.numbers[2:] if self.kind == "truncated_normal" else self.numbers
+        return (min(bounded), max(bounded)) if bounded else ()
+
+    def __str__(self):
+        low, high = self.ends if len(self.ends) == 2 else (0, 0)
+        return DISTRIBUTIONS[self.kind][1].format(*self.numbers, count=len(self.numbers), low=low, high=high)
+
+
+@dataclass
+class Figure:
+    """An output at a station of a branch, or its extreme over the branch, and its limits."""
+    name: str
+    words: str
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+
+    @property
+    def limited(self):
+        return self.low > -math.inf or self.high < math.inf
+
+
+def _number(at, key, otherwise=None):
+    given = at.get(key) if otherwise is not None else at.need(key)
+    return given.number() if given else otherwise
+
+
+def _positive(at):
+    x = at.number()
+    return x if x > 0 else at.fail(f"{x:g}; allowed: more than zero")
+
+
+def _distribution(kind, at, nominal):
+    if kind == "list":
+        return tuple(value.number() for value in at.items("values")) or at.fail("no value in it")
+    fields = DISTRIBUTIONS[kind][0]
+    at.only(fields + (["half_width", "low", "high"] if kind != "normal" else []))
+    first = [_positive(at.need(key)) if key == "sd" else _number(at, key, nominal) for key in fields]
+    if kind == "normal":
+        return tuple(first)
+    if half := at.get("half_width"):
+        if at.get("low") or at.get("high"):
+            half.fail("given together with low or high; allowed: one of the two forms")
+        low, high = nominal - _positive(half), nominal + _positive(half)
+    else:
+        low, high = _number(at, "low"), _number(at, "high")
+        if not low < high:
+            at.fail(f"low {low:g} is not below high {high:g}")
+    if kind == "triangular":
+        if not low <= first[0] <= high:
+            at.fail(f"mode {first[0]:g} is not between low {low:g} and high {high:g}")
+        return low, first[0], high
+    if first and not (low < first[0] + 8 * first[1] and high > first[0] - 8 * first[1]):
+        at.fail("the ends lie more than eight standard deviations beside the mean")
+    return (*first, low, high)
+
+
+def _short_hash(content):
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def scene_hash(file, scene):
+    """Of a scene and of the tables of curves in other files."""
+    with open(file, "rb") as text:
+        return _short_hash(text.read() + _core.hash_of_curves(scene).encode())
+
+
+class Study:
+    """A study as data. Everything is checked before the first variant.
+
+    `count` replaces that of the file. Throws SceneError and SheetError "file:line: field: ...", FileError.
+    """
+
+    def __init__(self, file, count=None):
+        from elastocheck import read
+        self.file = os.fspath(file)
+        try:
+            with open(self.file, "rb") as text:
+                whole = _core.Field(text.read(), self.file)
+        except OSError as error:
+            raise FileError(f"{self.file}: {error.strerror}") from error
+        whole.only(["elastocheck_study", "scene", "variables", "groups", "design", "figures", "limits", "witness"])
+        whole.need("elastocheck_study").whole(1, 1)
+        at = whole.need("scene")
+        self.scene_name = at.text("the file of a scene")
+        self.scene_file = os.path.join(os.path.dirname(self.file), self.scene_name)
+        if not os.path.isfile(self.scene_file):
+            at.fail(f"{self.scene_file}: there is no such file")
+        # In reasons of failed variants the scene has the name that it has here, wherever they are computed.
+        self.scene = read(self.scene_file, name=self.scene_name)
+        self.variables, self.varied_by = [], {}
+        for name, at in whole.need("variables").entries():
+            self.variables.append(self._variable(name, at))
+        if not 1 <= len(self.variables) <= 500:
+            whole.need("variables").fail(f"{len(self.variables)} variables; allowed: 1 to 500, NUMBER: {{normal: {{sd: 0.5}}}}")
+        self.names = [v.name for v in self.variables]
+        self.correlation = self._correlation(whole.get("groups")) if whole.get("groups") else None
+        self._read_figures(whole.need("figures"), whole.get("limits"))
+        self._read_design(whole, whole.need("design"), count)
+        self.witness = whole.get("witness").whole(0, MOST) if whole.get("witness") else 0
+        # What solves the variants, here and on other machines.
+        self.paths = [path for v in self.variables for path in (v.scaled or [v.name])]
+        self.words = [(figure.name, figure.words) for figure in self.figures]
+        try:
+            self.solver = _core.Variants(self.scene, self.paths, self.words)
+        except ArgumentError as error:
+            whole.need("figures").fail(str(error))
+        self._check_ends(whole.need("variables"))
+        self.identity = self._identity()
+
+    def numbers(self, values):
+        """The numbers of the scene [n x paths] by values of the variables [n x variables]."""
+        return np.column_stack([values[:, j] * nominal for j, v in enumerate(self.variables)
+                                for nominal in (v.scaled.values() if v.scaled else [1.0])])
+
+    @property
+    def block(self):
+        """Variants in a block of the design: a, b, then a with one variable after the other from b."""
+        return len(self.variables) + 2 if self.indices else 1
+
+    def _claim(self, at, path, variable):
+        if path.startswith("branches."):
+            at.fail(path + ": branches are the same for all variants; allowed: other numbers")
+        both = path.split("@")[0]
+        for other, by in self.varied_by.items():  # of both sides, and of one of them: once
+            if other == path or (other.split("@")[0] == both and both in (other, path)):
+                at.fail(f"{path} is varied by '{by}' too")
+        self.varied_by[path] = variable
+
+    def _variable(self, name, at):
+        known = self.scene.numbers
+        at.only([*DISTRIBUTIONS, "scale"])
+        variable = Variable(name)
+        if scale := at.get("scale"):
+            for one in scale.items("patterns") if scale.is_list else [scale]:
+                pattern = one.text("a number of the scene or a pattern with *")
+                found = fnmatch.filter(known, pattern)
+                for path in found or one.fail(f"the scene has no number {_core.quote(pattern)}"
+                                              + _core.did_you_mean(pattern, list(known), "numbers")):
+                    self._claim(one, path, name)
+                    variable.scaled[path] = known[path]
+        else:
+            variable.nominal, variable.unit = self.scene.number(name) or at.fail(
+                "the scene has no such number" + _core.did_you_mean(name, list(known), "numbers")
+                + "; a factor of numbers needs `scale: NUMBERS`")
+            self._claim(at, name, name)
+        given = [(kind, at.get(kind)) for kind in DISTRIBUTIONS if kind and at.get(kind)]
+        if len(given) > 1:
+            given[1][1].fail("a second distribution; allowed: one")
+        for variable.kind, found in given:
+            variable.numbers = _distribution(variable.kind, found, variable.nominal)
+        return variable
+
+    def _correlation(self, section):
+        correlation, grouped = np.eye(len(self.variables)), set()
+        for group in section.items("groups"):
+            group.only(["variables", "correlation"])
+            names, rows, members = group.need("variables"), group.need("correlation"), []
+            for name in names.items("variables"):
+                k = self.names.index(name.one_of("a variable", self.names))
+                if not self.variables[k].continuous:
+                    name.fail("has no continuous distribution, so that it cannot be correlated")
+                if k in grouped:
+                    name.fail("is in a group already")
+                grouped.add(k)
+                members.append(k)
+            if len(members) < 2:
+                names.fail("a group needs two variables")
+            cells = [row.items("correlations") for row in rows.items("rows")]
+            if [len(row) for row in cells] != [len(members)] * len(members):
+                rows.fail(f"expected {len(members)} rows of {len(members)} correlations, one for each variable")
+            R = np.array([[cell.number() for cell in row] for row in cells])
+            if (np.abs(R) > 1).any() or (np.diag(R) != 1).any() or (R != R.T).any():
+                rows.fail("is not symmetric, or has other numbers than -1 to 1, and 1 on the diagonal")
+            if not np.linalg.eigvalsh(R)[0] > 1e-12:
+                rows.fail("is not positive definite: these correlations contradict each other, "
+                          "or a variable is a function of others")
+            correlation[np.ix_(members, members)] = R
+        return correlation
+
+    def _read_design(self, whole, at, count):
+        at.only(["kind", "count", "seed", "indices", "file"])
+        kind, self.seed, self.indices, self.table = at.need("kind"), 0, False, None
+        self.kind = kind.one_of("a design", DESIGNS)
+        if self.kind != "list" and at.get("file"):
+            at.get("file").fail("only of a list")
+        if self.kind in ("grid", "list"):
+            self._read_given(whole, at, kind, count)
+            return
+        for variable in self.variables:
+            if not variable.kind:
+                whole.need("variables").need(variable.name).fail(
+                    "no distribution; allowed: normal, uniform, triangular, truncated_normal, list")
+        size = at.need("count").whole(1, MOST)
+        self.count, self.seed = count or size, at.need("seed").whole(0, MOST)
+        if self.kind == "latin_hypercube" and self.count != size:
+            at.need("count").fail("a Latin hypercube cannot be extended: all its variants depend on their number; "
+                                  "allowed: a sobol or monte_carlo design")
+        self.indices = bool(at.get("indices")) and at.get("indices").yes_or_no()
+        if self.indices and self.kind == "latin_hypercube":
+            at.need("indices").fail("not of a Latin hypercube; allowed: sobol, monte_carlo")
+        if self.indices and self.correlation is not None:
+            at.need("indices").fail("Sobol indices need independent variables, and there are groups")
+        if self.count < self.block:
+            at.need("count").fail(f"{self.count} variants are less than one block of {self.block} for Sobol indices")
+
+    def _read_given(self, whole, at, kind, count):
+        """Of a grid or a list."""
+        for key in ("count", "seed", "indices"):
+            if at.get(key):
+                at.get(key).fail("not of a grid or a list, which say how many variants there are")
+        if self.correlation is not None:
+            whole.need("groups").fail("not of a grid or a list, which draw nothing")
+        if self.kind == "list":
+            file = at.need("file")
+            try:
+                self.table = _core.read_table(os.path.join(os.path.dirname(self.file), file.text("a CSV file")), self.names)
+            except FileError as error:
+                file.fail(str(error))
+            size = len(self.table)
+        else:
+            for variable in self.variables:
+                if variable.kind != "list":
+                    kind.fail(f"a grid needs a list of values for each variable, and '{variable.name}' has none")
+            size = math.prod(len(v.numbers) for v in self.variables)
+            if size > MOST:
+                kind.fail(f"a grid of more than {MOST} combinations")
+        if count and count > size:
+            kind.fail(f"{count} variants are requested, and there are {size}")
+        self.count = count or size
+
+    def _read_figures(self, section, limits):
+        self.figures = [Figure(name, at.text("an output, such as toe@jounce:3000")) for name, at in section.entries()]
+        if not 1 <= len(self.figures) <= 1000:
+            section.fail(f"{len(self.figures)} figures; allowed: 1 to 1000, NAME: toe@jounce:3000")
+        for figure in self.figures:
+            try:
+                figure.unit = _core.unit_of_figure(self.scene, figure.words)
+            except ArgumentError as error:
+                section.need(figure.name).fail(str(error))
+        by_name = {figure.name: figure for figure in self.figures}
+        for name, at in limits.entries() if limits else ():
+            figure = by_name.get(name) or at.fail(
+                "the study has no such figure" + _core.did_you_mean(name, list(by_name), "figures"))
+            at.only(["min", "max"])
+            figure.low, figure.high = _number(at, "min", -math.inf), _number(at, "max", math.inf)
+            if not figure.limited:
+                at.fail("no limit; allowed: {min: ..., max: ...}")
+            if figure.low > figure.high:
+                at.fail("min is above max")
+
+    def _check_ends(self, section):
+        """With each variable at its ends, the others as written; tails and combinations are rows."""
+        for j, variable in enumerate(self.variables):
+            for end in variable.ends:
+                values = np.array([[v.nominal for v in self.variables]])
+                values[0, j] = end
+                if wrong := self.solver.invalid(self.numbers(values)[0]):
+                    section.need(variable.name).fail(f"{end:g} can be drawn, and with it the scene is invalid: {wrong}")
+
+    def _identity(self):
+        """Of all that a row depends on: not of the number of variants, but of a Latin hypercube's, nor of the limits."""
+        from elastocheck.study.design import Design
+        parts = [[(v.name, v.kind, v.numbers, list(v.scaled)) for v in self.variables],
+                 self.correlation is not None and self.correlation.tolist(), self.kind, self.seed, self.indices,
+                 self.witness, self.words, self.kind == "latin_hypercube" and self.count,
+                 self.table is not None and self.table.tolist()]
+        # The first values too: another version of a library may draw others.
+        first = Design(self).values(0, min(self.count, self.block))
+        return {"scene": scene_hash(self.scene_file, self.scene),
+                "study": _short_hash(repr(parts).encode() + first.tobytes()), "version": _core.build}

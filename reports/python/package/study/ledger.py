@@ -1,0 +1,190 @@
+"""The ledger of a study: a row for each variant that was computed, in a file of SQLite.
+
+variants(k, outcome, method, reason, f1, f2, ..., checksum); witnesses likewise, by the equilibrium leg; the view
+`results` has the names of the figures. Rows are added in transactions, so that a process that is killed leaves a
+ledger without the rows of its open transaction.
+"""
+import contextlib
+import fcntl
+import hashlib
+import math
+import os
+import sqlite3
+import struct
+
+import numpy as np
+
+from elastocheck._errors import FileError
+
+FORMAT = "elastocheck/ledger/3"
+OUTCOMES = ["solved", "no scene", "not trimmed", "ended early", "no value"]
+TABLES = ("variants", "witnesses")
+
+
+def packed(row):
+    """The content of a row (k, outcome, method, reason, figures...) as bytes."""
+    k, outcome, method, reason, *values = row
+    words = f"{k}\0{outcome}\0{method}\0{reason or ''}\0".encode()
+    return words + struct.pack(f"<{len(values)}d", *[math.nan if x is None else x for x in values])
+
+
+def _checksum(content):
+    return int.from_bytes(hashlib.blake2b(content, digest_size=8).digest(), "little", signed=True)
+
+
+def with_checksum(row):
+    return (*row, _checksum(packed(row)))
+
+
+def _is_intact(row):
+    """Whether a row has the types of its columns and the content of its checksum."""
+    k, outcome, method, reason, *values, checksum = row
+    types = [type(k), type(outcome), type(method), type(checksum)] == [int, str, str, int]
+    return (types and isinstance(reason, (str, type(None))) and all(isinstance(x, (float, type(None))) for x in values)
+            and _checksum(packed(row[:-1])) == checksum)
+
+
+@contextlib.contextmanager
+def locked(ledger):
+    """Excludes other processes that would write the same ledger."""
+    lock = -1
+    try:
+        # Beside the ledger: SQLite loses its own locks where the file itself is opened once more.
+        lock = os.open(ledger + ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError as error:
+        raise FileError(f"{ledger}: another process is computing this study here") from error
+    finally:
+        if lock >= 0:
+            os.close(lock)
+
+
+class Ledger:
+    """Opens, or to write creates, the ledger of a study, and checks every row.
+
+    `damaged` are the tables and numbers of rows that were changed or hurt; to write they are removed, so that they
+    are computed again. To write, the version of the program has to be the same.
+    """
+
+    def __init__(self, file, study, write=True, same_version=True):
+        self.file, self.figures = file, len(study.figures)
+        if os.path.islink(file):
+            raise FileError(f"{file}: is a symbolic link; a ledger is a regular file")
+        if not write and not os.path.exists(file):
+            raise FileError(f"{file}: no such ledger; nothing has been computed")
+        with self.failing():
+            self.base = sqlite3.connect(file, timeout=10, isolation_level=None)
+            # Damaged text is found by its checksum.
+            self.base.text_factory = lambda text: text.decode(errors="replace")
+            if write and not self.rows("SELECT 1 FROM sqlite_master"):
+                self._create(study)
+            self._check_identity(study.identity, same_version)
+            self.damaged = [(table, row[0]) for table in TABLES for row in self.each(table) if not _is_intact(row)]
+            if self.damaged or self.rows("PRAGMA quick_check(1)") != [("ok",)]:
+                if not write:
+                    rows = "; ".join(f"row {k} of {table}: its content is not that of its checksum" for table, k in self.damaged[:3])
+                    raise FileError(f"{file}: is damaged: {rows}; the study without --show computes again what is")
+                self._repair()
+            if write and study.witness:  # a variant is computed together with its witness
+                self.base.execute("DELETE FROM variants WHERE k % ? = 0 AND k NOT IN (SELECT k FROM witnesses)", (study.witness,))
+
+    def _repair(self):
+        """Writes the intact rows anew: in a damaged table they are not found by their numbers."""
+        for table in TABLES:
+            rows = [row for row in self.base.execute(f"SELECT * FROM {table}") if _is_intact(row)]
+            with self.transaction():
+                self.base.execute(f"DELETE FROM {table}")
+                self._insert(table, rows)
+
+    @contextlib.contextmanager
+    def failing(self):
+        try:
+            yield
+        except sqlite3.Error as error:
+            raise FileError(f"{self.file}: {error}") from error
+
+    @contextlib.contextmanager
+    def transaction(self):
+        with self.failing():
+            self.base.execute("BEGIN IMMEDIATE")
+            try:
+                yield
+                self.base.execute("COMMIT")
+            finally:
+                if self.base.in_transaction:
+                    self.base.execute("ROLLBACK")
+
+    def rows(self, sql, *values):
+        with self.failing():
+            return self.base.execute(sql, values).fetchall()
+
+    def each(self, table, first=0, end=2**62):
+        """The rows of variants from `first` to before `end`, in their order; one at a time."""
+        return self.base.execute(f"SELECT * FROM {table} WHERE k >= ? AND k < ? ORDER BY k", (first, end))
+
+    def _create(self, study):
+        figures = "".join(f"f{j + 1} REAL, " for j in range(self.figures))
+        named = "".join(', f{} AS "{}"'.format(j + 1, f.name.replace('"', '""')) for j, f in enumerate(study.figures))
+        with self.transaction():
+            self.base.execute("CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT)")
+            self.base.executemany("INSERT INTO meta VALUES (?, ?)", [*study.identity.items(), ("format", FORMAT)])
+            for table in TABLES:
+                self.base.execute(f"CREATE TABLE {table} (k INTEGER PRIMARY KEY, outcome TEXT NOT NULL, method TEXT NOT NULL,"
+                                  f" reason TEXT, {figures}checksum INTEGER NOT NULL)")
+            self.base.execute(f"CREATE VIEW results AS SELECT k, outcome, method, reason{named} FROM variants")
+
+    def _check_identity(self, identity, same_version):
+        """Rows of several versions of the program are not added to each other."""
+        names = {name for name, in self.rows("SELECT name FROM sqlite_master")}
+        there = dict(self.rows("SELECT key, value FROM meta")) if {"meta", *TABLES} <= names else {}
+        if there.get("format") != FORMAT:
+            raise FileError(f"{self.file}: not a ledger of a study")
+        for key, what in [("scene", "scene"), ("study", "study file"), ("version", "version of the program")]:
+            if there.get(key) != identity[key] and (same_version or key != "version"):
+                raise FileError(f"{self.file}: is of another {what}: {there.get(key)} there, {identity[key]} here; "
+                                f"another {what} needs another folder")
+
+    def add(self, variants, witnesses):
+        """In one transaction."""
+        with self.transaction():
+            self._insert("variants", variants)
+            self._insert("witnesses", witnesses)
+
+    def _insert(self, table, rows):
+        self.base.executemany(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * (self.figures + 5))})", rows)
+
+    def merge(self, other):
+        """Rows of another ledger of this study that are not here yet; one with other values is an error."""
+        with self.failing():
+            self.base.execute("ATTACH ? AS other", (other.file,))
+        for table in TABLES:
+            if other_values := self.rows(f"SELECT k FROM other.{table} o JOIN main.{table} m USING (k) "
+                                         "WHERE o.checksum != m.checksum LIMIT 1"):
+                raise FileError(f"{other.file}: variant {other_values[0][0]} has other values than in {self.file}")
+        with self.transaction():
+            for table in TABLES:
+                self.base.execute(f"INSERT OR IGNORE INTO main.{table} SELECT * FROM other.{table}")
+        self.base.execute("DETACH other")
+
+    def present(self, count):
+        """Whether each variant below `count` has a row."""
+        has = np.zeros(count, bool)
+        for k, in self.base.execute("SELECT k FROM variants WHERE k < ?", (count,)):
+            has[k] = True
+        return has
+
+    def values(self, j, count, table="variants"):
+        """Of one figure, by variant; nan where there is none."""
+        values = np.full(count, np.nan)
+        for k, x in self.base.execute(f"SELECT k, f{j + 1} FROM {table} WHERE k < ?", (count,)):
+            values[k] = np.nan if x is None else x
+        return values
+
+    def content_hash(self, count):
+        """Of all rows of variants below `count`: equal for equal content."""
+        content = hashlib.blake2b(digest_size=8)
+        for table in TABLES:
+            for row in self.each(table, end=count):
+                content.update(packed(row[:-1]))
+        return content.hexdigest()

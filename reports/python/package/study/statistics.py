@@ -1,0 +1,136 @@
+"""Statistics of the figures of a study, with 95 % intervals, and probabilities of rare failures, as rows of tables.
+
+Intervals are those of independent draws; designs that fill the space more evenly scatter less.
+"""
+import math
+
+import numpy as np
+
+LEVEL = 0.95
+PERCENTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
+_FEWEST_BLOCKS = 10  # for Sobol indices
+_AGREE_OF_SPREAD, _AGREE_OF_SIZE = 1e-6, 1e-9  # of witnesses with the variants of a figure
+
+
+def clopper_pearson(hits, count):
+    """Interval of a share of which `hits` of `count` independent draws were seen."""
+    from scipy.stats import beta
+    tail = (1 - LEVEL) / 2
+    return (beta.ppf(tail, hits, count - hits + 1) if hits else 0.0,
+            beta.ppf(1 - tail, hits + 1, count - hits) if hits < count else 1.0)
+
+
+def percentile_ranks(count, share):
+    """Positions from 0 of the ordered values between which the percentile of the distribution lies with this
+    confidence at least; -1 and `count` where there are too few draws for a lower or an upper bound."""
+    from scipy.stats import binom
+    tail = (1 - LEVEL) / 2
+    # With B draws below the percentile, the value of rank r (from 1) is above it where B < r.
+    low = int(binom.ppf(tail, count, share))
+    return low - 1, int(binom.ppf(1 - tail, count, share))
+
+
+def independent(study, values):
+    """In a design for Sobol indices those of the variants a and b of each block."""
+    return values[np.arange(len(values)) % study.block < 2] if study.indices else values
+
+
+def figure_row(study, figure, values, design):
+    """Of one figure: `values` in the order of the variants from 0, nan where there is none; `design` of the scene."""
+    drawn = independent(study, values)
+    x = np.sort(drawn[np.isfinite(drawn)])
+    n = len(x)
+    row = {"figure": figure.name, "unit": figure.unit, "read as": figure.words, "design": design}
+    about = x[n // 2] if n else math.nan  # so that no digits cancel
+    sd = np.std(x - about, ddof=1) if n > 1 else math.nan
+    row |= {"mean": about + np.mean(x - about) if n else math.nan, "+-": 1.959963984540054 * sd / math.sqrt(max(n, 1)), "sd": sd,
+            "least": x[0] if n else math.nan, "largest": x[-1] if n else math.nan}
+    for share in PERCENTILES:
+        low, high = percentile_ranks(n, share) if n else (-1, 0)
+        row |= {f"{100 * share:g} %": x[max(math.ceil(share * n) - 1, 0)] if n else math.nan,
+                f"{100 * share:g} % low": x[low] if low >= 0 else math.nan,
+                f"{100 * share:g} % high": x[high] if high < n else math.nan}
+    outside = int(np.sum((x < figure.low) | (x > figure.high)))
+    low, high = clopper_pearson(outside, n) if n and figure.limited else (math.nan, math.nan)
+    return row | {"values": n, "missing": int(np.isnan(drawn).sum()), "undefined": int(np.isinf(drawn).sum()),
+                  "min": figure.low, "max": figure.high, "outside": outside / n if n and figure.limited else math.nan,
+                  "outside from": low, "outside to": high}
+
+
+def sobol_rows(study, figure, values):
+    """First and total indices by the estimators of Jansen with bootstrap intervals, of every variable, from the blocks
+    in which every variant has a finite value; none of too few."""
+    whole = values[:len(values) // study.block * study.block].reshape(-1, study.block)
+    blocks = whole[np.isfinite(whole).all(axis=1)]
+    if not study.indices or len(blocks) < _FEWEST_BLOCKS or not np.ptp(blocks) > 0:
+        return []
+    import openturns as ot
+    ot.RandomGenerator.SetSeed(study.seed)
+    # All a, all b, all with variable 1 exchanged, ...; of the inputs only the number is used.
+    outputs = ot.Sample(blocks.T.reshape(-1, 1))
+    found = ot.JansenSensitivityAlgorithm(ot.Sample(outputs.getSize(), len(study.variables)), outputs, len(blocks))
+    found.setUseAsymptoticDistribution(False)
+    found.setConfidenceLevel(LEVEL)
+    first, total = found.getFirstOrderIndicesInterval(), found.getTotalOrderIndicesInterval()
+    return [{"figure": figure.name, "variable": variable.name,
+             "first": found.getFirstOrderIndices()[j], "first from": first.getLowerBound()[j], "first to": first.getUpperBound()[j],
+             "total": found.getTotalOrderIndices()[j], "total from": total.getLowerBound()[j], "total to": total.getUpperBound()[j],
+             "blocks": len(blocks), "left out": len(whole) - len(blocks)} for j, variable in enumerate(study.variables)]
+
+
+def witness_row(study, row, values, witnesses):
+    """The largest difference between the variants of a figure and their witnesses, and what is wrong with it."""
+    both = np.isfinite(values) & np.isfinite(witnesses)
+    difference = np.where(both, np.abs(values - witnesses), 0)
+    largest, at = (difference.max(), int(difference.argmax())) if len(difference) else (0.0, 0)
+    one_only = int((np.isfinite(values) ^ np.isfinite(witnesses)).sum())
+    found = {"figure": row["figure"], "unit": row["unit"], "difference": largest, "of variant": at * study.witness,
+             "witnesses": int(both.sum()), "one only": one_only}
+    return found, max(_AGREE_OF_SPREAD * (row["largest"] - row["least"]), _AGREE_OF_SIZE * max(1.0, abs(row["mean"])))
+
+
+def rare_rows(study, threads=0, samples=4096):
+    """For every limit the probability that its figure is beyond it: by FORM, and by importance sampling about its design
+    point. Rates by differences of variants; the same of one seed on any number of threads; of continuous variables."""
+    import openturns as ot
+    kinds = {"normal": ot.Normal, "uniform": ot.Uniform, "triangular": ot.Triangular, "truncated_normal": ot.TruncatedNormal}
+    joint = ot.ComposedDistribution([kinds[v.kind](*v.numbers) for v in study.variables])
+    if study.correlation is not None:
+        joint.setCopula(ot.NormalCopula(ot.CorrelationMatrix(study.correlation.tolist())))
+    steps = 1e-3 * np.array(joint.getStandardDeviation())
+    rows = []
+    for j, figure in enumerate(study.figures):
+        def values(x, j=j):
+            return study.solver.solve(study.numbers(np.array(x)), "series", threads)[0][:, j]
+
+        def rates(x, of=values):
+            y = of(np.concatenate([np.array(x) + np.diag(steps), np.array(x) - np.diag(steps)]))
+            return [[rate] for rate in (y[:len(steps)] - y[len(steps):]) / (2 * steps)]
+
+        function = ot.PythonFunction(len(steps), 1, func=lambda x, of=values: [of([x])[0]],
+                                     func_sample=lambda x, of=values: of(x)[:, None], gradient=rates)
+        for limit, beyond, holds in [(figure.low, "below", ot.Less()), (figure.high, "above", ot.Greater())]:
+            if not math.isfinite(limit):
+                continue
+            row = {"figure": figure.name, "limit": f"{beyond} {limit:g} {figure.unit}"}
+            rows.append(row)
+            event = ot.ThresholdEvent(ot.CompositeRandomVector(function, ot.RandomVector(joint)), holds, limit)
+            try:
+                form = ot.FORM(ot.AbdoRackwitz(), event, joint.getMean())
+                form.run()
+                result = form.getResult()
+                ot.RandomGenerator.SetSeed(study.seed)
+                sampling = ot.PostAnalyticalImportanceSampling(result)
+                sampling.setBlockSize(256)
+                sampling.setMaximumOuterSampling(samples // 256)
+                sampling.setMaximumCoefficientOfVariation(0.01)
+                sampling.run()
+                drawn = sampling.getResult()
+                p, half = drawn.getProbabilityEstimate(), drawn.getConfidenceLength(LEVEL) / 2
+                row |= {"FORM": result.getEventProbability(), "beta": result.getGeneralisedReliabilityIndex(),
+                        "sampled": p, "sampled from": max(p - half, 0.0), "sampled to": p + half,
+                        "design point": ", ".join(f"{x:.6g}" for x in result.getPhysicalSpaceDesignPoint())}
+            except (RuntimeError, TypeError) as error:
+                row |= dict.fromkeys(["FORM", "beta", "sampled", "sampled from", "sampled to"], math.nan)
+                row["design point"] = "none: " + str(error).splitlines()[0]
+    return rows
