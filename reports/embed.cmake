@@ -10,7 +10,7 @@ foreach(file IN LISTS FILES)
 endforeach()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT "#pragma once
 #include <string_view>
-namespace elastocheck::reports {
+namespace elastocheck {
 struct Embedded_@WHAT@ { std::string_view name, text; };
 inline constexpr Embedded_@WHAT@ embedded_@WHAT@[] = {
 @entries@};

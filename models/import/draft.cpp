@@ -95,6 +95,12 @@ void comment(std::string_view what, Text& text, std::string_view indent = "") {
 
 }  // namespace
 
+const reader::Value* entry(const reader::Value& map, std::string_view name) {
+    const auto found = std::ranges::find(map.keys, name);
+    return found == map.keys.end() ? nullptr
+                                   : &map.items[static_cast<std::size_t>(found - map.keys.begin())];
+}
+
 std::string number(double x) { return fmt::format("{}", x == 0 ? 0.0 : x); }
 
 std::string computed(double x, double scale) {

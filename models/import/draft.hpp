@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "models/reader/document/yaml.hpp"
+
 namespace elastocheck::importer {
 
 // Source line and statement: "line 80, JOINT/1 'knuckle'".
@@ -100,6 +102,10 @@ struct Notes {
         missing.emplace_back(std::move(at), std::move(what));
     }
 };
+
+// The entry of a map in a table of another program's words (dataset.yaml, templates.yaml); null if there
+// is none.
+const reader::Value* entry(const reader::Value& map, std::string_view name);
 
 struct Draft {
     std::string title;                  // of the scene

@@ -8,7 +8,6 @@
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
-#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -65,50 +64,44 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
         reader::small_letters(std::filesystem::path(file).extension().string());
     const bool list = ending == ".csv", points_only = list || ending == ".sub";
     if (ending == ".shk")
-        reader::fail(file, 1, "",
-                     "files of SHARK are not read; export the points as a table (.csv) with "
-                     "columns name, x, y, z");
+        fail(file, 1, "",
+             "files of SHARK are not read; export the points as a table (.csv) with "
+             "columns name, x, y, z");
     if (ending != ".adm" && ending != ".json" && !points_only)
-        reader::fail(
-            file, 0, "",
-            fmt::format("{} is not a supported file extension; allowed: .adm (ADAMS datasets), "
-                        ".json (Chrono::Vehicle suspensions and vehicles), .sub (hardpoints of "
-                        "Adams/Car), .csv (tables of points)",
-                        reader::quote(ending)));
+        fail(file, 0, "",
+             "{} is not a supported file extension; allowed: .adm (ADAMS datasets), .json "
+             "(Chrono::Vehicle suspensions and vehicles), .sub (hardpoints of Adams/Car), .csv "
+             "(tables of points)",
+             reader::quote(ending));
     if (!options.axes.empty() && !points_only)
-        reader::fail(file, 0, "--axes",
-                     "only for hardpoints of Adams/Car (.sub) and tables of points; the axes of a "
-                     "model are those of its file");
+        fail(
+            file, 0, "--axes",
+            "only for hardpoints of Adams/Car (.sub) and tables of points; the axes of a model are "
+            "those of its file");
     for (const auto& [given, option] :
          {std::pair{&options.columns, "--columns"}, {&options.unit, "--unit"}})
-        if (!given->empty() && !list)
-            reader::fail(file, 0, option, "only for tables of points (.csv)");
+        if (!given->empty() && !list) fail(file, 0, option, "only for tables of points (.csv)");
     if (!options.axle.empty() && ending != ".json")
-        reader::fail(file, 0, "--axle", "only for a vehicle of Chrono::Vehicle (.json)");
+        fail(file, 0, "--axle", "only for a vehicle of Chrono::Vehicle (.json)");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
                         : ending == ".json" ? import_chrono(text, file, options)
                         : list              ? import_points(text, file, options)
                                             : import_subsystem(text, file, options);
     if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
     if (draft.bodies.empty() && !points_only)
-        reader::fail(file, 0, "",
-                     "the model has no moving part: no part has a joint or element that a scene "
-                     "can represent");
+        fail(file, 0, "",
+             "the model has no moving part: no part has a joint or element that a scene "
+             "can represent");
     const Text written = write(draft);
     Imported result{.yaml = written.yaml, .notes = draft.notes};
-    result.bodies = static_cast<int>(draft.bodies.size());
-    result.joints = static_cast<int>(draft.joints.size());
-    result.elements = static_cast<int>(draft.bushings.size() + draft.springs.size() +
-                                       draft.stops.size() + draft.torsion_springs.size());
-    if (!points_only) {
-        try {
-            const Scene scene = parse_scene(written.yaml, std::string(name_of_text));
-            result.bodies = static_cast<int>(scene.bodies.size());
-            result.joints = static_cast<int>(scene.joints.size());
-            result.elements = static_cast<int>(scene.elastics.size());
-        } catch (const SceneError& error) {
-            explain(file, written, error.what());
-        }
+    if (points_only) return result;
+    try {
+        const Scene scene = parse_scene(written.yaml, std::string(name_of_text));
+        result.bodies = static_cast<int>(scene.bodies.size());
+        result.joints = static_cast<int>(scene.joints.size());
+        result.elements = static_cast<int>(scene.elastics.size());
+    } catch (const SceneError& error) {
+        explain(file, written, error.what());
     }
     return result;
 }
@@ -116,9 +109,9 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
 Imported import_file(const std::filesystem::path& file, const Options& options) {
     const std::string name = file.string();
     const reader::TextFile read = reader::read_text(file, reader::Pipes::refused, largest_file);
-    if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
+    if (!read.trouble.empty()) fail(name, 0, "", "{}", read.trouble);
     if (read.text.size() > largest_file)
-        reader::fail(name, 0, "", "larger than 16 MiB, the limit for a model");
+        fail(name, 0, "", "larger than 16 MiB, the limit for a model");
     return import_text(read.text, name, options);
 }
 

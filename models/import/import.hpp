@@ -2,6 +2,8 @@
 // README.md describes each format and what a scene can represent of it.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <filesystem>
 #include <string>
@@ -34,6 +36,13 @@ struct Options {
 inline constexpr const char* axes_of_tables[] = {
     "x-forward,y-left",         "x-rearward,y-right",     "x-forward,y-right,z-down",
     "x-rearward,y-left,z-down", "x-forward,y-right,z-up", "x-rearward,y-left,z-up"};
+
+// Throws SceneError "file:line: field: what"; line 0 or an empty field are omitted.
+template <class... A>
+[[noreturn]] void fail(const std::string& file, int line, const std::string& field,
+                       fmt::format_string<A...> what, A&&... a) {
+    reader::fail(file, line, field, fmt::format(what, std::forward<A>(a)...));
+}
 
 struct Imported {
     std::string yaml;

@@ -8,6 +8,8 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <regex>
+#include <sstream>
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
@@ -35,9 +37,8 @@ constexpr const char* import_schema = "elastocheck/import/1";
 struct ImportRequest {
     std::string file;
     std::string output;  // empty: standard output
-    std::string wheel, axes, columns, unit, axle;
+    importer::Options options;
     std::vector<std::string> drop;
-    bool allow_missing = false;
     bool as_json = false;
 };
 struct ExportRequest {
@@ -61,16 +62,6 @@ constexpr FileKind suspension_file{"suspension made by export", "// Exported by 
 
 constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
 constexpr double least_told = 1e-9;      // [mm], [deg]: smaller differences are rounding
-
-importer::Options options(const ImportRequest& request) {
-    return {.wheel = request.wheel,
-            .drop_dynamics = !request.drop.empty(),
-            .allow_missing = request.allow_missing,
-            .axes = request.axes,
-            .columns = request.columns,
-            .unit = request.unit,
-            .axle = request.axle};
-}
 
 // Largest distance of the outputs of two scenes, of each unit: "0.0123 mm ('wheel_y' on branch
 // 'jounce' at 3000 N) and 0.004 deg (...)".
@@ -157,7 +148,9 @@ std::string settling(const std::string& yaml) {
 
 int import(const ImportRequest& request) {
     if (!request.output.empty()) check_may_write(request.output, scene_file);
-    importer::Imported result = importer::import_file(request.file, options(request));
+    importer::Options options = request.options;
+    options.drop_dynamics = !request.drop.empty();
+    importer::Imported result = importer::import_file(request.file, options);
     auto lines = importer::described(result.notes);
     if (const std::string line = settling(result.yaml); !line.empty()) {
         lines.push_back(line);
@@ -198,39 +191,28 @@ struct Rows {
     std::vector<double> values;
 };
 Rows rows_of(const std::string& text) {
-    const auto wrong = [&] {
+    static const std::regex form("([^=,]+(?:,[^=,]+)*)=([^:]+):([^:]+):([^:]+)");
+    std::smatch found;
+    double numbers[3] = {NAN, NAN, NAN};
+    if (std::regex_match(text, found, form))
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::string digits = found[k + 2];
+            const auto [end, error] =
+                std::from_chars(digits.data(), digits.data() + digits.size(), numbers[k]);
+            if (error != std::errc{} || end != digits.data() + digits.size()) numbers[k] = NAN;
+        }
+    const auto [from, to, count] = numbers;
+    if (!std::isfinite(from) || !std::isfinite(to) || !(from < to) || !(count >= 3) ||
+        !(count <= 1001) || std::fmod(count, 2) != 1)
         throw std::invalid_argument(fmt::format(
             "--rows {}: expected HELD=FROM:TO:COUNT, what the branch holds (names with commas are "
             "held alike), FROM below TO, an odd count from 3 to 1001",
             text));
-    };
     Rows rows;
-    const auto equals = text.find('=');
-    if (equals == text.npos || equals == 0) wrong();
-    for (std::string_view names = std::string_view(text).substr(0, equals);;) {
-        const auto comma = std::min(names.find(','), names.size());
-        if (comma == 0) wrong();
-        rows.held.emplace_back(names.substr(0, comma));
-        if (comma == names.size()) break;
-        names.remove_prefix(comma + 1);
-    }
-    std::vector<double> numbers;
-    for (std::string_view rest = std::string_view(text).substr(equals + 1);;) {
-        const auto end = std::min(rest.find(':'), rest.size());
-        double value = 0;
-        const auto [at, error] = std::from_chars(rest.data(), rest.data() + end, value);
-        if (error != std::errc{} || at != rest.data() + end || !std::isfinite(value)) wrong();
-        numbers.push_back(value);
-        if (end == rest.size()) break;
-        rest.remove_prefix(end + 1);
-    }
-    if (numbers.size() != 3 || !(numbers[0] < numbers[1]) || !(numbers[2] >= 3) ||
-        !(numbers[2] <= 1001) || std::fmod(numbers[2], 2) != 1)
-        wrong();
-    const int count = static_cast<int>(numbers[2]);
-    for (int k = 0; k < count; ++k)
-        rows.values.push_back((numbers[0] * (count - 1 - k) + numbers[1] * k) /
-                              static_cast<double>(count - 1));
+    std::istringstream names(found[1]);
+    for (std::string name; std::getline(names, name, ',');) rows.held.push_back(name);
+    for (double k = 0; k < count; ++k)
+        rows.values.push_back((from * (count - 1 - k) + to * k) / (count - 1));
     return rows;
 }
 
@@ -459,26 +441,26 @@ const Command import_command{
         as_file(command.add_option("FILE", request->file, "the model (.adm, .json, .sub, .csv)"))
             ->required();
         as_file(command.add_option("-o,--output", request->output, "write the scene to this file"));
-        command.add_option("--wheel", request->wheel,
+        command.add_option("--wheel", request->options.wheel,
                            "name or id of the wheel carrier part, or of a marker at the wheel "
                            "centre (.adm)");
         as_word(
             command.add_option("--drop", request->drop, "dynamics: leave out dampers and friction"),
             {"dynamics"});
-        command.add_option("--axes", request->axes,
+        command.add_option("--axes", request->options.axes,
                            "axes of a table of hardpoints, turned to ISO 8855: "
                            "x-rearward,y-right (default of .sub), x-forward,y-right,z-down, ...");
-        command.add_option("--columns", request->columns,
+        command.add_option("--columns", request->options.columns,
                            "columns of a table of points by heading, number or letters: "
                            "name=Punkt,x=X_mm,y=3,z=D; for sides side=COLUMN, or left.x ... "
                            "right.z (.csv)");
-        as_word(command.add_option("--unit", request->unit,
+        as_word(command.add_option("--unit", request->options.unit,
                                    "unit of a table of points whose headings do not say it (.csv)"),
                 {"mm", "cm", "m", "in"});
         command.add_option(
-            "--axle", request->axle,
+            "--axle", request->options.axle,
             "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ...");
-        command.add_flag("--allow-missing", request->allow_missing,
+        command.add_flag("--allow-missing", request->options.allow_missing,
                          "warn about what a scene cannot represent instead of rejecting the file");
         add_json(command, request->as_json);
         return [request](const std::string&) { return import(*request); };

@@ -6,7 +6,11 @@
 
 namespace elastocheck::python {
 
-// Adds Report and the functions compare, judge, certify, sensitivity, fit, study to the module.
+// Adds Report and the functions compare, judge, certify, sensitivity, fit to the module.
 void bind_analyses(pybind11::module_& module);
+// Figures of many variants of a scene, and what the study of them (package/study/) takes from the
+// program: its reader of YAML, its pages, its files.
+void bind_variants(pybind11::module_& module);
+void bind_study(pybind11::module_& module);
 
 }  // namespace elastocheck::python

@@ -8,7 +8,6 @@
 #include "reports/python/analyses.hpp"
 #include "reports/python/errors.hpp"
 #include "reports/python/scene.hpp"
-#include "reports/python/variants.hpp"
 
 PYBIND11_MODULE(_core, module) {
     using namespace elastocheck;

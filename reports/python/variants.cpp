@@ -1,5 +1,4 @@
-#include "reports/python/variants.hpp"
-
+// Figures of many variants of a scene for Python.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -18,7 +17,7 @@
 #include "models/reader/elements/vanishing.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/files/provenance.hpp"
-#include "reports/python/convert.hpp"
+#include "reports/python/analyses.hpp"
 #include "reports/python/scene.hpp"
 
 namespace elastocheck::python {

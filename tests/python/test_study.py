@@ -145,14 +145,16 @@ def test_a_table_is_refused_with_its_line(here):
     for table, says in [("springs.first.rate,springs.secnd.rate\n1,2\n",
                          "list.csv:1: the study has no variable 'springs.secnd.rate', did you mean 'springs.second.rate'?"),
                         ("springs.first.rate\n1\n", "list.csv:1: 1 columns, but the study has 2 variables"),
-                        ("springs.second.rate,springs.first.rate\n45,30\n,30\n", "list.csv:3: springs.second.rate: no value")]:
+                        ("springs.second.rate,springs.first.rate\n45,30\n,30\n", "list.csv:3: springs.second.rate: no value"),
+                        ("springs.second.rate,springs.first.rate\n45,x\n", "list.csv:2: springs.first.rate: 'x' is not a number"),
+                        ("springs.second.rate,springs.second.rate\n45,30\n", "list.csv:1: the study has no variable")]:
         write(table, "list.csv")
         with pytest.raises(elastocheck.SheetError, match=re.escape(says)):
             run(LIST)
-    write("springs.second.rate,springs.first.rate\n45,30\n20,30\n", "list.csv")
+    write("springs.second.rate,springs.first.rate\n44.99999999999999,30\n20,30\n", "list.csv")
     frame = run(LIST).frame()
     assert list(frame.columns[3:]) == ["springs.first.rate [N/mm]", "springs.second.rate [N/mm]", "height [mm]"]
-    assert frame["springs.second.rate [N/mm]"].tolist() == [45, 20]
+    assert frame["springs.second.rate [N/mm]"].tolist() == [44.99999999999999, 20]
     np.testing.assert_allclose(frame["height [mm]"], [400 + 3000 / 75, 400 + 3000 / 50], atol=1e-9)
 
 

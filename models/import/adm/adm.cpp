@@ -144,7 +144,7 @@ void note_without_effect(Conversion& c, const Statement& s) {
 void sort_out(Conversion& c) {
     for (const Statement& s : c.data.statements) {
         const Role role = role_of(s.keyword);
-        const std::string_view what = described(s.keyword);
+        const reader::Value* what = entry(dataset_table("without_equivalent"), s.keyword);
         if (role == Role::without_effect)
             note_without_effect(c, s);
         else if (role == Role::if_used)
@@ -156,8 +156,7 @@ void sort_out(Conversion& c) {
                    "friction also acts at rest, and a scene has no friction (--drop "
                    "dynamics leaves it out)");
         else if (role == Role::missing)
-            c.miss(s, "{}a scene has no equivalent",
-                   what.empty() ? "" : fmt::format("{}, for which ", what));
+            c.miss(s, "{}a scene has no equivalent", what ? what->text + ", for which " : "");
     }
 }
 
@@ -190,21 +189,6 @@ void read_times(Conversion& c) {
     sort(c.times);
 }
 
-// Arguments that have no influence at rest, by their name in any statement.
-struct WithoutInfluence {
-    const char* called;  // empty: by its name
-    const char* why;
-    std::string_view arguments;
-};
-constexpr WithoutInfluence without_influence[] = {
-    {"damping", "without effect at rest", "C CT CMATRIX CRATIO"},
-    {"inertia", "inertia, without effect at rest", "IM IP"},
-    {"initial velocity", "without effect at rest", "VX VY VZ WX WY WZ VM WM VELOCITY"},
-    {"", "without effect at rest", "IC ICTRAN ICROT ICDISP ICVEL"},
-    {"", "used only for the assembly", "EXACT"},
-    {"", "determined by the joints", "TYPE"},
-    {"", "only for flexible bodies", "NODE_ID NODE_LABEL"}};
-
 // Reports the arguments of converted statements that were not read: as left out if they have no
 // influence at rest, else as missing.
 void report_unread(Conversion& c) {
@@ -218,23 +202,25 @@ void report_unread(Conversion& c) {
         if (!s.arguments || missing.contains(s.line) || omitted.contains({s.line, s.place().what}))
             continue;
         std::set<std::string_view> listed;
-        for (const auto& [argument, kind, values, is_read] : *s.arguments) {
-            if (is_read) continue;
+        for (const Argument& given : *s.arguments) {
+            if (given.is_read) continue;
+            const std::string& argument = given.name;
             if (s.is("PART") && c.is_ground(s.id)) {
                 c.leave_out(s, argument, "since ground is fixed");
                 continue;
             }
-            const auto known = std::ranges::find_if(
-                without_influence, [&name = argument](const WithoutInfluence& some) {
-                    return has_word(some.arguments, name);
-                });
-            if (known == std::end(without_influence)) {
+            const auto& list =
+                dataset_table("without_influence").items;  // its name, why, arguments
+            const auto found = std::ranges::find_if(list, [&](const reader::Value& some) {
+                return has_word(some.items[2].text, argument);
+            });
+            if (found == list.end()) {
                 c.miss(s, "{}: not used in combination with the other arguments", argument);
                 continue;
             }
-            const std::string called = *known->called ? known->called : argument;
-            if (listed.insert(*known->called ? std::string_view(known->called) : argument).second)
-                c.leave_out(s, called, known->why);
+            const std::string& name = found->items[0].text;
+            const std::string& called = name.empty() ? argument : name;
+            if (listed.insert(called).second) c.leave_out(s, called, found->items[1].text);
         }
     }
 }

@@ -1,11 +1,11 @@
 #include "models/import/adm/geometry.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
 
@@ -18,67 +18,30 @@ Vector3d vector(const Statement& s, std::string_view argument) {
 
 namespace {
 
-constexpr std::size_t longest_chain = 100;              // of markers in markers
-constexpr double pound = 0.45359237, inch = 0.0254;     // [kg], [m]
-constexpr double g_n = 9.80665, pound_f = pound * g_n;  // [m/s²], [N]
+constexpr std::size_t longest_chain = 100;  // of markers in markers
 
-using UnitTable = std::vector<std::pair<std::string, double>>;  // name, size in SI
-const UnitTable lengths{{"MILLIMETER", 1e-3},  {"METER", 1},           {"CENTIMETER", 1e-2},
-                        {"KILOMETER", 1e3},    {"INCH", inch},         {"FOOT", 12 * inch},
-                        {"YARD", 36 * inch},   {"MILE", 63360 * inch}, {"MICROINCH", 1e-6 * inch},
-                        {"MILS", 1e-3 * inch}, {"MICROMETER", 1e-6},   {"NANOMETER", 1e-9},
-                        {"ANGSTROM", 1e-10}};
-const UnitTable forces{{"NEWTON", 1},
-                       {"KNEWTON", 1e3},
-                       {"MEGANEWTON", 1e6},
-                       {"CENTINEWTON", 1e-2},
-                       {"MILLINEWTON", 1e-3},
-                       {"MICRONEWTON", 1e-6},
-                       {"NANONEWTON", 1e-9},
-                       {"DYNE", 1e-5},
-                       {"POUND_FORCE", pound_f},
-                       {"KPOUND_FORCE", 1e3 * pound* g_n},
-                       {"OUNCE_FORCE", pound / 16 * g_n},
-                       {"KILOGRAM_FORCE", g_n},
-                       {"POUNDAL", pound * 12 * inch}};
-const UnitTable masses{{"KILOGRAM", 1},
-                       {"GRAM", 1e-3},
-                       {"MILLIGRAM", 1e-6},
-                       {"MICROGRAM", 1e-9},
-                       {"NANOGRAM", 1e-12},
-                       {"POUND_MASS", pound},
-                       {"KPOUND_MASS", 1e3 * pound},
-                       {"OUNCE_MASS", pound / 16},
-                       {"SLUG", pound_f / (12 * inch)},
-                       {"SLINCH", pound_f / inch},
-                       {"TONNE", 1e3},
-                       {"US_TON", 2000 * pound}};
-const UnitTable times{{"SECOND", 1},         {"MILLISECOND", 1e-3}, {"MILLISECONDS", 1e-3},
-                      {"MICROSECOND", 1e-6}, {"NANOSECOND", 1e-9},  {"MINUTE", 60},
-                      {"HOUR", 3600},        {"DAY", 86400}};
-struct System {
-    std::string_view name;
-    double force, mass, length;
-};
-constexpr System systems[] = {{"MKS", 1, 1, 1},
-                              {"CGS", 1e-5, 1e-3, 1e-2},
-                              {"FPS", pound_f, pound, 12 * inch},
-                              {"IPS", pound_f, pound, inch}};
+// Size in SI of an entry of a table of units.
+double size_of(const reader::Value& table, std::string_view name) {
+    const std::string& digits = entry(table, name)->text;
+    double si = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), si);
+    return si;
+}
 
-// The size of a unit, whose name may be abbreviated; `missing` if the statement does not have it.
-double unit(const Statement& s, std::string_view argument, const UnitTable& table, double missing) {
-    if (!s.has(argument)) return missing;
+// The size of a unit, whose name may be abbreviated; if the statement does not have it, that of the
+// system.
+double unit(const Statement& s, std::string_view argument, const reader::Value* system) {
+    if (!s.has(argument)) return system && argument != "TIME" ? size_of(*system, argument) : 1;
     const std::string word = s.word(argument);
-    std::vector<std::string> names;
-    std::vector<double> found;
-    for (const auto& [name, si] : table) {
-        if (name == word) return si;
-        names.push_back(name);
-        if (name.starts_with(word) && !word.empty()) found.push_back(si);
+    const reader::Value& table = *entry(dataset_table("units"), argument);
+    std::vector<std::string> found;
+    for (const std::string& name : table.keys) {
+        if (name == word) return size_of(table, name);
+        if (name.starts_with(word) && !word.empty()) found.push_back(name);
     }
-    if (found.size() == 1) return found[0];
+    if (found.size() == 1) return size_of(table, found[0]);
     s.fail("{}: {} is not a known unit{}", argument, reader::quote(word),
-           reader::did_you_mean(word, names, "known"));
+           reader::did_you_mean(word, table.keys, "known"));
 }
 
 Units read_units(const Dataset& data, const std::string& file) {
@@ -90,19 +53,16 @@ Units read_units(const Dataset& data, const std::string& file) {
         reader::fail(file, data.last_line, "UNITS", "missing: the units of the file are unknown");
     const Statement& s = *found;
     const bool has_system = s.has("SYSTEM");
-    System system{"", 1, 1, 1};
-    if (has_system) {
-        const auto known = std::ranges::find(systems, s.word("SYSTEM"), &System::name);
-        if (known == std::end(systems))
-            s.fail("SYSTEM: {} is not a known system of units; known: MKS, CGS, FPS, IPS",
-                   reader::quote(s.word("SYSTEM")));
-        system = *known;
-    }
-    const double force = unit(s, "FORCE", forces, system.force);
+    const reader::Value* system =
+        has_system ? entry(dataset_table("systems"), s.word("SYSTEM")) : nullptr;
+    if (has_system && !system)
+        s.fail("SYSTEM: {} is not a known system of units; known: {}",
+               reader::quote(s.word("SYSTEM")), fmt::join(dataset_table("systems").keys, ", "));
+    const double force = unit(s, "FORCE", system);
     Units units;
-    units.mass = unit(s, "MASS", masses, system.mass);
-    const double length = units.metre = unit(s, "LENGTH", lengths, system.length);
-    units.second = unit(s, "TIME", times, 1);
+    units.mass = unit(s, "MASS", system);
+    const double length = units.metre = unit(s, "LENGTH", system);
+    units.second = unit(s, "TIME", system);
     for (const std::string_view name : {"FORCE", "LENGTH"})
         if (!has_system && !s.has(name)) s.fail("{} is missing", name);
     units.length_name = length == 1 ? "m" : "mm";

@@ -129,7 +129,7 @@ struct JointConversion {
 // Notes the arguments of friction, which a scene does not have.
 void leave_out_friction(Conversion& c, const Statement& s) {
     std::string given;
-    for (std::string_view rest = arguments_of_friction; !rest.empty();) {
+    for (std::string_view rest = dataset_table("friction").text; !rest.empty();) {
         const std::string_view field = rest.substr(0, rest.find('='));
         if (s.mark_read(field)) given += (given.empty() ? "" : ", ") + std::string(field);
         rest.remove_prefix(std::min(field.size() + 2, rest.size()));

@@ -3,72 +3,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
 
+#include "adm_embedded.hpp"  // generated: text of dataset.yaml
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
 
 using reader::is_blank, reader::is_digit, reader::trimmed;
-
-// The arguments of each converted statement: FLAG, NAME= of values, NAME=f of an expression.
-const std::map<std::string_view, std::string> converted{
-    {"ACCGRAV", "IGRAV= JGRAV= KGRAV="},
-    {"BEAM",
-     "LINEAR STRING NONLINEAR I= J= LENGTH= AREA= IXX= IYY= IZZ= EMODULUS= GMODULUS= ASY= ASZ= "
-     "CRATIO= CMATRIX= FORMULATION="},
-    {"BUSHING", "I= J= K= KT= C= CT= FORCE= TORQUE="},
-    {"COUPLER", "JOINTS= TYPE= SCALES= FUNCTION=f"},
-    {"FIELD", "I= J= KMATRIX= CMATRIX= CRATIO= LENGTH= FORCE= FORMULATION= FUNCTION=f"},
-    {"GCON", "I= FUNCTION=f"},
-    {"GFORCE", "I= JFLOAT= RM= ROUTINE= FX=f FY=f FZ=f TX=f TY=f TZ=f FUNCTION=f"},
-    {"JOINT",
-     "REVOLUTE CYLINDRICAL TRANSLATIONAL SPHERICAL FIXED PLANAR HOOKE UNIVERSAL CONVEL RACKPIN "
-     "SCREW I= J= IC= ICTRAN= ICROT= PD= PITCH= " +
-         arguments_of_friction},
-    {"JPRIM", "ATPOINT INLINE INPLANE ORIENTATION PARALLEL_AXES PERPENDICULAR I= J="},
-    {"MARKER",
-     "USEXP FLOATING PART= POINT_MASS= FLEX_BODY= FE_PART= QP= REULER= ZP= XP= RM= NODE_ID= "
-     "NODE_LABEL="},
-    {"MOTION",
-     "TRANSLATIONAL ROTATIONAL X Y Z B1 B2 B3 DISPLACEMENT VELOCITY ACCELERATION JOINT= I= J= "
-     "ICDISP= ICVEL= FUNCTION=f"},
-    {"PART",
-     "GROUND MASS= CM= IM= IP= QG= REULER= ZG= XG= VX= VY= VZ= WX= WY= WZ= VM= WM= EXACT= "
-     "MATERIAL= VELOCITY="},
-    {"SFORCE", "TRANSLATIONAL ROTATIONAL ACTIONONLY I= J= ROUTINE= FUNCTION=f"},
-    {"SPLINE", "LINEAR_EXTRAPOLATE X= Y= Z= FILE= BLOCK= CHANNEL="},
-    {"SPRINGDAMPER", "TRANSLATIONAL ROTATIONAL I= J= K= C= KT= CT= LENGTH= ANGLE= FORCE= TORQUE="},
-    {"UNITS", "FORCE= MASS= LENGTH= TIME= SYSTEM= UCF="},
-    {"VARIABLE", "IC= ROUTINE= AUTOSCALE= FUNCTION=f"}};
-
-constexpr std::string_view without_effect =
-    "GRAPHICS REQUEST OUTPUT RESULTS PREFERENCES INTEGRATOR EQUILIBRIUM KINEMATICS DEBUG STRING "
-    "MATERIAL ADAMS IC LSSOLVER LIST INFO SOLVER LINEAR EXECUTION";
-constexpr std::string_view if_used =
-    "VARIABLE ARRAY DIFF LSE GSE TFSISO MATRIX CURVE SURFACE SENSOR PINPUT POUTPUT CONTROL COSIM "
-    "SECTION FE_NODE";
-const std::map<std::string_view, std::string_view> without_equivalent{
-    {"CONTACT", "a contact between parts"},
-    {"PTCV", "a point on a curve"},
-    {"CVCV", "a curve on a curve"},
-    {"PTSF", "a point on a surface"},
-    {"UCON", "a user-written constraint"},
-    {"GEAR", "a gear"},
-    {"FLEX_BODY", "a flexible body"},
-    {"FE_PART", "a finite-element part"},
-    {"FE_LOAD", "a load on a finite-element part"},
-    {"NFORCE", "a force between many markers"},
-    {"MFORCE", "a modal force"},
-    {"TIRE", "a user-written tyre"},
-    {"WHEEL", "a user-written wheel"},
-    {"INCLUDE", "another file"},
-    {"DEACTIVATE", "a deactivated statement: remove both the statement and its deactivation"},
-    {"MODE", "a switch"}};
 
 // The next word of a list, which is removed from it.
 std::string_view next_word(std::string_view& list) {
@@ -79,11 +23,12 @@ std::string_view next_word(std::string_view& list) {
 
 const std::vector<std::string>& keywords() {
     static const std::vector<std::string> all = [] {
-        std::set<std::string> words{"END", "FRICTION", "POINT_MASS", "VFORCE", "VTORQUE"};
-        for (const auto& [word, form] : converted) words.emplace(word);
-        for (const auto& [word, what] : without_equivalent) words.emplace(word);
-        for (std::string_view list : {without_effect, if_used})
-            while (!list.empty()) words.emplace(next_word(list));
+        std::set<std::string> words{"END", "FRICTION"};
+        for (const char* table : {"arguments", "without_equivalent"})
+            for (const std::string& word : dataset_table(table).keys) words.insert(word);
+        for (const char* table : {"without_effect", "if_used"})
+            for (std::string_view list = dataset_table(table).text; !list.empty();)
+                words.emplace(next_word(list));
         return std::vector<std::string>(words.begin(), words.end());
     }();
     return all;
@@ -191,23 +136,23 @@ bool has_word(std::string_view list, std::string_view word) {
     return false;
 }
 
-std::string_view form_of(std::string_view keyword) {
-    if (keyword == "POINT_MASS") keyword = "PART";
-    if (keyword == "VFORCE" || keyword == "VTORQUE") keyword = "GFORCE";
-    const auto found = converted.find(keyword);
-    return found == converted.end() ? std::string_view() : std::string_view(found->second);
+const reader::Value& dataset_table(std::string_view table) {
+    static const reader::Value file = reader::parse_yaml(embedded_adm[0].text, "dataset.yaml");
+    return *entry(file, table);
+}
+
+std::string form_of(std::string_view keyword) {
+    const reader::Value* form = entry(dataset_table("arguments"), keyword);
+    if (!form) form = entry(dataset_table("used"), keyword);
+    if (!form) return "";
+    return keyword == "JOINT" ? form->text + " " + dataset_table("friction").text : form->text;
 }
 
 Role role_of(std::string_view keyword) {
-    if (has_word(if_used, keyword)) return Role::if_used;
-    if (!form_of(keyword).empty()) return Role::converted;
-    if (has_word(without_effect, keyword)) return Role::without_effect;
+    if (entry(dataset_table("arguments"), keyword)) return Role::converted;
+    if (has_word(dataset_table("if_used").text, keyword)) return Role::if_used;
+    if (has_word(dataset_table("without_effect").text, keyword)) return Role::without_effect;
     return keyword == "FRICTION" ? Role::friction : Role::missing;
-}
-
-std::string_view described(std::string_view missing_keyword) {
-    const auto found = without_equivalent.find(missing_keyword);
-    return found == without_equivalent.end() ? std::string_view() : found->second;
 }
 
 SourceLocation Statement::place() const {
@@ -272,12 +217,13 @@ namespace {
 
 struct Scanner {
     const Statement& statement;
+    std::string form = form_of(statement.keyword);
     std::vector<std::string> flags = {}, names = {};
     std::string_view text = statement.rest;
 
     explicit Scanner(const Statement& s) : statement(s) {
-        for (std::string_view form = form_of(s.keyword); !form.empty();) {
-            const std::string_view word = next_word(form), name = word.substr(0, word.find('='));
+        for (std::string_view rest = form; !rest.empty();) {
+            const std::string_view word = next_word(rest), name = word.substr(0, word.find('='));
             (name == word ? flags : names).emplace_back(name);
         }
     }
@@ -344,7 +290,7 @@ struct Scanner {
     }
 
     void read(std::vector<Argument>& arguments) {
-        const std::string form = fmt::format(" {} ", form_of(statement.keyword));
+        form = " " + form + " ";
         for (skip(text, "\n,\\"); !text.empty(); skip(text, "\n,\\")) {
             bool assigns = false;
             const std::string_view written = word(text, assigns);

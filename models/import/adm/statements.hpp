@@ -24,6 +24,7 @@
 
 #include "models/import/draft.hpp"
 #include "models/reader/document/characters.hpp"
+#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
 
@@ -31,12 +32,6 @@ inline constexpr std::size_t most_statements = 200'000;
 
 // Whether a list "A B= C=f" has the word.
 bool has_word(std::string_view list, std::string_view word);
-
-// Arguments of a joint's friction: coefficients, torques, and the geometry of the contact.
-inline const std::string arguments_of_friction =
-    "FRICTION= MAXFRIC= MU1= MU_DYN_ROT= MU_STAT_ROT= MAX_FRIC_ROT= MU_DYN_TRANS= MU_STAT_TRANS= "
-    "MAX_FRIC_TRANS= DELTA_V= INNER_RADIUS= OUTER_RADIUS= HEIGHT= WIDTH= PRELOAD_RADIAL= "
-    "PRELOAD_AXIAL= MAXIMUM_DEFORMATION= IMPLICIT=";
 
 struct Argument {
     std::string name;  // in full, in capitals
@@ -91,14 +86,14 @@ struct Dataset {
 // Throws SceneError if the text is not a dataset. `file` must outlive the statements.
 Dataset read_statements(std::string_view text, const std::string& file);
 
-// The argument list of a keyword that is converted, "FLAG NAME= NAME=f"; empty for others.
-std::string_view form_of(std::string_view keyword);
+// A table of dataset.yaml.
+const reader::Value& dataset_table(std::string_view table);
 
-// What becomes of a keyword that is not converted: without effect on the mechanism, with an effect
-// only through a force or motion that uses it, or missing, as what a scene does not have.
+// The arguments of a statement, "FLAG NAME= NAME=f"; empty for one that is not read.
+std::string form_of(std::string_view keyword);
+// What becomes of a statement.
 enum class Role { converted, without_effect, if_used, friction, missing };
 Role role_of(std::string_view keyword);
-std::string_view described(std::string_view missing_keyword);  // "a gear"; or empty
 
 // Reads "1", "-.4", "1.0E+05", "5.0D-02" or "90D" (degrees: sets the flag). Returns the length; 0
 // if none.

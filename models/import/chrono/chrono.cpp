@@ -1,26 +1,37 @@
 // Imports Chrono::Vehicle suspension templates.
-// Points and joints as in the templates; chassis and subchassis are ground, and so is the steering of
-// a suspension without its vehicle.
+// Points and joints as in the templates, whose steps are in templates.yaml; chassis and subchassis are
+// ground, and so is the steering of a suspension without its vehicle.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
+#include <span>
 
+#include "chrono_embedded.hpp"  // generated: text of templates.yaml
 #include "models/import/chrono/suspension.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
-namespace {
 
-using reader::Cursor;
+using reader::Cursor, reader::Value;
+
+const Value& templates_section(std::string_view name) {
+    static const Value file = reader::parse_yaml(embedded_chrono[0].text, "templates.yaml");
+    return *entry(file, name);
+}
+
+namespace {
 
 const Matrix3d no_turn = Matrix3d::Identity();
 using OuterEnd = Suspension::OuterEnd;
 
+// ---- Steps of more than one part.
+
 // An arm on an axis through two points: chassis to arm at their middle.
 void arm(Suspension& s, const std::string& name, const std::string& part,
-         const char* front = "Location Chassis Front", const char* back = "Location Chassis Back") {
+         const std::string& front = "Location Chassis Front",
+         const std::string& back = "Location Chassis Back") {
     s.body(name + "*", part);
     const FilePoint f = s.point(part + "/" + front), b = s.point(part + "/" + back);
     s.joint_or_bushing(Kind::revolute, name + ".axis*", "ground", name + "*",
@@ -34,115 +45,17 @@ void wishbone(Suspension& s, const std::string& name, const std::string& part) {
     s.spherical(name + ".ball_joint*", name + "*", "upright*", part + "/Location Upright");
 }
 
-// Links with the same joints, by their names in the scene and in the file.
-using Named = std::pair<std::string, std::string>;
-
-void spring_and_shock(Suspension& s, const std::string& end, const std::string& on,
-                      const std::string& spring = "Spring") {
+// Spring and damper, where given.
+void springs(Suspension& s, const std::string& end, const std::string& on,
+             const std::string& spring) {
     for (const auto& [name, part] :
-         {Named{spring == "Spring" ? "spring*" : "auxiliary_spring*", spring},
+         {std::pair<const char*, std::string>{spring == "Spring" ? "spring*" : "auxiliary_spring*",
+                                              spring},
           {"damper*", "Shock"}})
         if (const auto data = s.optional(part))
             s.tsda(s.on_side(name), "ground", s.point(part + "/Location Chassis"), s.on_side(on),
                    s.point(part + "/" + end), *data);
 }
-
-void wheel_on(Suspension& s, const char* carrier) { s.spindle(s.on_side(carrier)); }
-
-// ---- Independent suspensions: one side, mirrored by the scene.
-
-// What all with an upright have besides their links; the spring acts on `on`.
-void tierod_spring_and_wheel(Suspension& s, const char* end, const char* on) {
-    s.tierod("Location Chassis", "Location Upright", "upright*");
-    spring_and_shock(s, end, on);
-    wheel_on(s, "upright*");
-}
-
-void double_wishbone(Suspension& s) {
-    s.body("upright*", "Upright");
-    wishbone(s, "upper_arm", "Upper Control Arm");
-    wishbone(s, "lower_arm", "Lower Control Arm");
-    tierod_spring_and_wheel(s, "Location Arm", "lower_arm*");
-}
-
-void double_wishbone_reduced(Suspension& s) {
-    s.body("upright*", "Upright");
-    for (const auto& [level, part] :
-         {Named{"upper", "Upper Control Arm"}, {"lower", "Lower Control Arm"}})
-        for (const auto& [name, end] : {Named{"_front*", "Front"}, {"_rear*", "Back"}})
-            s.distance(level + name, "ground", s.point(part + "/Location Chassis " + end),
-                       "upright*", s.point(part + "/Location Upright"));
-    tierod_spring_and_wheel(s, "Location Upright", "upright*");
-}
-
-void mcpherson(Suspension& s) {
-    s.body("upright*", "Upright");
-    wishbone(s, "arm", "Control Arm");
-    const FilePoint top = s.point("Spring/Location Chassis"),
-                    seat = s.point("Spring/Location Upright");
-    s.body("strut*", 0.5 * (top + seat), "Strut");
-    const Matrix3d A = frame_along(seat - top, Vector3d::UnitX());
-    s.universal("strut.mount*", "ground", "strut*", top, A);
-    s.joint("strut.tube*", "cylindrical", "strut*", "upright*", seat,
-            Fields{}.add("axis", direction(A.col(2))));
-    tierod_spring_and_wheel(s, "Location Upright", "upright*");
-}
-
-void multi_link(Suspension& s) {
-    s.body("upright*", "Upright");
-    wishbone(s, "upper_arm", "Upper Arm");
-    // x of the universal joint is fixed to the link, y to the chassis.
-    for (const auto& [name, part] :
-         {Named{"lateral", "Lateral"}, {"trailing_link", "Trailing Link"}}) {
-        s.body(name + "*", part);
-        s.spherical(name + ".outer*", name + "*", "upright*", part + "/Location Upright");
-        s.universal(name + ".inner*", name + "*", "ground", s.point(part + "/Location Chassis"),
-                    s.point(part + "/Universal Joint Axis Chassis"),
-                    s.point(part + "/Universal Joint Axis Link"));
-    }
-    tierod_spring_and_wheel(s, "Location Link", "trailing_link*");
-}
-
-void semi_trailing_arm(Suspension& s) {
-    s.point("Trailing Arm/Location Spindle");
-    arm(s, "arm", "Trailing Arm", "Location Chassis Outer", "Location Chassis Inner");
-    spring_and_shock(s, "Location Arm", "arm*");
-    wheel_on(s, "arm*");
-}
-
-void three_link_irs(Suspension& s) {
-    s.point("Trailing Arm/Location Spindle");
-    s.body("arm*", "Trailing Arm");
-    const auto on_chassis = s.optional("Bushing Data Chassis"),
-               on_arm = s.optional("Bushing Data Arm");
-    s.joint_or_bushing(Kind::spherical, "arm.joint*", "ground", "arm*",
-                       s.point("Trailing Arm/Location Chassis"), no_turn, on_chassis);
-    for (const auto& [name, part] :
-         {Named{"upper_link", "Upper Link"}, {"lower_link", "Lower Link"}}) {
-        s.body(name + "*", part);
-        const FilePoint c = s.point(part + "/Location Chassis"),
-                        a = s.point(part + "/Location Arm");
-        s.joint_or_bushing(Kind::spherical, name + ".outer*", name + "*", "arm*", a, no_turn,
-                           on_arm);
-        s.joint_or_bushing(Kind::universal, name + ".inner*", name + "*", "ground", c,
-                           frame_along(c - a, s.point(part + "/Universal Joint Axis")), on_chassis);
-    }
-    spring_and_shock(s, "Location Arm", "arm*");
-    wheel_on(s, "arm*");
-}
-
-void single_wishbone(Suspension& s) {
-    s.body("upright*", "Upright");
-    s.body("arm*", "Control Arm");
-    s.joint_or_bushing(
-        Kind::revolute, "arm.axis*", "ground", "arm*", s.point("Control Arm/Location Chassis"),
-        frame_along(Vector3d::UnitX(), Vector3d::UnitZ()), s.optional("Control Arm/Bushing Data"));
-    s.revolute("king_pin*", "arm*", "upright*", s.point("Control Arm/Location Upright"),
-               Vector3d::UnitZ());
-    tierod_spring_and_wheel(s, "Location Arm", "arm*");
-}
-
-// ---- Axles: both sides written out, since their shared parts are not symmetric.
 
 void both(Suspension& s, const std::function<void()>& make) {
     for (const int side : {+1, -1}) {
@@ -153,24 +66,15 @@ void both(Suspension& s, const std::function<void()>& make) {
 }
 
 // A knuckle on the axle's king pin.
-void knuckle(Suspension& s, const char* lower = "Knuckle/Location Lower",
-             const char* upper = "Knuckle/Location Upper") {
+void knuckle(Suspension& s, const std::string& lower, const std::string& upper) {
     s.body("knuckle*", "Knuckle");
     const FilePoint low = s.point(lower), high = s.point(upper);
     s.revolute("king_pin*", "axle", "knuckle*", s.midpoint("king_pin", "lower", low, "upper", high),
                low - high);
 }
 
-// Spring, shock and wheel of both sides, and the knuckles of a steered axle.
-enum class Axle { rigid, steered };
-void spring_and_wheel(Suspension& s, Axle axle, const char* spring = "Spring") {
-    if (axle == Axle::steered) knuckle(s);
-    spring_and_shock(s, "Location Axle", "axle", spring);
-    wheel_on(s, axle == Axle::steered ? "knuckle*" : "axle");
-}
-
 // The track rod between both knuckles.
-void shared_tierod(Suspension& s) {
+void track_rod(Suspension& s) {
     const FilePoint end = s.point("Tierod/Location Knuckle"),
                     other{Vector3d(end.x(), -end.y(), end.z()), end.path};
     s.body("tierod", 0.5 * (end + other), "Tierod");
@@ -186,34 +90,7 @@ void draglink(Suspension& s, OuterEnd outer) {
            end.y() > 0 ? "knuckle_left" : "knuckle_right", end, outer);
 }
 
-void solid_axle(Suspension& s) {
-    s.body("axle", "Axle Tube");
-    both(s, [&] {
-        knuckle(s);
-        for (const auto& [level, part, beside] : {std::tuple<std::string, std::string, std::string>{
-                                                      "upper", "Upper Link", "Lower Link"},
-                                                  {"lower", "Lower Link", "Upper Link"}}) {
-            const std::string name = level + "_link";
-            const FilePoint c = s.point(part + "/Location Chassis"),
-                            a = s.point(part + "/Location Axle");
-            s.body(name + "*", part);
-            s.universal(name + ".inner*", "ground", name + "*", c,
-                        frame_along(c - a, a - s.point(beside + "/Location Axle")));
-            s.spherical(name + ".outer*", "axle", name + "*", a);
-        }
-        spring_and_shock(s, "Location Axle", "axle");
-        wheel_on(s, "knuckle*");
-    });
-    shared_tierod(s);
-    if (s.has("Trackbar")) {  // without it the non-parallel links already hold the axle sideways
-        s.one_freedom = true;
-        s.draft().notes.warn(
-            s.place("Trackbar"),
-            "links and track bar leave the axle a single, poorly determined degree of freedom: the "
-            "branch drives the left wheel, the right one follows");
-        s.link("trackbar", "Trackbar", "ground", s.point("Trackbar/Location Chassis"), "axle",
-               s.point("Trackbar/Location Axle"));
-    }
+void bell_crank(Suspension& s) {
     // Drag link, bell crank, and the pin of the bell crank in the track rod's plane.
     const FilePoint d = s.point("Draglink/Location Bell Crank"),
                     pivot = s.point("Bell Crank/Location Axle"),
@@ -228,58 +105,20 @@ void solid_axle(Suspension& s) {
     s.in_plane("bell_crank.pin", "bell_crank", "tierod", pin, Vector3d::UnitY());
 }
 
-// Triangle and links of the three-link axles.
-void three_links(Suspension& s) {
+// The triangle of the three-link axles, in the middle of both sides.
+void triangle(Suspension& s) {
     FilePoint c = s.point("Triangular Link/Location Chassis"),
               a = s.point("Triangular Link/Location Axle");
-    c.y() = a.y() = 0;  // the middle of both sides
+    c.y() = a.y() = 0;
     s.draft().points.at(c, "triangle.axis", {0, c.path + ", at y = 0"});
     s.draft().points.at(a, "triangle.ball_joint", {0, a.path + ", at y = 0"});
     s.body("triangle", 0.5 * (c + a), "Triangular Link");
     s.revolute("triangle.axis", "triangle", "ground", c, Vector3d::UnitY());
     s.spherical("triangle.ball_joint", "triangle", "axle", a);
-    both(s, [&] {
-        const FilePoint chassis = s.point("Longitudinal Link/Location Chassis"),
-                        axle = s.point("Longitudinal Link/Location Axle");
-        s.body("link*", 0.5 * (chassis + axle), "Longitudinal Link");
-        s.spherical("link.outer*", "link*", "axle", axle);
-        s.universal("link.inner*", "link*", "ground", chassis,
-                    frame_along(chassis - axle, Vector3d::UnitY()));
-    });
 }
 
-void solid_three_link(Suspension& s) {
-    s.body("axle", "Axle Tube");
-    three_links(s);
-    both(s, [&] { spring_and_wheel(s, Axle::rigid); });
-}
-
-void solid_bellcrank_three_link(Suspension& s) {
-    s.body("axle", "Axle Tube");
-    three_links(s);
-    const FilePoint pivot = s.point("Bellcrank/Location Axle");
-    s.body("bellcrank", pivot, "Bellcrank");
-    s.revolute("bellcrank.pivot", "axle", "bellcrank", pivot, Vector3d::UnitZ());
-    s.link("draglink", "Draglink", s.steering(), s.point("Draglink/Location Steering"), "bellcrank",
-           s.point("Draglink/Location Bellcrank"), OuterEnd::universal);
-    both(s, [&] {
-        knuckle(s);
-        s.link("tierod*", "Tierod", "bellcrank", s.point("Bellcrank/Location Tierod"), "knuckle*",
-               s.point("Knuckle/Location Tierod"));
-        spring_and_shock(s, "Location Axle", "axle");
-        wheel_on(s, "knuckle*");
-    });
-}
-
-// The axle's ball joint on the chassis.
-void axle_on_a_ball(Suspension& s) {
-    s.body("axle", "Axle Tube");
-    s.spherical("axle.ball_joint", "axle", "ground", "Axle Tube/Location Connector Chassis");
-}
-
-// De Dion axle, with a Watt linkage for lateral guidance.
-void dedion(Suspension& s) {
-    axle_on_a_ball(s);
+// Lateral guidance of the De Dion axle.
+void watt_linkage(Suspension& s) {
     const std::string watt = "Watt Mechanism/Location ";
     const Vector3d middle =
         0.5 * (s.point(watt + "Left Link to Center") + s.point(watt + "Right Link to Center"));
@@ -289,8 +128,8 @@ void dedion(Suspension& s) {
     s.body("watt_centre", middle, "Watt Mechanism", "Center Link Mass");
     s.revolute("watt_centre.pivot", "watt_centre", "axle", {middle, "Watt Mechanism"},
                Vector3d::UnitX());
-    for (const auto& [name, side] :
-         {Named{"watt_link_left", "Left"}, {"watt_link_right", "Right"}}) {
+    for (const std::string side : {"Left", "Right"}) {
+        const std::string name = side == "Left" ? "watt_link_left" : "watt_link_right";
         const FilePoint centre = s.point(watt + side + " Link to Center"),
                         chassis = s.point(watt + side + " Link to Chassis");
         s.body(name, 0.5 * (centre + chassis), "Watt Mechanism", "Side Link Mass");
@@ -300,8 +139,7 @@ void dedion(Suspension& s) {
 }
 
 // Allows only heave along z and roll about x.
-void leafspring_guide(Suspension& s) {
-    s.body("axle", "Axle Tube");
+void heave_and_roll(Suspension& s) {
     const FilePoint p{s.point("Axle Tube/COM"), "Axle Tube"};
     s.in_plane("axle.fore_aft", "axle", "ground", p, Vector3d::UnitX());
     s.in_plane("axle.lateral", "axle", "ground", p, Vector3d::UnitY());
@@ -309,27 +147,20 @@ void leafspring_guide(Suspension& s) {
             s.place("Axle Tube"));
 }
 
-// `on`: how the fields of its ends begin.
-void panhard_rod(Suspension& s, const std::string& on) {
-    s.link("panhard_rod", "Panhard Rod", "ground", s.point(on + "Chassis"), "axle",
-           s.point(on + "Axle"));
-}
-
-void push_pipe(Suspension& s) {
-    axle_on_a_ball(s);
-    if (const auto offset = s.optional("Axle Tube/Portal Offset"); offset && offset->number() != 0)
-        s.draft().notes.miss(s.place("Axle Tube/Portal Offset"),
-                             "a portal axle, whose gears are not supported");
-    panhard_rod(s, "Panhard Rod/Location Connector ");
-}
-
-void rigid_panhard(Suspension& s) {
-    s.body("axle", "Axle Tube");
+void guide_across_x(Suspension& s) {
     s.joint(
         "axle.guide", "planar", "ground", "axle",
         Fields{}.add("at", s.hardpoint("axle.guide", s.point("Axle Tube/COM"))).add("normal", "x"),
         s.place("Axle Tube"));
-    panhard_rod(s, "Panhard Rod/Location ");
+}
+
+void no_portal(Suspension& s) {
+    if (const auto offset = s.optional("Axle Tube/Portal Offset"); offset && offset->number() != 0)
+        s.draft().notes.miss(s.place("Axle Tube/Portal Offset"),
+                             "a portal axle, whose gears are not supported");
+}
+
+void roll_bar_in_halves(Suspension& s) {
     // An anti-roll bar in two halves: the left one rotates in the chassis, the right one relative
     // to it.
     const FilePoint chassis = s.point("Anti Roll Bar/Location Chassis"),
@@ -351,105 +182,33 @@ void rigid_panhard(Suspension& s) {
     });
 }
 
-void rigid_wheels(Suspension& s) {
-    both(s, [&] { spring_and_wheel(s, Axle::rigid); });
-}
-
-void steered_wheels(Suspension& s, OuterEnd draglink_end = OuterEnd::universal) {
-    both(s, [&] { spring_and_wheel(s, Axle::steered); });
-    shared_tierod(s);
-    draglink(s, draglink_end);
-}
-
-// A leaf spring in two halves (SAE): a spring about y and one about z at each clamp. The preload is
-// shared equally.
-void leaf(Suspension& s) {
+// Half of a leaf spring (SAE), from its clamp to its end: a spring about z and one about y at the clamp.
+// Both halves have an equal part of the preload.
+void half_leaf(Suspension& s, const std::string& name, const std::string& half,
+               const std::string& clamp, const std::string& end) {
     const std::string in = "Leafspring/";
-    const FilePoint hanger = s.point(in + "Location Front Hanger"),
-                    a = s.point(in + "Location Clamp A"), b = s.point(in + "Location Clamp B"),
-                    shackle = s.point(in + "Location Shackle"),
-                    rear = s.point(in + "Location Rear Hanger");
-    const double bias = s.real(in + "Stiffness Bias"),
-                 preload = s.real(in + "Vertical Preload Force");
-    const double vertical = s.real(in + "Vertical Stiffness") / (1 + bias),
-                 lateral = s.real(in + "Lateral Stiffness") / (1 + bias);
-    s.body("front_leaf*", 0.5 * (hanger + a), in + "Frontleaf");
-    s.body("rear_leaf*", 0.5 * (shackle + b), in + "Rearleaf");
-    s.body("clamp_a*", 0.75 * a + 0.25 * b, in + "Half Clamp");
-    s.body("clamp_b*", 0.75 * b + 0.25 * a, in + "Half Clamp");
-    s.body("shackle*", 0.5 * (rear + shackle), in + "Shackle");
-    const Matrix3d about_y = frame_along(-Vector3d::UnitY(), Vector3d::UnitZ());
-    const auto on_shackle = s.optional(in + "Shackle Bushing Data"),
-               on_clamp = s.optional(in + "Clamp Bushing Data"),
-               on_leaf = s.optional(in + "Leafspring Bushing Data");
-    s.joint_or_bushing(Kind::revolute, "shackle.hanger*", "shackle*", "ground", rear, about_y,
-                       on_shackle);
-    s.spherical("front_leaf.hanger*", "front_leaf*", "ground", hanger);
-    s.spherical("rear_leaf.shackle*", "rear_leaf*", "shackle*", shackle);
-    struct Half {
-        std::string name, leaf;
-        FilePoint p;
-        Vector3d arm;
-        double share;
-    };
-    for (const auto& [name, half, p, arm, share] :
-         {Half{"clamp_a", "front_leaf*", a, a - hanger, 1},
-          Half{"clamp_b", "rear_leaf*", b, b - shackle, bias}}) {
-        const double square = arm.squaredNorm();
-        s.joint_or_bushing(Kind::revolute, name + ".yaw*", name + "*", "axle", p, no_turn,
-                           on_clamp);
-        s.torsion(name + ".lateral*", name + "*", "axle", p, Vector3d::UnitZ(),
-                  share * lateral * square);
-        s.joint_or_bushing(Kind::revolute, name + ".pitch*", name + "*", half, p, about_y, on_leaf);
-        // Moment about y on the leaf whose far end then pushes the chassis up with half the
-        // preload: arm × force.
-        s.torsion(name + ".vertical*", name + "*", half, p, Vector3d::UnitY(),
-                  share * vertical * square, -0.5 * preload * arm.x());
-    }
-    if (preload != 0 && s.side > 0)
+    const FilePoint p = s.point(in + clamp);
+    const Vector3d arm = p - s.point(in + end);
+    const double bias = s.real(in + "Stiffness Bias"), share = half == "front_leaf*" ? 1 : bias,
+                 preload = s.real(in + "Vertical Preload Force"),
+                 vertical = s.real(in + "Vertical Stiffness") / (1 + bias),
+                 lateral = s.real(in + "Lateral Stiffness") / (1 + bias),
+                 square = arm.squaredNorm();
+    s.joint_or_bushing(Kind::revolute, name + ".yaw*", name + "*", "axle", p, no_turn,
+                       s.optional(in + "Clamp Bushing Data"));
+    s.torsion(name + ".lateral*", name + "*", "axle", p, Vector3d::UnitZ(),
+              share * lateral * square);
+    s.joint_or_bushing(Kind::revolute, name + ".pitch*", name + "*", half, p,
+                       frame_along(-Vector3d::UnitY(), Vector3d::UnitZ()),
+                       s.optional(in + "Leafspring Bushing Data"));
+    // Moment about y on the leaf whose far end then pushes the chassis up with half the preload: arm ×
+    // force.
+    s.torsion(name + ".vertical*", name + "*", half, p, Vector3d::UnitY(),
+              share * vertical * square, -0.5 * preload * arm.x());
+    if (preload != 0 && s.side > 0 && half != "front_leaf*")
         s.draft().notes.warn(s.place(in + "Vertical Preload Force"),
                              "interpreted as the force that supports the chassis at the design "
                              "position: the sign of Chrono's rest angle is not documented");
-}
-
-void sae_leafspring(Suspension& s, Axle axle) {
-    s.body("axle", "Axle Tube");
-    both(s, [&] {
-        leaf(s);
-        spring_and_wheel(s, axle, "Auxiliary Spring");
-    });
-    if (axle == Axle::rigid) return;
-    shared_tierod(s);
-    draglink(s, OuterEnd::universal);
-}
-
-// The lower shock end is on the housing, as in Chrono.
-void hendrickson(Suspension& s) {
-    s.one_freedom = true;
-    s.draft().notes.warn(s.place("Lower Beam"),
-                         "beams and rods that rotate only about y prevent roll of the axle: the "
-                         "branch drives the left wheel, the right one follows");
-    s.body("axle", "Axle Housing");
-    s.body("transverse_beam", "Transverse Beam");
-    both(s, [&] {
-        knuckle(s, "Knuckle/Lower Attachment Point", "Knuckle/Upper Attachment Point");
-        for (const auto& [name, part] :
-             {Named{"torque_rod", "Torque Rod"}, {"lower_beam", "Lower Beam"}}) {
-            s.body(name + "*", part);
-            s.revolute(name + ".inner*", "ground", name + "*",
-                       s.point(part + "/Chassis Attachment Point"), Vector3d::UnitY());
-            s.spherical(name + ".outer*", "axle", name + "*",
-                        part + "/Axle Housing Attachment Point");
-        }
-        s.spherical("transverse_beam.end*", "lower_beam*", "transverse_beam",
-                    "Lower Beam/Transverse Beam Attachment Point");
-        s.tierod("Location Chassis", "Location Knuckle", "knuckle*");
-        for (const auto& [name, end] :
-             {Named{"housing_shock", "Axle Housing"}, {"beam_shock", "Lower Beam"}})
-            s.tsda(s.sided(name), "ground", s.point("Shock " + end + "/Location Chassis"), "axle",
-                   s.point("Shock " + end + "/Location " + end), s.at("Shock " + end));
-        wheel_on(s, "knuckle*");
-    });
 }
 
 // ---- GenericWheeledSuspension: parts and joints by name.
@@ -606,40 +365,126 @@ void generic(Suspension& s) {
     both(s, [&] { s.spindle(g.body(s.at("Spindle/Attachment Body"))); });
 }
 
-// ---- The templates by name.
+// ---- Steps of a template, by their names in templates.yaml.
 
-struct Template {
-    std::string_view name;
-    bool mirrors;  // independent: the left side is written, the scene mirrors it
-    void (*make)(Suspension&);
-    const char* antiroll_body = nullptr;  // to which Chrono attaches the links of an anti-roll bar
-};
+using Words = std::vector<std::string>;
 
-const Template templates[] = {
-    {"DoubleWishbone", true, double_wishbone, "lower_arm*"},
-    {"DoubleWishboneReduced", true, double_wishbone_reduced, "upright*"},
-    {"MacPhersonStrut", true, mcpherson, "arm*"},
-    {"MultiLink", true, multi_link, "trailing_link*"},
-    {"SemiTrailingArm", true, semi_trailing_arm},
-    {"ThreeLinkIRS", true, three_link_irs},
-    {"SingleWishbone", true, single_wishbone, "arm*"},
-    {"SolidAxle", false, solid_axle},
-    {"SolidThreeLinkAxle", false, solid_three_link},
-    {"SolidBellcrankThreeLinkAxle", false, solid_bellcrank_three_link},
-    {"DeDionAxle", false, [](Suspension& s) { dedion(s), rigid_wheels(s); }},
-    {"ToeBarDeDionAxle", false,
-     [](Suspension& s) { dedion(s), steered_wheels(s, OuterEnd::spherical); }},
-    {"LeafspringAxle", false, [](Suspension& s) { leafspring_guide(s), rigid_wheels(s); }},
-    {"ToeBarLeafspringAxle", false, [](Suspension& s) { leafspring_guide(s), steered_wheels(s); }},
-    {"PushPipeAxle", false, [](Suspension& s) { push_pipe(s), rigid_wheels(s); }},
-    {"ToeBarPushPipeAxle", false, [](Suspension& s) { push_pipe(s), steered_wheels(s); }},
-    {"RigidPanhardAxle", false, [](Suspension& s) { rigid_panhard(s), rigid_wheels(s); }},
-    {"ToeBarRigidPanhardAxle", false, [](Suspension& s) { rigid_panhard(s), steered_wheels(s); }},
-    {"SAELeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, Axle::rigid); }},
-    {"SAEToeBarLeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, Axle::steered); }},
-    {"HendricksonPRIMAXX", false, hendrickson},
-    {"GenericWheeledSuspension", false, generic},
-};
+// "y", "-y"; a point of the file; or the difference of two.
+Vector3d vector_of(const Suspension& s, const std::string& word) {
+    for (const int axis : {0, 1, 2})
+        if (word.back() == "xyz"[axis] && word.size() <= 2)
+            return word.front() == '-' ? Vector3d(-Vector3d::Unit(axis)) : Vector3d::Unit(axis);
+    const auto minus = word.find(" - ");
+    if (minus == word.npos) return s.point(word);
+    const Vector3d to = s.point(word.substr(0, minus));
+    return to - s.point(word.substr(minus + 3));
+}
+
+template <Kind kind>
+void joint_or_bushing(Suspension& s, const Words& w) {
+    const FilePoint at = s.point(w.at(3));
+    s.joint_or_bushing(kind, w.at(0), w.at(1), w.at(2), at,
+                       kind != Kind::spherical
+                           ? frame_along(vector_of(s, w.at(4)), vector_of(s, w.at(5)))
+                           : no_turn,
+                       s.optional(w.back()));
+}
+
+template <OuterEnd outer>
+void link(Suspension& s, const Words& w) {
+    s.link(w.at(0), w.at(1), w.at(2) == "steering" ? s.steering() : w.at(2), s.point(w.at(3)),
+           w.at(4), s.point(w.at(5)), outer);
+}
+
+using Step = void (*)(Suspension&, const Words&);
+const std::map<std::string_view, Step> steps{
+    {"body", [](Suspension& s, const Words& w) { s.body(w.at(0), w.at(1)); }},
+    {"body between",
+     [](Suspension& s, const Words& w) {
+         const double share = w.size() > 4 ? 0.25 : 0.5;
+         s.body(w.at(0), (1 - share) * s.point(w.at(2)) + share * s.point(w.at(3)), w.at(1));
+     }},
+    {"spherical",
+     [](Suspension& s, const Words& w) { s.spherical(w.at(0), w.at(1), w.at(2), w.at(3)); }},
+    {"revolute",
+     [](Suspension& s, const Words& w) {
+         s.revolute(w.at(0), w.at(1), w.at(2), s.point(w.at(3)), vector_of(s, w.at(4)));
+     }},
+    {"cylindrical",
+     [](Suspension& s, const Words& w) {
+         const Vector3d axis = vector_of(s, w.at(4)).normalized();
+         s.joint(w.at(0), "cylindrical", w.at(1), w.at(2), s.point(w.at(3)),
+                 Fields{}.add("axis", direction(axis)));
+     }},
+    {"universal",
+     [](Suspension& s, const Words& w) {
+         s.universal(w.at(0), w.at(1), w.at(2), s.point(w.at(3)), vector_of(s, w.at(4)),
+                     vector_of(s, w.at(5)));
+     }},
+    {"universal along",
+     [](Suspension& s, const Words& w) {
+         s.universal(w.at(0), w.at(1), w.at(2), s.point(w.at(3)),
+                     frame_along(vector_of(s, w.at(4)), vector_of(s, w.at(5))));
+     }},
+    {"spherical or bushing", joint_or_bushing<Kind::spherical>},
+    {"revolute or bushing", joint_or_bushing<Kind::revolute>},
+    {"universal or bushing", joint_or_bushing<Kind::universal>},
+    {"distance",
+     [](Suspension& s, const Words& w) {
+         s.distance(w.at(0), w.at(1), s.point(w.at(2)), w.at(3), s.point(w.at(4)));
+     }},
+    {"link", link<OuterEnd::spherical>},
+    {"link universal", link<OuterEnd::universal>},
+    {"arm", [](Suspension& s, const Words& w) { arm(s, w.at(0), w.at(1), w.at(2), w.at(3)); }},
+    {"wishbone", [](Suspension& s, const Words& w) { wishbone(s, w.at(0), w.at(1)); }},
+    {"tierod",
+     [](Suspension& s, const Words& w) { s.tierod("Location Chassis", w.at(0), w.at(1)); }},
+    {"springs", [](Suspension& s, const Words& w) { springs(s, w.at(0), w.at(1), w.at(2)); }},
+    {"shock",
+     [](Suspension& s, const Words& w) {
+         s.tsda(s.on_side(w.at(0)), "ground", s.point(w.at(1) + "/Location Chassis"), "axle",
+                s.point(w.at(1) + "/" + w.at(2)), s.at(w.at(1)));
+     }},
+    {"wheel", [](Suspension& s, const Words& w) { s.spindle(s.on_side(w.at(0))); }},
+    {"one freedom",
+     [](Suspension& s, const Words& w) {
+         s.one_freedom = true;
+         s.draft().notes.warn(s.place(w.at(0)), w.at(1));
+     }},
+    {"read", [](Suspension& s, const Words& w) { s.point(w.at(0)); }},
+    {"knuckle", [](Suspension& s, const Words& w) { knuckle(s, w.at(0), w.at(1)); }},
+    {"track rod", [](Suspension& s, const Words&) { track_rod(s); }},
+    {"draglink", [](Suspension& s, const Words&) { draglink(s, OuterEnd::spherical); }},
+    {"draglink universal", [](Suspension& s, const Words&) { draglink(s, OuterEnd::universal); }},
+    {"bell crank", [](Suspension& s, const Words&) { bell_crank(s); }},
+    {"triangle", [](Suspension& s, const Words&) { triangle(s); }},
+    {"watt linkage", [](Suspension& s, const Words&) { watt_linkage(s); }},
+    {"heave and roll", [](Suspension& s, const Words&) { heave_and_roll(s); }},
+    {"guide across x", [](Suspension& s, const Words&) { guide_across_x(s); }},
+    {"no portal", [](Suspension& s, const Words&) { no_portal(s); }},
+    {"roll bar in halves", [](Suspension& s, const Words&) { roll_bar_in_halves(s); }},
+    {"half leaf",
+     [](Suspension& s, const Words& w) { half_leaf(s, w.at(0), w.at(1), w.at(2), w.at(3)); }},
+    {"generic", [](Suspension& s, const Words&) { generic(s); }}};
+
+void run(Suspension& s, std::span<const Value> list) {
+    for (const Value& step : list) {
+        const std::string& verb = step.items[0].text;
+        const auto rest = std::span(step.items).subspan(1);
+        if (verb == "mirrors") continue;
+        if (verb == "both") {
+            both(s, [&] { run(s, rest); });
+        } else if (verb == "like") {
+            run(s, entry(templates_section("groups"), rest[0].text)->items);
+        } else if (verb == "if given") {
+            if (s.has(rest[0].text)) run(s, rest.subspan(1));
+        } else {
+            Words words;
+            for (const Value& word : rest) words.push_back(word.text);
+            steps.at(verb)(s, words);
+        }
+    }
+}
 
 }  // namespace
 
@@ -650,21 +495,21 @@ Made make(Suspension& s) {
     if (name == "RigidPinnedAxle" || name == "RigidSuspension")
         named.fail(
             fmt::format("{}: the template has no spring, so the wheel is not supported", name));
-    const auto found = std::ranges::find(templates, name, &Template::name);
-    if (found == std::end(templates)) {
-        std::vector<std::string> known;
-        for (const Template& t : templates) known.emplace_back(t.name);
-        named.fail(fmt::format("{} is not a supported template{}", reader::quote(name),
-                               reader::did_you_mean(name, known, "known")));
-    }
+    const Value* found = entry(templates_section("templates"), name);
+    if (found == nullptr)
+        named.fail(
+            fmt::format("{} is not a supported template{}", reader::quote(name),
+                        reader::did_you_mean(name, templates_section("templates").keys, "known")));
     Draft& draft = s.draft();
     draft.title = root.optional("Name") ? root.require("Name").text("a name") : name;
     draft.format = "Chrono::Vehicle " + name;
     draft.units = "{length: m, angle: rad, force: N}";
-    if (found->mirrors) draft.mirror = "left -> right";
-    found->make(s);
+    const auto& first = found->items[0].items;
+    const bool mirrors = first[0].text == "mirrors";
+    if (mirrors) draft.mirror = "left -> right";
+    run(s, found->items);
     s.report_unread();
-    return {found->mirrors, found->antiroll_body ? found->antiroll_body : ""};
+    return {mirrors, mirrors && first.size() > 1 ? first[1].text : ""};
 }
 
 void add_travel(const Suspension& s, bool roll, Draft& draft) {

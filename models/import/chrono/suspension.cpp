@@ -16,18 +16,6 @@ namespace {
 
 using reader::Cursor;
 
-// Fields that Chrono has and that do not influence an equilibrium, by their name in any object.
-constexpr std::string_view of_motion = "without effect at rest";
-const std::pair<std::string_view, std::vector<std::string>> without_influence[] = {
-    {of_motion,
-     {"Inertia", "Moments of Inertia", "Products of Inertia", "Vehicle-Frame Inertia",
-      "Center Link Inertia", "Side Link Inertia", "Damping Coefficient", "Damping Curve Data",
-      "Degressivity Compression", "Degressivity Expansion", "Damping Linear", "Damping Rotational",
-      "Rotational Damping"}},
-    {"only for visualisation", {"Radius", "Width", "Link Radius", "Visualization"}},
-    {"without effect on the mechanism", {"Name", "Output", "Independent", "Steerable"}},
-    {"of an anti-roll bar, which is another file", {"Antiroll Body", "Location Stabilizer"}}};
-
 // Linear interpolation between the rows; constant beyond the ends.
 double value_at(const Rows& rows, double x) {
     const auto above = std::ranges::find_if(rows, [&](const auto& row) { return row.first > x; });
@@ -143,17 +131,15 @@ void Suspension::ignore(const std::optional<Cursor>& field, const std::string& w
 
 void Suspension::report_unread() {
     Notes& notes = draft_.notes;
-    if (has("Axle/Inertia")) leave_out(at("Axle/Inertia"), std::string(of_motion));
+    if (has("Axle/Inertia")) leave_out(at("Axle/Inertia"), "without effect at rest");
+    const reader::Value& without_influence = templates_section("without_influence");
     std::vector<Unread> unread;
     find_unread(*file_.accesses, *file_.value, "", unread);
     // (reason, key) -> " of part, part"
     std::map<std::pair<std::string_view, std::string>, std::string> omitted;
     for (const auto& [object, value, path, key] : unread) {
-        const auto known = std::ranges::find_if(without_influence, [&key = key](const auto& some) {
-            return std::ranges::find(some.second, key) != some.second.end();
-        });
-        if (known != std::end(without_influence)) {
-            std::string& parts = omitted[{known->first, key}];
+        if (const reader::Value* why = entry(without_influence, key)) {
+            std::string& parts = omitted[{why->text, key}];
             if (path.size() > key.size())
                 parts +=
                     (parts.empty() ? " of " : ", ") + path.substr(0, path.size() - key.size() - 1);
@@ -164,8 +150,7 @@ void Suspension::report_unread() {
         for (const std::string& name : looked_for)
             if (std::ranges::find(object->keys, name) == object->keys.end())
                 allowed.push_back(name);
-        for (const auto& [why, keys] : without_influence)
-            allowed.insert(allowed.end(), keys.begin(), keys.end());
+        allowed.insert(allowed.end(), without_influence.keys.begin(), without_influence.keys.end());
         notes.miss({value->line, path}, looked_for.contains(key)
                                             ? "not used in combination with the other fields"
                                             : "not a field of this template" +

@@ -183,6 +183,9 @@ class Suspension {
     Names body_names_, joint_names_, element_names_;
 };
 
+// A section of templates.yaml.
+const reader::Value& templates_section(std::string_view name);
+
 // Three numbers of the file.
 Vector3d vector(const reader::Cursor& at);
 // A rotation by four numbers, a quaternion.

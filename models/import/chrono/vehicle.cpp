@@ -267,24 +267,16 @@ Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
                     "Suspension Location, {} in the chassis. Chassis and subchassis are ground.",
                     triple(location)),
         "The files have no gravity and no tyre: the branches move the wheels on jacks."};
-    for (const auto& [key, why] :
-         {std::pair{"Left Wheel Input File", "a wheel has mass and no tyre: without effect here"},
-          {"Right Wheel Input File", "a wheel has mass and no tyre: without effect here"},
-          {"Left Brake Input File", "without effect at rest"},
-          {"Right Brake Input File", "without effect at rest"},
-          {"Subchassis Index", "the subchassis is ground"}})
-        if (const auto field = axle.optional(key)) whole.leave_out(*field, why);
+    const auto leave_out = [&](const Cursor& object, const char* unused) {
+        const reader::Value& table = templates_section(unused);
+        for (const std::string& key : table.keys)
+            if (const auto field = object.optional(key))
+                whole.leave_out(*field, entry(table, key)->text);
+    };
+    leave_out(axle, "unused_of_axle");
     for (std::size_t k = 0; k < entries.size(); ++k)
         if (k != chosen) whole.leave_out(entries[k], "another axle");
-    for (const auto& [key, why] :
-         {std::pair{"Type", "without effect on the mechanism"},
-          {"Chassis", "the chassis is ground"},
-          {"Subchassis", "the subchassis is ground"},
-          {"Driveline", "without effect at rest"},
-          {"Wheelbase", "of the whole vehicle"},
-          {"Minimum Turning Radius", "of the whole vehicle"},
-          {"Maximum Steering Angle (deg)", "of the wheels; the steering has its own range"}})
-        if (const auto field = root.optional(key)) whole.leave_out(*field, why);
+    leave_out(root, "unused_of_vehicle");
     if (const auto all = root.optional("Steering Subsystems"))
         for (const Cursor& other : all->items())
             if (!subsystem || other.value != subsystem->value || !steering)

@@ -5,16 +5,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <utility>
 
+#include "models/import/import.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer {
 namespace {
 
-constexpr const char* axis_names[] = {"x", "y", "z"};
+const std::vector<std::string> axis_names{"x", "y", "z"};
 const std::vector<std::string> keys = {"name",   "x",      "y",       "z",       "side",   "left.x",
                                        "left.y", "left.z", "right.x", "right.y", "right.z"};
 
@@ -31,48 +33,45 @@ constexpr const char* form_of_map =
     "expected name=COLUMN,x=COLUMN,y=COLUMN,z=COLUMN, each a heading, a number from 1 or letters; "
     "a heading with a comma by its number";
 
+bool has(const Map& map, const std::string& key) {
+    return std::ranges::find(map, key, &Chosen::key) != map.end();
+}
+
+Chosen chosen_by(std::string_view piece, const std::string& file) {
+    const auto equals = piece.find('=');
+    if (equals == piece.npos)
+        fail(file, 0, "--columns", "{} has no '='; {}", reader::quote(piece), form_of_map);
+    Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
+                  std::string(reader::trimmed(piece.substr(equals + 1)))};
+    if (std::ranges::find(keys, chosen.key) == keys.end())
+        fail(file, 0, "--columns", "{} is nothing that a point has{}", reader::quote(chosen.key),
+             reader::did_you_mean(chosen.key, keys, "allowed"));
+    return chosen;
+}
+
 Map map_of(const std::string& text, const std::string& file) {
     Map map;
-    for (std::string_view rest = text;;) {
-        const auto comma = std::min(rest.find(','), rest.size());
-        const std::string_view piece = rest.substr(0, comma);
-        const auto equals = piece.find('=');
-        if (equals == piece.npos)
-            reader::fail(file, 0, "--columns",
-                         fmt::format("{} has no '='; {}", reader::quote(piece), form_of_map));
-        Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
-                      std::string(reader::trimmed(piece.substr(equals + 1)))};
-        if (std::ranges::find(keys, chosen.key) == keys.end())
-            reader::fail(file, 0, "--columns",
-                         fmt::format("{} is nothing that a point has{}", reader::quote(chosen.key),
-                                     reader::did_you_mean(chosen.key, keys, "allowed")));
-        if (std::ranges::find(map, chosen.key, &Chosen::key) != map.end())
-            reader::fail(file, 0, "--columns", fmt::format("{} is given twice", chosen.key));
-        if (chosen.column.empty())
-            reader::fail(file, 0, "--columns", fmt::format("no column for {}", chosen.key));
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', begin), text.size());
+        Chosen chosen = chosen_by(std::string_view(text).substr(begin, comma - begin), file);
+        if (has(map, chosen.key)) fail(file, 0, "--columns", "{} is given twice", chosen.key);
+        if (chosen.column.empty()) fail(file, 0, "--columns", "no column for {}", chosen.key);
         map.push_back(std::move(chosen));
-        if (comma == rest.size()) break;
-        rest.remove_prefix(comma + 1);
+        begin = comma + 1;
     }
-    const auto has = [&](const std::string& key) {
-        return std::ranges::find(map, key, &Chosen::key) != map.end();
-    };
-    const bool sides = std::ranges::any_of(map, [](const Chosen& chosen) {
-        return chosen.key.starts_with("left.") || chosen.key.starts_with("right.");
-    });
+    const bool sides =
+        std::ranges::any_of(map, [](const Chosen& c) { return c.key.find('.') != c.key.npos; });
     std::vector<std::string> needed{"name"};
     for (const char* prefix : {"left.", "right."})
-        for (const char* axis : axis_names) {
-            if (sides) needed.push_back(std::string(prefix) + axis);
-            if (sides && (has(axis) || has("side")))
-                reader::fail(file, 0, "--columns",
-                             "left.x ... right.z are instead of x, y, z and side");
+        for (const std::string& axis : axis_names) {
+            if (sides) needed.push_back(prefix + axis);
+            if (sides && (has(map, axis) || has(map, "side")))
+                fail(file, 0, "--columns", "left.x ... right.z are instead of x, y, z and side");
         }
-    if (!sides) needed.insert(needed.end(), std::begin(axis_names), std::end(axis_names));
+    if (!sides) needed.insert(needed.end(), axis_names.begin(), axis_names.end());
     for (const auto& key : needed)
-        if (!has(key))
-            reader::fail(file, 0, "--columns",
-                         fmt::format("no {} in {}; {}", key, reader::quote(text), form_of_map));
+        if (!has(map, key))
+            fail(file, 0, "--columns", "no {} in {}; {}", key, reader::quote(text), form_of_map);
     return map;
 }
 
@@ -90,9 +89,10 @@ std::optional<std::size_t> position(const std::string& column, std::size_t width
 }
 
 std::vector<std::size_t> headed(const SheetRow& row, const std::string& heading) {
+    const std::string word = reader::small_letters(heading);
     std::vector<std::size_t> at;
     for (std::size_t c = 0; c < row.cells.size(); ++c)
-        if (reader::small_letters(row.cells[c]) == reader::small_letters(heading)) at.push_back(c);
+        if (reader::small_letters(row.cells[c]) == word) at.push_back(c);
     return at;
 }
 
@@ -144,14 +144,14 @@ bool has_word(const std::string& heading, std::string_view word) {
 std::string proposal(const Sheet& sheet, const SheetRow& head) {
     std::string map;
     const std::size_t data = first_numbers(sheet);
-    for (const char* key : {"name", "x", "y", "z"}) {
-        const bool name = key == std::string_view("name");
+    for (const std::string key : {"name", "x", "y", "z"}) {
+        const auto fits = [&](std::size_t c) {
+            if (key != "name") return has_word(head.cells[c], key);
+            const std::string_view cell = data < sheet.rows.size() ? sheet.rows[data].at(c) : "";
+            return !cell.empty() && !is_number(cell);
+        };
         std::size_t c = 0;
-        for (; c < head.cells.size(); ++c)
-            if (name ? data < sheet.rows.size() && !sheet.rows[data].at(c).empty() &&
-                           !is_number(sheet.rows[data].at(c))
-                     : has_word(head.cells[c], key))
-                break;
+        while (c < head.cells.size() && !fits(c)) ++c;
         std::string column = "HEADING";
         if (c < head.cells.size()) {
             const std::string& word = head.cells[c];
@@ -167,16 +167,14 @@ std::string proposal(const Sheet& sheet, const SheetRow& head) {
 
 [[noreturn]] void refuse(const Sheet& sheet, const std::string& file, const std::string& what) {
     const SheetRow* head = likely_head(sheet);
-    if (head == nullptr) {
-        if (sheet.rows.empty()) reader::fail(file, 0, "", "no point in this file");
-        reader::fail(file, sheet.rows.front().line, "",
-                     what +
-                         "; no headings above the numbers; choose columns by their numbers or "
-                         "letters: --columns name=A,x=B,y=C,z=D");
-    }
-    reader::fail(file, head->line, "",
-                 fmt::format("{}; headings: {}; choose with {} (by heading, number or letters)",
-                             what, with_letters(*head), proposal(sheet, *head)));
+    if (sheet.rows.empty()) fail(file, 0, "", "no point in this file");
+    if (head == nullptr)
+        fail(file, sheet.rows.front().line, "",
+             "{}; no headings above the numbers; choose columns by their numbers or letters: "
+             "--columns name=A,x=B,y=C,z=D",
+             what);
+    fail(file, head->line, "", "{}; headings: {}; choose with {} (by heading, number or letters)",
+         what, with_letters(*head), proposal(sheet, *head));
 }
 
 // name, x, y, z of a row by the first words of its headings: "Point Name", "X [mm]", "y_m".
@@ -223,70 +221,60 @@ Found by_headings(const Sheet& sheet, const std::string& file) {
     refuse(sheet, file, fmt::format("no column {}", fmt::join(missing, ", ")));
 }
 
-Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
-    std::size_t width = 0, head = no_row, most = 0;
-    for (const auto& row : sheet.rows) width = std::max(width, row.cells.size());
-    const std::size_t above = first_numbers(sheet);
-    for (std::size_t r = 0; r < above; ++r) {
-        const auto of_map = static_cast<std::size_t>(std::ranges::count_if(
-            map, [&](const Chosen& c) { return !headed(sheet.rows[r], c.column).empty(); }));
-        if (of_map > most) most = of_map, head = r;
-    }
-    // headings may stand in several lines: those of most headings first, then the others above
+// Position of a column of the map. Headings may stand in several lines: first those in row `head`,
+// which has most, then the others above the numbers.
+std::size_t resolved(const Sheet& sheet, const std::string& file, const Chosen& chosen,
+                     std::size_t head) {
+    const auto& [key, column] = chosen;
     std::vector<std::size_t> lines;
     if (head != no_row) lines.push_back(head);
-    for (std::size_t r = 0; r < above; ++r) lines.push_back(r);
-    const auto resolved = [&](const Chosen& chosen) {
-        for (const std::size_t r : lines) {
-            const auto at = headed(sheet.rows[r], chosen.column);
-            if (at.size() > 1)
-                reader::fail(
-                    file, sheet.rows[r].line, "--columns",
-                    fmt::format("{}: columns {} and {} have the heading {}; choose one by its "
-                                "letter",
-                                chosen.key, letters_of(at[0]), letters_of(at[1]),
-                                reader::quote(chosen.column)));
-            if (!at.empty()) return at[0];
-        }
-        if (const auto at = position(chosen.column, width)) return *at;
-        const SheetRow* row = head != no_row ? &sheet.rows[head] : likely_head(sheet);
-        std::vector<std::string> words;
-        if (row != nullptr)
-            for (const auto& cell : row->cells)
-                if (!cell.empty()) words.push_back(cell);
-        reader::fail(file, row != nullptr ? row->line : 0, "--columns",
-                     fmt::format("{}: {} is no heading and no number or letter of the {} columns{}",
-                                 chosen.key, reader::quote(chosen.column), width,
-                                 reader::did_you_mean(chosen.column, words, "headings")));
-    };
+    for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) lines.push_back(r);
+    for (const std::size_t r : lines) {
+        const auto at = headed(sheet.rows[r], column);
+        if (at.size() > 1)
+            fail(file, sheet.rows[r].line, "--columns",
+                 "{}: columns {} and {} have the heading {}; choose one by its letter", key,
+                 letters_of(at[0]), letters_of(at[1]), reader::quote(column));
+        if (!at.empty()) return at[0];
+    }
+    std::size_t width = 0;
+    for (const auto& row : sheet.rows) width = std::max(width, row.cells.size());
+    if (const auto at = position(column, width)) return *at;
+    const SheetRow* row = head != no_row ? &sheet.rows[head] : likely_head(sheet);
+    std::vector<std::string> words;
+    if (row != nullptr)
+        std::ranges::copy_if(row->cells, std::back_inserter(words),
+                             [](const std::string& cell) { return !cell.empty(); });
+    fail(file, row != nullptr ? row->line : 0, "--columns",
+         "{}: {} is no heading and no number or letter of the {} columns{}", key,
+         reader::quote(column), width, reader::did_you_mean(column, words, "headings"));
+}
+
+Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
     Found found;
-    found.head = head;
-    std::vector<std::pair<std::size_t, std::string>> used;
-    Triple left{"left_", {}}, right{"right_", {}}, single;
+    std::ptrdiff_t most = 0;
+    for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) {
+        const auto of_map = std::ranges::count_if(
+            map, [&](const Chosen& c) { return !headed(sheet.rows[r], c.column).empty(); });
+        if (of_map > most) most = of_map, found.head = r;
+    }
+    std::map<std::size_t, std::string> used;
+    std::map<std::string, Triple> triples;  // by the prefix of their names
     for (const auto& chosen : map) {
-        const std::size_t at = resolved(chosen);
-        for (const auto& [other, key] : used)
-            if (other == at)
-                reader::fail(file, 0, "--columns",
-                             fmt::format("{} and {} are the same column {}", key, chosen.key,
-                                         letters_of(at)));
-        used.emplace_back(at, chosen.key);
-        const char axis = chosen.key.back();
+        const std::size_t at = resolved(sheet, file, chosen, found.head);
+        if (const auto [other, is_new] = used.emplace(at, chosen.key); !is_new)
+            fail(file, 0, "--columns", "{} and {} are the same column {}", other->second,
+                 chosen.key, letters_of(at));
+        const auto dot = chosen.key.find('.');
+        const std::string prefix = dot == chosen.key.npos ? "" : chosen.key.substr(0, dot) + "_";
         if (chosen.key == "name")
             found.columns.name = at;
         else if (chosen.key == "side")
             found.columns.side = at;
-        else if (chosen.key.starts_with("left."))
-            left.at[axis - 'x'] = at, found.columns.triples = {left};
-        else if (chosen.key.starts_with("right."))
-            right.at[axis - 'x'] = at;
         else
-            single.at[axis - 'x'] = at;
+            triples[prefix].at[static_cast<std::size_t>(chosen.key.back() - 'x')] = at;
     }
-    if (found.columns.triples.empty())
-        found.columns.triples = {single};
-    else
-        found.columns.triples = {left, right};
+    for (auto& [prefix, triple] : triples) found.columns.triples.push_back({prefix, triple.at});
     return found;
 }
 
@@ -312,53 +300,61 @@ std::string unit_in_heading(std::string_view heading) {
     return is_unit(word) ? word : "";
 }
 
+struct SaidUnit {
+    std::string unit, from;
+    int line = 0;
+};
+
+// What the lines above the first point say last about the unit of a column.
+SaidUnit unit_of(const Sheet& sheet, const std::string& file,
+                 std::pair<std::size_t, std::size_t> rows, std::size_t column,
+                 const std::string& axis, bool may_be_unknown) {
+    SaidUnit said;
+    for (std::size_t r = rows.first; r < rows.second; ++r) {
+        const std::string_view cell = sheet.rows[r].at(column);
+        std::string word = without_brackets(cell);
+        if (!is_unit(word)) word = unit_in_heading(cell);
+        if (word.empty()) continue;
+        said.line = sheet.rows[r].line;
+        if (is_unit(word)) {
+            said.unit = word;
+            said.from = fmt::format("by the heading {} in line {}", reader::quote(cell), said.line);
+        } else if (!may_be_unknown) {
+            fail(file, said.line, axis,
+                 "{} is no unit of a coordinate; allowed: {}; or say it with --unit",
+                 reader::quote(word), fmt::join(length_units, ", "));
+        }
+    }
+    return said;
+}
+
 // The lines above the first point say the unit of each column of coordinates, or none does and the
 // option says it.
 void find_unit(const Sheet& sheet, const std::string& file, std::size_t head,
                const std::string& option, PointColumns& columns) {
     std::string first_without;  // a column for which no line says a unit
+    const std::pair rows{head == no_row ? 0 : head, columns.first};
     for (const Triple& triple : columns.triples)
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t c = triple.at[k];
-            std::string unit, from;
-            int line = 0;
-            for (std::size_t r = head == no_row ? 0 : head; r < columns.first; ++r) {
-                const std::string_view cell = sheet.rows[r].at(c);
-                std::string word = without_brackets(cell);
-                if (!is_unit(word)) word = unit_in_heading(cell);
-                if (word.empty()) continue;
-                line = sheet.rows[r].line;
-                if (!is_unit(word)) {
-                    if (!option.empty()) continue;
-                    reader::fail(file, line, axis_names[k],
-                                 fmt::format("{} is no unit of a coordinate; allowed: {}; or say "
-                                             "it with --unit",
-                                             reader::quote(word), fmt::join(length_units, ", ")));
-                }
-                unit = word;
-                from = fmt::format("by the heading {} in line {}", reader::quote(cell), line);
-            }
+            const auto [unit, from, line] =
+                unit_of(sheet, file, rows, triple.at[k], axis_names[k], !option.empty());
             if (unit.empty()) {
                 if (first_without.empty()) first_without = triple.prefix + axis_names[k];
                 continue;
             }
             if (!columns.unit.empty() && columns.unit != unit)
-                reader::fail(file, line, axis_names[k],
-                             fmt::format("the coordinates have different units, {} and {}",
-                                         columns.unit, unit));
+                fail(file, line, axis_names[k], "the coordinates have different units, {} and {}",
+                     columns.unit, unit);
             if (!option.empty() && option != unit)
-                reader::fail(file, line, axis_names[k],
-                             fmt::format("in {} {}; --unit says {}", unit, from, option));
+                fail(file, line, axis_names[k], "in {} {}; --unit says {}", unit, from, option);
             columns.unit = unit, columns.unit_from = from;
         }
-    if (!option.empty()) {
+    if (!option.empty())
         columns.unit = option, columns.unit_from = "by --unit";
-    } else if (!first_without.empty()) {
-        const int line = sheet.rows[head == no_row ? columns.first : head].line;
-        reader::fail(file, line, first_without,
-                     fmt::format("no unit in its heading or below it; say it with --unit: {}",
-                                 fmt::join(length_units, ", ")));
-    }
+    else if (!first_without.empty())
+        fail(file, sheet.rows[head == no_row ? columns.first : head].line, first_without,
+             "no unit in its heading or below it; say it with --unit: {}",
+             fmt::join(length_units, ", "));
 }
 
 }  // namespace
@@ -400,7 +396,7 @@ PointColumns point_columns(const Sheet& sheet, const std::string& file, const st
     columns.first = found.head == no_row ? 0 : found.head + 1;
     while (columns.first < sheet.rows.size() && !has_numbers(sheet.rows[columns.first]))
         ++columns.first;
-    if (columns.first == sheet.rows.size()) reader::fail(file, 0, "", "no point in this file");
+    if (columns.first == sheet.rows.size()) fail(file, 0, "", "no point in this file");
     find_unit(sheet, file, found.head, unit, columns);
     return std::move(found.columns);
 }

@@ -12,7 +12,6 @@
 #include "models/import/property/spreadsheet.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -27,19 +26,20 @@ struct NamedPoint {
 
 constexpr std::size_t narrowest = 4;  // columns: the name and three coordinates
 
+bool is_one_of(const std::string& word, std::initializer_list<std::string_view> words) {
+    return std::ranges::find(words, word) != words.end();
+}
+
 // "left_" or "right_" of a cell that says the side; empty for a point in the middle.
 std::string side_in(std::string_view cell, const std::string& file, int line) {
     const std::string word = reader::small_letters(cell);
-    for (const char* left : {"l", "left", "lh", "li", "links"})
-        if (word == left) return "left_";
-    for (const char* right : {"r", "right", "rh", "re", "rechts"})
-        if (word == right) return "right_";
-    if (word.empty() || word == "-" || word == "c" || word == "centre" || word == "center")
-        return "";
-    reader::fail(file, line, "side",
-                 fmt::format("{} is no side; allowed: left, right, l, r, lh, rh, links, rechts; "
-                             "nothing, -, c or centre in the middle",
-                             reader::quote(cell)));
+    if (is_one_of(word, {"l", "left", "lh", "li", "links"})) return "left_";
+    if (is_one_of(word, {"r", "right", "rh", "re", "rechts"})) return "right_";
+    if (is_one_of(word, {"", "-", "c", "centre", "center"})) return "";
+    fail(file, line, "side",
+         "{} is no side; allowed: left, right, l, r, lh, rh, links, rechts; nothing, -, c or "
+         "centre in the middle",
+         reader::quote(cell));
 }
 
 // Whether the coordinates have decimal commas. A file with commas in some and points in others is
@@ -57,10 +57,10 @@ bool has_decimal_commas(const Sheet& sheet, const PointColumns& columns, const s
                     point = &sheet.rows[r];
             }
     if (comma != nullptr && point != nullptr)
-        reader::fail(file, std::max(comma->line, point->line), "",
-                     fmt::format("decimal commas (line {}) and decimal points (line {}) in one "
-                                 "file; allowed: one of them, no separators of thousands",
-                                 comma->line, point->line));
+        fail(file, std::max(comma->line, point->line), "",
+             "decimal commas (line {}) and decimal points (line {}) in one "
+             "file; allowed: one of them, no separators of thousands",
+             comma->line, point->line);
     return comma != nullptr;
 }
 
@@ -94,20 +94,18 @@ std::vector<NamedPoint> points_of_table(std::string_view text, const std::string
             if (std::ranges::all_of(triple.at, [&](std::size_t c) { return row.at(c).empty(); }))
                 continue;  // a title, or a point of the other side only
             any = true;
-            if (name.empty()) reader::fail(file, row.line, "name", "an empty cell");
+            if (name.empty()) fail(file, row.line, "name", "an empty cell");
             NamedPoint point{row.line, side + triple.prefix + name, {}};
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t c = triple.at[k];
                 const char axis = "xyz"[k];
                 if (c >= row.cells.size())
-                    reader::fail(file, row.line, point.name,
-                                 fmt::format("{} cells, but {} is in column {}", row.cells.size(),
-                                             axis, letters_of(c)));
+                    fail(file, row.line, point.name, "{} cells, but {} is in column {}",
+                         row.cells.size(), axis, letters_of(c));
                 const auto value = coordinate(row.at(c), decimal_comma);
                 if (!value)
-                    reader::fail(file, row.line, point.name,
-                                 fmt::format("{} is no number: {} in column {}", axis,
-                                             reader::quote(row.at(c)), letters_of(c)));
+                    fail(file, row.line, point.name, "{} is no number: {} in column {}", axis,
+                         reader::quote(row.at(c)), letters_of(c));
                 point.at[k] = mm * *value;
             }
             points.push_back(std::move(point));
@@ -190,11 +188,11 @@ void check_opposites(const std::vector<NamedPoint>& points, const std::array<dou
                 const auto at = static_cast<std::size_t>(axis);
                 const double a = along[at] * first->at[at], b = along[at] * second->second->at[at];
                 if (axis == 1 ? a < 0 && b > 0 : a < b)
-                    reader::fail(file, first->line, first->name,
-                                 fmt::format("lies {} {} (line {}) in the axes of --axes; choose "
-                                             "the axes in which it does not, or rename the points",
-                                             axis == 1 ? "to the right of" : "behind",
-                                             second->second->name, second->second->line));
+                    fail(file, first->line, first->name,
+                         "lies {} {} (line {}) in the axes of --axes; choose "
+                         "the axes in which it does not, or rename the points",
+                         axis == 1 ? "to the right of" : "behind", second->second->name,
+                         second->second->line);
             }
 }
 
@@ -202,14 +200,12 @@ void check_opposites(const std::vector<NamedPoint>& points, const std::array<dou
 
 Draft import_points(std::string_view text, const std::string& name, const Options& options) {
     if (options.axes.empty())
-        reader::fail(name, 0, "--axes",
-                     fmt::format("a table of points does not say its axes; give them; allowed: {}",
-                                 fmt::join(axes_of_tables, " ")));
+        fail(name, 0, "--axes", "a table of points does not say its axes; give them; allowed: {}",
+             fmt::join(axes_of_tables, " "));
     if (!options.unit.empty() &&
         std::ranges::find(length_units, options.unit) == std::end(length_units))
-        reader::fail(name, 0, "--unit",
-                     fmt::format("{} is no unit of a coordinate; allowed: {}",
-                                 reader::quote(options.unit), fmt::join(length_units, ", ")));
+        fail(name, 0, "--unit", "{} is no unit of a coordinate; allowed: {}",
+             reader::quote(options.unit), fmt::join(length_units, ", "));
     const auto along = directions(options.axes, name);
     Draft draft;
     draft.title = std::filesystem::path(name).stem().string();
@@ -221,7 +217,7 @@ Draft import_points(std::string_view text, const std::string& name, const Option
     const auto points = points_of_table(text, name, options, draft);
     draft.remarks.emplace_back(
         "Points only: bodies and joints are not in this file. Add yours below.");
-    if (points.empty()) reader::fail(name, 0, "", "no point in this file");
+    if (points.empty()) fail(name, 0, "", "no point in this file");
     warn_of_equal_names(points, draft.notes);
     warn_of_equal_sides(points, draft.notes);
     check_opposites(points, along, name);

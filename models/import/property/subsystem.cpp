@@ -5,29 +5,20 @@
 #include <algorithm>
 
 #include "models/import/import.hpp"
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/document/yaml.hpp"
 #include "models/reader/tables/property_file.hpp"
 
 namespace elastocheck::importer {
-namespace {
-
-double real(const reader::PropertyFile& file, int line, std::string_view text) {
-    return reader::real(file, line, "HARDPOINT", text, 1e30);
-}
-
-}  // namespace
-
 std::array<double, 3> directions(const std::string& axes, const std::string& file) {
     if (axes == "x-forward,y-right" || axes == "x-rearward,y-left")
-        reader::fail(file, 0, "--axes",
-                     fmt::format("{0} needs its z: {0},z-down is right-handed, {0},z-up is "
-                                 "left-handed",
-                                 axes));
+        fail(file, 0, "--axes",
+             "{0} needs its z: {0},z-down is right-handed, {0},z-up is "
+             "left-handed",
+             axes);
     if (std::ranges::find(axes_of_tables, axes) == std::end(axes_of_tables))
-        reader::fail(file, 0, "--axes",
-                     fmt::format("{} is not a set of axes; allowed: {}", reader::quote(axes),
-                                 fmt::join(axes_of_tables, " ")));
+        fail(file, 0, "--axes", "{} is not a set of axes; allowed: {}", reader::quote(axes),
+             fmt::join(axes_of_tables, " "));
     return {axes.starts_with("x-forward") ? 1. : -1., axes.find("y-left") != axes.npos ? 1. : -1.,
             axes.ends_with("z-down") ? -1. : 1.};
 }
@@ -75,23 +66,22 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
         }
         const auto column = [&](std::string_view wanted) -> std::size_t {
             for (std::size_t k = 0; k < block.table.columns.size(); ++k) {
-                std::string title = block.table.columns[k];
-                for (char& c : title)
-                    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+                const std::string title = reader::small_letters(block.table.columns[k]);
                 if (title == wanted || title == std::string(wanted) + "_value") return k;
             }
-            reader::fail(file.file, block.line, "HARDPOINT", fmt::format("no column {}", wanted));
+            fail(file.file, block.line, "HARDPOINT", "no column {}", wanted);
         };
         if (block.table.columns.empty()) continue;
         const std::size_t of_name = column("hardpoint_name"), of_side = column("symmetry"),
-                          x = column("x"), y = column("y"), z = column("z");
+                          xyz[] = {column("x"), column("y"), column("z")};
         for (std::size_t n = 0; n < block.table.rows.size(); ++n) {
             const auto& row = block.table.rows[n];
             const int line = block.table.lines[n];
-            const double mm = 1000 * file.length;
-            const Eigen::Vector3d p(along[0] * mm * real(file, line, row[x]),
-                                    along[1] * mm * real(file, line, row[y]),
-                                    along[2] * mm * real(file, line, row[z]));
+            Eigen::Vector3d p;
+            for (const std::size_t k : {0, 1, 2})
+                p[static_cast<Eigen::Index>(k)] =
+                    along[k] * (1000 * file.length) *
+                    reader::real(file, line, "HARDPOINT", row[xyz[k]], 1e30);
             const std::string& side = row[of_side];
             const bool pair = side == "left/right" || side == "left" || side == "right";
             any_pair |= side == "left/right";
@@ -102,7 +92,7 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
         }
     }
     if (draft.points.entries().empty())
-        reader::fail(file.file, 0, "HARDPOINT", "no hardpoint in this file");
+        fail(file.file, 0, "HARDPOINT", "no hardpoint in this file");
     if (any_pair) draft.mirror = "left -> right";
     return draft;
 }

@@ -3,12 +3,15 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "models/import/import.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/mistakes.hpp"
 
@@ -22,6 +25,27 @@ inline std::string sample(const std::string& name) {
 }
 inline std::string mistakes(const std::string& name) {
     return support::text_of(import_folder / "mistakes" / name);
+}
+
+// The message with which a model is refused; empty if it is not.
+inline std::string refusal_of(const std::function<void()>& import) {
+    try {
+        import();
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "";
+}
+inline std::string refusal_of(const std::string& text, const std::string& file,
+                              const importer::Options& options = {}) {
+    return refusal_of([&] { importer::import_text(text, file, options); });
+}
+
+// The notes in the head of a scene, each on one line.
+inline std::string notes_of(const importer::Imported& imported) {
+    std::string lines;
+    for (const auto& line : importer::described(imported.notes)) lines += line + "\n";
+    return lines;
 }
 
 inline testing::AssertionResult says(const std::string& text, const std::string& what) {

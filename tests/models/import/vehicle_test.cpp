@@ -39,12 +39,7 @@ struct Data : support::Folder {
                                      {.allow_missing = allow_missing, .axle = axle});
     }
     std::string refusal(const std::string& vehicle, const std::string& axle) const {
-        try {
-            import(vehicle, axle);
-        } catch (const SceneError& error) {
-            return error.what();
-        }
-        return "";
+        return refusal_of([&] { import(vehicle, axle); });
     }
 };
 
@@ -167,8 +162,7 @@ TEST(ChronoVehicle, AnAxleWithoutSteeringIsTheSuspensionAlone) {
     EXPECT_FALSE(says(rear.yaml, "steering_link"));
     // Entries say from which file they are, and what was left out is listed.
     EXPECT_TRUE(says(rear.yaml, "suspension/SemiTrailingArm.json"));
-    std::string head;
-    for (const auto& line : importer::described(rear.notes)) head += line + "\n";
+    const std::string head = notes_of(rear);
     for (const char* what : {"another axle", "Driveline", "Left Wheel Input File", "Wheelbase"})
         EXPECT_TRUE(says(head, what));
 }
@@ -181,20 +175,11 @@ TEST(ChronoVehicle, MistakesNameFileAndField) {
                      "or a number from 1 to 2"));
     for (const char* axle : {"3", "0", "-1", "1x", "middle"})
         EXPECT_TRUE(says(data.refusal(good, axle), "is not an axle of the vehicle"));
-    EXPECT_TRUE(says(data.refusal(replaced(good, "RackPinion", "Rackpinion"), "front"),
-                     "there is no file 'generic/steering/Rackpinion.json' in the data folder"));
-    EXPECT_TRUE(says(data.refusal(replaced(good, "DoubleWishboneCurve", "Nothing"), "front"),
-                     "there is no file 'generic/suspension/Nothing.json' in the folder of the "
-                     "vehicle or in one above it"));
-    EXPECT_TRUE(says(
-        data.refusal(replaced(good, "\"Steering Index\": 0", "\"Steering Index\": 1"), "front"),
-        "is not a steering subsystem; there are 1, counted from 0"));
-    EXPECT_TRUE(
-        says(data.refusal(replaced(good, "DoubleWishboneCurve", "SemiTrailingArm"), "front"),
-             "vehicle.json:19: Axles.Antirollbar Input File: an anti-roll bar on this "
-             "template of a suspension"));
-    EXPECT_TRUE(says(data.refusal(replaced(good, "\"Wheelbase\"", "\"Wheelbse\""), "front"),
-                     "Wheelbse: not a field of this template"));
+    support::expect_refusals(import_folder / "mistakes/vehicle.mistakes", good, "vehicle.json",
+                             [&](const std::string& text) {
+                                 const std::string said = data.refusal(text, "front");
+                                 return said.empty() ? "accepted" : said;
+                             });
     const auto rack = [&](const std::string& from, const std::string& to) {
         data.put("steering/RackPinion.json",
                  replaced(sample("generic__RackPinion.json"), from, to));
@@ -210,13 +195,9 @@ TEST(ChronoVehicle, MistakesNameFileAndField) {
     const auto rest = data.import(good, "front", true);
     EXPECT_TRUE(says(rest.yaml, "tierod_left: {type: distance, bodies: [ground, upright_left]"));
     EXPECT_TRUE(says(rest.yaml, "MISSING"));
-    try {
-        importer::import_file(data.path / "generic/suspension/DoubleWishbone.json",
-                              {.axle = "front"});
-        ADD_FAILURE() << "read";
-    } catch (const SceneError& error) {
-        EXPECT_TRUE(says(error.what(), "--axle: only for a vehicle"));
-    }
+    const auto alone = data.path / "generic/suspension/DoubleWishbone.json";
+    EXPECT_TRUE(says(refusal_of([&] { importer::import_file(alone, {.axle = "front"}); }),
+                     "--axle: only for a vehicle"));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ import concurrent.futures
 import contextlib
 import functools
 import glob
-import math
+import itertools
 import os
 import re
 import time
@@ -44,72 +44,50 @@ def _by_worker(prepared, *batch):
     return _solved(_prepared(*prepared), *batch)
 
 
-class _Threads(concurrent.futures.ThreadPoolExecutor):
-    def __init__(self, study, threads):
-        self.study, self.size = study, threads or len(os.sched_getaffinity(0))
-        super().__init__(self.size)
-
-    def solve(self, *batch):
-        return self.submit(_solved, self.study.solver, *batch)
-
-    def first_of(self, futures):
-        return concurrent.futures.wait(futures, return_when="FIRST_COMPLETED").done
-
-
-class _Cluster:
-    """The workers of a dask cluster; a batch of one that is killed is computed by another."""
-
-    def __init__(self, study, address):
-        import distributed
-        try:
-            self.client = distributed.Client(address, timeout=10)
-        except (OSError, ValueError) as error:
-            raise ArgumentError(f"--scheduler {address}: {error}") from error
-        identity = study.identity["scene"], study.identity["version"]
-        self.prepared = os.path.abspath(study.scene_file), study.scene_name, identity, tuple(study.paths), tuple(study.words)
-        self.size = 4 * max(sum(self.client.nthreads().values()), 1)
-
-    def solve(self, *batch):
-        return self.client.submit(_by_worker, self.prepared, *batch, pure=False, retries=10)
-
-    def first_of(self, futures):
-        import distributed
-        return distributed.wait(list(futures), return_when="FIRST_COMPLETED").done
-
-    def shutdown(self, **_):
-        self.client.close()
+@contextlib.contextmanager
+def _solvers(study, threads, scheduler):
+    """What submits a batch, and how many are to be submitted at once: to threads here, or to the workers of a dask
+    cluster, where the batch of one that is killed is computed by another."""
+    if not scheduler:
+        threads = threads or len(os.sched_getaffinity(0))
+        with concurrent.futures.ThreadPoolExecutor(threads) as pool:
+            yield functools.partial(pool.submit, _solved, study.solver), 2 * threads
+        return
+    import distributed
+    try:
+        client = distributed.Client(scheduler, timeout=10)
+    except (OSError, ValueError) as error:
+        raise ArgumentError(f"--scheduler {scheduler}: {error}") from error
+    identity = study.identity["scene"], study.identity["version"]
+    prepared = os.path.abspath(study.scene_file), study.scene_name, identity, tuple(study.paths), tuple(study.words)
+    with client:
+        pool = client.get_executor(pure=False, retries=10)
+        yield functools.partial(pool.submit, _by_worker, prepared), 4 * max(sum(client.nthreads().values()), 1)
 
 
 def _missing(ledger, count, shard):
     """Numbers of variants without a row, per batch of a shard."""
     has = ledger.present(count)
-    for first in range((shard[0] - 1) * BATCH, count, shard[1] * BATCH):
-        if len(ks := first + np.flatnonzero(~has[first:first + BATCH])):
-            yield ks
+    batches = (first + np.flatnonzero(~has[first:first + BATCH]) for first in range((shard[0] - 1) * BATCH, count, shard[1] * BATCH))
+    return [ks for ks in batches if len(ks)]
 
 
-def _compute(study, ledger, shard, pool, progress):
+def _compute(study, ledger, batches, submit, most, progress):
     """Solves and records batch after batch; each is one transaction, and its rows do not depend on the others."""
     from elastocheck.study.design import Design
-    design, batches, running, done, begin = Design(study), list(_missing(ledger, study.count, shard)), set(), 0, time.monotonic()
-    total, open_batches = sum(map(len, batches)), iter(batches)
-    try:
-        while True:
-            while len(running) < 2 * pool.size and (ks := next(open_batches, None)) is not None:
-                values = design.values(ks[0], ks[-1] + 1)[ks - ks[0]]
-                witnesses = np.flatnonzero(ks % study.witness == 0) if study.witness else []
-                running.add(pool.solve(ks.tolist(), study.numbers(values), witnesses))
-            if not running:
-                return total, time.monotonic() - begin
-            for future in pool.first_of(running):
-                running.remove(future)
-                rows = future.result()
-                ledger.add(*rows)
-                done += len(rows[0])
-            if progress:
-                progress(f"{done} of {total} variants, {done / (time.monotonic() - begin):.0f} per second", done / total)
-    finally:
-        pool.shutdown(cancel_futures=True)
+    design, running, done, begin, total = Design(study), set(), 0, time.monotonic(), sum(map(len, batches))
+    waiting = iter(batches)
+    while done < total:
+        for ks in itertools.islice(waiting, most - len(running)):
+            values = design.values(ks[0], ks[-1] + 1)[ks - ks[0]]
+            witnesses = np.flatnonzero(ks % study.witness == 0) if study.witness else []
+            running.add(submit(ks.tolist(), study.numbers(values), witnesses))
+        finished, running = concurrent.futures.wait(running, return_when="FIRST_COMPLETED")
+        for future in finished:
+            ledger.add(*future.result())
+            done += len(future.result()[0])
+        if progress:
+            progress(f"{done} of {total} variants, {done / (time.monotonic() - begin):.0f} per second", done / total)
 
 
 class Report:
@@ -140,22 +118,14 @@ class Report:
             self.tables["figures"].append(row)
             self.tables["sobol"] += sobol_rows(study, figure, values)
             if study.witness:
-                self._add_witness(row, witness_row(study, row, *(
-                    of[::study.witness] for of in (values, ledger.values(j, count, "witnesses")))))
+                found, wrong = witness_row(study, row, *(of[::study.witness] for of in (values, ledger.values(j, count, "witnesses"))))
+                self.tables["witnesses"].append(found)
+                self.disagreements += wrong
         self.tables["failed"] = [{"variant": row[0], "outcome": row[1], "reason": row[3]} for row in ledger.rows(
             "SELECT * FROM variants WHERE outcome != 'solved' AND k < ? ORDER BY k LIMIT 10", count)]
         self.content = ledger.content_hash(count)
         self.exit_code = 0 if self.outcomes["solved"] and not open_variants and not self.disagreements else 3
         self.text, self.document = output.text(self), output.document(self)
-
-    def _add_witness(self, figure, found):
-        row, allowed = found
-        self.tables["witnesses"].append(row)
-        if row["one only"]:
-            self.disagreements.append(f"{row['figure']}: in {row['one only']} variants only one of series and equilibrium has a value")
-        if row["witnesses"] and not row["difference"] <= allowed:
-            self.disagreements.append(f"{row['figure']}: series and equilibrium differ by {row['difference']:.2g} {figure['unit']} "
-                                      f"in variant {row['of variant']}; allowed: {allowed:.2g}")
 
     @property
     def verdict(self):
@@ -214,11 +184,14 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
                 raise FileError(f"{shards}: no ledger of a shard, ledger-K-of-N.sqlite, in it")
             for other in files:
                 ledger.merge(Ledger(other, study, write=False))
-        if not show and not merge and any(True for _ in _missing(ledger, study.count, part)):
-            pool = _Cluster(study, scheduler) if scheduler else _Threads(study, threads)
-            computed, seconds = _compute(study, ledger, part, pool, progress)
+        left = _missing(ledger, study.count, part)
+        if left and not show and not merge:
+            begin, computed = time.monotonic(), sum(map(len, left))
+            with _solvers(study, threads, scheduler) as (submit, most):
+                _compute(study, ledger, left, submit, most, progress)
+            seconds = time.monotonic() - begin
             say(f"{computed} variants computed in {seconds:.1f} s, {computed / seconds:.0f} per second")
-        left = list(_missing(ledger, study.count, part))
+            left = _missing(ledger, study.count, part)
         if left:
             ranges = [f"{len(ks)} of {ks[0] - ks[0] % BATCH} to {min(ks[0] - ks[0] % BATCH + BATCH, study.count) - 1}" for ks in left[:10]]
             say(f"{sum(map(len, left))} variants are missing: {', '.join(ranges + ['...'] * (len(left) > 10))}")

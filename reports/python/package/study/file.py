@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from elastocheck import _core
-from elastocheck._errors import ArgumentError, FileError
+from elastocheck._errors import ArgumentError, FileError, SheetError
 
 MOST = 1_000_000_000  # variants
 # Of a distribution: the fields besides low and high, and how it is described by its numbers.
@@ -177,7 +177,7 @@ class Study:
             for one in scale.items("patterns") if scale.is_list else [scale]:
                 pattern = one.text("a number of the scene or a pattern with *")
                 found = fnmatch.filter(known, pattern)
-                for path in found or one.fail(f"the scene has no number {_core.quote(pattern)}"
+                for path in found or one.fail(f"the scene has no number '{pattern}'"
                                               + _core.did_you_mean(pattern, list(known), "numbers")):
                     self._claim(one, path, name)
                     variable.scaled[path] = known[path]
@@ -238,7 +238,7 @@ class Study:
         if self.kind == "latin_hypercube" and self.count != size:
             at.need("count").fail("a Latin hypercube cannot be extended: all its variants depend on their number; "
                                   "allowed: a sobol or monte_carlo design")
-        self.indices = bool(at.get("indices")) and at.get("indices").yes_or_no()
+        self.indices = bool(at.get("indices")) and at.get("indices").one_of("yes or no", ["true", "false"]) == "true"
         if self.indices and self.kind == "latin_hypercube":
             at.need("indices").fail("not of a Latin hypercube; allowed: sobol, monte_carlo")
         if self.indices and self.correlation is not None:
@@ -254,11 +254,7 @@ class Study:
         if self.correlation is not None:
             whole.need("groups").fail("not of a grid or a list, which draw nothing")
         if self.kind == "list":
-            file = at.need("file")
-            try:
-                self.table = _core.read_table(os.path.join(os.path.dirname(self.file), file.text("a CSV file")), self.names)
-            except FileError as error:
-                file.fail(str(error))
+            self.table = self._read_table(at.need("file"))
             size = len(self.table)
         else:
             for variable in self.variables:
@@ -270,6 +266,29 @@ class Study:
         if count and count > size:
             kind.fail(f"{count} variants are requested, and there are {size}")
         self.count = count or size
+
+    def _read_table(self, at):
+        """Values by a CSV file, columns by the names of the variables [variants x variables]."""
+        import pandas
+        file = os.path.join(os.path.dirname(self.file), at.text("a CSV file"))
+        try:
+            table = pandas.read_csv(file, skipinitialspace=True, skip_blank_lines=False, dtype=str)
+        except (OSError, ValueError) as error:
+            at.fail(f"{file}: {error}")
+        for name in table.columns:
+            if name not in self.names:
+                raise SheetError(f"{file}:1: the study has no variable '{name}'" + _core.did_you_mean(name, self.names, "variables"))
+        if len(table.columns) != len(self.names):
+            raise SheetError(f"{file}:1: {len(table.columns)} columns, but the study has {len(self.names)} variables")
+        values = np.empty((len(table), len(self.names)))
+        for (row, column), cell in np.ndenumerate(table[self.names].to_numpy()):
+            try:
+                values[row, column] = cell
+            except ValueError:
+                raise SheetError(f"{file}:{row + 2}: {self.names[column]}: '{cell}' is not a number") from None
+            if not math.isfinite(values[row, column]):
+                raise SheetError(f"{file}:{row + 2}: {self.names[column]}: no value")
+        return values
 
     def _read_figures(self, section, limits):
         self.figures = [Figure(name, at.text("an output, such as toe@jounce:3000")) for name, at in section.entries()]

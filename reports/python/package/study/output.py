@@ -135,22 +135,29 @@ def _plots(report, j, k, x):
     return [_histogram(figure, drawn[np.isfinite(drawn)]), _bars(figure, shares[:8], what, kind), *scatters]
 
 
+def _table(caption, columns):
+    """For the template: page/templates/html/table.mustache."""
+    columns = list(columns)
+    rows = [{"cells": [{"text": cell, "words": words, "note": False, "head": not k} for k, (cell, (_, words, _)) in enumerate(zip(row, columns))]}
+            for row in zip(*(cells for _, _, cells in columns))]
+    return {"caption": caption, "columns": [{"name": head, "words": words, "note": False} for head, words, _ in columns],
+            "rows": rows, "folded": len(rows) > _MOST_ROWS}
+
+
 def page(report):
     study = report.study
     k, x = _spread(study)
     figures = [{"id": f"figure-{j + 1}", "name": f.name, "words": f"{f.words}, in {f.unit}.", "plots": _plots(report, j, k, x),
                 "caption": f"Distribution of all values; shares of the variance by each variable; values of up to {len(k)} "
                 "variants over the variables that matter most."} for j, f in enumerate(study.figures)]
-    tables = [{"caption": captions(report)[key].strip() or key.capitalize(), "columns": [column[:2] for column in columns],
-               "rows": list(zip(*(column[2] for column in columns))), "folded": len(rows) > _MOST_ROWS}
-              for key, rows in report.tables.items() if rows for columns in [list(_shown(rows))]]
-    made = [["elastocheck", _core.build], ["compiler", _core.compiler],
-            ["scene", f"{study.scene_file}, hash {study.identity['scene']}"],
-            ["study", f"{study.file}, hash {study.identity['study']}"], ["content", report.content]]
+    tables = [_table(captions(report)[key].strip() or key.capitalize(), _shown(rows)) for key, rows in report.tables.items() if rows]
+    made = [("elastocheck", _core.build), ("compiler", _core.compiler),
+            ("scene", f"{study.scene_file}, hash {study.identity['scene']}"),
+            ("study", f"{study.file}, hash {study.identity['study']}"), ("content", report.content)]
     return _core.study_page(to_json({
         "title": "Study " + os.path.splitext(os.path.basename(study.file))[0], "answer": report.answer + ".",
         "notes": report.disagreements, "figures": figures, "tables": tables, "reproduce": report.reproduce,
-        "provenance": {"caption": "Made by", "columns": [["what", True], ["which", True]], "rows": made}}))
+        "provenance": _table("Made by", [(head, True, cells) for head, cells in zip(["what", "which"], zip(*made))])}))
 
 
 KINDS = {"statistics.json": ("statistics of a study", '{"schema":"elastocheck/study/'),

@@ -79,14 +79,18 @@ def sobol_rows(study, figure, values):
 
 
 def witness_row(study, row, values, witnesses):
-    """The largest difference between the variants of a figure and their witnesses, and what is wrong with it."""
-    both = np.isfinite(values) & np.isfinite(witnesses)
-    difference = np.where(both, np.abs(values - witnesses), 0)
-    largest, at = (difference.max(), int(difference.argmax())) if len(difference) else (0.0, 0)
-    one_only = int((np.isfinite(values) ^ np.isfinite(witnesses)).sum())
-    found = {"figure": row["figure"], "unit": row["unit"], "difference": largest, "of variant": at * study.witness,
-             "witnesses": int(both.sum()), "one only": one_only}
-    return found, max(_AGREE_OF_SPREAD * (row["largest"] - row["least"]), _AGREE_OF_SIZE * max(1.0, abs(row["mean"])))
+    """The largest difference between the variants of a figure and their witnesses, and sentences on disagreements."""
+    finite, reference = np.isfinite(values), np.isfinite(witnesses)
+    difference = np.where(finite & reference, np.abs(values - witnesses), 0)
+    at, one_only = int(difference.argmax()), int((finite ^ reference).sum())
+    found = {"figure": row["figure"], "unit": row["unit"], "difference": difference[at], "of variant": at * study.witness,
+             "witnesses": int((finite & reference).sum()), "one only": one_only}
+    allowed = max(_AGREE_OF_SPREAD * (row["largest"] - row["least"]), _AGREE_OF_SIZE * max(1.0, abs(row["mean"])))
+    wrong = [f"{row['figure']}: in {one_only} variants only one of series and equilibrium has a value"] if one_only else []
+    if found["witnesses"] and not difference[at] <= allowed:
+        wrong.append(f"{row['figure']}: series and equilibrium differ by {difference[at]:.2g} {row['unit']} in variant "
+                     f"{found['of variant']}; allowed: {allowed:.2g}")
+    return found, wrong
 
 
 def rare_rows(study, threads=0, samples=4096):
