@@ -24,9 +24,9 @@ struct Delivery {
     }
 };
 
-// Input of every command on one scene.
-struct SceneRequest {
-    std::string scene, folder;  // folder: -o
+// What commands on scenes are asked for.
+struct Request {
+    std::string folder;  // -o
     Settings settings;
     bool as_json = false;
     Running running;
@@ -34,6 +34,9 @@ struct SceneRequest {
     Delivery delivery(const std::string& line) const {
         return {.folder = folder, .as_json = as_json, .command = line};
     }
+};
+struct SceneRequest : Request {
+    std::string scene;
 };
 void add_scene(CLI::App& command, SceneRequest& request);          // SCENE, --set, --json
 void add_scene_and_run(CLI::App& command, SceneRequest& request);  // and --jobs, --quiet

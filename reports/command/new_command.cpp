@@ -12,6 +12,11 @@ namespace {
 
 constexpr const char* templates_schema = "elastocheck/templates/1";
 
+struct NewRequest {
+    std::string name;
+    bool as_json = false;
+};
+
 // Prints the template `name`; without a name, a list of all, one per line. Throws
 // std::invalid_argument for an unknown name, with the nearest known one. As JSON: schema, and
 // templates, the named one with its text.
@@ -48,11 +53,7 @@ int new_scene(const std::string& name, bool as_json) {
 const Command new_command{
     Group::models, "new", "Print a template scene; without a name, list the templates",
     [](CLI::App& command) -> Run {
-        struct Request {
-            std::string name;
-            bool as_json = false;
-        };
-        const auto request = std::make_shared<Request>();
+        const auto request = std::make_shared<NewRequest>();
         command.add_option("NAME", request->name, "name of the template");
         add_json(command, request->as_json);
         return [request](const std::string&) { return new_scene(request->name, request->as_json); };

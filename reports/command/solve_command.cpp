@@ -12,7 +12,6 @@
 #include "compare/warnings/lift_off.hpp"
 #include "elastocheck/channels.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/soft_motion.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
@@ -109,23 +108,14 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
     int code = fine;
     const std::string who =
         leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
-    // The error at the end of a method with equal steps, which has no tolerance, is reported.
-    const bool approximate = leg == compare::Leg::recursive && recursive::has_steps(how.method);
     for (const auto& branch : model.branches) {
         if (csv) progress(branch.name);
-        const auto sides = compare::sides_of(model, branch, how.steps);
-        compare::Analyses analyses;
         compare::PathCurve whole;
         whole.curve.unit = compare::unit_of(branch.unit);
-        std::vector<std::optional<Equilibrium>> last(sides.size());
-        const EquilibriumPath path = compare::walk(
-            sides, solver,
-            [&](const Equilibrium& state) {
+        const SolvedBranch solved = solve_branch(
+            model, branch, channels, solver,
+            [&](const Equilibrium& state, const compare::Row&) {
                 if (states) states->add(state_line(model, branch.name, state)), has_states = true;
-                const auto w =
-                    static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
-                if (!last[w] || state.load != 0) last[w] = state;
-                return compare::row_of(model, channels, sides.front(), solver, state, analyses);
             },
             [&](const compare::Row& row) {
                 for (std::size_t c = 0; c < channels.size(); ++c)
@@ -136,6 +126,7 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
                 }
                 write(curves_row(branch.name, leg, compare::unit_of(branch.unit), row));
             });
+        const EquilibriumPath& path = solved.path;
         if (csv) progress("");
         if (delivery.as_json) {
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
@@ -144,15 +135,10 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         for (const auto& event : compare::lift_offs(
                  model, branch, leg == compare::Leg::recursive ? compare::Leg::series : leg))
             print_error("{}: {}\n", branch.name, event.text());
-        for (std::size_t w = 0; w < sides.size(); ++w)
-            if (approximate && last[w] && is_end(sides[w].branch, last[w]->load))
-                print_error("{}: {}: {}\n", who, branch.name,
-                            error_at_end(model, sides[w], *last[w]));
+        for (const auto& [side, state] : solved.ends)
+            print_error("{}: {}: {}\n", who, branch.name, error_at_end(model, side, state));
         if (path.outcome == Outcome::converged) continue;
-        std::string motion;
-        for (std::size_t w = 0; motion.empty() && w < sides.size(); ++w)
-            if (last[w] && !is_end(sides[w].branch, last[w]->load))
-                motion = recursive::softest_motion(sides[w].model, sides[w].branch, *last[w]);
+        const std::string& motion = solved.softest_motion;
         print_error("{}: {}: {}{}\n", who, name(path.outcome), path.detail,
                     motion.empty() ? "" : "; the softest motion before it is " + motion);
         code = could_not_judge;

@@ -24,12 +24,8 @@
 namespace elastocheck::reports {
 namespace {
 
-struct StressRequest {
+struct StressRequest : Request {
     std::vector<std::string> scenes;  // files; none: the built-in ones
-    Settings settings;
-    std::string folder;
-    bool as_json = false;
-    Running running;
 };
 
 void add(std::vector<compare::Trial>& trials, std::vector<compare::Trial> more) {
@@ -94,9 +90,7 @@ const Command stress_command{
         add_json(command, request->as_json);
         add_running(command, request->running);
         return [request](const std::string& line) {
-            return stress(
-                *request,
-                {.folder = request->folder, .as_json = request->as_json, .command = line});
+            return stress(*request, request->delivery(line));
         };
     }};
 

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <utility>
 
 namespace elastocheck::reports {
@@ -48,6 +47,19 @@ const char* type_of(const struct stat& entry) {
                                      : "something";
 }
 
+[[noreturn]] void fail_type(const fs::path& file, const struct stat& entry) {
+    throw FileError(
+        fmt::format("{}: is {}; only regular files are written", file.string(), type_of(entry)));
+}
+
+void make_folder_of(const fs::path& file) {
+    std::error_code failed;
+    if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
+    if (failed)
+        throw FileError(
+            fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
+}
+
 // False with errno set for an incomplete write.
 bool write_all(int out, std::string_view content) {
     while (!content.empty()) {
@@ -81,9 +93,7 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
         if (errno != ENOENT) fail_access(file, "written");
         return;
     }
-    if (!S_ISREG(entry.st_mode))
-        throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
-                                    type_of(entry)));
+    if (!S_ISREG(entry.st_mode)) fail_type(file, entry);
     if (!begins_as(file, kind))
         throw FileError(
             fmt::format("{}: exists and was not written by elastocheck as {}; choose another name, "
@@ -123,11 +133,7 @@ fs::path temporary_beside(const fs::path& path) {
 }
 
 AtomicFile::AtomicFile(fs::path file, const FileKind& kind) : kind_(&kind), file_(std::move(file)) {
-    std::error_code failed;
-    if (file_.has_parent_path()) fs::create_directories(file_.parent_path(), failed);
-    if (failed)
-        throw FileError(
-            fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
+    make_folder_of(file_);
     check_may_write(file_, kind);
     temporary_ = temporary_beside(file_);
     out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -135,19 +141,12 @@ AtomicFile::AtomicFile(fs::path file, const FileKind& kind) : kind_(&kind), file
 }
 
 AtomicFile::~AtomicFile() {
-    if (out_ < 0) return;
-    ::close(out_);
-    ::unlink(temporary_.c_str());
-}
-
-void AtomicFile::fail_writing(int error) {
-    if (out_ >= 0) ::close(std::exchange(out_, -1));
-    ::unlink(temporary_.c_str());
-    fail_access(file_, "written", error);
+    if (out_ >= 0) ::close(out_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::write_buffer() {
-    if (!write_all(out_, buffer_)) fail_writing(errno);
+    if (!write_all(out_, buffer_)) fail_access(file_, "written");
     buffer_.clear();
 }
 
@@ -159,14 +158,10 @@ void AtomicFile::add(std::string_view content) {
 
 void AtomicFile::finish() {
     write_buffer();
-    if (!flush_and_close(std::exchange(out_, -1), true)) fail_writing(errno);
-    try {
-        check_may_write(file_, *kind_);  // again: a file may have appeared meanwhile
-    } catch (const FileError&) {
-        ::unlink(temporary_.c_str());
-        throw;
-    }
-    if (::rename(temporary_.c_str(), file_.c_str()) != 0) fail_writing(errno);
+    if (!flush_and_close(std::exchange(out_, -1), true)) fail_access(file_, "written");
+    check_may_write(file_, *kind_);  // again: a file may have appeared meanwhile
+    if (::rename(temporary_.c_str(), file_.c_str()) != 0) fail_access(file_, "written");
+    temporary_.clear();
 }
 
 void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {
@@ -181,18 +176,13 @@ void append(const fs::path& file, std::string_view content) {
     struct stat entry {};
     if (::fstat(out, &entry) != 0 || !S_ISREG(entry.st_mode)) {
         ::close(out);
-        throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
-                                    type_of(entry)));
+        fail_type(file, entry);
     }
     if (!write_and_close(out, content)) fail_access(file, "appended to");
 }
 
 void fill(const fs::path& file, std::string_view content) {
-    std::error_code failed;
-    fs::create_directories(file.parent_path(), failed);
-    if (failed)
-        throw FileError(
-            fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
+    make_folder_of(file);
     const int out =
         ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (out < 0 || !write_and_close(out, content)) fail_access(file, "written");

@@ -53,12 +53,11 @@ class AtomicFile {
     void finish();  // flushes it to the disk and renames it
 
   private:
-    [[noreturn]] void fail_writing(int error);
     void write_buffer();
 
-    const FileKind* kind_;  // one of the constants above
-    std::filesystem::path file_, temporary_;
-    std::string buffer_;  // write buffer
+    const FileKind* kind_;                    // one of the constants above
+    std::filesystem::path file_, temporary_;  // the latter is empty after the renaming
+    std::string buffer_;                      // write buffer
     int out_ = -1;
 };
 

@@ -24,9 +24,15 @@ namespace {
 
 constexpr std::size_t largest_output = 4096;  // kept end of the program's output [bytes]
 
-void keep_last_part(std::string& output_text) {
+// Adds what can be read, and keeps the last part; false at the end of the output.
+bool keep_output(int pipe, std::string& output_text) {
+    char buffer[4096];
+    const auto count = ::read(pipe, buffer, sizeof buffer);
+    if (count <= 0) return count < 0 && errno == EINTR;
+    output_text.append(buffer, static_cast<std::size_t>(count));
     if (output_text.size() > 2 * largest_output)
         output_text.erase(0, output_text.size() - largest_output);
+    return true;
 }
 
 // Runs in the child between fork and exec: only async-signal-safe functions are allowed.
@@ -113,10 +119,9 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
     for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     int output_text[2], failed[2];
-    if (::pipe2(output_text, O_CLOEXEC) != 0)
-        throw FileError(fmt::format("pipe: {}", std::strerror(errno)));
-    if (::pipe2(failed, O_CLOEXEC) != 0)
-        throw FileError(fmt::format("pipe: {}", std::strerror(errno)));
+    for (int* pipe : {output_text, failed})
+        if (::pipe2(pipe, O_CLOEXEC) != 0)
+            throw FileError(fmt::format("pipe: {}", std::strerror(errno)));
     const auto start = clock::now();
     const pid_t child = ::fork();
     if (child < 0) throw FileError(fmt::format("fork: {}", std::strerror(errno)));
@@ -126,51 +131,34 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
     ::close(output_text[1]), ::close(failed[1]);
 
     ProcessResult result;
-    const auto since = [&] { return std::chrono::duration<double>(clock::now() - start).count(); };
-    int status = 0;
-    bool reaped = false, listening = true;
-    while (!reaped) {
-        if (listening) {
-            struct pollfd wait {
-                output_text[0], POLLIN, 0
-            };
-            if (::poll(&wait, 1, 20) > 0) {
-                char buffer[4096];
-                const auto n = ::read(output_text[0], buffer, sizeof buffer);
-                if (n > 0)
-                    result.output_text.append(buffer, static_cast<std::size_t>(n)),
-                        keep_last_part(result.output_text);
-                else
-                    listening = n < 0 && errno == EINTR;
-            }
-        } else {
-            ::usleep(1000);
-        }
-        const bool over = has_exited(child);
-        if (!over && since() <= limit) continue;
-        if (!over) result.how = ProcessResult::How::too_long;
-        ::kill(-child, SIGKILL);  // the rest of the process group
-        running_group = 0;        // before the process id can be reused
-        ::waitpid(child, &status, 0);
-        reaped = true;
-    }
+    pollfd output{output_text[0], POLLIN, 0};
+    bool over = false;
+    do {
+        // Without an output this waits alone.
+        if (::poll(&output, 1, output.fd < 0 ? 1 : 20) > 0 &&
+            !keep_output(output.fd, result.output_text))
+            output.fd = -1;
+        over = has_exited(child);
+    } while (!over && std::chrono::duration<double>(clock::now() - start).count() <= limit);
+    ::kill(-child, SIGKILL);  // the rest of the process group
+    running_group = 0;        // before the process id can be reused
+    int status = 0, why = 0;
+    ::waitpid(child, &status, 0);
     ::fcntl(output_text[0], F_SETFL, O_NONBLOCK);
-    char buffer[4096];
-    for (ssize_t n; (n = ::read(output_text[0], buffer, sizeof buffer)) > 0;)
-        result.output_text.append(buffer, static_cast<std::size_t>(n)),
-            keep_last_part(result.output_text);
-    int why = 0;
-    const bool not_started =
-        ::read(failed[0], &why, sizeof why) == static_cast<ssize_t>(sizeof why);
+    while (keep_output(output_text[0], result.output_text)) continue;
+    const bool started = ::read(failed[0], &why, sizeof why) != sizeof why;
     ::close(output_text[0]), ::close(failed[0]);
     if (result.output_text.size() > largest_output)
         result.output_text.erase(0, result.output_text.size() - largest_output);
-    if (not_started)
-        result.how = ProcessResult::How::not_started, result.code = why;
-    else if (result.how != ProcessResult::How::too_long && WIFSIGNALED(status))
-        result.how = ProcessResult::How::by_signal, result.code = WTERMSIG(status);
-    else if (result.how == ProcessResult::How::by_itself)
-        result.code = WEXITSTATUS(status);
+    using enum ProcessResult::How;
+    result.how = !started              ? not_started
+                 : !over               ? too_long
+                 : WIFSIGNALED(status) ? by_signal
+                                       : by_itself;
+    result.code = !started                  ? why
+                  : result.how == by_signal ? WTERMSIG(status)
+                  : result.how == by_itself ? WEXITSTATUS(status)
+                                            : 0;
     return result;
 }
 

@@ -1,7 +1,5 @@
 #include "reports/files/terminal.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -9,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <cstring>
 #include <mutex>
@@ -52,21 +51,12 @@ bool is_terminal(int file) {
 struct Display {
     std::mutex lock;  // of all below, and of both streams
     const bool terminal = is_terminal(STDERR_FILENO);
-    bool hidden = false, works = false, on_screen = false;
+    bool hidden = false, works = false, begun = false, on_screen = false;
     std::string what;
     double done = 0;
     Clock::time_point began;
-    int read_end = -1, write_end = -1;  // of a pipe to the thread
-    std::thread repeats;
-
-    Display() = default;
-    Display(const Display&) = delete;
-    Display& operator=(const Display&) = delete;
-    ~Display() {
-        if (!repeats.joinable()) return;
-        wake('q');
-        repeats.join();
-    }
+    std::condition_variable_any changed;  // work has begun
+    std::jthread repeats;                 // ended before all above are destroyed
 
     void clear() {
         if (on_screen) std::fputs("\r\033[K", stderr);
@@ -84,31 +74,21 @@ struct Display {
         (void)write(stderr, progress_line(what, done, seconds, known ? size.ws_col : 80));
         on_screen = true;
     }
-    // Begins the pause again, or ends the thread by 'q'.
-    void wake(char message) const {
-        [[maybe_unused]] const auto ignored = ::write(write_end, &message, 1);
-    }
-    void repeat() {
-        const int pause = terminal ? 1000 : 10'000;  // [ms]
-        for (char message = 0; message != 'q';) {
-            pollfd in{read_end, POLLIN, 0};
-            const int ready = ::poll(&in, 1, pause);
-            if (ready > 0 && ::read(read_end, &message, 1) != 1) return;
-            if (ready != 0) continue;
-            const std::lock_guard guard(lock);
-            if (works) show();
+    void repeat(const std::stop_token& end) {
+        const auto pause = std::chrono::seconds(terminal ? 1 : 10);
+        std::unique_lock guard(lock);
+        while (!end.stop_requested()) {
+            const bool begins = changed.wait_for(guard, end, pause, [&] { return begun; });
+            begun = false;
+            if (!begins && works && !end.stop_requested()) show();
         }
     }
     void begin() {
-        works = true;
+        works = begun = true;
         began = Clock::now();
-        int ends[2];
-        if (!repeats.joinable() && ::pipe2(ends, O_CLOEXEC) == 0) {
-            read_end = ends[0], write_end = ends[1];
-            repeats = std::thread([this] { repeat(); });
-        } else if (repeats.joinable()) {
-            wake('b');
-        }
+        if (!repeats.joinable())
+            repeats = std::jthread([this](const std::stop_token& end) { repeat(end); });
+        changed.notify_one();
     }
 };
 

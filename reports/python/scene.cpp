@@ -14,7 +14,6 @@
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
-#include "recursive/soft_motion.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/document/inspection.hpp"
@@ -91,7 +90,6 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
                   .every = request.solver.every,
                   .channels = channels->size() + (request.states ? 7 * model.bodies.size() : 0)});
     const bool is_recursive = solver.leg == compare::Leg::recursive;
-    const bool approximate = is_recursive && recursive::has_steps(how.method);
     std::vector<BranchCurves> all;
     for (const Branch& branch : branches) {
         BranchCurves& of = all.emplace_back();
@@ -101,22 +99,10 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
         of.unit = compare::unit_of(branch.unit);
         of.channels = channels;
         of.scene = scene;
-        const auto sides = compare::sides_of(model, branch, how.steps);
-        compare::Analyses analyses;
-        std::vector<std::optional<Equilibrium>> last(sides.size());
-        const EquilibriumPath path = compare::walk(
-            sides, solver,
-            [&](const Equilibrium& state) {
-                const auto w =
-                    static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
-                if (!last[w] || state.load != 0) last[w] = state;
-                for (const compare::BranchSide& side : sides)
-                    if (approximate && reports::is_end(side.branch, state.load))
-                        of.ends.emplace_back(side, state);
-                auto row =
-                    compare::row_of(model, *channels, sides.front(), solver, state, analyses);
+        reports::SolvedBranch solved = reports::solve_branch(
+            model, branch, *channels, solver,
+            [&](const Equilibrium& state, compare::Row& row) {
                 if (request.states) append(row.values, state);  // taken off below
-                return row;
             },
             [&](compare::Row row) {
                 const auto outputs =
@@ -125,14 +111,11 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
                 row.values.erase(outputs, row.values.end());
                 of.rows.push_back(std::move(row));
             });
-        of.outcome = path.outcome;
-        of.detail = path.detail;
-        std::string motion;
-        for (std::size_t w = 0; motion.empty() && w < sides.size(); ++w)
-            if (path.outcome != Outcome::converged && last[w] &&
-                !reports::is_end(sides[w].branch, last[w]->load))
-                motion = recursive::softest_motion(sides[w].model, sides[w].branch, *last[w]);
-        if (!motion.empty()) of.detail += "; the softest motion before it is " + motion;
+        of.outcome = solved.path.outcome;
+        of.detail = solved.path.detail;
+        of.ends = std::move(solved.ends);
+        if (!solved.softest_motion.empty())
+            of.detail += "; the softest motion before it is " + solved.softest_motion;
     }
     return all;
 }

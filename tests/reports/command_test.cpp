@@ -12,15 +12,6 @@
 namespace elastocheck {
 namespace {
 
-TEST(Command, InspectShowsCountsIdleModesAndWhatWasLeftOut) {
-    expect_says(
-        "inspect " + scenes + "/chrono_mcpherson.yaml", 0,
-        {.out = {"coordinates           18", "constraints            9", "unknowns              27",
-                 "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'",
-                 "ball_joint           arm - wheel: coincident points", "left out",
-                 "in equilibrium"}});
-}
-
 // Definitions of outputs have one source: README, inspect and result.json agree.
 TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
     const std::string readme = text_of(scenes + "/../../reports/README.md");
@@ -50,28 +41,6 @@ TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
         }
     }
     EXPECT_GT(rows, 50);
-}
-
-TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
-    const Folder folder;
-    const auto scene =
-        folder.write("s.yaml",
-                     "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
-                     "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: "
-                     "a}, idler: {origin: c}}\n"
-                     "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
-                     "  second: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
-                     "  hanger: {type: spherical, bodies: [idler, bar], at: c}\n"
-                     "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
-                     "static_loads: {weight: {on: bar, at: c, force: [0, 0, -50]}}\n"
-                     "loads: {up: {on: bar, at: c, force: [0, 0, 1]}}\nbranches: {up: {load: up, "
-                     "to: 10, steps: 2}}\n"
-                     "probes: {tip: {on: bar, at: c}}\n");
-    expect_says("inspect " + scene, 0,
-                {.out = {"joint 'second': 5 of its rows repeat",
-                         "body 'idler': it is attached to one other body",
-                         "joint 'hanger': a body that it connects is left out",
-                         "out of balance by 40.82 N"}});
 }
 
 TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
@@ -106,28 +75,6 @@ TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     EXPECT_FALSE(std::filesystem::exists(folder.path / "studied/convergence.csv"));
 }
 
-TEST(Command, SeriesSaysWhereThePathEndsAndGoesOnByArcLength) {
-    const std::string solve =
-        "solve " + scenes + "/two_spring_arch.yaml --set branches.down.to=-400 --method series";
-    expect_says(solve, 3, {.err = {"limit point near -211.51659"}});
-    expect_says(solve + " --arc-length --steps 40", 0, {.out = {"down,recursive,-400"}});
-}
-
-TEST(Command, OptionsOfAnotherMethodAreRefused) {
-    const std::string scene = scenes + "/pinned_bar.yaml";
-    for (const char* option : {"--order 8", "--expansions 5", "--arc-length", "--rates x.csv"})
-        expect_says("solve " + scene + " --method tangent " + option, 2,
-                    {.err = {"only with --method series"}});
-    expect_says("solve " + scene + " --tolerance 1mm", 2,
-                {.err = {"--tolerance: only with --method adaptive or series"}});
-    expect_says("solve " + scene + " --method series --tolerance 1deg", 2);
-    expect_says("solve " + scene + " --method sries", 2);
-    expect_says("solve " + scene + " --method series --order 0", 2);
-    expect_says("compare " + scene + " --method energy", 2);
-    for (const char* method : {"recursive", "published", "adaptive --tolerance 1e-3mm", "energy"})
-        expect_says("solve " + scene + " --steps 4 --method " + method, 0);
-}
-
 TEST(Command, CompareWritesTheTableAndTheResult) {
     const Folder folder;
     const Said said = expect_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 20 -o " +
@@ -142,16 +89,6 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
     EXPECT_TRUE(
         curves.starts_with("scene,branch,leg,parameter,parameter unit,output,unit,value\n"));
     expect_parts(curves, {",rebound,energy,-3000,N,"});
-}
-
-TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
-    const Folder folder;
-    expect_says("compare " + scenes + "/two_spring_arch.yaml --set branches.down.to=-300 -o " +
-                    (folder.path / "out").string(),
-                3, {.out = {"INCONCLUSIVE", "limit point"}});
-    const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_EQ(result["scenes"][0]["verdict"]["conclusive"], false);
-    EXPECT_FALSE(result["scenes"][0]["verdict"]["reasons"].empty());
 }
 
 TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
@@ -170,16 +107,6 @@ TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
                  "equilibrium stops being "
                  "a minimum",
                  "nothing compared: a curve is empty"}});
-}
-
-TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
-    const Folder folder;
-    std::string scene = text_of(scenes + "/pendulum.yaml");
-    for (const char* word : {"to: 1500, steps: 60", "to: -1500, steps: 60"})
-        scene.replace(scene.find(word), std::string(word).size(),
-                      word[4] == '-' ? "to: -3000, steps: 600" : "to: 3000, steps: 600");
-    expect_says("solve " + folder.write("p.yaml", scene) + " --method published", 3,
-                {.err = {"published: diverged: branch 'up': at 2685 N: "}});
 }
 
 TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
@@ -206,35 +133,6 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
                  {"lift,at equal load,nose_z,mm,"});
     expect_says("converge " + scenes + "/bushing_pair.yaml --steps 10,20", 2);
     expect_says("converge " + scenes + "/bushing_pair.yaml --method tangnt", 2);
-}
-
-TEST(Command, BadInputExitsWith2AndWritesNothing) {
-    const Folder folder;
-    const auto bad = folder.write(
-        "bad.yaml", "elastocheck: 1\nname: x\nunits: {length: inch, angle: deg, force: N}\n");
-    const auto out = (folder.path / "out").string();
-    expect_says("compare " + bad + " -o " + out, 2, {.err = {"bad.yaml:3: units.length: "}});
-    EXPECT_FALSE(std::filesystem::exists(out));
-    expect_says("compare " + (folder.path / "none.yaml").string(), 2);
-    expect_says("inspect " + folder.path.string(), 2);
-}
-
-TEST(Command, TyposAreAnsweredWithTheNearestWord) {
-    struct Typo {
-        const char *arguments, *answer;
-    };
-    for (const auto& [arguments, answer] :
-         {Typo{"comprae x", "unknown command 'comprae', did you mean 'compare'?"},
-          Typo{"inspet x", "did you mean 'inspect'?"},
-          Typo{"compare --stpes 3 x", "unknown option '--stpes', did you mean '--steps'?"},
-          Typo{"solve x --methd=energy", "did you mean '--method'?"},
-          Typo{"solve x --method enrgy",
-               "--method: enrgy not in {recursive,equilibrium,energy,published,closed"},
-          Typo{"solve x --steps 0", "--steps"}, Typo{"solve", "SCENE is required"},
-          Typo{"", "subcommand is required"}}) {
-        const Said said = expect_says(arguments, 2, {.err = {answer}});
-        EXPECT_TRUE(said.out.empty()) << said.out;
-    }
 }
 
 }  // namespace

@@ -161,56 +161,6 @@ TEST(Harm, ANewlineInABaselineInjectsNoAnnotation) {
     }
 }
 
-TEST(Harm, StepCountsThatNoMemoryHoldsAreRefusedBeforeTheWork) {
-    const Folder folder;
-    for (const char* arguments :
-         {"solve --steps 10000000 ", "solve --steps 200000000 ", "compare --steps 1000001 ",
-          "converge --steps 10,20,40,80,200000000 ",
-          "converge --steps 10,20,40,80,99999999999999 "})
-        expect_said(in(folder, arguments + scene), 2, {.err = {"--steps"}});
-    expect_said(
-        in(folder, "compare --steps 1000000 " + scenes + "/double_wishbone.yaml"), 2,
-        {.err = {"points on 7 branches, by 3 of the legs, would take about", "steps a branch"}});
-    // The scene itself requests too many steps.
-    const std::string text = std::regex_replace(text_of(scenes + "/double_wishbone.yaml"),
-                                                std::regex("steps: [0-9]+"), "steps: 1000000");
-    for (const char* command : {"compare s.yaml", "report s.yaml -o out", "gate s.yaml"}) {
-        folder.write("s.yaml", text);
-        folder.write("baselines_s.json", "");
-        expect_said(in(folder, command), std::string(command).starts_with("gate") ? 3 : 2);
-    }
-}
-
-TEST(Harm, WhatCannotBeNamedOrOpenedIsBadInput) {
-    const Folder folder;
-    fs::create_symlink("loop", folder.path / "loop");
-    for (const std::string& arguments : std::vector<std::string>{
-             "compare " + scene + " -o ''", "solve " + scene + " -o ''",
-             "report " + scene + " -o ''", "gate " + scene + " --junit ''", "gate --baseline ''",
-             std::string("solve ''"), std::string("inspect loop"), "compare " + scene + " -o loop",
-             "compare " + scene + " -o loop/x", "solve " + scene + " -o loop/x.csv",
-             "report " + scene + " -o loop", std::string("report loop -o out"),
-             std::string("gate --baseline loop"), "gate " + scene + " --junit loop/j.xml",
-             "report " + scene + " --measured loop -o out"})
-        expect_said(in(folder, arguments), 2, {.not_err = {"internal error"}});
-}
-
-TEST(Harm, AFullDiskBehindStandardOutputIsNoSuccess) {
-    const Folder folder;
-    for (const std::string& arguments : std::vector<std::string>{
-             "inspect " + scene, "solve --steps 2 " + scene, "compare --steps 2 " + scene,
-             "gate " + scene, "--help", "--version"})
-        expect_said(in(folder, arguments + " > /dev/full"), 2,
-                    {.err = {"standard output: cannot be written: No space left on device"}});
-}
-
-TEST(Harm, AMeasurementWithNothingToCompareIsNoPass) {
-    const Folder folder;
-    folder.write("far.csv", "load_N,tip_x_mm\n1e9,0\n");
-    expect_said(in(folder, "report " + scene + " --measured far.csv -o out"), 3,
-                {.err = {"no point of far.csv is within the range of the legs"}});
-}
-
 TEST(Harm, OneUnreadableBaselineDoesNotEndTheGate) {
     const Folder folder;
     fs::create_directory(folder.path / "baselines");

@@ -330,29 +330,6 @@ TEST(ExportCommand, WritesBlocksOverOneVariable) {
                 2, {.err = {"--axes: only with --format blocks"}});
 }
 
-TEST(ExportCommand, RefusesAMapThatItCannotMake) {
-    const std::string scene = "export " + scenes + "/double_wishbone_rigid.yaml ";
-    expect_says(scene + "--format lookup", 2, {.err = {"--over BRANCH"}});
-    expect_says(scene + "--format lookup --over travels", 2, {.err = {"no branch", "travel"}});
-    expect_says(scene + "--over travel", 2, {.err = {"--over: only with --format lookup"}});
-    expect_says(scene + "--format lookup --over steering --rows travel=1:0:3", 2,
-                {.err = {"HELD=FROM:TO:COUNT"}});
-    expect_says(scene + "--format lookup --over steering --rows travel=0:1:4", 2,
-                {.err = {"an odd count"}});
-    expect_says(scene + "--format lookup --over steering --rows travel=0:nan:3", 2,
-                {.err = {"HELD=FROM:TO:COUNT"}});
-    expect_says(scene + "--format lookup --over steering --rows travels=0:1:3", 2,
-                {.err = {"travels"}});
-    expect_says(scene + "--format lookup --over travel --channels toes", 2, {.err = {"toes"}});
-    // the wheel cannot reach this: no file
-    const Folder folder;
-    const std::string file = (folder.path / "map.csv").string();
-    const Said said = elastocheck_says(
-        scene + "--format lookup --over steering --rows travel=-0.5:0.5:3 -o " + file);
-    EXPECT_EQ(said.code, 3) << said.err;
-    EXPECT_FALSE(std::filesystem::exists(file));
-}
-
 // The line says what the two solutions differ by at the end, in the output that differs most.
 TEST(SolveCommand, AFastMethodSaysHowFarItIsOffAtTheEndOfEveryBranchSide) {
     const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 20 ";
@@ -464,18 +441,6 @@ TEST(SolveCommand, WhatElementsBearIsWrittenWhereItIsAskedFor) {
     }
 }
 
-TEST(SolveCommand, ChannelThatIsNoneIsAnsweredWithTheNearest) {
-    const Folder folder;
-    const std::string file = (folder.path / "c.csv").string();
-    for (const auto& [asked, near] :
-         {std::pair{"tow", "toe"}, {"toe,cambr", "camber"}, {"Toe", "toe"}})
-        expect_says(
-            "solve " + scenes + "/chrono_mcpherson.yaml --channels " + asked + " -o " + file, 2,
-            {.err = {"--channels: there is no output", fmt::format("did you mean '{}'?", near)}});
-    expect_says("solve " + scenes + "/chrono_mcpherson.yaml --channels 'x*'", 2);
-    EXPECT_FALSE(std::filesystem::exists(file));
-}
-
 TEST(SolveCommand, EveryNthStepIsOneOfTheSameRows) {
     // Two branches of 20 steps, from a = 0 each.
     for (const char* method : {"published", "adaptive", "series"}) {
@@ -502,18 +467,6 @@ TEST(SolveCommand, EveryNthStepIsOneOfTheSameRows) {
                          .out,
                      '\n');
         EXPECT_EQ(rows.size(), 1u + 2 * 4) << method;
-    }
-}
-
-TEST(SolveCommand, EveryThatIsNoneOrMoreThanThereAreStepsIsRefused) {
-    const std::string scene = scenes + "/bushing_pair.yaml";
-    for (const char* command : {"solve ", "compare "}) {
-        for (const char* none : {"0", "-1", "x", "1.5"})
-            expect_says(command + scene + " --every " + none, 2, {.err = {"--every"}});
-        const Said said =
-            expect_says(command + scene + " --steps 20 --every 21", 2,
-                        {.err = {"--every 21: branch 'lift' has 20 steps; allowed: 1 to as many"}});
-        EXPECT_TRUE(said.out.empty());
     }
 }
 
@@ -564,47 +517,6 @@ TEST(SolveCommand, RowsBeforeAFailureAreWrittenAndTheCodeIs3) {
         const auto file = (folder.path / "rows.csv").string();
         expect_says(command + " -o " + file, 3);
         EXPECT_EQ(text_of(file), said.out) << "what was reached is written";
-    }
-}
-
-// ADAMS has no statement for the bushing formulation of the double wishbone; the converted model
-// differs, and the command reports by how much.
-TEST(ExportCommand, ConvertsBushingsAndSaysByHowMuchTheOutputsMove) {
-    const Folder folder;
-    const std::string deck = (folder.path / "m.adm").string(),
-                      command = "export " + scenes + "/double_wishbone.yaml ";
-    expect_says(command + "-o " + deck, 2, {.err = {"--formulation adams converts it"}});
-    EXPECT_FALSE(std::filesystem::exists(deck));
-    const Said said = expect_says(command + "--formulation adams -o " + deck, 0);
-    const std::string effect =
-        "converted to the bushing formulation of adams: the outputs change by up to 6.8e-05 mm "
-        "(wheel_centre_z on branch 'vertical' at 3000 N) and 1e-05 deg (toe on branch 'travel' at "
-        "80 mm), by the equilibrium leg";
-    expect_parts(said.err, {effect});
-    expect_parts(text_of(deck), {effect});
-    expect_says("import " + deck + " -o " + (folder.path / "s.yaml").string(), 0);
-    expect_says(command + "--formulation chrono", 2);
-}
-
-// A static load on an unresisted motion: no point is reached, not even a = 0.
-TEST(SolveCommand, StatesOfARunThatReachesNoneAreNoFile) {
-    const Folder folder;
-    const std::string loose = folder.write("loose.yaml", R"(elastocheck: 1
-name: Loose
-units: {length: m, angle: rad, force: N}
-points: {a: [0, 0, 0], b: [1, 0, 0]}
-bodies: {bar: {origin: a}}
-joints: {ball: {type: spherical, bodies: [bar, ground], at: a}}
-static_loads: {weight: {on: bar, at: b, force: [0, 0, -1]}}
-loads: {push: {on: bar, at: b, force: [0, 0, 1]}}
-branches: {up: {load: push, from: 0, to: 10, steps: 4}}
-probes: {tip: {on: bar, at: b}}
-)"),
-                      states = (folder.path / "states.jsonl").string();
-    for (int again = 0; again < 2; ++again) {
-        expect_says("solve " + loose + " --method equilibrium --states " + states, 3,
-                    {.err = {"states.jsonl: not written: no state was reached"}});
-        EXPECT_FALSE(std::filesystem::exists(states));
     }
 }
 

@@ -12,6 +12,11 @@ namespace {
 
 constexpr FileKind live_file{"live page", "<!doctype html>\n<!-- elastocheck live -->"};
 
+struct LiveRequest {
+    std::string scene, output;
+    Settings settings;
+};
+
 int live(const std::string& scene, const Settings& settings, const std::string& output) {
     check_may_write(output, live_file);
     write_whole(output, live_page(scene, settings), live_file);
@@ -25,11 +30,7 @@ const Command live_command{
     Group::pages, "live",
     "Write a page that solves the scene again while hardpoints and rates are moved",
     [](CLI::App& command) -> Run {
-        struct Request {
-            std::string scene, output;
-            Settings settings;
-        };
-        const auto given = std::make_shared<Request>();
+        const auto given = std::make_shared<LiveRequest>();
         add_scene(command, given->scene);
         add_set(command, given->settings);
         as_file(command.add_option("-o,--output", given->output, "write the page to this file"))

@@ -7,8 +7,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/comparison/legs.hpp"
+#include "recursive/soft_motion.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -39,6 +40,11 @@ std::string differences(const Model& model, const Branch& branch, const Equilibr
     return text;
 }
 
+// Whether a recorded parameter is the end of a branch side, but for rounding.
+bool is_end(const Branch& side, double load) {
+    return std::abs(load - side.to) <= 1e-12 * std::abs(side.to);
+}
+
 }  // namespace
 
 std::vector<std::string> solvers() {
@@ -61,8 +67,8 @@ compare::SolverSettings solver_of(const SolverRequest& request) {
 }
 
 std::vector<std::string> certified_solvers() {
-    std::vector<std::string> names{"equilibrium", "energy"};
-    for (const auto& method : recursive::methods) names.emplace_back(method.name);
+    auto names = solvers();
+    std::erase(names, name(compare::Leg::recursive));  // the same as its method `published`
     return names;
 }
 
@@ -74,8 +80,34 @@ compare::SolverSettings certified_solver(const std::string& solver) {
     return settings;
 }
 
-bool is_end(const Branch& side, double load) {
-    return std::abs(load - side.to) <= 1e-12 * std::abs(side.to);
+SolvedBranch solve_branch(const Model& model, const Branch& branch,
+                          const std::vector<Channel>& channels,
+                          const compare::SolverSettings& solver,
+                          const std::function<void(const Equilibrium&, compare::Row&)>& found,
+                          const std::function<void(compare::Row)>& hand_over) {
+    const auto sides = compare::sides_of(model, branch, solver.recursion.steps);
+    compare::Analyses analyses;
+    std::vector<std::optional<Equilibrium>> last(sides.size());
+    const auto read = [&](const Equilibrium& state) {
+        const auto w =
+            static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
+        if (!last[w] || state.load != 0) last[w] = state;
+        auto row = compare::row_of(model, channels, sides.front(), solver, state, analyses);
+        found(state, row);
+        return row;
+    };
+    SolvedBranch solved{compare::walk(sides, solver, read, hand_over)};
+    const bool approximate =
+        solver.leg == compare::Leg::recursive && recursive::has_steps(solver.recursion.method);
+    for (std::size_t w = 0; w < sides.size(); ++w) {
+        if (!last[w]) continue;
+        const bool ends = is_end(sides[w].branch, last[w]->load);
+        if (ends && approximate) solved.ends.emplace_back(sides[w], *last[w]);
+        if (!ends && solved.softest_motion.empty() && solved.path.outcome != Outcome::converged)
+            solved.softest_motion =
+                recursive::softest_motion(sides[w].model, sides[w].branch, *last[w]);
+    }
+    return solved;
 }
 
 std::string error_at_end(const Model& model, compare::BranchSide side, const Equilibrium& state) {

@@ -2,9 +2,12 @@
 // module share.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "compare/comparison/legs.hpp"
 #include "elastocheck/channels.hpp"
 #include "elastocheck/legs.hpp"
 #include "reports/command/options/recursion_options.hpp"
@@ -29,8 +32,22 @@ std::vector<std::string> certified_solvers();
 // Pre: it is one of them.
 compare::SolverSettings certified_solver(const std::string& solver);
 
-// Whether a recorded parameter is the end of a branch side, but for rounding.
-bool is_end(const Branch& side, double load);
+// A solved branch; its points are handed over.
+struct SolvedBranch {
+    EquilibriumPath path;  // without points
+    // States at the ends of the sides, of a method with equal steps: it has no tolerance, so that its
+    // error there is reported.
+    std::vector<std::pair<compare::BranchSide, Equilibrium>> ends = {};
+    std::string softest_motion = {};  // before a failure
+};
+// Calls `found` with each point when it is found, and with its row, to which it may add; `hand_over`
+// with the rows in the order of the branch.
+SolvedBranch solve_branch(const Model& model, const Branch& branch,
+                          const std::vector<compare::Channel>& channels,
+                          const compare::SolverSettings& solver,
+                          const std::function<void(const Equilibrium&, compare::Row&)>& found,
+                          const std::function<void(compare::Row)>& hand_over);
+
 // Error of a method at the end of a branch side, in words: its state there against one solve of the
 // equilibrium leg at the same parameter.
 std::string error_at_end(const Model& model, compare::BranchSide side, const Equilibrium& state);
