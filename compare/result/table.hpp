@@ -103,9 +103,6 @@ concept Described = std::same_as<std::remove_const_t<T>, S>;
 inline Cell cell_of(double value) { return value; }
 inline Cell cell_of(const std::string& value) { return value; }
 inline Cell cell_of(bool value) { return std::string(value ? "yes" : ""); }
-inline void set(double& value, const Cell& cell) { value = std::get<double>(cell); }
-inline void set(std::string& value, const Cell& cell) { value = std::get<std::string>(cell); }
-inline void set(bool& value, const Cell& cell) { value = cell == Cell("yes"); }
 
 template <class Row>
 Table table_of(const std::vector<Row>& rows) {
@@ -125,18 +122,6 @@ Table table_of(const std::vector<Row>& rows) {
         describe(cell, row);
     }
     return table;
-}
-
-// Pre: the columns of the table are those of table_of<Row>.
-template <class Row>
-std::vector<Row> rows_of(const Table& table) {
-    std::vector<Row> rows(table.rows.size());
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-        auto cell = table.rows[r].begin();
-        const auto take = [&](const char*, auto& value, const About& = {}) { set(value, *cell++); };
-        describe(take, rows[r]);
-    }
-    return rows;
 }
 
 // Distinct values of a field, in the order of the rows.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "reports/command/program/exit_code.hpp"
-#include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/render/render.hpp"
 
@@ -62,8 +61,6 @@ void deliver(const Delivery& delivery, nlohmann::ordered_json scene,
     nlohmann::ordered_json result = document(delivery.command, provenance());
     result["scenes"].push_back(std::move(scene));
     if (!delivery.folder.empty()) {
-        if (result["scenes"][0].contains("branches"))
-            tables.insert(tables.begin(), {"curves.csv", curves_csv(result, "result.json")});
         tables.insert(tables.begin(), {"result.json", result.dump(1) + "\n"});
         deliver_files(delivery, tables);
     }

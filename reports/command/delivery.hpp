@@ -59,8 +59,8 @@ void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& fi
 int deliver_result(const Delivery& delivery, nlohmann::ordered_json scene,
                    const compare::Result& result);
 
-// Writes the result document of one scene: to the folder, with curves.csv and `tables` beside it,
-// in one step; to standard output; or both.
+// Writes the result document of one scene: to the folder, with `tables` beside it, in one step; to
+// standard output; or both.
 void deliver(const Delivery& delivery, nlohmann::ordered_json scene,
              std::vector<NamedContent> tables);
 

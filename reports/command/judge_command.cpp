@@ -8,7 +8,7 @@
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/program/command.hpp"
-#include "reports/document/candidate.hpp"
+#include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/tables/candidate_tables.hpp"
@@ -43,31 +43,32 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
     compare::Options options;
     options.recursion.steps = request.steps;
     options.progress = progress;
-    const compare::Comparison comparison = compare::compare(model, options, loaded.definitions);
+    compare::Comparison comparison = compare::compare(model, options, loaded.definitions);
     progress("");
     int code = fine;
-    nlohmann::ordered_json candidates = nlohmann::ordered_json::array();
+    std::vector<JudgedCandidate> candidates;
     std::vector<std::string> reasons;
     int compared = 0;
     for (const auto& output : outputs) {
-        const auto judgement =
-            judged(output, request.candidate, loaded, comparison, tolerance, given);
-        const std::string verdict = sentence(judgement, comparison);
+        auto judgement = judged(output, request.candidate, loaded, comparison, tolerance, given);
+        std::string verdict = sentence(judgement, comparison);
         delivery.print_text(candidate_text(judgement, comparison));
         delivery.print_text(verdict + "\n");
-        candidates.push_back(candidate_json(judgement, comparison, verdict));
         compared += judgement.compared;
         for (const auto& reason : judgement.reasons)
             reasons.push_back(judgement.name + ": " + reason);
         if (judgement.verdict == compare::Grade::fail) code = limit_broken;
         if (judgement.verdict == compare::Grade::not_judged && code == fine) code = could_not_judge;
+        candidates.push_back({std::move(judgement), std::move(verdict)});
     }
     if (delivery.wants_document()) {
-        auto part = document_of(loaded, request.scene);
-        add_comparison(part, loaded.scene, model, comparison);
-        part["candidates"] = std::move(candidates);
+        std::string curves = curves_csv({{loaded.scene.name, &comparison}});
+        SceneAnalyses found = analyses_of(loaded, request.scene);
+        add_comparison(found, std::move(comparison));
+        found.candidates = std::move(candidates);
+        auto part = scene_json(found);
         add_verdict(part, compared, reasons);
-        deliver(delivery, std::move(part), {});
+        deliver(delivery, std::move(part), {{"curves.csv", std::move(curves)}});
     }
     return code;
 }

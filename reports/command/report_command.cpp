@@ -16,7 +16,6 @@
 #include "compare/studies/solves.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
-#include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "reports/command/browser.hpp"
@@ -28,21 +27,15 @@
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/command/program/command.hpp"
-#include "reports/document/against.hpp"
-#include "reports/document/candidate.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
-#include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/json/json_cursor.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"
-#include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
@@ -67,42 +60,32 @@ struct ReportRequest {
     bool as_json = false;  // write the answers as a document to standard output
     bool live = false;     // live.html beside the page
     bool open = false;     // open the finished page in a browser
+
+    bool has_tolerance() const { return tolerance != ReportRequest{}.tolerance; }
 };
 
 // Error of the recommended configuration over the whole branch, for the figure
 // with the tolerance.
-json recommended(compare::Solves& solves, const compare::Trade& trade) {
-    if (!trade.recommendation) return nullptr;
-    const auto& point = trade.points[trade.recommendation->point];
-    json branches = json::array();
-    for (std::size_t b = 0; b < solves.sides.size(); ++b) {
-        const auto profile = compare::profile(solves, b, point);
-        json mm = json::array(), deg = json::array();
-        for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
-        branches.push_back({{"name", solves.model.branches[b].name},
-                            {"a", profile.a},
-                            {"error_mm", mm},
-                            {"error_deg", deg}});
-    }
-    json result = {{"method", point.method}};
-    if (point.steps > 0) result["steps"] = point.steps;
-    if (point.own_tolerance > 0) result["own_tolerance_m"] = point.own_tolerance;
-    result["branches"] = branches;
+std::optional<Recommended> recommended(compare::Solves& solves, const compare::Trade& trade) {
+    if (!trade.recommendation) return std::nullopt;
+    Recommended result{trade.points[trade.recommendation->point], {}};
+    for (std::size_t b = 0; b < solves.sides.size(); ++b)
+        result.branches.emplace_back(solves.model.branches[b].name,
+                                     compare::profile(solves, b, result.configuration));
     return result;
 }
 
-// Returns why the measurement could not be compared; empty if it was.
-std::string add_measured(json& document, const Model& model, const compare::Comparison& comparison,
-                         const Measurement& measurement) {
-    add_measurement(document, model, comparison, compare::defined_curves(model, comparison),
-                    measurement);
-    for (const auto& what : document["measured"]["left_out"])
-        print_error("{}: left out: {}\n", measurement.file, what.get<std::string>());
-    for (const auto& finding : document["measured"]["findings"])
-        print_error("{}: {}\n", measurement.file, finding.get<std::string>());
-    return compared_with_measurement(document) > 0
-               ? ""
-               : fmt::format("no point of {} is within the range of the legs", measurement.file);
+void add_measured(SceneAnalyses& scene, const Measurement& measurement) {
+    scene.measured =
+        compare_measurement(scene.model, scene.comparison,
+                            compare::defined_curves(scene.model, scene.comparison), measurement);
+    for (const auto& what : scene.measured->left_out)
+        print_error("{}: left out: {}\n", measurement.file, what);
+    for (const auto& finding : scene.measured->found.explanations)
+        print_error("{}: {}\n", measurement.file, finding);
+    if (scene.measured->found.compared == 0)
+        scene.reasons.push_back(
+            fmt::format("no point of {} is within the range of the legs", measurement.file));
 }
 
 // Leaves only the branches of --branch, in the order of the scene.
@@ -125,35 +108,28 @@ int points_of_spread(const Model& model) {
 
 // What the studies find of the recursion's error, and what it costs. All of
 // them read the same solves; the numbers of steps are such that they can.
-void add_studies(json& document, const Model& model, const compare::Comparison& comparison,
-                 const compare::Tolerance& tolerance, int threads,
+void add_studies(SceneAnalyses& scene, const compare::Tolerance& tolerance, int threads,
                  const compare::Progress& progress_of_scene) {
     constexpr int base = 10, finest = 4;
-    compare::Solves solves(model, base, finest);
+    compare::Solves solves(scene.model, base, finest);
     const auto part = [&](double from, double to) {
         return compare::part(progress_of_scene, from, to);
     };
     compare::StudyOptions study_options{.methods = {},
                                         .steps = {40, 80, 160, 320, 640},
                                         .threads = threads,
-                                        .progress = part(0, 0.35)};
+                                        .progress = part(0, 0.5)};
     for (const auto& method : recursive::methods)
         if (recursive::has_steps(method)) study_options.methods.push_back(method);
-    const auto study = compare::study(solves, study_options);
-    add_gap(document, comparison, study);
-    document["convergence"] = study_json(
-        study, compare::attribute_gap(solves, {40, 80, 160, 320}, threads, part(0.35, 0.6)));
-
+    scene.study = compare::study(solves, study_options);
     // The price is counted, so that the report is the same in every run; `trade`
     // measures times.
-    const auto trade = compare::trade(solves, {.tolerance = tolerance,
-                                               .points = base,
-                                               .rounds = 0,
-                                               .threads = threads,
-                                               .progress = part(0.6, 1)});
-    document["trade"] = trade_json(trade);
-    if (const json profile = recommended(solves, trade); !profile.is_null())
-        document["recommended"] = profile;
+    scene.trade = compare::trade(solves, {.tolerance = tolerance,
+                                          .points = base,
+                                          .rounds = 0,
+                                          .threads = threads,
+                                          .progress = part(0.5, 1)});
+    scene.recommended = recommended(solves, *scene.trade);
 }
 
 // Figures of which the effects are shown: rates of the first wheel at the
@@ -189,25 +165,21 @@ KeyOutputs key_outputs(const Model& model) {
     return key;
 }
 
-// "sensitivity": effects of the numbers of the scene on the key figures along the leading sweep.
-// Where they are not confirmed, this section says so; the verdict is on the curves and rates.
-void add_sensitivity(json& document, const LoadedScene& loaded, const std::string& file,
-                     const Settings& settings, int threads) {
-    const std::string source;
-    const auto sweep = leading_sweep({&document, "", &source});
+// Effects of the numbers of the scene on the key figures along the leading sweep. Where they are not
+// confirmed, their section says so; the verdict is on the curves and rates.
+void add_effects(SceneAnalyses& scene, const LoadedScene& loaded, const std::string& file,
+                 const Settings& settings, int threads) {
+    const auto sweep = leading_sweep(scene);
     if (!sweep) return;
     std::vector<std::string> branches;
-    for (const auto& branch : sweep->branches) branches.push_back(branch["name"].text());
-    const KeyOutputs key = key_outputs(loaded.model);
+    for (const auto& branch : sweep->branches) branches.push_back(branch.name());
+    const KeyOutputs key = key_outputs(scene.model);
     // numbers of the suspension, not of what acts on it
     const auto varying = compare::varying(file, settings, [](const std::string& path) {
         return std::ranges::none_of(std::array{"loads.", "branches.", "trim.", "vehicle."},
                                     [&](const char* group) { return path.starts_with(group); });
     });
-    std::vector<compare::EffectRow> rows;
-    double apart = 0;
-    long compared = 0;
-    std::vector<std::string> reasons;
+    Effects effects;
     // a characteristic costs several times an angle, and is shown at one station
     const auto add = [&](const std::vector<compare::Channel>& outputs, bool of_design) {
         if (outputs.empty()) return;
@@ -216,27 +188,34 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
         if (of_design) options.branches = {branches.front()};
         const auto all = gradients_of(file, settings, loaded, outputs, varying, options);
         for (auto& row : compare::effect_rows(all))
-            if ((row.at == 0) == of_design) rows.push_back(std::move(row));
+            if ((row.at == 0) == of_design) effects.rows.push_back(std::move(row));
         for (const auto& side : all.sides) {
-            apart = std::max(apart, side.worst.whole), compared += side.worst.compared;
-            std::ranges::move(side.not_confirmed(), std::back_inserter(reasons));
+            effects.apart = std::max(effects.apart, side.worst.whole);
+            effects.compared += side.worst.compared;
+            std::ranges::move(side.not_confirmed(), std::back_inserter(effects.reasons));
         }
     };
     add(key.at_design, true);
     add(key.at_ends, false);
-    if (rows.empty()) return;
-    if (compared == 0) reasons.emplace_back("no derivative was compared");
-    for (const auto& why : reasons)
+    if (effects.rows.empty()) return;
+    if (effects.compared == 0) effects.reasons.emplace_back("no derivative was compared");
+    for (const auto& why : effects.reasons)
         print_error("{}: effects of the numbers are not confirmed: {}\n", file, why);
-    document["sensitivity"] = {{"conclusive", reasons.empty()},
-                               {"reasons", reasons},
-                               {"compared", compared},
-                               {"apart", apart},
-                               {"effects", table_json(rows)}};
+    scene.effects = std::move(effects);
 }
 
-json solve_scene(const std::string& file, const ReportRequest& request, int threads,
-                 const compare::Progress& progress_of_scene) {
+void add_candidates(SceneAnalyses& scene, const LoadedScene& loaded, const std::string& file,
+                    const ReportRequest& request, const compare::Tolerance& tolerance) {
+    for (const auto& output : outputs_of(request.candidate, file, {steps_of(scene.model)})) {
+        auto judgement = judged(output, request.candidate, loaded, scene.comparison, tolerance,
+                                request.has_tolerance());
+        std::string verdict = sentence(judgement, scene.comparison);
+        scene.candidates.push_back({std::move(judgement), std::move(verdict)});
+    }
+}
+
+SceneAnalyses solve_scene(const std::string& file, const ReportRequest& request, int threads,
+                          const compare::Progress& progress_of_scene) {
     LoadedScene loaded = load_scene(file, request.settings);
     for (const auto& name : request.branches) (void)branch_named(loaded.model, name);
     Measurement measurement;  // read with the branches of all its tests
@@ -245,11 +224,10 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
             read_measurement(read_whole(request.measured, largest_measurement), request.measured,
                              loaded.model, map_of(request.candidate), request.branches);
     select_branches(loaded.scene, loaded.model, request.branches);
-    const Scene& scene = loaded.scene;
-    const Model& model = loaded.model;
-    json document = document_of(loaded, file);
-    if (!request.only.empty()) document["only"] = request.only;
-    if (request.quick) document["proved"] = "ends";
+    SceneAnalyses scene = analyses_of(loaded, file);
+    scene.only = request.only;
+    scene.quick = request.quick;
+    const Model& model = scene.model;
     const bool studies = !request.quick && request.only != "kc";
 
     const double after_legs = studies ? 0.25 : 1;
@@ -258,57 +236,43 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
     options.threads = threads;
     options.prove_ends_only = request.quick;
     options.progress = compare::part(progress_of_scene, 0, after_legs);
-    const auto comparison = compare::compare(model, options, loaded.definitions);
-    add_comparison(document, scene, model, comparison);
-    auto reasons = reasons_of(comparison);
-    if (!request.measured.empty())
-        if (const std::string why = add_measured(document, model, comparison, measurement);
-            !why.empty())
-            reasons.push_back(why);
+    add_comparison(scene, compare::compare(model, options, loaded.definitions));
+    if (!request.measured.empty()) add_measured(scene, measurement);
     if (!request.quick && request.only != "evidence")
-        add_sensitivity(document, loaded, file, request.settings, threads);
+        add_effects(scene, loaded, file, request.settings, threads);
     const auto tolerance =
         compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
     if (studies) {
-        if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
-            add_formulations(
-                document,
-                compare::formulation_study(scene, 0, points_of_spread(model), threads,
-                                           compare::part(progress_of_scene, after_legs, 0.35)),
-                comparison);
-        add_studies(document, model, comparison, tolerance, threads,
-                    compare::part(progress_of_scene, 0.35, 1));
+        if (std::ranges::any_of(scene.scene.elastics, compare::is_reformulated))
+            scene.formulations =
+                compare::formulation_study(scene.scene, 0, points_of_spread(model), threads,
+                                           compare::part(progress_of_scene, after_legs, 0.35));
+        add_studies(scene, tolerance, threads, compare::part(progress_of_scene, 0.35, 1));
     }
-    if (request.candidate.wanted()) {
-        document["candidates"] = json::array();
-        for (const auto& output : outputs_of(request.candidate, file, {steps_of(model)})) {
-            const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance,
-                                          request.tolerance != ReportRequest{}.tolerance);
-            document["candidates"].push_back(
-                candidate_json(judgement, comparison, sentence(judgement, comparison)));
-        }
+    if (request.candidate.wanted()) add_candidates(scene, loaded, file, request, tolerance);
+    scene.judgement = compare::assess(model, scene.comparison, tolerance, request.has_tolerance());
+    if (!scene.conclusive()) {
+        scene.judgement->verdict = compare::Grade::not_judged;
+        scene.judgement->reasons = scene.reasons;
     }
-    add_verdict(document, comparison.compared, reasons);
-    auto judgement = compare::assess(model, comparison, tolerance,
-                                     request.tolerance != ReportRequest{}.tolerance);
-    if (!reasons.empty())
-        judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
-    document["judgement"] = judgement_json(judgement);
-    return document;
+    return scene;
 }
 
 // Answer of each scene, and whether it passes.
-json answer_document(const json& result, const std::vector<Answer>& answers,
+json answer_document(const Report& report, const std::vector<Answer>& answers,
                      const std::string& page) {
     json scenes = json::array();
-    for (const auto& answer : answers)
+    for (const auto& answer : answers) {
+        const SceneAnalyses& scene = report.scenes[scenes.size()];
         scenes.push_back({{"name", answer.name},
                           {"source", answer.source},
                           {"mark", answer.mark},
-                          {"answer", answer.sentence},
-                          {"verdict", result["scenes"][scenes.size()]["verdict"]}});
+                          {"answer", answer.sentence}});
+        add_verdict(scenes.back(), scene.comparison.compared, scene.reasons);
+    }
+    const json head = report_json({report.reproduce, report.provenance, {}});
     return {{"schema", report_schema},
-            {"provenance", result["provenance"]},
+            {"provenance", head["provenance"]},
             {"page", page},
             {"scenes", scenes}};
 }
@@ -324,18 +288,8 @@ std::string answer_text(const std::vector<Answer>& answers, const std::string& p
                               counted(answers.size(), "scene"), seconds);
 }
 
-// Removes fields that differ from run to run.
-void remove_times(json& value) {
-    if (value.is_object()) {
-        value.erase("seconds");
-        value.erase("cpu");
-    }
-    if (value.is_structured())
-        for (auto& entry : value) remove_times(entry);
-}
-
 // Returns the exit code. `reproduce` is the command line as given.
-int report(const ReportRequest& request, const std::string& reproduce) {
+int write(const ReportRequest& request, const std::string& reproduce) {
     if (request.scenes.empty()) throw std::invalid_argument("report: needs scene files");
     if (!request.measured.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
@@ -365,38 +319,36 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     (void)map_of(request.candidate);
     if (request.quick && request.only == "evidence")
         throw std::invalid_argument("report: --quick leaves out what --only evidence shows");
-    json result = document(reproduce, provenance());
+    Report report{reproduce, provenance(), {}};
     constexpr double solved = 0.95;  // the rest: the page
     for (std::size_t k = 0; k < request.scenes.size(); ++k) {
         const double each = solved / static_cast<double>(request.scenes.size());
         const auto of_scene = [&, at = static_cast<double>(k)](std::string_view what, double done) {
             progress(fmt::format("{}: {}", request.scenes[k], what), (at + done) * each);
         };
-        result["scenes"].push_back(solve_scene(request.scenes[k], request, threads, of_scene));
+        report.scenes.push_back(solve_scene(request.scenes[k], request, threads, of_scene));
     }
-    remove_times(result);
-    result = json::parse(result.dump());  // NaN is null
+    std::string difference;
     if (request.against) {
-        add_against(result["scenes"][0], result["scenes"][1]);
+        report.scenes[0].against = differences(report.scenes[0], report.scenes[1]);
+        difference = against_sentence(report.scenes[0].scene.source, *report.scenes[0].against);
         // a variant has no verdict on the fast method unless a tolerance is given
-        for (auto& scene : result["scenes"])
-            if (scene.contains("judgement") && !scene["judgement"]["tolerance"]["asked"])
-                scene.erase("judgement");
-        result = json::parse(result.dump());
+        if (!request.has_tolerance())
+            for (auto& scene : report.scenes) scene.judgement.reset();
     }
     const auto answers = write_report(
-        result, "result.json", request.folder,
+        report, request.folder,
         {.progress = [](std::string_view what) { progress(what, 0.95); }, .live = live});
     progress("");
     int code = fine;
     // the verdict of a candidate counts for the page, as in `judge`
-    for (const auto& scene : result["scenes"])
-        if (scene.contains("candidates"))
-            for (const auto& judged : scene["candidates"]) {
-                print_error("{}\n", judged["sentence"].get<std::string>());
-                if (judged["verdict"] == "fail") code = limit_broken;
-                if (judged["verdict"] == "not judged" && code == fine) code = could_not_judge;
-            }
+    for (const auto& scene : report.scenes)
+        for (const auto& [judgement, sentence] : scene.candidates) {
+            print_error("{}\n", sentence);
+            if (judgement.verdict == compare::Grade::fail) code = limit_broken;
+            if (judgement.verdict == compare::Grade::not_judged && code == fine)
+                code = could_not_judge;
+        }
     for (const auto& answer : answers)
         if (!answer.conclusive) {
             code = could_not_judge;
@@ -406,9 +358,9 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     const std::string page = request.folder + "/report.html";
     if (request.as_json)
-        print_document(answer_document(result, answers, page));
+        print_document(answer_document(report, answers, page));
     else if (request.against)
-        print("{}\nThe page: {}\n", against_sentence(result["scenes"][0]), page);
+        print("{}\nThe page: {}\n", difference, page);
     else
         print(answer_text(answers, page, elapsed.count()));
     if (request.open) open_in(opener, page);
@@ -451,7 +403,7 @@ const Command report_command{
                          "hardpoints are moved");
         add_json(command, request->as_json);
         command.add_flag("--open", request->open, "open the page with $BROWSER or xdg-open");
-        return [request](const std::string& line) { return report(*request, line); };
+        return [request](const std::string& line) { return write(*request, line); };
     }};
 
 }  // namespace elastocheck::reports

@@ -24,6 +24,7 @@
 #include "reports/command/options/recursion_options.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/command/program/command.hpp"
+#include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/inspection.hpp"
 #include "reports/files/files.hpp"
@@ -150,7 +151,8 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
                          .every = request.every,
                          .legs = static_cast<int>(compare::legs.size()),
                          .written = delivery.wants_document()});
-    const compare::Comparison comparison = compare::compare(model, options, loaded.definitions);
+    compare::Comparison comparison = compare::compare(model, options, loaded.definitions);
+    const bool conclusive = comparison.conclusive();
     std::optional<compare::FormulationStudy> study;
     if (request.formulations)
         study = compare::formulation_study(loaded.scene, steps, request.every, options.threads,
@@ -164,26 +166,24 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     auto judgement = compare::assess(model, comparison, tolerance, given);
     judgement.requested = given || named;
     if (delivery.wants_document()) {
-        json part = document_of(loaded, request.scene);
-        add_comparison(part, loaded.scene, model, comparison);
-        std::vector<NamedContent> files{{"forces.csv", csv(force_rows(model, comparison))}};
-        auto reasons = reasons_of(comparison);
-        if (study) {
-            add_formulations(part, *study, comparison);
-            files.push_back({"formulations.csv", csv(formulation_rows(*study, comparison))});
+        std::vector<NamedContent> files{
+            {"curves.csv", curves_csv({{loaded.scene.name, &comparison}})},
+            {"forces.csv", csv(force_rows(model, comparison))}};
+        if (study) files.push_back({"formulations.csv", csv(formulation_rows(*study, comparison))});
+        if (request.definitions) files.push_back({"definitions.csv", csv(defined)});
+        SceneAnalyses found = analyses_of(loaded, request.scene);
+        add_comparison(found, std::move(comparison));
+        found.formulations = study;
+        if (study)
             for (const auto& reason : study->inconclusive)
-                reasons.push_back("formulations: " + reason);
-        }
-        if (request.definitions) {
-            part["definitions"] = table_json(defined);
-            files.push_back({"definitions.csv", csv(defined)});
-        }
-        add_verdict(part, comparison.compared, reasons);
-        part["judgement"] = judgement_json(judgement);
+                found.reasons.push_back("formulations: " + reason);
+        found.judgement = judgement;
+        json part = scene_json(found);
+        if (request.definitions) part["definitions"] = table_json(defined);
         deliver(delivery, std::move(part), std::move(files));
     }
     delivery.print_text(sentence(judgement) + "\n");
-    return comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
+    return conclusive && (!study || study->conclusive()) ? fine : could_not_judge;
 }
 
 int converge(const ConvergeRequest& request, const Delivery& delivery) {

@@ -4,74 +4,49 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include "compare/comparison/changes.hpp"
+#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/points.hpp"
 #include "compare/deviation/deviation.hpp"
 #include "compare/gate/gate.hpp"
 #include "compare/outputs/not_a_number.hpp"
-#include "reports/json/json_cursor.hpp"
+#include "reports/document/scene_analyses.hpp"
 #include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
+using compare::BranchComparison;
+using compare::Channel;
 using compare::nan;
 using json = nlohmann::ordered_json;
+using Line = Against::Line;
 
-struct Output {
-    std::string name, unit;
-    bool main = false, kinematic = false, characteristic = false, reciprocal = false;
-};
-
-struct Line {
-    std::vector<double> a, y;
-};
-
-struct BranchCurve {
-    std::string name, unit;
-    JsonCursor curve;  // of the equilibrium leg
-
-    Line of(const std::string& output) const {
-        const auto values = curve["values"].find(output);
-        Line line{curve["a"].numbers(), values ? values->numbers() : std::vector<double>{}};
-        if (line.y.size() != line.a.size()) line.y.assign(line.a.size(), nan);
-        return line;
-    }
-};
-
-std::vector<Output> outputs_of(const JsonCursor& scene) {
-    std::vector<Output> all;
-    for (const auto& c : scene["channels"].items())
-        all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(),
-                       c["kinematic"].truth(), c["kind"].text() == "characteristic",
-                       c.find("reciprocal").has_value()});
-    return all;
+bool is_swing_arm(const Channel& channel) {
+    const auto* rate = std::get_if<compare::Characteristic>(&channel.reads);
+    return rate != nullptr && compare::is_swing_arm(*rate);
 }
 
-std::vector<BranchCurve> branches_of(const JsonCursor& scene) {
-    std::vector<BranchCurve> all;
-    for (const auto& branch : scene["branches"].items())
-        for (const auto& leg : branch["legs"].items())
-            if (leg["leg"].text() == name(compare::Leg::equilibrium))
-                all.push_back({branch["name"].text(), branch["unit"].text(), leg["curve"]});
-    return all;
-}
-
-std::vector<Number> numbers_of(const JsonCursor& scene) {
-    std::vector<Number> all;
-    for (const auto& n : scene["numbers"].items())
-        all.push_back({n["path"].text(), n["value"].number(), n["unit"].text()});
-    return all;
+// Pre: the scene has the channel.
+Line line_of(const SceneAnalyses& scene, const BranchComparison& branch, const Channel& channel) {
+    const auto c =
+        static_cast<std::size_t>(compare::find_channel(scene.comparison.channels, channel.name));
+    const compare::Curve& curve = branch.run(compare::Leg::equilibrium).curve;
+    Line line{curve.a, curve.channel(c)};
+    for (double& y : line.y) y = compare::finite_or_nan(y);
+    return line;
 }
 
 // The branch of this name and unit, or null.
-const BranchCurve* find(const std::vector<BranchCurve>& branches, const BranchCurve& like) {
-    const auto found = std::ranges::find_if(branches, [&](const BranchCurve& branch) {
-        return branch.name == like.name && branch.unit == like.unit;
-    });
-    return found == branches.end() ? nullptr : &*found;
+const BranchComparison* find(const SceneAnalyses& scene, const BranchComparison& like) {
+    for (const auto& branch : scene.comparison.branches)
+        if (branch.branch == like.branch && branch.unit == like.unit) return &branch;
+    return nullptr;
+}
+
+bool has(const SceneAnalyses& scene, const Channel& channel) {
+    const int c = compare::find_channel(scene.comparison.channels, channel.name);
+    return c >= 0 && scene.comparison.channels[static_cast<std::size_t>(c)].unit == channel.unit;
 }
 
 double at_design(const Line& line) {
@@ -86,147 +61,149 @@ bool differs(double was, double is) {
 }
 
 // Ratio of a difference to what an engineer notices.
-double noticed(const Output& output, double was, double is) {
+double noticed(const Channel& channel, double was, double is) {
     static const auto physical = compare::default_tolerances(compare::ToleranceClass::physical);
-    const auto own = physical.find(output.unit);
+    const auto own = physical.find(symbol(channel.unit));
     const auto& t = own == physical.end() ? physical.at("characteristic") : own->second;
     return std::abs(is - was) / (t.atol + t.rtol * std::max(std::abs(was), std::abs(is)));
 }
 
-json thinned(const Line& line) {
+Line thinned(const Line& line) {
     constexpr std::size_t most = 41;
-    json a = json::array(), y = json::array();
+    Line few;
     const std::size_t count = std::min(line.a.size(), most);
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t at = count == 1 ? 0 : k * (line.a.size() - 1) / (count - 1);
-        a.push_back(line.a[at]), y.push_back(line.y[at]);
+        few.a.push_back(line.a[at]), few.y.push_back(line.y[at]);
     }
-    return {{"a", a}, {"y", y}};
+    return few;
 }
 
-json number_or_null(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-
-json figures_json(const std::vector<Output>& outputs, const std::vector<BranchCurve>& was,
-                  const std::vector<BranchCurve>& is) {
-    std::vector<json> figures;
-    for (const auto& output : outputs) {
-        if (!output.kinematic && !output.characteristic) continue;
-        for (const auto& branch : is) {
-            const BranchCurve* same = find(was, branch);
-            if (same == nullptr) continue;
-            const double a = at_design(same->of(output.name)),
-                         b = at_design(branch.of(output.name));
-            if (std::isnan(a) && std::isnan(b)) continue;  // no figure of this branch
-            if (!differs(a, b)) break;
-            const auto compared = [&](double x) {
-                return output.reciprocal ? (std::isfinite(x) ? 1e3 / x : 0) : x;
-            };
-            figures.push_back(
-                {{"output", output.name},
-                 {"unit", output.unit},
-                 {"base", number_or_null(a)},
-                 {"variant", number_or_null(b)},
-                 {"difference", number_or_null(compared(b) - compared(a))},
-                 {"unit_of_difference", output.reciprocal ? compare::per_metre : output.unit},
-                 {"noticed", number_or_null(noticed(output, compared(a), compared(b)))}});
-            break;
-        }
+// Adds a figure that differs, of the first branch that has it.
+void add_figure(std::vector<Against::Figure>& figures, const SceneAnalyses& base,
+                const SceneAnalyses& variant, const Channel& channel) {
+    for (const auto& branch : variant.comparison.branches) {
+        const BranchComparison* same = find(base, branch);
+        if (same == nullptr) continue;
+        const double a = at_design(line_of(base, *same, channel)),
+                     b = at_design(line_of(variant, branch, channel));
+        if (std::isnan(a) && std::isnan(b)) continue;  // no figure of this branch
+        if (!differs(a, b)) return;
+        const bool reciprocal = is_swing_arm(channel);
+        const auto compared = [&](double x) {
+            return reciprocal ? (std::isfinite(x) ? 1e3 / x : 0) : x;
+        };
+        const double size = noticed(channel, compared(a), compared(b));
+        const std::string unit = symbol(channel.unit);
+        figures.push_back({channel.name, unit, a, b, compared(b) - compared(a),
+                           reciprocal ? compare::per_metre : unit,
+                           std::isfinite(size) ? size : INFINITY});
+        return;
     }
-    // what an engineer notices first; what is undefined on one side before all
-    std::ranges::stable_sort(figures, std::greater{}, [](const json& figure) {
-        return figure["noticed"].is_null() ? INFINITY : figure["noticed"].get<double>();
-    });
-    return figures;
 }
 
-json curves_json(const std::vector<Output>& outputs, const BranchCurve& was,
-                 const BranchCurve& is) {
-    json curves = json::array();
-    for (const auto& output : outputs) {
-        if (!output.main || !output.kinematic) continue;
-        const Line a = was.of(output.name), b = is.of(output.name);
-        double largest = 0, at = nan;
-        for (std::size_t k = 0; k < b.a.size(); ++k) {
-            if (!compare::reaches(a.a, b.a[k])) continue;
-            const double difference = b.y[k] - compare::interpolate(a.a, a.y, b.a[k], 6);
-            if (std::abs(difference) > std::abs(largest)) largest = difference, at = b.a[k];
-        }
-        if (!(std::abs(largest) > 1e-9)) continue;
-        curves.push_back({{"output", output.name},
-                          {"unit", output.unit},
-                          {"largest", largest},
-                          {"at", at},
-                          {"noticed", noticed(output, 0, largest)},
-                          {"base", thinned(a)},
-                          {"variant", thinned(b)}});
+// Adds a curve that differs, at the variant's parameters.
+void add_curve(std::vector<Against::Curve>& curves, const Channel& channel, const Line& was,
+               const Line& is) {
+    double largest = 0, at = nan;
+    for (std::size_t k = 0; k < is.a.size(); ++k) {
+        if (!compare::reaches(was.a, is.a[k])) continue;
+        const double difference = is.y[k] - compare::interpolate(was.a, was.y, is.a[k], 6);
+        if (std::abs(difference) > std::abs(largest)) largest = difference, at = is.a[k];
     }
-    return curves;
+    if (std::abs(largest) > 1e-9)
+        curves.push_back({channel.name, symbol(channel.unit), largest, at,
+                          noticed(channel, 0, largest), thinned(was), thinned(is)});
 }
 
 }  // namespace
 
-void add_against(json& base, const json& variant) {
-    const std::string file = "result.json";
-    const JsonCursor is{&variant, "", &file}, was{&base, "", &file};
-    json numbers = json::array();
+Against differences(const SceneAnalyses& base, const SceneAnalyses& variant) {
+    Against found{variant.scene.name, variant.scene.source, variant.hash};
+    found.numbers = compare::changes(base.scene.numbers, variant.scene.numbers);
+    std::vector<Channel> common;
+    for (const auto& channel : variant.comparison.channels)
+        if (has(base, channel))
+            common.push_back(channel);
+        else
+            found.only_variant.push_back("output " + channel.name);
+    for (const auto& channel : base.comparison.channels)
+        if (!has(variant, channel)) found.only_base.push_back("output " + channel.name);
+    for (const auto& channel : common)
+        if (channel.kinematic() || channel.kind() == compare::ChannelKind::characteristic)
+            add_figure(found.figures, base, variant, channel);
+    // what an engineer notices first; what is undefined on one side before all
+    std::ranges::stable_sort(found.figures, std::greater{}, &Against::Figure::noticed);
+    for (const auto& branch : variant.comparison.branches) {
+        const BranchComparison* same = find(base, branch);
+        if (same == nullptr) {
+            found.only_variant.push_back("branch " + branch.branch);
+            continue;
+        }
+        auto& both =
+            found.branches.emplace_back(Against::Branch{branch.branch, symbol(branch.unit), {}});
+        for (const auto& channel : common)
+            if (channel.main && channel.kinematic())
+                add_curve(both.curves, channel, line_of(base, *same, channel),
+                          line_of(variant, branch, channel));
+    }
+    for (const auto& branch : base.comparison.branches)
+        if (find(variant, branch) == nullptr) found.only_base.push_back("branch " + branch.branch);
+    return found;
+}
+
+json against_json(const Against& against) {
+    json numbers = json::array(), figures = json::array(), branches = json::array();
     const auto number = [](const std::optional<Number>& n) {
         return n ? json{{"value", n->value}, {"unit", n->unit}} : json(nullptr);
     };
-    for (const auto& change : compare::changes(numbers_of(was), numbers_of(is)))
+    const auto line = [](const Line& l) { return json{{"a", l.a}, {"y", l.y}}; };
+    for (const auto& change : against.numbers)
         numbers.push_back({{"path", (change.is ? change.is : change.was)->path},
                            {"base", number(change.was)},
                            {"variant", number(change.is)}});
-    const auto outputs = outputs_of(is), before = outputs_of(was);
-    std::vector<Output> common;
-    json only_base = json::array(), only_variant = json::array();
-    const auto has = [](const std::vector<Output>& all, const Output& o) {
-        return std::ranges::any_of(
-            all, [&](const Output& x) { return x.name == o.name && x.unit == o.unit; });
-    };
-    for (const auto& output : outputs)
-        if (has(before, output))
-            common.push_back(output);
-        else
-            only_variant.push_back("output " + output.name);
-    for (const auto& output : before)
-        if (!has(outputs, output)) only_base.push_back("output " + output.name);
-    const auto branches = branches_of(is), branches_before = branches_of(was);
-    json list = json::array();
-    for (const auto& branch : branches)
-        if (const BranchCurve* same = find(branches_before, branch))
-            list.push_back({{"name", branch.name},
-                            {"unit", branch.unit},
-                            {"curves", curves_json(common, *same, branch)}});
-        else
-            only_variant.push_back("branch " + branch.name);
-    for (const auto& branch : branches_before)
-        if (find(branches, branch) == nullptr) only_base.push_back("branch " + branch.name);
-    base["against"] = {{"name", is["name"].text()},
-                       {"source", is["source"].text()},
-                       {"input_hash", is["input_hash"].text()},
-                       {"numbers", numbers},
-                       {"figures", figures_json(common, branches_before, branches)},
-                       {"branches", list},
-                       {"only_base", only_base},
-                       {"only_variant", only_variant}};
+    for (const auto& f : against.figures)
+        figures.push_back({{"output", f.output},
+                           {"unit", f.unit},
+                           {"base", f.base},
+                           {"variant", f.variant},
+                           {"difference", f.difference},
+                           {"unit_of_difference", f.unit_of_difference},
+                           {"noticed", f.noticed}});
+    for (const auto& branch : against.branches) {
+        json curves = json::array();
+        for (const auto& c : branch.curves)
+            curves.push_back({{"output", c.output},
+                              {"unit", c.unit},
+                              {"largest", c.largest},
+                              {"at", c.at},
+                              {"noticed", c.noticed},
+                              {"base", line(c.base)},
+                              {"variant", line(c.variant)}});
+        branches.push_back({{"name", branch.name}, {"unit", branch.unit}, {"curves", curves}});
+    }
+    return {{"name", against.name},
+            {"source", against.source},
+            {"input_hash", against.hash},
+            {"numbers", numbers},
+            {"figures", figures},
+            {"branches", branches},
+            {"only_base", against.only_base},
+            {"only_variant", against.only_variant}};
 }
 
-std::string against_sentence(const json& base) {
-    const json& against = base.at("against");
-    const json* most = nullptr;  // noticed most, of those that both have
-    for (const auto& figure : against.at("figures"))
-        if (most == nullptr && figure.at("base").is_number() && figure.at("variant").is_number())
-            most = &figure;
+std::string against_sentence(const std::string& base_source, const Against& against) {
     std::string text =
         fmt::format("{} against {}: {} of the scene and {} at the design position differ",
-                    against.at("source").get<std::string>(), base.at("source").get<std::string>(),
-                    counted(against.at("numbers").size(), "number"),
-                    counted(against.at("figures").size(), "figure"));
-    if (most != nullptr)
-        text +=
-            fmt::format(", most {} [{}] from {:.3g} to {:.3g}",
-                        most->at("output").get<std::string>(), most->at("unit").get<std::string>(),
-                        most->at("base").get<double>(), most->at("variant").get<double>());
+                    against.source, base_source, counted(against.numbers.size(), "number"),
+                    counted(against.figures.size(), "figure"));
+    // noticed most, of those that both have
+    const auto most = std::ranges::find_if(against.figures, [](const Against::Figure& figure) {
+        return std::isfinite(figure.base) && std::isfinite(figure.variant);
+    });
+    if (most != against.figures.end())
+        text += fmt::format(", most {} [{}] from {:.3g} to {:.3g}", most->output, most->unit,
+                            most->base, most->variant);
     return text + ".";
 }
 

@@ -1,19 +1,53 @@
-// Two variants of a scene: what differs between their solved documents.
+// Two variants of a scene: what differs between them.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "compare/comparison/changes.hpp"
 
 namespace elastocheck::reports {
 
-// Adds "against" to the document of the base: the numbers of the variant's scene that differ, the
-// outputs and K&C figures at the design position, and the main outputs over the branches that both
-// have, at equal load or drive; all by the equilibrium leg. A swing arm is compared by its
-// reciprocal. Throws ResultError for a document without curves or numbers.
-void add_against(nlohmann::ordered_json& base, const nlohmann::ordered_json& variant);
+struct SceneAnalyses;
+
+// All by the equilibrium leg; the base is the first of both.
+struct Against {
+    // An output or K&C figure at the design position; NaN where it is undefined. A swing arm is
+    // compared by its reciprocal.
+    struct Figure {
+        std::string output, unit;
+        double base, variant, difference;
+        std::string unit_of_difference;
+        double
+            noticed;  // ratio of the difference to what an engineer notices; infinite: one has none
+    };
+    struct Line {
+        std::vector<double> a{}, y{};
+    };
+    struct Curve {  // a main output over a branch, at equal load or drive
+        std::string output, unit;
+        double largest, at, noticed;  // largest difference
+        Line base, variant;
+    };
+    struct Branch {
+        std::string name, unit;
+        std::vector<Curve> curves;
+    };
+    std::string name, source, hash;  // of the variant
+    std::vector<compare::Change> numbers{};
+    std::vector<Figure> figures{};  // noticed most first
+    std::vector<Branch> branches{};
+    std::vector<std::string> only_base{}, only_variant{};  // outputs and branches
+};
+
+Against differences(const SceneAnalyses& base, const SceneAnalyses& variant);
+
+// "against" in result.json.
+nlohmann::ordered_json against_json(const Against& against);
 
 // "B against A: 1 number of the scene and 31 figures at the design position differ, most bump_steer
-// [deg/m] from -2.16 to 0.0812." Of a document with "against".
-std::string against_sentence(const nlohmann::ordered_json& base);
+// [deg/m] from -2.16 to 0.0812."
+std::string against_sentence(const std::string& base_source, const Against& against);
 
 }  // namespace elastocheck::reports

@@ -3,40 +3,33 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 
-#include "compare/tables/rows.hpp"
-#include "reports/json/json_cursor.hpp"
 #include "reports/render/render.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 
-std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file) {
+std::string curves_csv(
+    const std::vector<std::pair<std::string, const compare::Comparison*>>& scenes) {
     std::string csv = "scene,branch,leg,parameter,parameter unit,output,unit,value\n";
-    for (const auto& scene : JsonCursor{&result, "", &file}["scenes"].items()) {
-        if (!scene.find("branches")) continue;
-        for (const auto& branch : scene["branches"].items())
-            for (const auto& leg : branch["legs"].items()) {
-                const JsonCursor curve = leg["curve"], columns = curve["values"];
-                const auto a = curve["a"].numbers();
-                const std::string unit = for_csv(branch["unit"].text());
-                const std::string whose = for_csv(scene["name"].text()) + "," +
-                                          for_csv(branch["name"].text()) + "," +
-                                          for_csv(leg["leg"].text());
-                for (const auto& channel : scene["channels"].items()) {
-                    const std::string name = channel["name"].text();
-                    const std::string what = for_csv(name) + "," + for_csv(channel["unit"].text());
-                    const auto values = columns[name].numbers();
-                    if (values.size() != a.size())
-                        columns[name].fail("not as many numbers as parameters");
-                    for (std::size_t k = 0; k < values.size(); ++k)
-                        csv += fmt::format(
-                            "{},{},{},{},{}\n", whose, a[k], unit, what,
-                            std::isnan(values[k]) ? "" : fmt::format("{:.17g}", values[k]));
+    for (const auto& [scene, comparison] : scenes)
+        for (const auto& branch : comparison->branches)
+            for (const auto& run : branch.runs) {
+                const std::string unit = for_csv(symbol(branch.unit));
+                const std::string whose =
+                    for_csv(scene) + "," + for_csv(branch.branch) + "," + for_csv(name(run.leg));
+                for (std::size_t c = 0; c < comparison->channels.size(); ++c) {
+                    const auto& channel = comparison->channels[c];
+                    const std::string what =
+                        for_csv(channel.name) + "," + for_csv(symbol(channel.unit));
+                    for (std::size_t k = 0; k < run.curve.a.size(); ++k) {
+                        const double value = run.curve.values[k][c];
+                        csv +=
+                            fmt::format("{},{},{},{},{}\n", whose, run.curve.a[k], unit, what,
+                                        std::isfinite(value) ? fmt::format("{:.17g}", value) : "");
+                    }
                 }
             }
-    }
     return csv;
 }
 
@@ -53,12 +46,11 @@ void describe(auto& field, compare::Described<SceneForce> auto& r) {
 
 }  // namespace
 
-std::string forces_csv(const nlohmann::ordered_json& result, const std::string& file) {
+std::string forces_csv(const std::vector<SceneAnalyses>& scenes) {
     std::vector<SceneForce> all;
-    for (const auto& scene : JsonCursor{&result, "", &file}["scenes"].items())
-        if (const auto forces = scene.find("forces"))
-            for (const auto& row : read_rows<compare::ForceRow>(*forces))
-                all.push_back({scene["name"].text(), row});
+    for (const auto& scene : scenes)
+        for (const auto& row : force_rows(scene.model, scene.comparison))
+            all.push_back({scene.scene.name, row});
     return csv(all);
 }
 

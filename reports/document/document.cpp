@@ -9,14 +9,16 @@
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/findings.hpp"
 #include "compare/tables/rows.hpp"
-#include "compare/warnings/lift_off.hpp"
 #include "compare/warnings/plausibility.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
+#include "reports/document/candidate.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/document/wheels.hpp"
-#include "reports/tables/elements.hpp"
 #include "reports/render/render.hpp"
+#include "reports/tables/elements.hpp"
+#include "reports/tables/judgement.hpp"
+#include "reports/tables/studies/study_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -24,9 +26,8 @@ namespace {
 using json = nlohmann::ordered_json;
 using compare::Leg;
 
-json model_json(const Model& model) {
-    const recursive::Diagnosis d = recursive::diagnose(model);
-    const recursive::Conditioning condition = recursive::conditioning(model, d);
+json model_json(const Model& model, const recursive::Diagnosis& d,
+                const recursive::Conditioning& condition) {
     json bodies = json::array(), joints = json::array(), elements = json::array(),
          idle = json::array(), redundant = json::array(), omitted = json::array();
     for (const auto& body : model.bodies) bodies.push_back(body.name);
@@ -174,27 +175,6 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all,
             {"at_equal_abscissa", reading_json(pair.equal_abscissa, all, determined)}};
 }
 
-// Worst main channel at each point of the equilibrium leg.
-json profile_json(const compare::Profile& profile) {
-    json mm = json::array(), deg = json::array();
-    for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
-    return {{"mm", mm}, {"deg", deg}};
-}
-
-json profiles_json(const compare::Comparison& all, const compare::BranchComparison& branch) {
-    const auto curve = [&](Leg leg) -> const compare::Curve& {
-        return branch.runs[static_cast<std::size_t>(leg)].curve;
-    };
-    const compare::Curve &truth = curve(Leg::equilibrium), &recursion = curve(Leg::recursive);
-    const auto by = compare::abscissa(all.channels, branch.abscissa, truth, recursion);
-    return {{"at_equal_parameter",
-             profile_json(compare::profile_at_equal_parameter(all.channels, truth, recursion))},
-            {"at_equal_abscissa",
-             profile_json(compare::profile_at_equal_abscissa(all.channels, truth, recursion, by))},
-            {"references", profile_json(compare::profile_at_equal_parameter(
-                               all.channels, truth, curve(branch.second)))}};
-}
-
 json worst_json(const std::optional<compare::Worst>& worst) {
     if (!worst) return nullptr;
     return {{"branch", worst->branch},
@@ -247,11 +227,35 @@ json rate_errors_json(const std::vector<compare::RateError>& rates) {
     return list;
 }
 
-json events_json(const Model& model, const Branch& branch) {
-    json list = json::array();
-    for (const auto& event : compare::lift_offs(model, branch, Leg::equilibrium))
-        list.push_back(event.text());
-    return list;
+json trim_json(const compare::TrimRecord& trim) {
+    json adjusted = json::array(), conditions = json::array();
+    for (const auto& a : trim.adjusted)
+        adjusted.push_back(
+            {{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
+    for (const auto& c : trim.conditions)
+        conditions.push_back({{"name", c.name},
+                              {"unit", symbol(c.unit)},
+                              {"asked", c.target},
+                              {"missed", c.missed},
+                              {"missed_by_confirming_leg", c.confirmed}});
+    return {{"adjusted", adjusted},
+            {"conditions", conditions},
+            {"iterations", trim.iterations},
+            {"bushings", compare::name(trim.bushings)},
+            {"confirmed_by", name(trim.confirmed_by)}};
+}
+
+json wheels_json(const Model& model, const compare::Comparison& comparison) {
+    json names = json::array(), vehicle = nullptr;
+    for (const auto& wheel : model.wheels)
+        names.push_back({{"name", wheel.name}, {"side", wheel.side > 0 ? "left" : "right"}});
+    if (model.vehicle)
+        vehicle = {{"wheelbase_mm", 1e3 * model.vehicle->wheelbase},
+                   {"cg_height_mm", 1e3 * model.vehicle->cg_height}};
+    return {{"names", names},
+            {"vehicle", vehicle},
+            {"settled_on", model.branches[settled_on(model)].name},
+            {"static", table_json(static_rows(model, comparison))}};
 }
 
 // Residuals of the equilibrium leg's states in the equations of the energy leg, and their bounds,
@@ -294,15 +298,21 @@ json document(const std::string& reproduce, const Provenance& provenance) {
             {"scenes", json::array()}};
 }
 
-json scene_document(const Scene& scene, std::string_view input, const Model& model) {
-    return {{"name", scene.name},
-            {"source", scene.source},
-            {"input_hash", input_hash(input)},
-            {"model", model_json(model)}};
+json scene_head(const SceneAnalyses& s) {
+    json head = {{"name", s.scene.name},
+                 {"source", s.scene.source},
+                 {"input_hash", s.hash},
+                 {"model", model_json(s.model, s.diagnosis, s.conditioning)}};
+    if (s.trim) head["trim"] = trim_json(*s.trim);
+    if (!s.warnings.empty()) head["warnings"] = s.warnings;
+    return head;
 }
 
-void add_comparison(json& scene_document, const Scene& scene, const Model& model,
-                    const compare::Comparison& comparison) {
+namespace {
+
+json branches_json(const SceneAnalyses& scene) {
+    const Model& model = scene.model;
+    const compare::Comparison& comparison = scene.comparison;
     json branches = json::array();
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const auto& branch = comparison.branches[b];
@@ -321,19 +331,20 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"deviation", pair(branch.deviation)},
              {"cross_check", pair(branch.cross_check)},
              {"reference_uncertainty", pair(branch.uncertainty)},
-             {"profiles", profiles_json(comparison, branch)},
              {"second_reference", name(branch.second)},
              {"energy_not_asked", branch.why_not_energy},
              {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()},
              {"case", load_case(model, model.branches[b])},
-             {"events", events_json(model, model.branches[b])},
-             {"pushes", pushes_json(model, model.branches[b])},
-             {"efforts", efforts_json(model.branches[b], comparison.channels)}});
+             {"events", scene.lift_offs[b]}});
         if (branch.every > 1) one["steps"] = branch.steps;
         branches.push_back(std::move(one));
     }
+    return branches;
+}
+
+json described_channels(const Model& model, const compare::Comparison& comparison) {
     json channels = channels_json(comparison.channels);
     const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
     for (std::size_t c = 0; c < drawn.size(); ++c) {
@@ -341,22 +352,28 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         if (comparison.channels[c].kinematic()) channels[c]["drawn"] = drawn[c];
         if (rate != nullptr && compare::is_swing_arm(*rate)) channels[c]["reciprocal"] = true;
     }
-    scene_document["numbers"] = numbers_json(scene);
-    scene_document["channels"] = channels;
-    scene_document["branches"] = branches;
-    scene_document["findings"] = findings_json(comparison);
-    scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
-    if (!model.wheels.empty())
-        scene_document["characteristics"] = {
-            {"design", table_json(characteristic_rows(comparison))},
-            {"compliance", table_json(compliance_rows(model, comparison))}};
-    if (!model.wheels.empty() && !comparison.branches.empty())
-        scene_document["wheels"] = wheels_json(model, comparison);
-    scene_document["elements"] = elements_json(model);
-    scene_document["forces"] = table_json(force_rows(model, comparison));
-    scene_document["largest_forces"] = table_json(largest_force_rows(comparison));
-    scene_document["drawing"] = drawing_json(scene, model, comparison);
+    return channels;
 }
+
+void add_compared(json& part, const SceneAnalyses& scene) {
+    const Model& model = scene.model;
+    const compare::Comparison& comparison = scene.comparison;
+    part["numbers"] = numbers_json(scene.scene);
+    part["channels"] = described_channels(model, comparison);
+    part["branches"] = branches_json(scene);
+    part["findings"] = findings_json(comparison);
+    part["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
+    if (!model.wheels.empty())
+        part["characteristics"] = {{"design", table_json(characteristic_rows(comparison))},
+                                   {"compliance", table_json(compliance_rows(model, comparison))}};
+    if (!model.wheels.empty() && !comparison.branches.empty())
+        part["wheels"] = wheels_json(model, comparison);
+    part["forces"] = table_json(force_rows(model, comparison));
+    part["largest_forces"] = table_json(largest_force_rows(comparison));
+    part["drawing"] = drawing_json(scene.drawing);
+}
+
+}  // namespace
 
 void add_curves(json& scene_document, const Model& model,
                 const std::vector<compare::Channel>& channels, compare::Leg leg,
@@ -415,61 +432,76 @@ void add_inspection(json& scene_document, const Scene& scene, const Model& model
                                     {"numbers", numbers_json(scene)}};
 }
 
-void add_trim(json& scene_document, const compare::TrimRecord& trim) {
-    json adjusted = json::array(), conditions = json::array();
-    for (const auto& a : trim.adjusted)
-        adjusted.push_back(
-            {{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
-    for (const auto& c : trim.conditions)
-        conditions.push_back({{"name", c.name},
-                              {"unit", symbol(c.unit)},
-                              {"asked", c.target},
-                              {"missed", c.missed},
-                              {"missed_by_confirming_leg", c.confirmed}});
-    scene_document["trim"] = {{"adjusted", adjusted},
-                              {"conditions", conditions},
-                              {"iterations", trim.iterations},
-                              {"bushings", compare::name(trim.bushings)},
-                              {"confirmed_by", name(trim.confirmed_by)}};
-}
-
-void add_formulations(json& scene_document, const compare::FormulationStudy& study,
-                      const compare::Comparison& comparison) {
-    json formulations = json::array();
-    for (const auto& one : compare::formulations) formulations.push_back(one.name);
-    json not_solved = json::array();
-    for (const auto& branch : study.branches)
-        for (const auto& why : branch.not_solved) not_solved.push_back(branch.branch + ": " + why);
-    scene_document["formulations"] = {{"formulations", formulations},
-                                      {"bushings", study.bushings},
-                                      {"spread", table_json(formulation_rows(study, comparison))},
-                                      {"not_solved", not_solved},
-                                      {"inconclusive", study.inconclusive}};
-}
-
-void add_gap(json& scene_document, const compare::Comparison& comparison,
-             const compare::Study& study) {
-    const auto part = compare::gap_part(comparison, study, "published");
-    if (!part) return;
-    scene_document["findings"]["gap"] = {
-        {"branch", part->branch}, {"channel", part->channel}, {"deviation", part->deviation},
-        {"gap", part->gap},       {"band", part->band},       {"role", name_of(part->role)}};
-}
-
-std::vector<std::string> reasons_of(const compare::Comparison& comparison) {
-    std::vector<std::string> reasons;
-    for (const auto& branch : comparison.branches)
-        for (const auto& reason : branch.inconclusive.texts())
-            reasons.push_back(branch.branch + ": " + reason);
-    if (comparison.compared == 0) reasons.emplace_back("nothing was compared");
-    return reasons;
-}
-
 void add_verdict(json& scene_document, int numbers_compared,
                  const std::vector<std::string>& reasons) {
     scene_document["verdict"] = {{"conclusive", reasons.empty()},
                                  {"numbers_compared", numbers_compared},
                                  {"reasons", reasons}};
+}
+
+namespace {
+
+json formulations_json(const compare::FormulationStudy& study,
+                       const compare::Comparison& comparison) {
+    json formulations = json::array(), not_solved = json::array();
+    for (const auto& one : compare::formulations) formulations.push_back(one.name);
+    for (const auto& branch : study.branches)
+        for (const auto& why : branch.not_solved) not_solved.push_back(branch.branch + ": " + why);
+    return {{"formulations", formulations},
+            {"bushings", study.bushings},
+            {"spread", table_json(formulation_rows(study, comparison))},
+            {"not_solved", not_solved},
+            {"inconclusive", study.inconclusive}};
+}
+
+json gap_json(const compare::GapPart& part) {
+    return {{"branch", part.branch}, {"channel", part.channel}, {"deviation", part.deviation},
+            {"gap", part.gap},       {"band", part.band},       {"role", name_of(part.role)}};
+}
+
+json recommended_json(const Recommended& recommended) {
+    const compare::TradePoint& point = recommended.configuration;
+    json result = {{"method", point.method}};
+    if (point.steps > 0) result["steps"] = point.steps;
+    if (point.own_tolerance > 0) result["own_tolerance_m"] = point.own_tolerance;
+    result["branches"] = json::array();
+    for (const auto& [branch, profile] : recommended.branches) {
+        json mm = json::array(), deg = json::array();
+        for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
+        result["branches"].push_back(
+            {{"name", branch}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
+    }
+    return result;
+}
+
+}  // namespace
+
+json scene_json(const SceneAnalyses& s) {
+    json part = scene_head(s);
+    if (!s.only.empty()) part["only"] = s.only;
+    if (s.quick) part["proved"] = "ends";
+    add_compared(part, s);
+    if (s.measured) part["measured"] = measured_json(*s.measured, s.comparison);
+    if (s.effects)
+        part["sensitivity"] = {{"conclusive", s.effects->reasons.empty()},
+                               {"reasons", s.effects->reasons},
+                               {"compared", s.effects->compared},
+                               {"apart", s.effects->apart},
+                               {"effects", table_json(s.effects->rows)}};
+    if (s.formulations) part["formulations"] = formulations_json(*s.formulations, s.comparison);
+    if (s.study) {
+        if (const auto gap = compare::gap_part(s.comparison, *s.study, "published"))
+            part["findings"]["gap"] = gap_json(*gap);
+        part["convergence"] = study_json(*s.study, {});
+    }
+    if (s.trade) part["trade"] = trade_json(*s.trade);
+    if (s.recommended) part["recommended"] = recommended_json(*s.recommended);
+    for (const auto& [judgement, sentence] : s.candidates)
+        part["candidates"].push_back(candidate_json(judgement, s.comparison, sentence));
+    add_verdict(part, s.comparison.compared, s.reasons);
+    if (s.judgement) part["judgement"] = judgement_json(*s.judgement);
+    if (s.against) part["against"] = against_json(*s.against);
+    return part;
 }
 
 }  // namespace elastocheck::reports

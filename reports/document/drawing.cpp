@@ -28,7 +28,7 @@ struct Sketch {
     std::vector<Point> points;
     std::vector<std::string> names;
     std::vector<bool> hard;  // whether the scene has a hardpoint there
-    json links = json::array();
+    std::vector<Drawing::Link> links = {};
 
     Vector3d at(const Point& point, const std::vector<Pose>& poses) const {
         if (point.body == ground) return point.s_local;
@@ -58,7 +58,7 @@ struct Sketch {
         return points.size() - 1;
     }
     void link(const char* kind, const std::string& name, std::size_t i, std::size_t j) {
-        links.push_back({{"kind", kind}, {"name", name}, {"points", {i, j}}});
+        links.push_back({kind, name, i, j});
     }
 };
 
@@ -103,7 +103,7 @@ void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine
 }
 
 void draw_body(Sketch& sketch, BodyId body, const std::vector<std::size_t>& hubs,
-               const std::set<std::size_t>& patches, json& faces) {
+               const std::set<std::size_t>& patches, std::vector<Drawing::Face>& faces) {
     std::vector<std::size_t> mine;
     for (std::size_t k = 0; k < sketch.points.size(); ++k)
         if (sketch.points[k].body == body && !patches.contains(k)) mine.push_back(k);
@@ -116,12 +116,12 @@ void draw_body(Sketch& sketch, BodyId body, const std::vector<std::size_t>& hubs
         std::vector<Vector3d> places;
         for (const auto k : plate) places.push_back(sketch.points[k].s_local);
         if (const auto round = outline(places); round.size() >= 3) {
-            json corners = json::array();
+            std::vector<std::size_t> corners;
             for (std::size_t k = 0; k < round.size(); ++k) {
                 corners.push_back(plate[round[k]]);
                 sketch.link("body", name, plate[round[k]], plate[round[(k + 1) % round.size()]]);
             }
-            faces.push_back({{"body", name}, {"points", corners}});
+            faces.push_back({name, corners});
             if (hubs.empty()) return;
             const auto distance = [&](std::size_t k) {
                 return (sketch.points[k].s_local - sketch.points[hubs.front()].s_local).norm();
@@ -154,25 +154,23 @@ std::vector<Symbol> symbols_of(const JointKind& kind) {
 
 bool is_segment(const Elastic& elastic) { return elastic.written_as == WrittenAs::beam; }
 
-json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Position position(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Position millimetres(const Vector3d& v) { return position(1e3 * v); }
 
-json symbols_json(const Sketch& sketch) {
+std::vector<Drawing::Symbol> symbols_of(const Sketch& sketch) {
     const Scene& scene = *sketch.scene;
     const auto design = sketch.design();
-    json list = json::array();
+    std::vector<Drawing::Symbol> list;
     const auto pose = [&](BodyId body) {
         return body == ground ? Pose{} : scene.bodies[static_cast<std::size_t>(body)].design;
     };
     const auto put = [&](const char* kind, const std::string& name, const Vector3d& at,
                          const std::optional<Vector3d>& axis) {
-        json point = nullptr;
+        std::optional<std::size_t> point;
         for (std::size_t k = sketch.points.size(); k-- > 0;)
             if ((sketch.at(sketch.points[k], design) - at).norm() < 1e-5) point = k;
-        list.push_back({{"kind", kind},
-                        {"name", name},
-                        {"point", point},
-                        {"at_mm", {1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z()}},
-                        {"axis", axis ? vector_json(*axis) : json(nullptr)}});
+        list.push_back({kind, name, point, millimetres(at),
+                        axis ? std::optional(position(*axis)) : std::nullopt});
     };
     const auto place = [&](const Point& p) -> Vector3d {
         return pose(p.body).r + pose(p.body).p * p.s_local;
@@ -240,11 +238,9 @@ void draw_beam(Sketch& sketch, const std::string& name, const std::vector<Segmen
     }
 }
 
-json millimetres(const Vector3d& v) { return {1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()}; }
-
 // Circle through the contact patch about the spin axis; empty where patch and centre coincide.
-json circle(const Model& model, const Wheel& wheel, const std::vector<Pose>& poses) {
-    json list = json::array();
+std::vector<Position> rim(const Model& model, const Wheel& wheel, const std::vector<Pose>& poses) {
+    std::vector<Position> list;
     const auto body = static_cast<std::size_t>(wheel.body);
     const Pose& pose = poses[body];
     const Vector3d arm = model.bodies[body].design.p.conjugate() * compare::drawn_arm(model, wheel);
@@ -259,43 +255,37 @@ json circle(const Model& model, const Wheel& wheel, const std::vector<Pose>& pos
 }
 
 // Stations of a branch, to move the drawing along it.
-json motion(const Sketch& sketch, const compare::BranchComparison& branch) {
-    json a = json::array(), points = json::array(), axes = json::array();
-    const auto put = [](json& list, const Vector3d& v, double per_unit) {
+Drawing::Motion motion(const Sketch& sketch, const compare::BranchComparison& branch) {
+    Drawing::Motion motion{branch.branch, symbol(branch.unit)};
+    const auto put = [](std::vector<double>& list, const Vector3d& v, double per_unit) {
         for (const double x : v) list.push_back(std::round(x * per_unit) / per_unit + 0.0);
     };
-    for (const auto& state :
-         branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].stations) {
-        json at = json::array(), spin = json::array();
+    for (const auto& state : branch.run(compare::Leg::equilibrium).stations) {
+        auto& at = motion.points.emplace_back();
+        auto& spin = motion.axes.emplace_back();
         for (const auto& point : sketch.points) put(at, 1e3 * sketch.at(point, state.poses), 1e3);
         for (const auto& wheel : sketch.model->wheels)
             put(spin, state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local,
                 1e6);
-        a.push_back(parameter_in(branch.unit, state.load));
-        points.push_back(at);
-        axes.push_back(spin);
+        motion.a.push_back(parameter_in(branch.unit, state.load));
     }
-    return {{"branch", branch.branch},
-            {"unit", symbol(branch.unit)},
-            {"a", a},
-            {"points_mm", points},
-            {"spin_axes", axes}};
+    return motion;
 }
 
-json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
-    json points = json::array();
-    for (const auto& point : sketch.points) points.push_back(millimetres(sketch.at(point, poses)));
-    json result = {{"points_mm", points}};
+Drawing::Placed placed(const Sketch& sketch, const std::vector<Pose>& poses) {
+    Drawing::Placed result;
+    for (const auto& point : sketch.points)
+        result.points.push_back(millimetres(sketch.at(point, poses)));
     for (const auto& wheel : sketch.model->wheels)
-        result["wheels_mm"].push_back(circle(*sketch.model, wheel, poses));
+        result.rims.push_back(rim(*sketch.model, wheel, poses));
     return result;
 }
 
-}  // namespace
+using Beams = std::vector<std::pair<std::string, std::vector<Segment>>>;
 
-json drawing_json(const Scene& scene, const Model& model, const compare::Comparison& comparison) {
-    Sketch sketch{&scene, &model, {}, {}, {}};
-    json faces = json::array(), wheels = json::array();
+// Joints and elements; returns the beams.
+Beams draw_connections(Sketch& sketch) {
+    const Model& model = *sketch.model;
     for (const auto& constraint : model.constraints) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         if (joint.active_only_where_driven) continue;  // a jack is not part of the suspension
@@ -311,7 +301,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                               [](const DirectionAtAngle&) {}},
                    constraint.kind);
     }
-    std::vector<std::pair<std::string, std::vector<Segment>>> beams;
+    Beams beams;
     for (const auto& elastic : model.elastics) {
         if (const auto ends = points_of(elastic.kind); ends.size() == 2) {
             const auto i = sketch.add(ends[0], elastic.name), j = sketch.add(ends[1], elastic.name);
@@ -331,6 +321,34 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
         sketch.add({a.body, a.s_local}, elastic.name);
         sketch.add({b.body, b.s_local}, elastic.name);
     }
+    return beams;
+}
+
+// Positions along the branches.
+void add_stations(Drawing& drawing, const Sketch& sketch, const compare::Comparison& comparison) {
+    for (const auto& branch : comparison.branches) {
+        const auto& [front, start, middle, back] = branch.run(compare::Leg::equilibrium).landmarks;
+        const auto put = [&](const std::string& side, bool end, const Equilibrium& state) {
+            drawing.stations.push_back({placed(sketch, state.poses), side, branch.branch,
+                                        symbol(branch.unit), end,
+                                        parameter_in(branch.unit, state.load)});
+        };
+        if (middle) put(branch.branch, false, *middle);
+        if (front && back && front->load * back->load < 0)  // a two-sided branch
+            put(fmt::format("{} to {:.4g} {}", branch.branch, in_unit(branch.unit) * front->load,
+                            symbol(branch.unit)),
+                true, *front);
+        if (back) put(branch.branch, true, *back);
+        drawing.motion.push_back(motion(sketch, branch));
+    }
+}
+
+}  // namespace
+
+Drawing drawing_of(const Scene& scene, const Model& model, const compare::Comparison& comparison) {
+    Drawing drawing;
+    Sketch sketch{&scene, &model, {}, {}, {}};
+    const Beams beams = draw_connections(sketch);
     for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
     for (const auto& damper : model.dampers) {
         const auto i = sketch.add(damper.i, damper.name);
@@ -346,10 +364,8 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
         hubs[static_cast<std::size_t>(wheel.body)].push_back(centre);
         if (patch != centre) patches.insert(patch);
         const Pose& pose = model.bodies[static_cast<std::size_t>(wheel.body)].design;
-        wheels.push_back({{"name", wheel.name},
-                          {"centre", centre},
-                          {"patch", patch},
-                          {"spin_axis", vector_json(pose.p * wheel.spin_axis_local)}});
+        drawing.wheels.push_back(
+            {wheel.name, centre, patch, position(pose.p * wheel.spin_axis_local)});
     }
     std::set<std::string> of_beams;
     for (const auto& [name, segments] : beams)
@@ -357,48 +373,69 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
             of_beams.insert(model.bodies[static_cast<std::size_t>(segments[k].j.body)].name);
     for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body)
         if (!of_beams.contains(model.bodies[static_cast<std::size_t>(body)].name))
-            draw_body(sketch, body, hubs[static_cast<std::size_t>(body)], patches, faces);
-
-    json points = json::array(), along = json::array(), stations = json::array();
-    const auto design = sketch.design();
+            draw_body(sketch, body, hubs[static_cast<std::size_t>(body)], patches, drawing.faces);
+    drawing.design = placed(sketch, sketch.design());
     for (std::size_t k = 0; k < sketch.points.size(); ++k) {
         const BodyId body = sketch.points[k].body;
-        points.push_back(
-            {{"name", sketch.names[k]},
-             {"body",
-              body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name},
-             {"hardpoint", sketch.hard[k]},
-             {"design_mm", millimetres(sketch.at(sketch.points[k], design))}});
+        drawing.points.push_back(
+            {sketch.names[k],
+             body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name,
+             sketch.hard[k], drawing.design.points[k]});
     }
-    for (const auto& branch : comparison.branches) {
-        const auto& [front, start, middle, back] =
-            branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].landmarks;
-        const auto put = [&](const std::string& name, const char* where, const Equilibrium& state) {
-            json entry = positions(sketch, state.poses);
-            entry["branch"] = name;
-            entry["of"] = branch.branch;
-            entry["unit"] = symbol(branch.unit);
-            entry["where"] = where;
-            entry["a"] = parameter_in(branch.unit, state.load);
-            along.push_back(entry);
-        };
-        if (middle) put(branch.branch, "middle", *middle);
-        if (front && back && front->load * back->load < 0)  // a two-sided branch
-            put(fmt::format("{} to {:.4g} {}", branch.branch, in_unit(branch.unit) * front->load,
-                            symbol(branch.unit)),
-                "end", *front);
-        if (back) put(branch.branch, "end", *back);
-        stations.push_back(motion(sketch, branch));
-    }
-    json result = {{"points", points},
-                   {"links", sketch.links},
-                   {"faces", faces},
-                   {"symbols", symbols_json(sketch)},
-                   {"wheels", wheels}};
-    result["design"] = positions(sketch, design);
-    result["positions"] = along;
-    result["motion"] = stations;
+    drawing.links = std::move(sketch.links);
+    drawing.symbols = symbols_of(sketch);
+    add_stations(drawing, sketch, comparison);
+    return drawing;
+}
+
+namespace {
+
+json placed_json(const Drawing::Placed& placed) {
+    json result = {{"points_mm", placed.points}};
+    if (!placed.rims.empty()) result["wheels_mm"] = placed.rims;
     return result;
+}
+
+}  // namespace
+
+json drawing_json(const Drawing& drawing) {
+    json points = json::array(), links = json::array(), faces = json::array(),
+         symbols = json::array(), wheels = json::array(), positions = json::array(),
+         motions = json::array();
+    for (const auto& p : drawing.points)
+        points.push_back(
+            {{"name", p.name}, {"body", p.body}, {"hardpoint", p.hardpoint}, {"design_mm", p.at}});
+    for (const auto& l : drawing.links)
+        links.push_back({{"kind", l.kind}, {"name", l.name}, {"points", {l.i, l.j}}});
+    for (const auto& f : drawing.faces) faces.push_back({{"body", f.body}, {"points", f.points}});
+    for (const auto& s : drawing.symbols)
+        symbols.push_back({{"kind", s.kind},
+                           {"name", s.name},
+                           {"point", s.point ? json(*s.point) : json(nullptr)},
+                           {"at_mm", s.at},
+                           {"axis", s.axis ? json(*s.axis) : json(nullptr)}});
+    for (const auto& w : drawing.wheels)
+        wheels.push_back({{"name", w.name},
+                          {"centre", w.centre},
+                          {"patch", w.patch},
+                          {"spin_axis", w.spin_axis}});
+    for (const auto& s : drawing.stations) {
+        positions.push_back(placed_json(s));
+        positions.back().update({{"branch", s.side},
+                                 {"of", s.branch},
+                                 {"unit", s.unit},
+                                 {"where", s.end ? "end" : "middle"},
+                                 {"a", s.a}});
+    }
+    for (const auto& m : drawing.motion)
+        motions.push_back({{"branch", m.branch},
+                           {"unit", m.unit},
+                           {"a", m.a},
+                           {"points_mm", m.points},
+                           {"spin_axes", m.axes}});
+    return {{"points", points},       {"links", links},   {"faces", faces},
+            {"symbols", symbols},     {"wheels", wheels}, {"design", placed_json(drawing.design)},
+            {"positions", positions}, {"motion", motions}};
 }
 
 }  // namespace elastocheck::reports

@@ -3,7 +3,11 @@
 // branch.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "compare/comparison/compare.hpp"
 #include "elastocheck/model.hpp"
@@ -11,20 +15,66 @@
 
 namespace elastocheck::reports {
 
-//   points     every attachment of a joint, element, wheel or probe: hardpoint's name, body,
-//              position [mm]
-//   links      pairs of points joined by a line: of one body, of a rod (distance), a spring, a
-//              stop, a beam
-//   faces      a body's coplanar points, in order along their outline: an arm
-//   symbols    joints and bushings of the scene: kind, name, point (null: none there), position
-//              [mm], axis if any
-//   wheels     centre, patch and spin axis at the design position
-//   positions  of all points [mm], by the equilibrium leg, at the middle and the ends of every
-//              branch
-//   motion     for each branch, at up to 17 stations of the equilibrium leg: the parameter, the
-//              coordinates of all points one after the other [mm], and the spin axes of the wheels;
-//              rounded, since they are only drawn
-nlohmann::ordered_json drawing_json(const Scene& scene, const Model& model,
-                                    const compare::Comparison& comparison);
+using Position = std::array<double, 3>;  // x forward, y left, z up [mm]
+
+struct Drawing {
+    struct Point {  // an attachment of a joint, element, wheel or probe
+        std::string name, body;
+        bool hardpoint = false;  // else named after the joint or element there
+        Position at{};
+    };
+    struct Link {
+        std::string kind;  // body, rod, spring, stop, beam, damper
+        std::string name;
+        std::size_t i = 0, j = 0;
+    };
+    struct Face {  // a body's coplanar points, in order along their outline: an arm
+        std::string body;
+        std::vector<std::size_t> points;
+    };
+    struct Symbol {
+        std::string kind;  // spherical, revolute, universal, sliding, plane, fixed, bushing, drive
+        std::string name;
+        std::optional<std::size_t> point;  // empty: none there
+        Position at{};
+        std::optional<Position> axis{};
+    };
+    struct Wheel {
+        std::string name;
+        std::size_t centre = 0, patch = 0;
+        Position spin_axis{};
+    };
+    struct Placed {
+        std::vector<Position> points{};
+        std::vector<std::vector<Position>> rims{};  // of the wheels
+    };
+    // By the equilibrium leg, at the middle and the ends of every branch.
+    struct Station : Placed {
+        std::string side, branch;  // "travel to -80 mm", of the branch "travel"
+        std::string unit;
+        bool end = false;
+        double a = 0;
+    };
+    // At up to 17 stations of the equilibrium leg; rounded, since they are only drawn.
+    struct Motion {
+        std::string branch, unit;
+        std::vector<double> a{};
+        // per station: coordinates of all points one after the other [mm], spin axes of the wheels
+        std::vector<std::vector<double>> points{}, axes{};
+    };
+    std::vector<Point> points{};
+    std::vector<Link> links{};
+    std::vector<Face> faces{};
+    std::vector<Symbol> symbols{};
+    std::vector<Wheel> wheels{};
+    Placed design{};
+    std::vector<Station> stations{};
+    std::vector<Motion> motion{};
+};
+
+Drawing drawing_of(const Scene& scene, const Model& model, const compare::Comparison& comparison);
+
+// The same in result.json and for the scripts of the pages.
+nlohmann::ordered_json drawing_json(const Drawing& drawing);
 
 }  // namespace elastocheck::reports

@@ -16,12 +16,6 @@ namespace {
 using json = nlohmann::ordered_json;
 using compare::Leg;
 
-// "deg/kN": large numbers of newtons stand for one.
-std::pair<std::string, double> gradient_unit(compare::Unit of, compare::Unit per) {
-    const bool force = per == compare::Unit::newton || per == compare::Unit::newton_metre;
-    return {fmt::format("{}/{}{}", symbol(of), force ? "k" : "", symbol(per)), force ? 1e3 : 1};
-}
-
 // Whether a point has a value of an output; a travel that places it is none.
 void drop_travel(PointTable& table, const std::vector<compare::Channel>& channels) {
     std::erase_if(table.points.columns, [&](const compare::PointColumn& column) {
@@ -56,14 +50,12 @@ void renumber(Measurement& measurement, const std::vector<compare::Channel>& cha
     measurement.channels = channels;
 }
 
-json rows_json(const compare::MeasuredReading& reading, const compare::Comparison& all,
-               const compare::Points& measured) {
+json rows_json(const Measured& measured, const compare::MeasuredReading& reading,
+               const compare::Comparison& all) {
     json rows = json::array();
     for (const auto& of : reading.rows) {
         const auto& channel = all.channels[of.channel];
-        const auto [unit, factor] = gradient_unit(
-            channel.unit, reading.by_parameter ? all.branch(of.branch).unit
-                                               : all.channels[*measured.abscissa].unit);
+        const auto [unit, factor] = gradient_unit(measured, reading, of, all);
         json row = {{"branch", of.branch},
                     {"channel", channel.name},
                     {"unit", symbol(channel.unit)},
@@ -79,13 +71,6 @@ json rows_json(const compare::MeasuredReading& reading, const compare::Compariso
         rows.push_back(row);
     }
     return rows;
-}
-
-std::string word_of(const std::vector<std::string>& parameters) {
-    const auto is_load = [](const std::string& name) { return name.starts_with("load"); };
-    return std::ranges::all_of(parameters, is_load)    ? "load"
-           : std::ranges::none_of(parameters, is_load) ? "parameter"
-                                                       : "load or parameter";
 }
 
 // Reason why a point is not compared; empty if it is.
@@ -136,31 +121,65 @@ Measurement read_measurement(std::string_view csv, const std::string& file, cons
     return measurement;
 }
 
-void add_measurement(json& scene_document, const Model& model, const compare::Comparison& all,
-                     const compare::DefinedCurves& defined, Measurement measurement) {
+Measured compare_measurement(const Model& model, const compare::Comparison& all,
+                             const compare::DefinedCurves& defined, Measurement measurement) {
     renumber(measurement, all.channels);
-    PointTable& table = measurement.table;
-    const compare::Points& measured = table.points;
-    compare::MeasuredComparison found;
+    Measured made{std::move(measurement), {}, {}};
+    PointTable points = made.measurement.table;
     try {
-        found = compare::compare_measured(model, all, measured, defined);
+        made.found = compare::compare_measured(model, all, points.points, defined);
     } catch (const std::invalid_argument& error) {
-        fail_at(measurement.file, 1, error.what());
+        fail_at(made.measurement.file, 1, error.what());
     }
+    const compare::Points measured = points.points;
+    keep_rows(points, [&](std::size_t k) {
+        return made.found.used[k] ? "" : why_not(made.found.places[k], measured, k, all);
+    });
+    made.left_out = std::move(points.left_out);
+    return made;
+}
+
+std::string word_of(const Measured& measured, const compare::MeasuredReading& reading,
+                    const compare::Comparison& all) {
+    const PointTable& table = measured.measurement.table;
+    if (!reading.by_parameter) return "at equal " + all.channels[*table.points.abscissa].name;
+    const auto is_load = [](const std::string& name) { return name.starts_with("load"); };
+    return std::ranges::all_of(table.parameters, is_load)    ? "at equal load"
+           : std::ranges::none_of(table.parameters, is_load) ? "at equal parameter"
+                                                             : "at equal load or parameter";
+}
+
+compare::Unit unit_of_place(const Measured& measured, bool by_parameter, const std::string& branch,
+                            const compare::Comparison& all) {
+    return by_parameter ? all.branch(branch).unit
+                        : all.channels[*measured.measurement.table.points.abscissa].unit;
+}
+
+std::pair<std::string, double> gradient_unit(const Measured& measured,
+                                             const compare::MeasuredReading& reading,
+                                             const compare::MeasuredRow& row,
+                                             const compare::Comparison& all) {
+    const auto per = unit_of_place(measured, reading.by_parameter, row.branch, all);
+    const bool force = per == compare::Unit::newton || per == compare::Unit::newton_metre;
+    return {fmt::format("{}/{}{}", symbol(all.channels[row.channel].unit), force ? "k" : "",
+                        symbol(per)),
+            force ? 1e3 : 1};
+}
+
+json measured_json(const Measured& measured, const compare::Comparison& all) {
+    const auto& [measurement, found, left_out] = measured;
+    const compare::Points& points = measurement.table.points;
     json columns = json::object(), branches = json::array(), readings = json::array(),
          loops = json::array();
-    if (measured.abscissa) columns[all.channels[*measured.abscissa].name] = measured.at;
+    if (points.abscissa) columns[all.channels[*points.abscissa].name] = points.at;
     for (const auto& column : found.columns)
         columns[all.channels[column.channel].name] = column.values;
     for (const auto& place : found.places)
         branches.push_back(
             place.branch < 0 ? "" : all.branches[static_cast<std::size_t>(place.branch)].branch);
     for (const auto& reading : found.readings)
-        readings.push_back(
-            {{"reading",
-              "at equal " + (reading.by_parameter ? word_of(table.parameters)
-                                                  : all.channels[*measured.abscissa].name)},
-             {"channels", rows_json(reading, all, measured)}});
+        readings.push_back({{"reading", word_of(measured, reading, all)},
+                            {"channels", rows_json(measured, reading, all)}});
     for (const auto& loop : found.loops) {
         const auto& channel = all.channels[loop.channel];
         loops.push_back(
@@ -169,35 +188,22 @@ void add_measurement(json& scene_document, const Model& model, const compare::Co
              {"unit", symbol(channel.unit)},
              {"width", loop.width},
              {"at", loop.at},
-             {"at_unit", symbol(loop.by_parameter ? all.branch(loop.branch).unit
-                                                  : all.channels[*measured.abscissa].unit)},
+             {"at_unit", symbol(unit_of_place(measured, loop.by_parameter, loop.branch, all))},
              {"points", loop.points}});
     }
     json document = {{"file", measurement.file},
                      {"hash", measurement.hash},
-                     {"points", table.lines.size()},
-                     {"left_out", json::array()},
+                     {"points", measurement.table.lines.size()},
+                     {"left_out", left_out},
                      {"columns", columns},
                      {"branch", branches},
-                     {"branch_given", !measured.branch.empty()},
+                     {"branch_given", !points.branch.empty()},
                      {"readings", readings},
                      {"loops", loops},
                      {"findings", found.explanations}};
-    if (!measured.a.empty()) document["parameter"] = measured.a;
-    if (measured.abscissa) document["abscissa"] = all.channels[*measured.abscissa].name;
-    keep_rows(table, [&](std::size_t k) {
-        return found.used[k] ? "" : why_not(found.places[k], measured, k, all);
-    });
-    document["left_out"] = table.left_out;
-    scene_document["measured"] = std::move(document);
-}
-
-int compared_with_measurement(const json& scene_document) {
-    int compared = 0;
-    for (const auto& reading : scene_document.at("measured").at("readings"))
-        for (const auto& channel : reading.at("channels"))
-            compared += channel.at("compared").get<int>();
-    return compared;
+    if (!points.a.empty()) document["parameter"] = points.a;
+    if (points.abscissa) document["abscissa"] = all.channels[*points.abscissa].name;
+    return document;
 }
 
 }  // namespace elastocheck::reports

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compare/candidate/measured.hpp"
@@ -36,14 +37,32 @@ struct Measurement {
 Measurement read_measurement(std::string_view csv, const std::string& file, const Model& model,
                              const ColumnMap& map = {}, const std::vector<std::string>& only = {});
 
-// Adds "measured" to the document of a solved scene: the points, and the deviation of every leg from
-// them. A point is compared only with the branch on which it was measured. Columns that deviate are
-// tried by the other definitions `defined` too.
-void add_measurement(nlohmann::ordered_json& scene_document, const Model& model,
-                     const compare::Comparison& comparison, const compare::DefinedCurves& defined,
-                     Measurement measurement);
+// A measurement beside the solutions; its channels are those of the comparison.
+struct Measured {
+    Measurement measurement;
+    compare::MeasuredComparison found;
+    std::vector<std::string> left_out;  // columns and rows that are not compared
+};
 
-// Number of compared values over all readings and outputs.
-int compared_with_measurement(const nlohmann::ordered_json& scene_document);
+// A point is compared only with the branch on which it was measured. Columns that deviate are tried by
+// the other definitions `defined` too. Throws MeasurementError.
+Measured compare_measurement(const Model& model, const compare::Comparison& comparison,
+                             const compare::DefinedCurves& defined, Measurement measurement);
+
+// "measured" in result.json: the points, and the deviation of every leg from them.
+nlohmann::ordered_json measured_json(const Measured& measured,
+                                     const compare::Comparison& comparison);
+
+// "at equal load", "at equal travel"
+std::string word_of(const Measured& measured, const compare::MeasuredReading& reading,
+                    const compare::Comparison& comparison);
+// Unit of the parameter of a branch, or of the abscissa.
+compare::Unit unit_of_place(const Measured& measured, bool by_parameter, const std::string& branch,
+                            const compare::Comparison& comparison);
+// "deg/kN", and the factor to it: large numbers of newtons stand for one.
+std::pair<std::string, double> gradient_unit(const Measured& measured,
+                                             const compare::MeasuredReading& reading,
+                                             const compare::MeasuredRow& row,
+                                             const compare::Comparison& comparison);
 
 }  // namespace elastocheck::reports

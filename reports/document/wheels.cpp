@@ -2,21 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
-#include "compare/outputs/curve.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/wheel_load.hpp"
-#include "compare/tables/rows.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
-#include "reports/tables/elements.hpp"
-#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 bool is_effort_of(const compare::Channel& channel, int joint) {
     const auto* effort = std::get_if<compare::Effort>(&channel.reads);
@@ -24,7 +17,7 @@ bool is_effort_of(const compare::Channel& channel, int joint) {
 }
 
 // What the parameter does to the wheels.
-struct Effects {
+struct WheelEffects {
     std::vector<double> lift;  // per wheel, vertical motion or force per unit of the parameter
     // likewise, force in the road plane or moment, as the figures of a K&C test count it
     std::vector<double> push;
@@ -32,7 +25,7 @@ struct Effects {
     bool along_centre = false, along_patch = false;
 };
 
-void add(Effects& effects, const Model& model, const LoadKind& load, double rate) {
+void add(WheelEffects& effects, const Model& model, const LoadKind& load, double rate) {
     if (is_follower(load)) {
         effects.other = true;
     } else if (is_moment(load)) {
@@ -62,8 +55,8 @@ void add(Effects& effects, const Model& model, const LoadKind& load, double rate
     }
 }
 
-Effects effects_of(const Model& model, const Branch& branch) {
-    Effects effects;
+WheelEffects effects_of(const Model& model, const Branch& branch) {
+    WheelEffects effects;
     effects.lift.assign(model.wheels.size(), 0), effects.push = effects.lift;
     for (const auto& driver : branch.drivers) {
         if (driver.rate == 0) continue;
@@ -85,10 +78,6 @@ Effects effects_of(const Model& model, const Branch& branch) {
     return effects;
 }
 
-const compare::Curve& truth_of(const compare::BranchComparison& branch) {
-    return branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].curve;
-}
-
 bool holds_a_wheel(const Model& model, const Branch& branch) {
     return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
         const int joint = driven_joint(driver.what);
@@ -99,7 +88,7 @@ bool holds_a_wheel(const Model& model, const Branch& branch) {
 }  // namespace
 
 const char* load_case(const Model& model, const Branch& branch) {
-    const Effects e = effects_of(model, branch);
+    const WheelEffects e = effects_of(model, branch);
     const bool lifts = std::ranges::any_of(e.lift, [](double v) { return v != 0; });
     if (e.other || model.wheels.empty() ||
         lifts + e.steers + e.across + (e.along_centre || e.along_patch) + e.turns != 1)
@@ -113,22 +102,22 @@ const char* load_case(const Model& model, const Branch& branch) {
     return e.lift.size() == 2 && e.lift[1] == -first ? "roll" : "travel";
 }
 
-json pushes_json(const Model& model, const Branch& branch) {
-    const Effects e = effects_of(model, branch);
+std::optional<Pushes> pushes_of(const Model& model, const Branch& branch) {
+    const WheelEffects e = effects_of(model, branch);
     const std::string kind = load_case(model, branch);
     const bool known = kind == "lateral force" || kind == "moment" ||
                        (kind == "longitudinal force" && e.along_centre != e.along_patch);
     if (!known || std::ranges::all_of(e.push, [](double push) { return push == 0; }))
-        return nullptr;
-    return {{"per_unit", e.push},
-            {"positive", kind == "moment"          ? "towards toe-in"
-                         : kind == "lateral force" ? "inwards"
-                         : e.along_centre          ? "forward"
-                                                   : "to the back"}};
+        return std::nullopt;
+    return Pushes{e.push, kind == "moment"          ? "towards toe-in"
+                          : kind == "lateral force" ? "inwards"
+                          : e.along_centre          ? "forward"
+                                                    : "to the back"};
 }
 
-json efforts_json(const Branch& branch, const std::vector<compare::Channel>& channels) {
-    json efforts = json::array();
+std::vector<std::string> efforts_of(const Branch& branch,
+                                    const std::vector<compare::Channel>& channels) {
+    std::vector<std::string> efforts;
     for (const auto& driver : branch.drivers)
         if (const int joint = driven_joint(driver.what); joint >= 0 && driver.rate != 0)
             for (const auto& channel : channels)
@@ -136,19 +125,19 @@ json efforts_json(const Branch& branch, const std::vector<compare::Channel>& cha
     return efforts;
 }
 
-json wheels_json(const Model& model, const compare::Comparison& comparison) {
-    json names = json::array(), vehicle = nullptr;
-    for (const auto& wheel : model.wheels)
-        names.push_back({{"name", wheel.name}, {"side", wheel.side > 0 ? "left" : "right"}});
-    if (model.vehicle)
-        vehicle = {{"wheelbase_mm", 1e3 * model.vehicle->wheelbase},
-                   {"cg_height_mm", 1e3 * model.vehicle->cg_height}};
+std::size_t settled_on(const Model& model) {
     const auto free = std::ranges::find_if_not(
         model.branches, [&](const Branch& branch) { return holds_a_wheel(model, branch); });
-    const auto on = static_cast<std::size_t>(free - model.branches.begin()) % model.branches.size();
-    const compare::Curve& curve = truth_of(comparison.branches[on]);
-    const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
+    return static_cast<std::size_t>(free - model.branches.begin()) % model.branches.size();
+}
+
+std::vector<compare::StaticRow> static_rows(const Model& model,
+                                            const compare::Comparison& comparison) {
     std::vector<compare::StaticRow> rows;
+    if (comparison.branches.empty()) return rows;
+    const compare::Curve& curve =
+        comparison.branches[settled_on(model)].run(compare::Leg::equilibrium).curve;
+    const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
     for (std::size_t w = 0; w < model.wheels.size(); ++w) {
         const std::string& wheel = model.wheels[w].name;
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
@@ -162,32 +151,13 @@ json wheels_json(const Model& model, const compare::Comparison& comparison) {
                            channel.reads);
             if (mine)
                 rows.push_back({wheel, channel.name.substr(wheel.empty() ? 0 : wheel.size() + 1),
-                                symbol(channel.unit), drawn[c],
-                                curve.a.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                                : curve.values[curve.start][c]});
+                                symbol(channel.unit), compare::finite_or_nan(drawn[c]),
+                                curve.a.empty()
+                                    ? compare::nan
+                                    : compare::finite_or_nan(curve.values[curve.start][c])});
         }
     }
-    return {{"names", names},
-            {"vehicle", vehicle},
-            {"settled_on", model.branches[on].name},
-            {"static", table_json(rows)}};
-}
-
-json elements_json(const Model& model) {
-    json list = json::array();
-    for (const auto& elastic : model.elastics) {
-        if (elastic.written_as == WrittenAs::beam)
-            list.push_back({{"name", elastic.name},
-                            {"kind", "beam"},
-                            {"beam", elastic.name.substr(0, elastic.name.rfind('.'))}});
-        else if (elastic.written_as == WrittenAs::stop)
-            if (const auto* law = member<ScalarLaw>(elastic.kind))
-                if (const auto clearance = clearance_of(*law))
-                    list.push_back({{"name", elastic.name},
-                                    {"kind", "stop"},
-                                    {"clearance_mm", 1e3 * *clearance}});
-    }
-    return list;
+    return rows;
 }
 
 }  // namespace elastocheck::reports

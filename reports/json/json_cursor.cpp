@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "reports/text/escape.hpp"
@@ -62,13 +61,6 @@ double JsonCursor::number() const {
     return value->get<double>();
 }
 
-int JsonCursor::whole() const {
-    const double x = number();
-    if (!(std::abs(x) <= std::numeric_limits<int>::max()) || x != std::floor(x))
-        fail("expected a whole number");
-    return static_cast<int>(x);
-}
-
 bool JsonCursor::truth() const {
     if (!value->is_boolean())
         fail(fmt::format("expected true or false, found {}", value->type_name()));
@@ -94,12 +86,6 @@ std::string JsonCursor::lines() const {
 std::vector<double> JsonCursor::numbers() const {
     std::vector<double> all;
     for (const auto& item : items()) all.push_back(item.number());
-    return all;
-}
-
-std::vector<std::string> JsonCursor::texts() const {
-    std::vector<std::string> all;
-    for (const auto& item : items()) all.push_back(item.text());
     return all;
 }
 

@@ -1,5 +1,5 @@
-// Typed access to a JSON document (result.json, a baseline) with the path of each value for error
-// messages.
+// Typed access to a JSON document that a user gives (a baseline, states of a candidate), with the path
+// of each value for error messages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -33,12 +33,10 @@ struct JsonCursor {
     std::vector<JsonCursor> items() const;                            // of an array
 
     double number() const;  // NaN for null
-    int whole() const;
     bool truth() const;
     std::string text() const;   // one line without control characters (escape.hpp: flaw)
     std::string lines() const;  // the same with line ends
     std::vector<double> numbers() const;
-    std::vector<std::string> texts() const;
 };
 
 }  // namespace elastocheck::reports

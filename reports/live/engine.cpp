@@ -30,16 +30,14 @@ using Eigen::Vector3d;
 constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_points = 400;
 
-// Points of a drawing_json() in their bodies.
-std::vector<Point> drawn_points(const Model& model, const json& drawing) {
+// Points of a drawing in their bodies.
+std::vector<Point> drawn_points(const Model& model, const reports::Drawing& drawing) {
     std::vector<Point> points;
-    for (const auto& entry : drawing.at("points")) {
-        const auto at = entry.at("design_mm").get<std::vector<double>>();
-        const Vector3d r = 1e-3 * Vector3d(at[0], at[1], at[2]);
+    for (const auto& entry : drawing.points) {
+        const Vector3d r = 1e-3 * Vector3d(entry.at[0], entry.at[1], entry.at[2]);
         Point point{ground, r};
         for (std::size_t b = 0; b < model.bodies.size(); ++b)
-            if (const Body& body = model.bodies[b];
-                body.name == entry.at("body").get_ref<const std::string&>())
+            if (const Body& body = model.bodies[b]; body.name == entry.body)
                 point = {static_cast<BodyId>(b), body.design.p.conjugate() * (r - body.design.r)};
         points.push_back(point);
     }
@@ -225,10 +223,11 @@ Answer solve(Session& session, const Request& request) {
     const auto channels = channels_of(model);
     answer.head["channels"] = json::array();
     for (const Channel& channel : channels) answer.head["channels"].push_back(channel.name);
-    answer.head["drawing"] = reports::drawing_json(trimmed.scene, model, {});
+    const auto drawing = reports::drawing_of(trimmed.scene, model, {});
+    answer.head["drawing"] = reports::drawing_json(drawing);
     const auto first_rate =
         std::ranges::find(channels, compare::ChannelKind::characteristic, &Channel::kind);
-    const Solver solver{model, channels, drawn_points(model, answer.head["drawing"]),
+    const Solver solver{model, channels, drawn_points(model, drawing),
                         static_cast<std::size_t>(first_rate - channels.begin())};
     std::list<Shared> shared;
     answer.head["branches"] = json::array();

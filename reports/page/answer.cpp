@@ -6,10 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "compare/outputs/readings.hpp"
-#include "compare/tables/rows.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "reports/page/common.hpp"
-#include "reports/render/render.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -25,13 +23,15 @@ std::string errors(double mm, double deg) {
 
 // Largest error at equal abscissa of a method at the ends of the branches, with as many steps a branch
 // or, as the study has them, fewer. A side of a two-sided branch takes half of them.
-void add_across(MethodRow& row, const JsonCursor& scene, const std::vector<compare::StepRow>& steps,
-                double count) {
+void add_across(MethodRow& row, const SceneAnalyses& scene,
+                const std::vector<compare::StepRow>& steps, double count) {
     std::map<std::string, double> taken;  // of each side, the most that are not more
     const auto allowed = [&](const std::string& side) {
-        for (const auto& branch : scene["branches"].items())
-            if (branch["name"].text() == side) return count;
-        return count / 2;
+        const auto& branches = scene.comparison.branches;
+        return std::ranges::find(branches, side, &compare::BranchComparison::branch) !=
+                       branches.end()
+                   ? count
+                   : count / 2;
     };
     const auto across = [&](const compare::StepRow& r) {
         return r.method == row.method && r.reading != compare::parameter_reading("N") &&
@@ -48,43 +48,35 @@ void add_across(MethodRow& row, const JsonCursor& scene, const std::vector<compa
     for (const auto& r : steps) {
         const auto n = taken.find(r.branch);
         if (!across(r) || n == taken.end() || r.steps != n->second) continue;
-        if (r.unit == "mm") mm = worse(mm, std::abs(r.error));
-        if (r.unit == "deg") deg = worse(deg, std::abs(r.error));
+        if (r.unit == "mm") mm = compare::worse(mm, std::abs(r.error));
+        if (r.unit == "deg") deg = compare::worse(deg, std::abs(r.error));
     }
     if (mm >= 0) row.mm_across = mm;
     if (deg >= 0) row.deg_across = deg;
 }
 
-// The largest deviation of the published recursion; NaN without one.
-double max_of(const JsonCursor& judgement, const char* key) {
-    const auto worst = judgement.find(key);
-    return worst ? (*worst)["max"].number() : std::numeric_limits<double>::quiet_NaN();
+// A deviation of the published recursion; NaN without one.
+double max_of(const std::optional<compare::Worst>& worst) {
+    return worst ? worst->max : compare::nan;
 }
 
 }  // namespace
 
-std::string trust_sentence(const JsonCursor& scene) {
-    const JsonCursor verdict = scene["verdict"];
-    if (!verdict["conclusive"].truth()) {
+std::string trust_sentence(const SceneAnalyses& scene) {
+    if (!scene.conclusive()) {
         std::string text = "Not judged: ";
-        for (const auto& reason : verdict["reasons"].texts()) text += reason + "; ";
+        for (const auto& reason : scene.reasons) text += reason + "; ";
         return text + "the numbers below are no basis for a decision.";
     }
     std::vector<std::string> agreement;
-    if (const auto findings = scene.find("findings"))
-        if (const auto apart = findings->find("references_apart"))
-            for (const char* unit : {"mm", "deg"})
-                if (const auto d = apart->find(unit))
-                    agreement.push_back(quantity((*d)["max"].number(), unit));
+    for (const auto unit : {compare::Unit::mm, compare::Unit::deg})
+        if (const auto apart = compare::worst_disagreement(scene.comparison, unit))
+            agreement.push_back(quantity(apart->max, symbol(unit)));
     int points = 0, proved = 0;
-    if (const auto branches = scene.find("branches"))
-        for (const auto& branch : branches->items())
-            for (const auto& leg : branch["legs"].items())
-                if (const auto proof = leg.find("proof");
-                    proof && leg["leg"].text() == "equilibrium") {
-                    points += (*proof)["points"].whole();
-                    proved += (*proof)["proved"].whole();
-                }
+    for (const auto& branch : scene.comparison.branches) {
+        const compare::Tally& tally = branch.run(compare::Leg::equilibrium).proved;
+        points += tally.points, proved += tally.proved;
+    }
     std::string text =
         agreement.empty() ? "Every number on these pages is from one solution of the full equations"
                           : "Every number on these pages: two independent solutions agree to " +
@@ -93,13 +85,11 @@ std::string trust_sentence(const JsonCursor& scene) {
         text += proved == points ? fmt::format(", proved at {} points", whole_number(proved))
                                  : fmt::format(", proved at {} of {} points", whole_number(proved),
                                                whole_number(points));
-    if (points > 0 && scene.find("proved"))  // with --quick
-        text += " (the ends of the branches only)";
+    if (points > 0 && scene.quick) text += " (the ends of the branches only)";
     text +=
         ". This is on the solvers, not on the model nor on the formulas of the outputs, which "
         "the solutions share.";
-    const auto effects = scene.find("sensitivity");
-    if (effects && !(*effects)["conclusive"].truth())
+    if (scene.effects && !scene.effects->reasons.empty())
         text += " The effects of the scene's numbers are not confirmed.";
     return text;
 }
@@ -109,16 +99,14 @@ namespace {
 using compare::TradeRow;
 
 // Of every method in the study of their cost.
-std::vector<MethodRow> studied(const JsonCursor& scene, const JsonCursor& trade) {
+std::vector<MethodRow> studied(const SceneAnalyses& scene, const compare::Trade& trade) {
     std::vector<MethodRow> rows;
-    const auto points = read_rows<TradeRow>(trade["points"]);
-    const auto study = scene.find("convergence");
-    const auto steps = study ? read_rows<compare::StepRow>((*study)["step_errors"])
-                             : std::vector<compare::StepRow>{};
+    const auto points = trade_rows(trade);
+    const auto steps = scene.study ? step_rows(*scene.study) : std::vector<compare::StepRow>{};
     const auto equilibrium = std::ranges::find(points, "equilibrium", &TradeRow::leg);
     const double full = equilibrium == points.end() ? NAN : equilibrium->price;
     const auto share = [&](const TradeRow& r) {  // no looser than required
-        return r.tolerance > trade["tolerance"]["mm"].number() ? INFINITY : r.share;
+        return r.tolerance > trade.tolerance.mm ? INFINITY : r.share;
     };
     for (const auto& method : distinct(points, &TradeRow::method)) {
         auto wanted = where(where(points, &TradeRow::method, method), &TradeRow::leg, "recursive");
@@ -154,37 +142,35 @@ std::vector<MethodRow> studied(const JsonCursor& scene, const JsonCursor& trade)
 
 }  // namespace
 
-std::vector<MethodRow> method_rows(const JsonCursor& scene) {
+std::vector<MethodRow> method_rows(const SceneAnalyses& scene) {
     std::vector<MethodRow> rows;
-    if (const auto trade = scene.find("trade")) rows = studied(scene, *trade);
-    if (const auto judgement = scene.find("judgement")) {
-        rows.push_back({.method = (*judgement)["method"].text(),
+    if (scene.trade) rows = studied(scene, *scene.trade);
+    if (const auto& judgement = scene.judgement)
+        rows.push_back({.method = judgement->method,
                         .setting = "steps of the scene",
-                        .mm = max_of(*judgement, "position"),
-                        .deg = max_of(*judgement, "angle"),
-                        .mm_across = max_of(*judgement, "position_across"),
-                        .deg_across = max_of(*judgement, "angle_across"),
-                        .within = (*judgement)["verdict"].text() == "pass"});
-    }
+                        .mm = max_of(judgement->position),
+                        .deg = max_of(judgement->angle),
+                        .mm_across = max_of(judgement->position_across),
+                        .deg_across = max_of(judgement->angle_across),
+                        .within = judgement->verdict == compare::Grade::pass});
     std::ranges::stable_sort(rows, [](const MethodRow& a, const MethodRow& b) {
         return a.within != b.within ? a.within : !(a.cost >= b.cost) && std::isfinite(a.cost);
     });
     return rows;
 }
 
-std::string tolerance_of(const JsonCursor& scene) {
-    const auto trade = scene.find("trade"), judgement = scene.find("judgement");
-    if (!trade && !judgement) return {};
-    const JsonCursor tolerance = (trade ? *trade : *judgement)["tolerance"];
+std::string tolerance_of(const SceneAnalyses& scene) {
+    if (!scene.trade && !scene.judgement) return {};
+    const auto& tolerance = scene.trade ? scene.trade->tolerance : scene.judgement->tolerance;
     std::vector<std::string> parts;
-    for (const char* unit : {"mm", "deg"})
-        if (const auto t = tolerance.find(unit)) parts.push_back(setting(t->number(), unit));
+    if (std::isfinite(tolerance.mm)) parts.push_back(setting(tolerance.mm, "mm"));
+    if (std::isfinite(tolerance.deg)) parts.push_back(setting(tolerance.deg, "deg"));
     return enumerated(parts);
 }
 
-std::string method_sentence(const JsonCursor& scene) {
+std::string method_sentence(const SceneAnalyses& scene) {
     std::string text;
-    if (scene.find("trade")) {
+    if (scene.trade) {
         const auto rows = method_rows(scene);
         const auto chosen = std::ranges::find_if(rows, &MethodRow::chosen);
         text = chosen != rows.end()
@@ -196,11 +182,11 @@ std::string method_sentence(const JsonCursor& scene) {
                    : fmt::format("No fast method that was tried is recommended within {}.",
                                  tolerance_of(scene));
     }
-    const auto judgement = scene.find("judgement");
+    const auto& judgement = scene.judgement;
     if (!judgement) return text;
-    const auto max = [&](const char* key) { return max_of(*judgement, key); };
-    const std::string load = errors(max("position"), max("angle")),
-                      travel = errors(max("position_across"), max("angle_across"));
+    const std::string load = errors(max_of(judgement->position), max_of(judgement->angle)),
+                      travel = errors(max_of(judgement->position_across),
+                                      max_of(judgement->angle_across));
     if (load.empty() && travel.empty()) return text;
     return fmt::format("{}{}The published recursion is off by up to {}{}{}{}.", text,
                        text.empty() ? "" : " ", load.empty() ? travel : load,

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "reports/json/json_cursor.hpp"
+#include "reports/document/scene_analyses.hpp"
 
 namespace elastocheck::reports {
 
 // "Every number on these pages: two independent solutions agree to 9e-12 mm and 2e-13 deg, proved at
 // 33 points."; or why nothing can be relied on.
-std::string trust_sentence(const JsonCursor& scene);
+std::string trust_sentence(const SceneAnalyses& scene);
 
 // A fast method at one setting: the cheapest that is good enough, else the most accurate one.
 struct MethodRow {
@@ -27,13 +27,13 @@ struct MethodRow {
     bool chosen = false;                                     // recommended
 };
 // In ascending order of their cost; empty where no method was studied.
-std::vector<MethodRow> method_rows(const JsonCursor& scene);
+std::vector<MethodRow> method_rows(const SceneAnalyses& scene);
 
 // "0.01 mm and 0.001 deg"; empty without a tolerance.
-std::string tolerance_of(const JsonCursor& scene);
+std::string tolerance_of(const SceneAnalyses& scene);
 
 // The cheapest method within the tolerance, and how far the published one is off; empty where
 // nothing was studied.
-std::string method_sentence(const JsonCursor& scene);
+std::string method_sentence(const SceneAnalyses& scene);
 
 }  // namespace elastocheck::reports

@@ -6,82 +6,39 @@
 #include <cmath>
 
 #include "compare/outputs/curve.hpp"
+#include "compare/outputs/not_a_number.hpp"
+#include "reports/document/document.hpp"
+#include "reports/document/wheels.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 
-std::string ChannelInfo::label() const { return as_words(name); }
-
-std::string ChannelInfo::heading() const { return fmt::format("{} [{}]", label(), unit); }
-
-std::string ChannelInfo::owner() const {
-    const auto dot = name.rfind('.');
-    return dot == std::string::npos ? "" : name.substr(0, dot);
+std::string heading(const compare::Channel& channel) {
+    return fmt::format("{} [{}]", as_words(channel.name), symbol(channel.unit));
 }
 
-std::string ChannelInfo::quantity() const { return name.substr(name.rfind('.') + 1); }
-
-std::vector<ChannelInfo> channels_of(const JsonCursor& scene) {
-    std::vector<ChannelInfo> all;
-    for (const auto& c : scene["channels"].items())
-        all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(),
-                       c["kinematic"].truth(), c["definition"].text(),
-                       c.find("kind") && c["kind"].text() == "drive"});
-    return all;
+std::string output_of(const Wheel& wheel, std::string_view quantity) {
+    return fmt::format("{}{}{}", wheel.name, wheel.name.empty() ? "" : ".", quantity);
 }
 
-std::vector<ChannelInfo> main_channels_of(const JsonCursor& scene) {
-    auto all = channels_of(scene);
-    std::erase_if(all, [](const ChannelInfo& c) { return !c.main; });
-    return all;
+double SolvedBranch::from() const { return parameter_in(result->unit, requested->from); }
+double SolvedBranch::to() const { return parameter_in(result->unit, requested->to); }
+
+std::vector<SolvedBranch> branches_of(const SceneAnalyses& scene) {
+    std::vector<SolvedBranch> branches;
+    for (std::size_t b = 0; b < scene.comparison.branches.size(); ++b)
+        branches.push_back({&scene.model.branches[b], &scene.comparison.branches[b]});
+    return branches;
 }
 
-std::vector<double> LegCurve::channel(const std::string& name) const {
-    return values.value->is_object() ? values[name].numbers() : std::vector<double>{};
-}
-
-std::size_t LegCurve::start() const {
-    std::size_t nearest = 0;
-    for (std::size_t k = 0; k < a.size(); ++k)
-        if (std::abs(a[k]) < std::abs(a[nearest])) nearest = k;
-    return nearest;
-}
-
-LegCurve curve_of(const JsonCursor& branch, std::string_view leg) {
-    const JsonCursor legs = branch["legs"];
-    for (const auto& run : legs.items()) {
-        if (run["leg"].text() != leg) continue;
-        const JsonCursor curve = run["curve"];
-        LegCurve found{std::string(leg), curve["a"].numbers(), {}, curve["values"]};
-        for (const auto& [name, values] : found.values.entries())
-            if (values.value->size() != found.a.size())
-                values.fail("not as many numbers as parameters");
-        if (const auto abscissa = branch.find("abscissa")) {
-            found.x = found.channel(abscissa->text());
-            if (!compare::trend(found.x).monotonic()) found.x.clear();
-        }
-        return found;
-    }
-    return {std::string(leg), {}, {}, legs};
+std::vector<double> values_of(const compare::Curve& curve, std::size_t channel) {
+    auto values = curve.channel(channel);
+    for (double& value : values) value = compare::finite_or_nan(value);
+    return values;
 }
 
 bool Sweep::has(std::string_view branch) const {
-    return std::ranges::any_of(branches,
-                               [&](const JsonCursor& b) { return b["name"].text() == branch; });
-}
-
-std::string Sweep::parameter() const {
-    std::string word = compare::parameter_word(unit);
-    if (lifts() && word != "load") {
-        word = "travel";
-    } else if (word != "load") {
-        std::vector<std::string> moved;
-        for (const auto& joint : branches.front()["drivers"]["moved"].texts())
-            moved.push_back(
-                as_words(joint.ends_with(".drive") ? joint.substr(0, joint.rfind('.')) : joint));
-        if (!moved.empty()) word = enumerated(moved);
-    }
-    return fmt::format("{} [{}]", word, unit);
+    return std::ranges::find(branches, branch, &SolvedBranch::name) != branches.end();
 }
 
 std::string Sweep::at_equal_parameter() const { return compare::parameter_reading(unit); }
@@ -89,72 +46,92 @@ std::string Sweep::at_equal_abscissa() const {
     return compare::abscissa_reading(abscissa.substr(0, abscissa.find(" [")));
 }
 
-Sweep sweep_of(const JsonCursor& scene, const JsonCursor& branch) {
-    const auto kind = branch.find("case");
-    return {branch["name"].text(),
-            branch["unit"].text(),
-            abscissa_of(scene, branch),
-            {branch},
-            kind ? kind->text() : "other"};
-}
-
-std::string abscissa_of(const JsonCursor& scene, const JsonCursor& branch) {
-    const auto abscissa = branch.find("abscissa");
-    if (!abscissa) return {};
-    for (const auto& channel : channels_of(scene))
-        if (channel.name == abscissa->text()) return channel.heading();
-    abscissa->fail("no such channel");
-}
-
 namespace {
 
-// Whether every leg's curve has this abscissa and it is useful: with a travel below a millimetre
-// the branch does not lift the wheel.
-bool over_abscissa(const JsonCursor& branch) {
-    if (const auto abscissa = branch.find("abscissa");
-        abscissa && abscissa->text().ends_with("travel")) {
-        const auto x = curve_of(branch, "equilibrium").channel(abscissa->text());
-        const auto [low, high] = std::ranges::minmax_element(x);
-        if (low == x.end() || !(*high - *low >= compare::least_travel)) return false;
-    }
-    return std::ranges::all_of(branch["legs"].items(), [&](const JsonCursor& leg) {
-        const LegCurve curve = curve_of(branch, leg["leg"].text());
-        return curve.a.empty() || !curve.x.empty();
-    });
+// Drivers of a branch that move with its parameter, or that are held.
+std::vector<std::string> drivers_of(const Model& model, const Branch& branch, bool moved) {
+    std::vector<std::string> names;
+    for (const auto& driver : branch.drivers)
+        if ((driver.rate != 0) == moved) names.push_back(driven_name(model, driver.what));
+    return names;
+}
+
+// "load", "travel", "rack".
+std::string parameter_word(const Model& model, const Sweep& sweep) {
+    const std::string word = compare::parameter_word(sweep.unit);
+    if (word == "load") return word;
+    if (sweep.lifts()) return "travel";
+    auto moved = drivers_of(model, *sweep.branches.front().requested, true);
+    for (auto& joint : moved)
+        joint = as_words(joint.ends_with(".drive") ? joint.substr(0, joint.rfind('.')) : joint);
+    return moved.empty() ? word : enumerated(moved);
 }
 
 }  // namespace
 
-std::vector<Sweep> sweeps_of(const JsonCursor& scene) {
-    std::vector<Sweep> sweeps;
-    const auto same_drive = [](const JsonCursor& a, const JsonCursor& b) {
-        return a["unit"].text() == b["unit"].text() &&
-               a["drivers"]["moved"].texts() == b["drivers"]["moved"].texts() &&
-               a["drivers"]["held"].texts() == b["drivers"]["held"].texts() &&
-               a["from"].number() == 0 && b["from"].number() == 0 &&
-               a["to"].number() * b["to"].number() < 0;
+Sweep sweep_of(const SceneAnalyses& scene, const SolvedBranch& branch) {
+    const int c = branch.result->abscissa;
+    Sweep sweep{
+        .name = branch.name(),
+        .unit = branch.unit(),
+        .parameter = {},
+        .abscissa = c < 0 ? "" : heading(scene.comparison.channels[static_cast<std::size_t>(c)]),
+        .branches = {branch},
+        .kind = load_case(scene.model, *branch.requested)};
+    sweep.parameter = fmt::format("{} [{}]", parameter_word(scene.model, sweep), sweep.unit);
+    return sweep;
+}
+
+namespace {
+
+// Whether every leg's curve has the abscissa of the branch and it is useful: with a travel below a
+// millimetre the branch does not lift the wheel.
+bool over_abscissa(const SceneAnalyses& scene, const SolvedBranch& branch) {
+    const auto c = static_cast<std::size_t>(branch.result->abscissa);
+    if (branch.result->abscissa < 0) return false;
+    if (scene.comparison.channels[c].name.ends_with("travel")) {
+        const auto x = branch.truth().channel(c);
+        const auto [low, high] = std::ranges::minmax_element(x);
+        if (low == x.end() || !(*high - *low >= compare::least_travel)) return false;
+    }
+    return std::ranges::all_of(branch.result->runs, [&](const compare::LegRun& run) {
+        return run.curve.a.empty() || compare::trend(run.curve.channel(c)).monotonic();
+    });
+}
+
+// Whether both start at zero and go opposite ways.
+bool are_sides(const Model& model, const SolvedBranch& a, const SolvedBranch& b) {
+    const auto same = [&](bool moved) {
+        return drivers_of(model, *a.requested, moved) == drivers_of(model, *b.requested, moved);
     };
-    for (const auto& branch : scene["branches"].items()) {
+    return a.unit() == b.unit() && same(true) && same(false) && a.from() == 0 && b.from() == 0 &&
+           a.to() * b.to() < 0;
+}
+
+}  // namespace
+
+std::vector<Sweep> sweeps_of(const SceneAnalyses& scene) {
+    std::vector<Sweep> sweeps;
+    for (const auto& branch : branches_of(scene)) {
         Sweep* twin = nullptr;
         for (auto& sweep : sweeps)
-            if (sweep.branches.size() == 1 && same_drive(sweep.branches.front(), branch))
+            if (sweep.branches.size() == 1 &&
+                are_sides(scene.model, sweep.branches.front(), branch))
                 twin = &sweep;
-        const std::string name = branch["name"].text(),
-                          abscissa = over_abscissa(branch) ? abscissa_of(scene, branch) : "";
+        Sweep alone = sweep_of(scene, branch);
+        if (!over_abscissa(scene, branch)) alone.abscissa.clear();
         if (twin == nullptr) {
-            sweeps.push_back(sweep_of(scene, branch));
-            sweeps.back().abscissa = abscissa;
+            sweeps.push_back(std::move(alone));
         } else {
-            twin->name += " and " + name;
-            if (twin->abscissa != abscissa) twin->abscissa.clear();
+            twin->name += " and " + alone.name;
+            if (twin->abscissa != alone.abscissa) twin->abscissa.clear();
             twin->branches.push_back(branch);
         }
     }
     return sweeps;
 }
 
-std::optional<Sweep> leading_sweep(const JsonCursor& scene) {
-    if (!scene.find("branches")) return std::nullopt;
+std::optional<Sweep> leading_sweep(const SceneAnalyses& scene) {
     const auto sweeps = sweeps_of(scene);
     if (sweeps.empty()) return std::nullopt;
     auto leading = std::ranges::find(sweeps, "heave", &Sweep::kind);
@@ -162,64 +139,34 @@ std::optional<Sweep> leading_sweep(const JsonCursor& scene) {
     return leading == sweeps.end() ? sweeps.front() : *leading;
 }
 
-bool leads(const JsonCursor& scene, const std::string& side) {
+bool leads(const SceneAnalyses& scene, const std::string& side) {
     const auto sweep = leading_sweep(scene);
     return sweep && (sweep->has(side) || sweep->has(side.substr(0, side.rfind(" to "))));
 }
 
-SweepCurve sweep_curve(const Sweep& sweep) {
-    SweepCurve all;
-    all.branches = sweep.branches;
+SweepCurve::SweepCurve(const SceneAnalyses& scene, const Sweep& sweep)
+    : channels(&scene.comparison.channels) {
     for (const auto& branch : sweep.branches) {
-        all.curves.push_back(curve_of(branch, "equilibrium"));
-        const auto& a = all.curves.back().a;
-        for (std::size_t k = 0; k < a.size(); ++k)
-            if (all.curves.size() == 1 || a[k] != 0)
-                all.order.emplace_back(all.curves.size() - 1, k);
+        curves.push_back(&branch.truth());
+        const auto& points = curves.back()->a;
+        for (std::size_t k = 0; k < points.size(); ++k)
+            if (curves.size() == 1 || points[k] != 0) order.emplace_back(curves.size() - 1, k);
     }
-    const auto at = [&](const auto& place) { return all.curves[place.first].a[place.second]; };
-    std::ranges::stable_sort(all.order, {}, at);
-    for (const auto& place : all.order) all.a.push_back(at(place));
-    for (std::size_t k = 0; k < all.a.size(); ++k)
-        if (std::abs(all.a[k]) < std::abs(all.a[all.start])) all.start = k;
-    return all;
+    const auto at = [&](const auto& place) { return curves[place.first]->a[place.second]; };
+    std::ranges::stable_sort(order, {}, at);
+    for (const auto& place : order) a.push_back(at(place));
+    for (std::size_t k = 0; k < a.size(); ++k)
+        if (std::abs(a[k]) < std::abs(a[start])) start = k;
 }
-
-namespace {
-
-// `values(k)`: of the k-th branch, as many as it has points; or none.
-template <class Values>
-std::vector<double> joined(const SweepCurve& curve, Values&& values) {
-    std::vector<std::vector<double>> each;
-    for (std::size_t k = 0; k < curve.curves.size(); ++k) {
-        each.push_back(values(k));
-        if (each.back().size() != curve.curves[k].a.size()) return {};
-    }
-    std::vector<double> all;
-    for (const auto& [branch, point] : curve.order) all.push_back(each[branch][point]);
-    return all;
-}
-
-}  // namespace
 
 std::vector<double> SweepCurve::channel(const std::string& name) const {
-    return joined(*this, [&](std::size_t k) {
-        const JsonCursor& values = curves[k].values;
-        const auto found = values.value->is_object() ? values.find(name) : std::nullopt;
-        return found ? found->numbers() : std::vector<double>{};
-    });
-}
-
-std::string WheelInfo::channel(std::string_view quantity) const {
-    return name.empty() ? std::string(quantity) : fmt::format("{}.{}", name, quantity);
-}
-
-std::vector<WheelInfo> wheels_of(const JsonCursor& scene) {
-    std::vector<WheelInfo> wheels;
-    if (const auto part = scene.find("wheels"))
-        for (const auto& wheel : (*part)["names"].items())
-            wheels.push_back({wheel["name"].text(), wheel["side"].text() == "left" ? 1 : -1});
-    return wheels;
+    std::vector<double> values;
+    const int c = compare::find_channel(*channels, name);
+    if (c < 0) return values;
+    for (const auto& [curve, point] : order)
+        values.push_back(
+            compare::finite_or_nan(curves[curve]->values[point][static_cast<std::size_t>(c)]));
+    return values;
 }
 
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
@@ -232,8 +179,6 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
     }
     return kept;
 }
-
-double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 namespace {
 
@@ -272,13 +217,13 @@ Table page_table(std::string caption, const compare::Table& table) {
     return page;
 }
 
-std::string configuration(const JsonCursor& chosen) {
-    const std::string method = chosen["method"].text();
-    if (const auto steps = chosen.find("steps"))
-        return fmt::format("{}, {} steps", method, whole_number(steps->whole()));
-    if (const auto own = chosen.find("own_tolerance_m"))
-        return fmt::format("{}, tolerance {}", method, setting(1e3 * own->number(), "mm"));
-    return method + " solution";
+std::string configuration(const compare::TradePoint& chosen) {
+    if (chosen.steps > 0)
+        return fmt::format("{}, {} steps", chosen.method, whole_number(chosen.steps));
+    if (chosen.own_tolerance > 0)
+        return fmt::format("{}, tolerance {}", chosen.method,
+                           setting(1e3 * chosen.own_tolerance, "mm"));
+    return chosen.method + " solution";
 }
 
 std::string slug(const std::string& text) {

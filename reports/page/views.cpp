@@ -278,7 +278,7 @@ void draw_suspension(Canvas& canvas, const Suspension& s) {
     }
     for (std::size_t m = 0; m < s.moved.size(); ++m) {
         const Colour colour = moved_colours[m % std::size(moved_colours)];
-        for (const auto& rim : s.moved[m].wheels) {
+        for (const auto& rim : s.moved[m].rims) {
             Stroke stroke;
             for (const auto& p : rim) stroke.push_back(canvas.on(p));
             canvas.stroke(stroke, Style::hair, colour, false);
@@ -301,7 +301,7 @@ void draw_suspension(Canvas& canvas, const Suspension& s) {
     }
     for (const auto& face : s.faces) {
         Stroke round;
-        for (const auto k : face) round.push_back(canvas.on(s.points[k].at));
+        for (const auto k : face.points) round.push_back(canvas.on(s.points[k].at));
         round.push_back(round.front());
         canvas.stroke(round, Style::face, blue, false);
     }
@@ -366,7 +366,7 @@ Extent extent(const Suspension& s, const Plane& plane) {
             for (const auto& p : edge) extent.take(plane(p));
     for (const auto& moved : s.moved) {
         for (const auto& p : moved.points) extent.take(plane(p));
-        for (const auto& rim : moved.wheels)
+        for (const auto& rim : moved.rims)
             for (const auto& p : rim) extent.take(plane(p));
     }
     return extent;

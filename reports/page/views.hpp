@@ -1,50 +1,23 @@
 // Views of a suspension: front, side, top and axonometric.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "reports/document/drawing.hpp"
 #include "reports/page/page.hpp"
 
 namespace elastocheck::reports {
 
-using Position = std::array<double, 3>;  // x forward, y left, z up [mm]
-
-struct Suspension {
-    struct Point {
-        std::string name, body;
-        bool hardpoint = false;  // else named after the joint or element there
-        Position at{};
-    };
-    struct Link {
-        std::string kind;  // body, rod, spring, stop, beam, damper
-        std::size_t i = 0, j = 0;
-    };
-    struct Symbol {
-        std::string kind;  // spherical, revolute, universal, sliding, plane, fixed, bushing, drive
-        Position at{};
-        std::optional<Position> axis{};
-    };
-    struct Wheel {
-        std::size_t centre = 0, patch = 0;
-        Position spin_axis{};
-    };
-    struct Moved {  // another position of the suspension
-        std::string title;
-        std::vector<Position> points{};
-        std::vector<std::vector<Position>> wheels{};  // rims
+// A drawing with what its views show besides.
+struct Suspension : Drawing {
+    struct Moved : Placed {  // another position of the suspension
+        std::string title{};
     };
     struct Arrow {  // at a point, with a name at its end
         Position at{}, to{};
         std::string name{};
     };
-    std::vector<Point> points{};
-    std::vector<Link> links{};
-    std::vector<std::vector<std::size_t>> faces{};
-    std::vector<Symbol> symbols{};
-    std::vector<Wheel> wheels{};
     std::vector<Moved> moved{};
     std::vector<Arrow> arrows{};  // where there are any, the points have no names
 };

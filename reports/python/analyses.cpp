@@ -110,19 +110,16 @@ Report compare_legs(const SceneOfFile& scene, const std::optional<std::string>& 
         within ? compare::parse_tolerance(*within, compare::ToleranceParts::with_forces)
                : compare::default_tolerance;
     check_size(model, steps, every);
-    const compare::Comparison comparison = compare::compare(model, options);
-    auto judgement = compare::assess(model, comparison, tolerance, within.has_value());
-    judgement.requested = within || method;
-    json part = reports::document_of(scene.loaded, scene.file);
-    reports::add_comparison(part, scene.loaded.scene, model, comparison);
-    reports::add_verdict(part, comparison.compared, reports::reasons_of(comparison));
-    part["judgement"] = reports::judgement_json(judgement);
-    Report report{.text = reports::tables(model, comparison) + reports::sentence(judgement) + "\n",
-                  .document = std::move(part),
-                  .exit_code = comparison.conclusive() ? fine : could_not_judge};
-    json whole = reports::document("", reports::provenance());
-    whole["scenes"] = json::array({report.document});
-    report.csv = reports::curves_csv(whole, scene.file);
+    auto found = reports::analyses_of(scene.loaded, scene.file);
+    reports::add_comparison(found, compare::compare(model, options));
+    const compare::Comparison& comparison = found.comparison;
+    found.judgement = compare::assess(model, comparison, tolerance, within.has_value());
+    found.judgement->requested = within || method;
+    Report report{
+        .text = reports::tables(model, comparison) + reports::sentence(*found.judgement) + "\n",
+        .document = reports::scene_json(found),
+        .exit_code = comparison.conclusive() ? fine : could_not_judge};
+    report.csv = reports::curves_csv({{scene.loaded.scene.name, &comparison}});
     return report;
 }
 

@@ -234,11 +234,7 @@ py::list outputs_of(const SceneOfFile& scene) {
 }
 
 std::string drawing_of(const SceneOfFile& scene, const std::string& view) {
-    const Model& model = scene.loaded.model;
-    compare::Comparison nothing_solved;
-    nlohmann::ordered_json part;
-    part["drawing"] = reports::drawing_json(scene.loaded.scene, model, nothing_solved);
-    return reports::picture({&part, "", &scene.file}, view);
+    return reports::picture(reports::drawing_of(scene.loaded.scene, scene.loaded.model, {}), view);
 }
 
 }  // namespace

@@ -1,12 +1,7 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 
-using compare::Cell;
 using compare::Table;
 using json = nlohmann::ordered_json;
 
@@ -22,33 +17,6 @@ json table_json(const Table& table) {
         rows.push_back(std::move(cells));
     }
     return {{"columns", std::move(columns)}, {"rows", std::move(rows)}};
-}
-
-Table read_table(const JsonCursor& field, const Table& like) {
-    Table table{like.columns, {}};
-    std::vector<std::string> names, units;
-    for (const auto& column : field["columns"].items()) {
-        names.push_back(column["name"].text());
-        units.push_back(column["unit"].text());
-    }
-    std::vector<std::size_t> places;
-    for (const auto& column : like.columns) {
-        const auto found = std::ranges::find(names, column.name);
-        if (found == names.end()) field["columns"].fail(fmt::format("no column '{}'", column.name));
-        places.push_back(static_cast<std::size_t>(found - names.begin()));
-        if (units[places.back()] != column.unit)
-            field["columns"].fail(fmt::format("column '{}' is in '{}', not in '{}'", column.name,
-                                              units[places.back()], column.unit));
-    }
-    for (const auto& row : field["rows"].items()) {
-        const auto cells = row.items();
-        if (cells.size() != names.size()) row.fail("not as many cells as columns");
-        auto& read = table.rows.emplace_back();
-        for (std::size_t c = 0; c < places.size(); ++c)
-            read.push_back(like.columns[c].words ? Cell(cells[places[c]].text())
-                                                 : Cell(cells[places[c]].number()));
-    }
-    return table;
 }
 
 json json_of(const compare::Result& result) {

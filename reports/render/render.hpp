@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "compare/result/result.hpp"
-#include "reports/json/json_cursor.hpp"
 
 namespace elastocheck::reports {
 
@@ -18,15 +17,6 @@ std::string csv(const compare::Table& table);
 
 // {"columns": [{"name", "unit", "description"}, ...], "rows": [[1.5, "text", null], ...]}
 nlohmann::ordered_json table_json(const compare::Table& table);
-
-// Reads the columns of `like`, found by name, in its order; other columns are ignored. Throws
-// ResultError with the place of a missing column, another unit, or a cell of the wrong kind.
-compare::Table read_table(const JsonCursor& field, const compare::Table& like);
-
-template <class Row>
-std::vector<Row> read_rows(const JsonCursor& field) {
-    return compare::rows_of<Row>(read_table(field, compare::table_of<Row>({})));
-}
 
 std::string with_unit(const std::string& name, const std::string& unit);  // "error [mm]"
 

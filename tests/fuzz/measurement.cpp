@@ -3,23 +3,16 @@
 #include "compare/candidate/candidate.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "reports/json/json_cursor.hpp"
 #include "reports/page/sections.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace elastocheck::fuzz {
 namespace {
 
-using json = nlohmann::ordered_json;
-
-struct Suspension {
-    Model model;
-    compare::Comparison comparison;
-};
-
 // Curves as legs would have them: something that rises, from one end of each branch to the other.
-Suspension suspension() {
-    Suspension of{compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml")), {}};
+reports::SceneAnalyses suspension() {
+    reports::SceneAnalyses of{.model =
+                                  compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml"))};
     of.comparison = compare::outline(of.model);
     const auto drawn = evaluate(of.model, of.comparison.channels, compare::design_state(of.model));
     for (std::size_t b = 0; b < of.model.branches.size(); ++b) {
@@ -41,7 +34,7 @@ Suspension suspension() {
 
 // The file's names of branches are those of a map, as a rig has them.
 void measurement(std::string_view input) {
-    static const Suspension suspension = fuzz::suspension();
+    static const reports::SceneAnalyses suspension = fuzz::suspension();
     static const reports::ColumnMap cases = [] {
         reports::ColumnMap map;
         map.columns = {{.theirs = "case", .output = "branch", .unit = {}}};
@@ -49,15 +42,14 @@ void measurement(std::string_view input) {
         return map;
     }();
     for (const auto& how : {reports::ColumnMap{}, cases}) try {
-            json scene;
-            add_measurement(scene, suspension.model, suspension.comparison, {},
-                            reports::read_measurement(input, "fuzz.csv", suspension.model, how));
-            expect_plain("the document", scene["measured"].dump());
-            if (reports::compared_with_measurement(scene) < 0)
-                throw Fault("fewer than none compared");
-            const json written = {{"measured", json::parse(scene["measured"].dump())}};
-            const std::string file = "result.json";
-            (void)reports::measured_section({&written, "", &file});
+            reports::SceneAnalyses scene = suspension;
+            scene.measured = reports::compare_measurement(
+                scene.model, scene.comparison, {},
+                reports::read_measurement(input, "fuzz.csv", scene.model, how));
+            expect_plain("the document",
+                         reports::measured_json(*scene.measured, scene.comparison).dump());
+            if (scene.measured->found.compared < 0) throw Fault("fewer than none compared");
+            (void)reports::measured_section(scene);
         } catch (const reports::MeasurementError& error) {
             const std::string_view what = error.what();
             if (!what.starts_with("fuzz.csv:"))

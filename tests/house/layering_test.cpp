@@ -185,29 +185,6 @@ TEST(Layering, AFolderHoldsAtMostTwentySourceFiles) {
     for (const auto& [folder, files] : count) EXPECT_LE(files, most_files) << folder;
 }
 
-// What a section shows is in the result, of which the studies' rows are known by compare/tables/.
-TEST(Layering, ASectionOfTheReportIncludesFewHeadersAndNoStudy) {
-    constexpr std::size_t most = 15;
-    std::map<std::string, std::string> text_of;
-    for (const auto& [file, text] : sources()) text_of[file] = text;
-    std::size_t sections = 0;
-    for (const auto& [file, text] : sources()) {
-        if (!is_below(file, "reports/page/sections") || !file.ends_with(".cpp")) continue;
-        ++sections;
-        std::vector<std::string> reached{file};  // directly or by another header
-        for (std::size_t k = 0; k < reached.size(); ++k)
-            for (const auto& [target, quoted] : includes(text_of[reached[k]])) {
-                if (!quoted || std::ranges::count(reached, target) > 0) continue;
-                reached.push_back(target);
-                EXPECT_TRUE(is_below(target, "reports") || is_below(target, "compare/tables") ||
-                            is_below(target, "compare/outputs"))
-                    << file << " includes " << target;
-            }
-        EXPECT_LE(reached.size() - 1, most) << file;
-    }
-    EXPECT_GT(sections, 15u);
-}
-
 // What the rooms that show results include of the rooms that compute them.
 TEST(Layering, TheRoomsOfReportsIncludeOnlyWhatTheyShow) {
     const std::map<std::string, std::vector<std::string>> allowed{
@@ -226,6 +203,15 @@ TEST(Layering, TheRoomsOfReportsIncludeOnlyWhatTheyShow) {
                         rooms, [&](const std::string& r) { return is_below(target, r); }))
                         << file << " includes " << target;
                 }
+}
+
+// The page is made of typed results; nothing is read back from an output.
+TEST(Layering, ThePageReadsNoJson) {
+    for (const auto& [file, text] : sources())
+        for (const auto& [target, quoted] : includes(text)) {
+            EXPECT_FALSE(is_below(file, "reports/page") && is_below(target, "reports/json"))
+                << file << " includes " << target;
+        }
 }
 
 // A visit that asks what a kind can do, instead of saying what is done with each, leaves a new

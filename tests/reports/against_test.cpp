@@ -6,143 +6,107 @@
 
 #include <cmath>
 
+#include "compare/outputs/curve.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "reports/document/document.hpp"
-#include "reports/json/json_cursor.hpp"
 #include "reports/page/sections.hpp"
 #include "tests/reports/command.hpp"
+#include "tests/reports/result.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-using json = nlohmann::ordered_json;
-
-// A solved document as read from result.json.
-json solved(const std::string& name, std::vector<Setting> settings = {}) {
-    const Scene scene =
-        read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml", settings);
-    const Model model = compile(scene);
+SceneAnalyses solved(const std::string& name, std::vector<Setting> settings = {}) {
+    const Scene read = read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml", settings);
+    SceneAnalyses scene = compiled(read, compile(read));
     compare::Options options;
     options.recursion.steps = 8;
     options.prove = false;
-    const auto comparison = compare::compare(model, options);
-    json part = scene_document(scene, "", model);
-    add_comparison(part, scene, model, comparison);
-    add_verdict(part, comparison.compared, {});
-    return json::parse(part.dump());
+    add_comparison(scene, compare::compare(scene.model, options));
+    return scene;
 }
-const json& base() {
-    static const json once = solved("chrono_mcpherson_travel");
+const SceneAnalyses& base() {
+    static const SceneAnalyses once = solved("chrono_mcpherson_travel");
     return once;
 }
-const json& variant() {
-    static const json once = [] {
-        json made = solved("chrono_mcpherson_travel", {{"points.tie_rod_inner.z", "-0.053"}});
-        made["name"] = "Higher rack";
+const SceneAnalyses& variant() {
+    static const SceneAnalyses once = [] {
+        SceneAnalyses made =
+            solved("chrono_mcpherson_travel", {{"points.tie_rod_inner.z", "-0.053"}});
+        made.scene.name = "Higher rack";
         return made;
     }();
     return once;
 }
-json against(const json& was, const json& is) {
-    json with = was;
-    add_against(with, is);
-    return with["against"];
-}
-const json* named(const json& list, const char* key, const std::string& name) {
-    for (const auto& one : list)
-        if (one[key] == name) return &one;
-    return nullptr;
-}
 
 TEST(Against, ASceneHasNoDifferenceFromItself) {
-    const json none = against(base(), base());
-    for (const char* key : {"numbers", "figures", "only_base", "only_variant"})
-        EXPECT_TRUE(none[key].empty()) << key << none[key];
-    EXPECT_EQ(none["branches"].size(), base()["branches"].size());
-    for (const auto& branch : none["branches"]) EXPECT_TRUE(branch["curves"].empty()) << branch;
+    const Against none = differences(base(), base());
+    EXPECT_TRUE(none.numbers.empty() && none.figures.empty());
+    EXPECT_TRUE(none.only_base.empty() && none.only_variant.empty());
+    EXPECT_EQ(none.branches.size(), base().comparison.branches.size());
+    for (const auto& branch : none.branches) EXPECT_TRUE(branch.curves.empty()) << branch.name;
 }
 
 TEST(Against, NamesTheNumberThatDiffersAndTheFiguresThatItMoved) {
-    const json found = against(base(), variant());
-    ASSERT_EQ(found["numbers"].size(), 1u) << found["numbers"];
-    EXPECT_EQ(found["numbers"][0]["path"], "points.tie_rod_inner.z");
-    EXPECT_EQ(found["numbers"][0]["variant"]["value"], -0.053);
-    // first what an engineer notices most
-    const auto noticed = [&](std::size_t k) {
-        return found["figures"][k]["noticed"].get<double>();
+    const Against found = differences(base(), variant());
+    ASSERT_EQ(found.numbers.size(), 1u);
+    EXPECT_EQ(found.numbers[0].is->path, "points.tie_rod_inner.z");
+    EXPECT_EQ(found.numbers[0].is->value, -0.053);
+    EXPECT_GT(found.figures.front().noticed, 10);
+    EXPECT_TRUE(std::ranges::is_sorted(found.figures, std::greater{}, &Against::Figure::noticed))
+        << "first what an engineer notices most";
+    const auto value = [](const SceneAnalyses& scene, const char* output) {
+        const auto& curve = scene.comparison.branches[0].run(compare::Leg::equilibrium).curve;
+        return curve.values[curve.start][channel_of(scene, output)];
     };
-    EXPECT_GT(noticed(0), 10);
-    for (std::size_t k = 1; k < found["figures"].size(); ++k)
-        EXPECT_LE(noticed(k), noticed(k - 1)) << found["figures"][k];
-    const auto value = [](const json& scene, const char* output) {
-        for (const auto& leg : scene["branches"][0]["legs"])
-            if (leg["leg"] == "equilibrium")
-                for (std::size_t k = 0; k < leg["curve"]["a"].size(); ++k)
-                    if (leg["curve"]["a"][k] == 0.0)
-                        return leg["curve"]["values"][output][k].get<double>();
-        return std::nan("");
+    const auto figure = [&](const char* output) {
+        const auto at = std::ranges::find(found.figures, output, &Against::Figure::output);
+        EXPECT_NE(at, found.figures.end()) << output;
+        return *at;
     };
     for (const char* output : {"bump_steer", "bump_camber", "wheel_rate", "side_view_swing_arm"}) {
-        const json* figure = named(found["figures"], "output", output);
-        ASSERT_TRUE(figure) << output;
-        EXPECT_EQ((*figure)["base"], value(base(), output));
-        EXPECT_EQ((*figure)["variant"], value(variant(), output));
+        EXPECT_EQ(figure(output).base, value(base(), output));
+        EXPECT_EQ(figure(output).variant, value(variant(), output));
     }
     // a swing arm is compared by its reciprocal
-    const json& arm = *named(found["figures"], "output", "side_view_swing_arm");
-    EXPECT_EQ(arm["unit_of_difference"], "1/m");
-    EXPECT_NEAR(arm["difference"].get<double>(),
-                1e3 / arm["variant"].get<double>() - 1e3 / arm["base"].get<double>(), 1e-12);
+    const auto arm = figure("side_view_swing_arm");
+    EXPECT_EQ(arm.unit_of_difference, "1/m");
+    EXPECT_NEAR(arm.difference, 1e3 / arm.variant - 1e3 / arm.base, 1e-12);
     // and over the branches on the same axis
-    const json* toe = named(found["branches"][0]["curves"], "output", "toe");
-    ASSERT_TRUE(toe);
+    const auto toe = std::ranges::find(found.branches[0].curves, "toe", &Against::Curve::output);
+    ASSERT_NE(toe, found.branches[0].curves.end());
     double largest = 0;
-    for (std::size_t k = 0; k < (*toe)["base"]["y"].size(); ++k) {
-        ASSERT_EQ((*toe)["base"]["a"][k], (*toe)["variant"]["a"][k]);
-        largest = std::max(largest, std::abs((*toe)["variant"]["y"][k].get<double>() -
-                                             (*toe)["base"]["y"][k].get<double>()));
-    }
-    EXPECT_NEAR(std::abs((*toe)["largest"].get<double>()), largest, 1e-9);
+    EXPECT_EQ(toe->base.a, toe->variant.a);
+    for (std::size_t k = 0; k < toe->base.y.size(); ++k)
+        largest = std::max(largest, std::abs(toe->variant.y[k] - toe->base.y[k]));
+    EXPECT_NEAR(std::abs(toe->largest), largest, 1e-9);
     EXPECT_GT(largest, 0.01);
 }
 
 TEST(Against, OtherStepsAreComparedAtEqualParameter) {
-    json coarse = base();  // every second point of each branch, by the same solution
-    for (auto& branch : coarse["branches"])
-        for (auto& leg : branch["legs"]) {
-            const auto half = [](json& list) {
-                json few = json::array();
-                for (std::size_t k = 0; k < list.size(); k += 2) few.push_back(list[k]);
-                list = few;
-            };
-            half(leg["curve"]["a"]);
-            for (auto& values : leg["curve"]["values"]) half(values);
-        }
-    for (const auto& branch : against(coarse, base())["branches"])
-        for (const auto& curve : branch["curves"])
-            EXPECT_LT(std::abs(curve["largest"].get<double>()), 1e-2)
-                << branch["name"] << curve["output"];  // interpolation between 80 mm / 4
+    SceneAnalyses coarse = base();  // every second point of each branch, by the same solution
+    for (auto& branch : coarse.comparison.branches)
+        truth_of(branch) = compare::thinned(truth_of(branch), 2);
+    for (const auto& branch : differences(coarse, base()).branches)
+        for (const auto& curve : branch.curves)
+            EXPECT_LT(std::abs(curve.largest), 1e-2)
+                << branch.name << curve.output;  // interpolation between 80 mm / 4
 }
 
 TEST(Against, WhatOnlyOneHasIsNamed) {
-    json other = variant();
-    other["branches"][0]["name"] = "Ride";
-    other["channels"][0]["name"] = "hub_x";
-    const json found = against(base(), other);
-    EXPECT_EQ(found["only_base"].size(), 2u) << found["only_base"];
-    EXPECT_EQ(found["only_variant"], (json{"output hub_x", "branch Ride"}));
-    json bare = {{"name", "x"}, {"source", "x.yaml"}, {"input_hash", ""}};
-    EXPECT_THROW(add_against(bare, base()), ResultError);
+    SceneAnalyses other = variant();
+    other.comparison.branches[0].branch = "Ride";
+    other.comparison.channels[0].name = "hub_x";
+    const Against found = differences(base(), other);
+    EXPECT_EQ(found.only_base.size(), 2u);
+    EXPECT_EQ(found.only_variant, (std::vector<std::string>{"output hub_x", "branch Ride"}));
 }
 
 TEST(Against, TheSectionDrawsBothOnCommonAxesAndSaysNothingOfAVerdict) {
-    json with = base();
-    add_against(with, variant());
-    with = json::parse(with.dump());
-    const std::string file = "result.json";
-    const auto section = against_section({&with, "", &file});
+    SceneAnalyses scene = base();
+    scene.against = differences(base(), variant());
+    const auto section = against_section(scene);
     ASSERT_TRUE(section);
     EXPECT_EQ(section->mark, Mark::none);
     EXPECT_EQ(section->title, "Differences of Higher rack");
@@ -156,17 +120,16 @@ TEST(Against, TheSectionDrawsBothOnCommonAxesAndSaysNothingOfAVerdict) {
     EXPECT_EQ(section->tables[0].rows[0][0], "points.tie_rod_inner.z");
     EXPECT_GT(section->tables[1].rows.size(), 5u);
     // variants of one scene have its name
-    json twin = with;
-    twin["against"]["name"] = with["name"], twin["against"]["source"] = "cars/stiffer.yaml";
-    const auto named = against_section({&twin, "", &file});
+    SceneAnalyses twin = scene;
+    twin.against->name = scene.scene.name, twin.against->source = "cars/stiffer.yaml";
+    const auto named = against_section(twin);
     EXPECT_EQ(named->title, "Differences of stiffer.yaml");
     expect_parts(named->figures[0].caption, {"Thin line: stiffer.yaml."});
-    EXPECT_FALSE(against_section({&base(), "", &file}));
-    EXPECT_EQ(sections_of({&with, "", &file}).front().id, "against") << "the page begins with it";
-    expect_parts(
-        against_sentence(with),
-        {"1 number of the scene and ",
-         "differ, most " + with["against"]["figures"][0]["output"].get<std::string>() + " ["});
+    EXPECT_FALSE(against_section(base()));
+    EXPECT_EQ(sections_of(scene).front().id, "against") << "the page begins with it";
+    expect_parts(against_sentence("a.yaml", *scene.against),
+                 {" against a.yaml: 1 number of the scene and ",
+                  "differ, most " + scene.against->figures[0].output + " ["});
 }
 
 TEST(Against, TheCommandComparesTwoScenesAndHasNoFail) {

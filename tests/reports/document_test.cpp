@@ -18,8 +18,8 @@
 #include "elastocheck/trim.hpp"
 #include "reports/document/curves.hpp"
 #include "reports/json/json.hpp"
-#include "reports/tables/csv.hpp"
 #include "reports/render/render.hpp"
+#include "reports/tables/csv.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -27,22 +27,18 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-struct Made {
-    Scene scene = support::scene("chrono_mcpherson");
-    Model model = compile(scene);
-    compare::Comparison comparison;
-
+struct Made : SceneAnalyses {
     Made() {
+        const Scene of = support::scene("chrono_mcpherson");
+        static_cast<SceneAnalyses&>(*this) = compiled(of, compile(of));
+        hash = input_hash("input");
         compare::Options options;
         options.recursion.steps = 12;
-        comparison = compare::compare(model, options);
+        add_comparison(*this, compare::compare(model, options));
     }
-    json document(std::string_view input = "input") const {
+    json document() const {
         json whole = reports::document("elastocheck compare x", provenance());
-        json part = scene_document(scene, input, model);
-        add_comparison(part, scene, model, comparison);
-        add_verdict(part, comparison.compared, reasons_of(comparison));
-        whole["scenes"].push_back(part);
+        whole["scenes"].push_back(scene_json(*this));
         return whole;
     }
 };
@@ -119,7 +115,7 @@ TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
     const json whole = json::parse(made.document().dump());
     const auto told = compare::force_rows(made.model, made.comparison);
     EXPECT_EQ(whole["scenes"][0]["forces"], json::parse(table_json(told).dump()));
-    const std::string rows = forces_csv(whole, "result.json");
+    const std::string rows = forces_csv({made});
     EXPECT_TRUE(
         rows.starts_with("scene,branch,end,end unit,element,output,unit,value,error,share [%]\n"))
         << rows;

@@ -8,25 +8,19 @@
 
 #include "elastocheck/compile.hpp"
 #include "reports/document/drawing.hpp"
-#include "reports/page/sections/inputs/suspension.hpp"
+#include "reports/page/views.hpp"
 #include "reports/text/labels.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-using json = nlohmann::ordered_json;
-
-json drawing_of(const std::string& name) {
+Drawing drawing_of(const std::string& name) {
     const Scene scene = support::scene(name);
-    return drawing_json(scene, compile(scene), {});
+    return reports::drawing_of(scene, compile(scene), {});
 }
 
-Suspension drawn(const std::string& name) {
-    static const std::string file = "result.json";
-    const json scene = json::parse(json{{"drawing", drawing_of(name)}}.dump());
-    return *suspension_of(JsonCursor{&scene, "scenes[0]", &file});
-}
+Suspension drawn(const std::string& name) { return {drawing_of(name)}; }
 
 std::vector<Figure> all_views(const Suspension& s) {
     auto figures = draw_views(s, {axonometric_view(false)}, large_frame(s));
@@ -96,45 +90,42 @@ TEST(Drawing, EveryStrokeIsOnTheSheet) {
                 }
 }
 
-int count(const json& list, const char* key, const std::string& what) {
-    int n = 0;
-    for (const auto& entry : list) n += entry[key] == what;
-    return n;
+template <class Part>
+long count(const std::vector<Part>& list, std::string Part::*field, const std::string& what) {
+    return std::ranges::count(list, what, field);
 }
 
 TEST(Drawing, ADoubleWishboneIsTwoPlatesACarrierATieRodACoilAndFourBushings) {
-    const json d = drawing_of("double_wishbone");
-    ASSERT_EQ(d["faces"].size(), 3u);
-    for (const auto& face : d["faces"]) EXPECT_EQ(face["points"].size(), 3u) << face["body"];
-    EXPECT_EQ(count(d["links"], "kind", "spring"), 1) << "its stops are no springs";
-    EXPECT_EQ(count(d["links"], "kind", "rod"), 1);
-    EXPECT_EQ(count(d["symbols"], "kind", "bushing"), 4);
-    EXPECT_EQ(count(d["symbols"], "kind", "spherical"), 4)
+    const Drawing d = drawing_of("double_wishbone");
+    ASSERT_EQ(d.faces.size(), 3u);
+    for (const auto& face : d.faces) EXPECT_EQ(face.points.size(), 3u) << face.body;
+    EXPECT_EQ(count(d.links, &Drawing::Link::kind, "spring"), 1) << "its stops are no springs";
+    EXPECT_EQ(count(d.links, &Drawing::Link::kind, "rod"), 1);
+    EXPECT_EQ(count(d.symbols, &Drawing::Symbol::kind, "bushing"), 4);
+    EXPECT_EQ(count(d.symbols, &Drawing::Symbol::kind, "spherical"), 4)
         << "two ball joints, both ends of the tie rod";
-    EXPECT_EQ(count(d["symbols"], "kind", "drive"), 1)
+    EXPECT_EQ(count(d.symbols, &Drawing::Symbol::kind, "drive"), 1)
         << "the rack; a jack is no part of the suspension";
-    EXPECT_EQ(count(d["symbols"], "name", "jack"), 0);
+    EXPECT_EQ(count(d.symbols, &Drawing::Symbol::name, "jack"), 0);
 }
 
 TEST(Drawing, ABeamIsALineFromEndToEnd) {
-    const json d = drawing_of("twist_beam");
-    std::vector<std::size_t> ends;
-    for (const auto& link : d["links"])
-        if (link["kind"] == "beam")
-            for (const auto& k : link["points"]) ends.push_back(k);
-    ASSERT_FALSE(ends.empty());
+    const Drawing d = drawing_of("twist_beam");
     double left = -1e9, right = 1e9;
-    for (const auto k : ends) {
-        const json at = d["points"][k]["design_mm"];
-        EXPECT_NEAR(at[0], 270, 1e-9);
-        EXPECT_NEAR(at[2], -10, 1e-9);
-        left = std::max(left, at[1].get<double>()), right = std::min(right, at[1].get<double>());
+    std::map<std::string, int> lines;  // of the arms, which are mirror images
+    for (const auto& link : d.links) {
+        lines[link.name] += link.kind == "body";
+        if (link.kind != "beam") continue;
+        for (const auto k : {link.i, link.j}) {
+            const Position& at = d.points[k].at;
+            EXPECT_NEAR(at[0], 270, 1e-9);
+            EXPECT_NEAR(at[2], -10, 1e-9);
+            left = std::max(left, at[1]), right = std::min(right, at[1]);
+        }
     }
     EXPECT_NEAR(left, 500, 1e-9);
     EXPECT_NEAR(right, -500, 1e-9);
-    EXPECT_EQ(count(d["symbols"], "kind", "bushing"), 2) << "a segment is none";
-    std::map<std::string, int> lines;  // of the arms, which are mirror images
-    for (const auto& link : d["links"]) lines[link["name"]] += link["kind"] == "body";
+    EXPECT_EQ(count(d.symbols, &Drawing::Symbol::kind, "bushing"), 2) << "a segment is none";
     EXPECT_EQ(lines["arm_left"], lines["arm_right"]);
 }
 

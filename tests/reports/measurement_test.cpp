@@ -29,7 +29,6 @@ struct Solved {
     Model model = compile(scene);
     compare::Comparison comparison;
     compare::DefinedCurves defined;
-    json document = json::object();
 
     Solved(Scene scene_, int steps, const char* method = "published") : scene(std::move(scene_)) {
         compare::Options options;
@@ -37,14 +36,15 @@ struct Solved {
         options.recursion.steps = steps;
         comparison = compare::compare(model, options);
         defined = compare::defined_curves(model, comparison);
-        add_comparison(document, scene, model, comparison);
+    }
+    Measured typed(const std::string& csv, const ColumnMap& map = {},
+                   const std::vector<std::string>& only = {}) const {
+        return compare_measurement(model, comparison, defined,
+                                   read_measurement(csv, "kc.csv", model, map, only));
     }
     json measured(const std::string& csv, const ColumnMap& map = {},
                   const std::vector<std::string>& only = {}) const {
-        json with = document;
-        add_measurement(with, model, comparison, defined,
-                        read_measurement(csv, "kc.csv", model, map, only));
-        return with["measured"];
+        return measured_json(typed(csv, map, only), comparison);
     }
     std::string refusal(const std::string& csv, const ColumnMap& map = {}) const {
         try {
@@ -64,6 +64,12 @@ json measured(const std::string& csv, const ColumnMap& map = {}) {
 }
 std::string refusal(const std::string& csv, const ColumnMap& map = {}) {
     return solved().refusal(csv, map);
+}
+
+SceneAnalyses sample_with(Measured measured, const char* name = "chrono_mcpherson") {
+    SceneAnalyses scene = sample_scene(name);
+    scene.measured = std::move(measured);
+    return scene;
 }
 
 TEST(Measurement, OfMorePointsThanAreReadIsRefused) {
@@ -102,11 +108,10 @@ TEST(Measurement, OfTheEquilibriumItselfIsMetByBothReferencesAndMissedByTheRecur
 }
 
 TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
-    json result = sample_result();
-    result["scenes"][0]["measured"] = measured("travel_mm,toe_deg\n-50,1.4\n50,-1.8\n");
-    const std::string file = "result.json";
+    const SceneAnalyses scene =
+        sample_with(solved().typed("travel_mm,toe_deg\n-50,1.4\n50,-1.8\n"));
     bool section = false, drawn = false;
-    for (const auto& s : sections_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file})) {
+    for (const auto& s : sections_of(scene)) {
         section = section || s.id == "measured";
         for (const auto& group : s.figures)
             for (const auto& figure : group.figures)
@@ -416,13 +421,9 @@ branches: {Up: jounce, Down: rebound}
 
 // At 40 mm toe was measured and camber was not: its curve has no point there.
 TEST(Measurement, AMissingValueIsNotDrawn) {
-    json result = sample_result();
-    result["scenes"][0]["measured"] = json::parse(
-        measured("branch,travel_mm,toe_deg,camber_deg\njounce,20,-0.7,0.1\njounce,40,-1.4,\n"
-                 "jounce,60,-2,0.3\n")
-            .dump());
-    const std::string file = "result.json";
-    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
+    const SceneAnalyses scene = sample_with(
+        solved().typed("branch,travel_mm,toe_deg,camber_deg\njounce,20,-0.7,0.1\njounce,40,-1.4,\n"
+                       "jounce,60,-2,0.3\n"));
     const auto camber = measured_series(scene, sweeps_of(scene).front(), "travel", "camber");
     ASSERT_TRUE(camber);
     ASSERT_EQ(camber->rows.size(), 3u);
@@ -440,22 +441,15 @@ TEST(Measurement, AByteOrderMarkIsNoPartOfTheFirstName) {
     EXPECT_EQ(refusal("\xFF\xFEt"), "kc.csv: is UTF-16; save it as CSV in UTF-8");
 }
 
-Sweep first_sweep(const json& result, const std::string& file) {
-    return sweeps_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file}).front();
-}
-
 // A point of one branch is not compared, drawn or tabulated on another.
 TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
     // Assigned to rebound but in the range of jounce: no comparison.
     const json misplaced = measured("branch,travel_mm,toe_deg\nrebound,50,-1.8\n");
     EXPECT_TRUE(misplaced["readings"][0]["channels"].empty());
     EXPECT_EQ(misplaced["left_out"][0], "1 row beyond the range of branch 'rebound' (line 2)");
-    json result = sample_result();
-    result["scenes"][0]["measured"] = json::parse(
-        measured("branch,travel_mm,toe_deg\njounce,20,-0.7\njounce,60,-2\nrebound,-60,2\n").dump());
-    const std::string file = "result.json";
-    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
-    Sweep sweep = first_sweep(result, file);
+    const SceneAnalyses scene = sample_with(
+        solved().typed("branch,travel_mm,toe_deg\njounce,20,-0.7\njounce,60,-2\nrebound,-60,2\n"));
+    Sweep sweep = sweeps_of(scene).front();
     ASSERT_EQ(sweep.branches.size(), 2u);
     EXPECT_EQ(measured_series(scene, sweep, "travel", "toe")->rows.size(), 3u);
     sweep.branches.pop_back();
@@ -464,12 +458,10 @@ TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
 
 // Without travel the figures use the load as abscissa, with the points.
 TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
-    json result = sample_result();
-    result["scenes"][0]["measured"] = json::parse(
-        measured("load_N,toe_deg,wheel_centre_y_change_mm\n1500,-1,-1\n-1500,1,0\n").dump());
-    const std::string file = "result.json";
+    const SceneAnalyses scene = sample_with(
+        solved().typed("load_N,toe_deg,wheel_centre_y_change_mm\n1500,-1,-1\n-1500,1,0\n"));
     int figures = 0, drawn = 0;
-    for (const auto& s : sections_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file})) {
+    for (const auto& s : sections_of(scene)) {
         if (s.id != "kinematics") continue;
         for (const auto& group : s.figures)
             for (const auto& figure : group.figures) {
@@ -493,7 +485,7 @@ TEST(Measurement, TravelCountsFromTheDesignPosition) {
     heavy.static_loads = {std::get<Load>(heavy.branches[0].drivers.at(0).what)};
     std::get<DeadForce>(heavy.static_loads.at(0).kind).f *= 500;
     const Solved settled(heavy, 20, "series");
-    const auto& [scene, model, comparison, defined, document] = settled;
+    const auto& [scene, model, comparison, defined] = settled;
     const auto& curve = comparison.branches[0].runs[1].curve;
     const auto drawn = compare::evaluate(model, compare::design_state(model));
     const double rest = curve.values[0][2] - drawn[2];  // wheel_centre_z
@@ -530,14 +522,15 @@ TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
 
 TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
     const ColumnMap map = cases({{"Bounce", "travel"}, {"Ride load", "load"}});
-    const json m = rig().measured(
+    const Measured rig_typed = rig().typed(
         "case,parameter_mm,load_N,toe_deg\nBounce,-20,,0.1\nBounce,20,,-0.2\nRide "
         "load,,500,0.3\nbraking,20,,2\n",
         map);
+    const json m = measured_json(rig_typed, rig().comparison);
     EXPECT_EQ(m["branch"], (json{"travel", "travel", "load", "braking"}));
     EXPECT_EQ(m["parameter"], (json{-20.0, 20.0, 500.0, 20.0}));
     EXPECT_EQ(m["readings"][0]["channels"].size(), 3u);  // branches
-    EXPECT_EQ(compared_with_measurement({{"measured", m}}), 4);
+    EXPECT_EQ(rig_typed.found.compared, 4);
     EXPECT_EQ(m["readings"][0]["reading"], "at equal load or parameter");
     for (const auto& [csv, why] :
          {std::pair{"case,parameter_mm,toe_deg\nBunce,-20,1\n",
@@ -562,16 +555,12 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
 // A rig's file has a travel column for its ride case and a force for the others: a point is drawn
 // over the abscissa of its figure, and omitted without it.
 TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
-    json result = sample_result("chrono_mcpherson_travel");
-    result["scenes"][0]["measured"] = json::parse(
-        rig()
-            .measured(
-                "branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."
-                "3\nload,,700,0.4\n",
-                {})
-            .dump());
-    const std::string file = "result.json";
-    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
+    const SceneAnalyses scene = sample_with(
+        rig().typed(
+            "branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."
+            "3\nload,,700,0.4\n",
+            {}),
+        "chrono_mcpherson_travel");
     int seen = 0;
     for (const auto& sweep : sweeps_of(scene)) {
         const auto points = measured_series(
@@ -594,10 +583,10 @@ TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
 }
 
 TEST(Measurement, PointsOutsideTheRangeAreNotCompared) {
-    const json m = measured("travel_mm,toe_deg\n1e4,0\n50,\n");
-    EXPECT_EQ(compared_with_measurement({{"measured", m}}), 0);
-    EXPECT_EQ(m["left_out"], (json{"1 row that no branch reaches (line 2)",
-                                   "1 row without a measured value (line 3)"}));
+    const Measured m = solved().typed("travel_mm,toe_deg\n1e4,0\n50,\n");
+    EXPECT_EQ(m.found.compared, 0);
+    EXPECT_EQ(m.left_out, (std::vector<std::string>{"1 row that no branch reaches (line 2)",
+                                                    "1 row without a measured value (line 3)"}));
 }
 
 }  // namespace

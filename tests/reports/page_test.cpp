@@ -13,15 +13,14 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-json two_scenes() {
-    json result = sample_result();
-    result["scenes"].push_back(sample_result("pinned_bar")["scenes"][0]);
-    return result;
+const std::vector<SceneAnalyses>& two_scenes() {
+    static const std::vector<SceneAnalyses> both{sample_scene(), sample_scene("pinned_bar")};
+    return both;
 }
 
-std::string page(const json& result = two_scenes()) {
+std::string page(const std::vector<SceneAnalyses>& scenes = two_scenes()) {
     const Folder folder;
-    write_report(result, "result.json", folder.path / "r");
+    write_report(report_of(scenes), folder.path / "r");
     return text_of(folder.path / "r" / "report.html");
 }
 
@@ -117,7 +116,7 @@ TEST(Report, PageColoursAreClassesSoThatDarkPaperCanChangeThem) {
 
 TEST(Report, PageTheMarkdownTwinSaysTheSame) {
     const Folder folder;
-    write_report(two_scenes(), "result.json", folder.path / "r");
+    write_report(report_of(two_scenes()), folder.path / "r");
     const std::string html = text_of(folder.path / "r" / "report.html"),
                       md = text_of(folder.path / "r" / "report.md");
     EXPECT_EQ(all(html, "<h3[^>]*>([^<]*)</h3>"), all(md, "\n### ([^\n]*)"));
@@ -213,7 +212,7 @@ TEST(Report, BrowserOpensThePageWithoutAnErrorOrARequest) {
 // script run: it names its hash.
 TEST(Report, BrowserTellsTheValueUnderThePointerAndSwitchesCurves) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const std::string html = page(compared_result("front_axle"));
+    const std::string html = page({compared_scene("front_axle")});
     const json seen = measured_in_a_browser(html, R"(
 const svg=[...document.querySelectorAll('svg[data-x]')].find(s=>s.querySelector('title')?.textContent=='Toe angle');
 const box=svg.getBoundingClientRect(),[x0,x1,low,high]=svg.dataset.x.split(' ').map(Number);
@@ -262,7 +261,7 @@ const key=k=>svg.dispatchEvent(new KeyboardEvent('keydown',{key:k}));
 
 TEST(Report, BrowserTurnsTheDrawingByPointerAndKeys) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const json seen = measured_in_a_browser(page(compared_result("front_axle")), turned + R"(
+    const json seen = measured_in_a_browser(page({compared_scene("front_axle")}), turned + R"(
 const seen={wrong,requests:performance.getEntriesByType('resource').length,hidden:getComputedStyle(fixed).display};
 press('Front');seen.front=centres();drag(60,0);seen.dragged=centres();drag(-60,0);seen.back=centres();
 key('ArrowRight');seen.key=centres();press('Top');seen.top=centres();press('+');seen.near=centres();
@@ -288,8 +287,8 @@ seen.focus=svg.tabIndex;seen.buttons=[...document.querySelectorAll('.turn button
 
 TEST(Report, BrowserMovesTheDrawingByWhatTheCurveSays) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const json& result = compared_result("front_axle");
-    const json seen = measured_in_a_browser(page(result), turned + R"(
+    const SceneAnalyses& scene = compared_scene("front_axle");
+    const json seen = measured_in_a_browser(page({scene}), turned + R"(
 press('Front');
 const seen={wrong,branch:d.branches[0].name,a:d.branches[0].a,at:[],marks:document.querySelectorAll('.here[d^=M]').length};
 d.branches[0].a.forEach((a,k)=>{slide(k);seen.at.push([shown(),...centres().map(p=>p[1])])});
@@ -301,13 +300,11 @@ seen.px_per_mm=(centres()[0][0]-centres()[1][0])/(y(l)-y(r))*100;
     EXPECT_TRUE(seen["wrong"].empty()) << seen["wrong"];
     EXPECT_EQ(seen["branch"], "parallel");
     EXPECT_GT(seen["marks"], 5) << "the present position on the figures over travel";
-    const json& curve = result["scenes"][0]["branches"][0]["legs"][1]["curve"];
-    ASSERT_EQ(result["scenes"][0]["branches"][0]["name"], "parallel");
-    ASSERT_EQ(result["scenes"][0]["branches"][0]["legs"][1]["leg"], "equilibrium");
+    ASSERT_EQ(scene.comparison.branches[0].branch, "parallel");
+    const auto& curve = scene.comparison.branches[0].run(compare::Leg::equilibrium).curve;
     const double px = seen["px_per_mm"];
     const auto index = [&](double a) {
-        return static_cast<std::size_t>(std::ranges::find(curve["a"], json(a)) -
-                                        curve["a"].begin());
+        return static_cast<std::size_t>(std::ranges::find(curve.a, a) - curve.a.begin());
     };
     const std::size_t first = index(seen["a"][0]);
     ASSERT_EQ(seen["at"].size(), 17u);
@@ -318,11 +315,11 @@ seen.px_per_mm=(centres()[0][0]-centres()[1][0])/(y(l)-y(r))*100;
         if (words.starts_with("−")) words.replace(0, 3, "-");
         EXPECT_NEAR(std::stod(words), a, 1e-3 * std::abs(a)) << words;
         EXPECT_TRUE(words.ends_with("&nbsp;mm")) << words;
-        ASSERT_LT(index(a), curve["a"].size());
+        ASSERT_LT(index(a), curve.a.size());
         for (int w = 0; w < 2; ++w) {
-            const json& z =
-                curve["values"][w == 0 ? "left.wheel_centre_z" : "right.wheel_centre_z"];
-            const double moved = z[index(a)].get<double>() - z[first].get<double>(),
+            const std::size_t z =
+                channel_of(scene, w == 0 ? "left.wheel_centre_z" : "right.wheel_centre_z");
+            const double moved = curve.values[index(a)][z] - curve.values[first][z],
                          drawn = -(at[1 + w].get<double>() -
                                    seen["at"][0][static_cast<std::size_t>(1 + w)].get<double>()) /
                                  px;
@@ -333,7 +330,7 @@ seen.px_per_mm=(centres()[0][0]-centres()[1][0])/(y(l)-y(r))*100;
 
 TEST(Report, BrowserShowsTheFixedViewsWithoutScripts) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    std::string html = page(compared_result("front_axle"));
+    std::string html = page({compared_scene("front_axle")});
     const std::string whole = html;
     for (auto at = html.find("<script>"); at != html.npos; at = html.find("<script>"))
         html.erase(at, html.find("</script>", at) + 9 - at);
@@ -364,14 +361,14 @@ const seen={wrong,views:views.map(s=>s.getBoundingClientRect().height),controls:
 TEST(Report, BrowserRunsTheScriptsOfThePolicy) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const Folder folder;
-    const auto said = in_a_browser(folder, page(compared_result("front_axle")), "--dump-dom");
+    const auto said = in_a_browser(folder, page({compared_scene("front_axle")}), "--dump-dom");
     EXPECT_NE(said.out.find("<div class=\"turn\"><svg"), std::string::npos) << said.err;
     EXPECT_EQ(said.err.find("Content Security Policy"), std::string::npos) << said.err;
 }
 
 TEST(Report, BrowserRowsOfRatesFitAPhone) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const json seen = measured_in_a_browser(page(compared_result("front_axle")), R"(
+    const json seen = measured_in_a_browser(page({compared_scene("front_axle")}), R"(
 const rows=[...document.querySelectorAll('section[id$=rates] tr,section[id$=first] tr')];
 const cells=[...document.querySelectorAll('section[id$=rates] td')];
 const seen={rows:rows.length,tallest:Math.max(...rows.map(r=>r.getBoundingClientRect().height)),
@@ -394,7 +391,7 @@ int printed_pages(const std::string& html) {
 
 TEST(Report, BrowserPartOneOfAnAxlePrintsOnFivePages) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    std::string html = page(compared_result("front_axle"));
+    std::string html = page({compared_scene("front_axle")});
     EXPECT_LE(html.size(), 950'000u);
     const int whole = printed_pages(html);
     const auto evidence = html.find("<details class=\"evidence\"");
@@ -409,7 +406,7 @@ TEST(Report, BrowserPartOneOfAnAxlePrintsOnFivePages) {
 
 TEST(Report, BrowserPrintsTheFirstScreenBelowTheTitleAndPartOneOnANewPage) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    std::string html = page(compared_result("mcpherson_strut"));  // without studies
+    std::string html = page({compared_scene("mcpherson_strut")});  // without studies
     const auto evidence = html.find("<details class=\"evidence\"");
     ASSERT_NE(evidence, html.npos);
     html.erase(evidence, html.find("</main>") - evidence);

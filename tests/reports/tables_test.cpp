@@ -33,76 +33,16 @@ const compare::Table small{
      {"count", "", "", false, Digits::whole}},
     {{"a, b", "x", 0.1, 3.0}, {"c", "x", nan, 4.0}, {"a, b", "y", 1e-7, 3.0}}};
 
-void expect_same(const compare::Table& a, const compare::Table& b) {
-    ASSERT_EQ(a.columns.size(), b.columns.size());
-    ASSERT_EQ(a.rows.size(), b.rows.size());
-    for (std::size_t r = 0; r < a.rows.size(); ++r)
-        for (std::size_t c = 0; c < a.columns.size(); ++c) {
-            if (a.columns[c].words) {
-                EXPECT_EQ(std::get<std::string>(a.rows[r][c]), std::get<std::string>(b.rows[r][c]));
-                continue;
-            }
-            const double x = std::get<double>(a.rows[r][c]), y = std::get<double>(b.rows[r][c]);
-            EXPECT_TRUE(x == y || (!std::isfinite(x) && std::isnan(y)))
-                << a.columns[c].name << ": " << x;
-        }
-}
-
-template <class Row>
-void expect_same_through_json(const std::vector<Row>& rows) {
-    const json read = json::parse(table_json(rows).dump());
-    expect_same(table_of(rows), table_of(read_rows<Row>(JsonCursor{&read, "", &file})));
-}
-
-compare::Table through_json(const compare::Table& table) {
-    compare::Table like = table;
-    like.rows.clear();
-    const json read = json::parse(table_json(table).dump());
-    return read_table(JsonCursor{&read, "", &file}, like);
-}
-
 TEST(Tables, CsvHasAUnitInTheHeaderAndExactNumbers) {
     EXPECT_EQ(csv(small),
               "who,how,error [mm],count\n\"a, b\",x,0.1,3\nc,x,,4\n\"a, b\",y,1e-07,3\n");
 }
 
-TEST(Tables, JsonReadsBackAsTheSameTable) {
-    expect_same(small, through_json(small));
-    const Model model = compile(support::scene("pinned_bar"));
-    expect_same_through_json(compare::order_rows(
-        compare::order_study(model, {.orders = {2, 8}, .tolerances = {1e-6}, .points = 5})));
-}
-
-TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
-    compare::Table like = small;
-    like.rows.clear();
-    const auto refused = [&](const json& damaged) -> std::string {
-        try {
-            (void)read_table(JsonCursor{&damaged, "t", &file}, like);
-        } catch (const ResultError& error) {
-            return error.what();
-        }
-        return "read";
-    };
-    json table = json::parse(table_json(small).dump());
-    EXPECT_EQ(refused(table), "read");
-    json damaged = table;
-    damaged["rows"][1][2] = "text";
-    EXPECT_EQ(refused(damaged), "result.json: t.rows[1][2]: expected a number, found string");
-    damaged = table;
-    damaged["rows"][0].erase(1);
-    EXPECT_EQ(refused(damaged), "result.json: t.rows[0]: not as many cells as columns");
-    damaged = table;
-    damaged["columns"][2]["unit"] = "m";
-    EXPECT_EQ(refused(damaged), "result.json: t.columns: column 'error' is in 'm', not in 'mm'");
-    damaged = table;
-    damaged["columns"][3]["name"] = "number";
-    EXPECT_EQ(refused(damaged), "result.json: t.columns: no column 'count'");
-    damaged = table;  // an additional column in front
-    damaged["columns"].insert(damaged["columns"].begin(),
-                              json::object({{"name", "new"}, {"unit", ""}}));
-    for (auto& row : damaged["rows"]) row.insert(row.begin(), 7);
-    EXPECT_EQ(refused(damaged), "read");
+TEST(Tables, JsonHasNamesUnitsAndNullForAMissingNumber) {
+    const json table = json::parse(table_json(small).dump());
+    EXPECT_EQ(table["columns"][2], (json{{"name", "error"}, {"unit", "mm"}, {"description", ""}}));
+    EXPECT_EQ(table["rows"].dump(),
+              R"([["a, b","x",0.1,3.0],["c","x",null,4.0],["a, b","y",1e-07,3.0]])");
 }
 
 TEST(Tables, TextIsAsWideAsItNeedsAndLeavesOutWhatIsEmpty) {
@@ -160,9 +100,6 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     const auto outputs = study_rows(study);
     const auto steps = step_rows(study);
     const auto gaps = gap_rows(study.channels, attribution);
-    expect_same_through_json(outputs);
-    expect_same_through_json(steps);
-    expect_same_through_json(gaps);
     const std::string said = study_text(model, study, attribution);
     for (const char* reading : {"at equal load", "at equal nose_z"}) {
         EXPECT_EQ(distinct(outputs, &compare::StudyRow::reading),
@@ -215,7 +152,6 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(rows), '\n')),
               trade.points.size() + 1);
     EXPECT_TRUE(rows[trade.recommendation->point].recommended);
-    expect_same_through_json(rows);
     const auto document = json::parse(trade_json(trade).dump());
     EXPECT_TRUE(document["tolerance"]["deg"].is_null());
     EXPECT_EQ(document["recommendation"]["position"], trade.recommendation->point);

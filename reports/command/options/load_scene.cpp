@@ -215,11 +215,16 @@ std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,
     return chosen(all, own, patterns);
 }
 
+SceneAnalyses analyses_of(const LoadedScene& loaded, const std::string& file) {
+    SceneAnalyses scene = compiled(loaded.scene, loaded.model);
+    scene.trim = loaded.trim;
+    scene.warnings = loaded.warnings;
+    scene.hash = input_hash(read_whole(file));
+    return scene;
+}
+
 nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file) {
-    auto part = scene_document(loaded.scene, read_whole(file), loaded.model);
-    if (loaded.trim) add_trim(part, *loaded.trim);
-    if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
-    return part;
+    return scene_head(analyses_of(loaded, file));
 }
 
 const Branch& branch_named(const Model& model, const std::string& name, const char* option) {

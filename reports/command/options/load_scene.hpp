@@ -15,6 +15,7 @@
 #include "elastocheck/scene.hpp"
 #include "elastocheck/trim.hpp"
 #include "models/reader/plausibility.hpp"
+#include "reports/document/scene_analyses.hpp"
 
 namespace elastocheck::reports {
 
@@ -46,8 +47,9 @@ LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::strin
 LoadedScene load_scene(const std::string& file, const Settings& settings,
                        Detail detail = Detail::required, std::exception_ptr* not_trimmed = nullptr);
 
-// A scene of result.json without results: the compiled model, the trim, the reader's warnings.
-// `file` is the scene's.
+// What is found on a scene, before anything is solved: the compiled model, the trim, the reader's
+// warnings; and this in result.json. `file` is the scene's.
+SceneAnalyses analyses_of(const LoadedScene& loaded, const std::string& file);
 nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file);
 
 // The outputs of --channels, names or patterns with *, in that order, each once; without patterns

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "reports/page/plot.hpp"
@@ -11,15 +10,10 @@
 
 namespace elastocheck::reports {
 
-std::string picture(const JsonCursor& scene, const std::string& view) {
-    const auto suspension = suspension_of(scene);
-    if (!suspension || suspension->points.empty())
-        throw std::invalid_argument("the scene has no point to draw");
-    // y points left
-    const bool right = !suspension->wheels.empty() &&
-                       std::ranges::all_of(suspension->wheels, [&](const auto& wheel) {
-                           return suspension->points[wheel.centre].at[1] < 0;
-                       });
+std::string picture(const Drawing& drawing, const std::string& view) {
+    if (drawing.points.empty()) throw std::invalid_argument("the scene has no point to draw");
+    const Suspension suspension{drawing};
+    const bool right = is_right(suspension);
     const auto from = [&] {
         if (view == "axonometric") return axonometric_view(right);
         for (const View& one : {front_view, side_view, top_view})
@@ -27,8 +21,8 @@ std::string picture(const JsonCursor& scene, const std::string& view) {
         throw std::invalid_argument(
             fmt::format("view '{}'; allowed: axonometric, front, side, top", view));
     }();
-    const std::string noun = noun_of(*suspension);
-    const auto figures = draw_views(*suspension, {from}, large_frame(*suspension));
+    const std::string noun = noun_of(suspension);
+    const auto figures = draw_views(suspension, {from}, large_frame(suspension));
     return illustrate(draw(figures.front()), "drawing", fmt::format("The {}", noun),
                       fmt::format("The {} seen {}, to scale.", noun, from.from))
         .alone;

@@ -13,7 +13,6 @@
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/templates.hpp"
-#include "reports/json/json_cursor.hpp"
 #include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/plot.hpp"
@@ -44,7 +43,7 @@ json paragraphs(const Section& section) {
 
 // A scene with its sections and its prefix for files and ids.
 struct ScenePart {
-    JsonCursor scene;
+    const SceneAnalyses& scene;
     std::string id;
     std::vector<Section> sections;
     std::vector<Plot> plots{};
@@ -61,8 +60,8 @@ struct Page {
         return name;
     }
 
-    ScenePart part(const JsonCursor& scene) {
-        ScenePart part{scene, unique(slug(fs::path(scene["source"].text()).stem().string())),
+    ScenePart part(const SceneAnalyses& scene) {
+        ScenePart part{scene, unique(slug(fs::path(scene.scene.source).stem().string())),
                        sections_of(scene)};
         for (const auto& section : part.sections)
             for (const auto& group : section.figures)
@@ -148,8 +147,8 @@ struct Page {
                              {"sections", sections}});
         }
         return {{"id", part.id},
-                {"name", part.scene["name"].text()},
-                {"conclusive", part.scene["verdict"]["conclusive"].truth()},
+                {"name", part.scene.scene.name},
+                {"conclusive", part.scene.conclusive()},
                 {"parts", parts}};
     }
 };
@@ -171,90 +170,90 @@ Table summary(const std::list<ScenePart>& parts) {
                             {"wheel rate"},
                             {"force, moment or rate, of its extent"}}};
     for (const auto& part : parts) {
-        std::vector<std::string> row{part.scene["name"].text()};
-        const auto findings = part.scene.find("findings");
-        const auto apart = findings ? findings->find("references_apart") : std::nullopt;
-        const auto mm = apart ? apart->find("mm") : std::nullopt;
-        row.push_back(!part.scene["verdict"]["conclusive"].truth() ? "not judged"
-                      : mm ? number((*mm)["max"].number(), 2)
-                           : "–");
+        std::vector<std::string> row{part.scene.scene.name};
+        const auto apart = compare::worst_disagreement(part.scene.comparison, compare::Unit::mm);
+        row.push_back(!part.scene.conclusive() ? "not judged"
+                      : apart                  ? number(apart->max, 2)
+                                               : "–");
         const auto rows = method_rows(part.scene);
         const auto chosen = std::ranges::find_if(rows, &MethodRow::chosen);
         row.push_back(chosen == rows.end() ? "–" : chosen->method + ", " + chosen->setting);
         row.push_back(chosen == rows.end() ? "–" : percent(chosen->cost));
-        const auto judgement = part.scene.find("judgement");
-        for (const char* key : {"position", "position_across", "angle", "angle_across"}) {
-            const auto worst = judgement ? judgement->find(key) : std::nullopt;
-            row.push_back(!worst ? "–"
-                                 : quantity((*worst)["max"].number(), (*worst)["unit"].text()));
-        }
-        const auto rate = judgement ? judgement->find("wheel_rate") : std::nullopt;
-        const double off = rate ? (*rate)["off"].number() : NAN;
-        row.push_back(
-            !rate ? "–"
-                  : fmt::format("{} too {}", percent(std::abs(off)), off < 0 ? "soft" : "stiff"));
+        const compare::Assessment judgement = part.scene.judgement.value_or(compare::Assessment{});
+        for (const auto& worst : {judgement.position, judgement.position_across, judgement.angle,
+                                  judgement.angle_across})
+            row.push_back(!worst ? "–" : quantity(worst->max, symbol(worst->unit)));
+        const auto& rate = judgement.wheel_rate;
+        row.push_back(!rate ? "–"
+                            : fmt::format("{} too {}", percent(std::abs(rate->off)),
+                                          rate->off < 0 ? "soft" : "stiff"));
         double other = -1;
-        for (const char* key : {"other", "other_across"})
-            if (const auto worst = judgement ? judgement->find(key) : std::nullopt)
-                other = std::max(other, (*worst)["share"].number());
+        for (const auto& worst : {judgement.other, judgement.other_across})
+            if (worst && worst->extent > 0) other = std::max(other, worst->max / worst->extent);
         row.push_back(other < 0 ? "–" : percent(other));
         table.rows.push_back(row);
     }
     return table;
 }
 
-json provenance(const JsonCursor& result) {
-    const JsonCursor p = result["provenance"];
+json made_by(const Report& report) {
+    const Provenance& p = report.provenance;
     Table table{.caption = "Made by", .columns = {{"what", true}, {"which", true}}};
-    table.rows = {
-        {"elastocheck", p["elastocheck"].text()},
-        {"commit", p["commit"].text() + (p["dirty"].truth() ? ", with uncommitted changes" : "")},
-        {"compiler", p["compiler"].text()},
-        {"flags", p["flags"].text()}};
-    if (const auto cpu = p.find("cpu")) table.rows.push_back({"CPU", cpu->text()});
-    for (const auto& [name, version] : p["libraries"].entries())
-        table.rows.push_back({name, version.text()});
-    for (const auto& scene : result["scenes"].items())
-        table.rows.push_back({scene["source"].text(), "hash " + scene["input_hash"].text()});
+    table.rows = {{"elastocheck", p.version},
+                  {"commit", p.commit + (p.dirty ? ", with uncommitted changes" : "")},
+                  {"compiler", p.compiler},
+                  {"flags", p.flags}};
+    for (const auto& [name, version] : p.libraries) table.rows.push_back({name, version});
+    for (const auto& scene : report.scenes)
+        table.rows.push_back({scene.scene.source, "hash " + scene.hash});
     return table_data(table);
+}
+
+// Removes fields that differ from run to run.
+void remove_times(json& value) {
+    if (value.is_object()) {
+        value.erase("seconds");
+        value.erase("cpu");
+    }
+    if (value.is_structured())
+        for (auto& entry : value) remove_times(entry);
 }
 
 }  // namespace
 
-std::string numbers_csv(const json& result, const std::string& file) {
+json report_json(const Report& report) {
+    json result = document(report.reproduce, report.provenance);
+    for (const auto& scene : report.scenes) result["scenes"].push_back(scene_json(scene));
+    remove_times(result);
+    return result;
+}
+
+std::string numbers_csv(const std::vector<SceneAnalyses>& scenes) {
     std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
-    const JsonCursor root{&result, "", &file};
-    const auto row = [&](const JsonCursor& scene, const JsonCursor& branch,
-                         const ChannelInfo& channel, const std::string& quantity, double value,
-                         double tolerance) {
-        csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
-                           for_csv(fs::path(scene["source"].text()).stem().string()),
-                           for_csv(branch["name"].text()), for_csv(channel.name),
-                           for_csv(channel.unit), quantity, value, tolerance);
-    };
-    for (const auto& scene : root["scenes"].items())
-        for (const auto& branch : scene["branches"].items()) {
-            const LegCurve truth = curve_of(branch, "equilibrium");
+    for (const auto& scene : scenes)
+        for (const auto& branch : branches_of(scene)) {
             const Sweep sweep = sweep_of(scene, branch);
             const std::string by_parameter = "published " + sweep.at_equal_parameter(),
                               by_abscissa = "published " + sweep.at_equal_abscissa();
-            for (const auto& channel : main_channels_of(scene)) {
-                const auto values = truth.channel(channel.name);
-                const auto load =
-                    branch["deviation"]["at_equal_parameter"]["channels"].find(channel.name);
-                if (values.empty() || !load) continue;
+            const auto &load = branch.result->deviation.equal_parameter.channels,
+                       &travel = branch.result->deviation.equal_abscissa.channels;
+            for (std::size_t c = 0; c < load.size(); ++c) {
+                const auto& channel = scene.comparison.channels[c];
+                const auto values = values_of(branch.truth(), c);
+                if (!channel.main || values.empty() || !branch.result->determined[c]) continue;
+                const auto row = [&](const std::string& quantity, double value, double tolerance) {
+                    csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
+                                       for_csv(fs::path(scene.scene.source).stem().string()),
+                                       for_csv(branch.name()), for_csv(channel.name),
+                                       for_csv(symbol(channel.unit)), quantity, value, tolerance);
+                };
                 // The references agree far better; a deviation contains the rounding of many steps.
-                const double range = (*load)["range"].number(), fine = 1e-6,
-                             coarse = 1e-6 + 1e-6 * range;
-                row(scene, branch, channel, "equilibrium at the end", values.back(), fine);
-                row(scene, branch, channel, by_parameter + ": deviation at the end",
-                    (*load)["end"].number(), coarse);
-                row(scene, branch, channel, by_parameter + ": largest deviation",
-                    (*load)["max"].number(), coarse);
-                if (const auto travel =
-                        branch["deviation"]["at_equal_abscissa"]["channels"].find(channel.name))
-                    row(scene, branch, channel, by_abscissa + ": largest deviation",
-                        (*travel)["max"].number(), coarse);
+                const double fine = 1e-6, coarse = 1e-6 + 1e-6 * load[c].range;
+                row("equilibrium at the end", values.back(), fine);
+                row(by_parameter + ": deviation at the end", load[c].end, coarse);
+                row(by_parameter + ": largest deviation", load[c].max, coarse);
+                if (c < travel.size())
+                    row(by_abscissa + ": largest deviation", travel[c].max, coarse);
             }
         }
     return csv;
@@ -269,9 +268,9 @@ struct Draft {
     std::vector<Plot> plots{};
 };
 
-Draft draft(const JsonCursor& root) {
+Draft draft(const Report& report) {
     Draft made;
-    for (const auto& scene : root["scenes"].items()) {
+    for (const auto& scene : report.scenes) {
         made.parts.push_back(made.page.part(scene));
         const auto& plots = made.parts.back().plots;
         made.plots.insert(made.plots.end(), plots.begin(), plots.end());
@@ -279,80 +278,73 @@ Draft draft(const JsonCursor& root) {
     return made;
 }
 
-// Pages and tables with their figures, and the answer of each scene.
-struct Texts {
-    std::vector<NamedContent> files{};
-    std::vector<Answer> answers{};
-};
-
-Answer answer(const JsonCursor& scene) {
-    const JsonCursor verdict = scene["verdict"];
-    Answer made{.name = scene["name"].text(),
-                .source = scene["source"].text(),
+Answer answer(const SceneAnalyses& scene) {
+    Answer made{.name = scene.scene.name,
+                .source = scene.scene.source,
                 .sentence = trust_sentence(scene),
-                .mark = {},
-                .conclusive = verdict["conclusive"].truth(),
-                .reasons = verdict["reasons"].texts()};
+                .mark = scene.conclusive() ? "judged" : "not judged",
+                .conclusive = scene.conclusive(),
+                .reasons = scene.reasons};
     if (const std::string methods = method_sentence(scene); !methods.empty())
         made.sentence += " " + methods;
-    made.mark = made.conclusive ? "judged" : "not judged";
-    if (const auto candidates = scene.find("candidates"))
-        for (const auto& candidate : candidates->items())
-            if (made.mark != "fail") made.mark = candidate["verdict"].text();
+    for (const auto& [candidate, sentence] : scene.candidates)
+        if (made.mark != "fail") made.mark = name(candidate.verdict);
     return made;
 }
 
-std::string title_of(const JsonCursor& root) {
-    const auto scenes = root["scenes"].items();
-    const std::string first = scenes[0]["name"].text();
+std::string title_of(const std::vector<SceneAnalyses>& scenes) {
+    const std::string& first = scenes[0].scene.name;
     if (scenes.size() == 1) return first;
-    if (!scenes[0].find("against")) return fmt::format("{} scenes", scenes.size());
-    const std::string variant = scenes[1]["name"].text();
+    if (!scenes[0].against) return fmt::format("{} scenes", scenes.size());
+    const std::string& variant = scenes[1].scene.name;
     // variants often share their name, and differ by their file
-    const auto file = [](const JsonCursor& scene) {
-        return fs::path(scene["source"].text()).filename().string();
+    const auto file = [](const SceneAnalyses& scene) {
+        return fs::path(scene.scene.source).filename().string();
     };
     return variant != first
                ? fmt::format("{} against {}", variant, first)
                : fmt::format("{}: {} against {}", first, file(scenes[1]), file(scenes[0]));
 }
 
-Texts texts(Draft draft, const json& result, const std::string& file, const std::string& live) {
-    const JsonCursor root{&result, "", &file};
+// Pages and tables with their figures.
+std::vector<NamedContent> texts(Draft draft, const Report& report, const std::string& live) {
     json scenes = json::array();
     for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
-    const json data = {{"title", title_of(root)},
+    const json data = {{"title", title_of(report.scenes)},
                        {"several", scenes.size() > 1},
                        {"scenes", scenes},
                        {"summary", table_data(summary(draft.parts))},
-                       {"provenance", provenance(root)},
-                       {"reproduce", for_terminal(root["reproduce"].text())},
+                       {"provenance", made_by(report)},
+                       {"reproduce", for_terminal(report.reproduce)},
                        {"tints", tints()},
                        {"live", !live.empty()}};
-    Texts made;
-    made.files = {{"report.html", render("html/page", data, Escape::html)},
-                  {"report.md", render("markdown/page", data, Escape::markdown)},
-                  {"result.json", result.dump(1) + "\n"},
-                  {"curves.csv", curves_csv(result, file)},
-                  {"forces.csv", forces_csv(result, file)},
-                  {"numbers.csv", numbers_csv(result, file)}};
-    if (!live.empty()) made.files.push_back({"live.html", live});
-    for (const auto& part : draft.parts) made.answers.push_back(answer(part.scene));
-    return made;
+    std::vector<std::pair<std::string, const compare::Comparison*>> comparisons;
+    for (const auto& scene : report.scenes)
+        comparisons.emplace_back(scene.scene.name, &scene.comparison);
+    std::vector<NamedContent> files{{"report.html", render("html/page", data, Escape::html)},
+                                    {"report.md", render("markdown/page", data, Escape::markdown)},
+                                    {"result.json", report_json(report).dump(1) + "\n"},
+                                    {"curves.csv", curves_csv(comparisons)},
+                                    {"forces.csv", forces_csv(report.scenes)},
+                                    {"numbers.csv", numbers_csv(report.scenes)}};
+    if (!live.empty()) files.push_back({"live.html", live});
+    return files;
 }
 
 }  // namespace
 
-std::vector<Answer> write_report(const json& result, const std::string& file,
-                                 const fs::path& folder, const ReportOptions& options) {
+std::vector<Answer> write_report(const Report& report, const fs::path& folder,
+                                 const ReportOptions& options) {
     Staging staging(folder);
-    Draft report = draft({&result, "", &file});
-    if (options.progress) options.progress(fmt::format("{} figures", report.plots.size()));
-    report.page.pictures = draw(report.plots, staging.path());
-    const Texts made = texts(std::move(report), result, file, options.live);
-    for (const auto& [name, content] : made.files) fill(staging.path() / name, content);
+    Draft drafted = draft(report);
+    if (options.progress) options.progress(fmt::format("{} figures", drafted.plots.size()));
+    drafted.page.pictures = draw(drafted.plots, staging.path());
+    for (const auto& [name, content] : texts(std::move(drafted), report, options.live))
+        fill(staging.path() / name, content);
     staging.publish();
-    return made.answers;
+    std::vector<Answer> answers;
+    for (const auto& scene : report.scenes) answers.push_back(answer(scene));
+    return answers;
 }
 
 }  // namespace elastocheck::reports

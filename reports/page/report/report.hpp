@@ -1,4 +1,4 @@
-// Report folder, made from one result document alone.
+// Report folder, made from the results of its scenes alone.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "reports/document/scene_analyses.hpp"
 #include "reports/files/folder.hpp"
+#include "reports/files/provenance.hpp"
 
 namespace elastocheck::reports {
+
+struct Report {
+    std::string reproduce;  // the command that made it
+    Provenance provenance;
+    std::vector<SceneAnalyses> scenes;
+};
+
+// result.json: without what differs from run to run. A number that is not finite is null.
+nlohmann::ordered_json report_json(const Report& report);
 
 struct ReportOptions {
     std::function<void(std::string_view)> progress = {};
@@ -29,13 +40,12 @@ struct Answer {
 };
 
 // Replaces `folder` by report.html, report.md, result.json, curves.csv and figures/, in one step,
-// and returns the answer of each scene. NaN is null in `result`; `file` is its name in messages. Throws ResultError, FileError; an older report is then untouched.
-std::vector<Answer> write_report(const nlohmann::ordered_json& result, const std::string& file,
-                                 const std::filesystem::path& folder,
+// and returns the answer of each scene. Throws FileError; an older report is then untouched.
+std::vector<Answer> write_report(const Report& report, const std::filesystem::path& folder,
                                  const ReportOptions& options = {});
 
 // scene,branch,output,unit,quantity,value,tolerance: numbers for regression tests between runs,
 // with the tolerance of each for other compilers.
-std::string numbers_csv(const nlohmann::ordered_json& result, const std::string& file);
+std::string numbers_csv(const std::vector<SceneAnalyses>& scenes);
 
 }  // namespace elastocheck::reports

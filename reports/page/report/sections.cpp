@@ -3,17 +3,16 @@
 namespace elastocheck::reports {
 
 // First the results for a chassis engineer, then the fast methods, then the evidence.
-std::vector<Section> sections_of(const JsonCursor& scene) {
-    constexpr std::optional<Section> (*makers[])(const JsonCursor&) = {
-        against_section,     candidate_section,   first_section,        drawing_section,
-        measured_section,    kinematics_section,  steering_section,     compliance_section,
-        curves_section,      rates_section,       forces_section,       methods_section,
-        change_section,      references_section,  deviation_section,    price_section,
-        convergence_section, attribution_section, formulations_section, matrices_section,
-        model_section};
-    const auto only = scene.find("only");
+std::vector<Section> sections_of(const SceneAnalyses& scene) {
+    constexpr std::optional<Section> (*makers[])(const SceneAnalyses&) = {
+        against_section,     candidate_section,    first_section,     drawing_section,
+        measured_section,    kinematics_section,   steering_section,  compliance_section,
+        curves_section,      rates_section,        forces_section,    methods_section,
+        change_section,      references_section,   deviation_section, price_section,
+        convergence_section, formulations_section, matrices_section,  model_section};
     const auto left_out = [&](Part part) {
-        return only && part == (only->text() == "kc" ? Part::evidence : Part::behaviour);
+        return !scene.only.empty() &&
+               part == (scene.only == "kc" ? Part::evidence : Part::behaviour);
     };
     std::vector<Section> sections;
     for (const auto make : makers)

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/suspension.hpp"
@@ -202,27 +201,26 @@ FigureGroup heat_map(const std::vector<KeyFigure>& figures, const std::vector<Ef
 }
 
 // The suspension with an arrow at each hardpoint in the direction in which the figure grows most.
-std::optional<FigureGroup> arrows(const JsonCursor& scene, const KeyFigure& figure,
+std::optional<FigureGroup> arrows(const SceneAnalyses& scene, const KeyFigure& figure,
                                   const std::vector<EffectRow>& rows) {
-    auto suspension = suspension_of(scene);
-    if (!suspension) return std::nullopt;
-    suspension->moved.clear();
-    std::erase_if(suspension->symbols, [](const auto& symbol) { return symbol.kind == "drive"; });
+    Suspension suspension = suspension_of(scene);
+    suspension.moved.clear();
+    std::erase_if(suspension.symbols, [](const auto& symbol) { return symbol.kind == "drive"; });
     const auto points = gradients_of(figure, rows);
     double largest = 0, extent = 0;
     for (const auto& [name, gradient] : points) largest = std::max(largest, norm(gradient));
     if (!(largest > 0)) return std::nullopt;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto [low, high] = std::ranges::minmax(
-            suspension->points, {}, [axis](const auto& point) { return point.at[axis]; });
+            suspension.points, {}, [axis](const auto& point) { return point.at[axis]; });
         extent = std::max(extent, high.at[axis] - low.at[axis]);
     }
     constexpr double longest = 0.25, least = 0.02;  // of the extent; of the largest
     for (const auto& [name, gradient] : points) {
-        const auto at = std::ranges::find(suspension->points, name, &Suspension::Point::name);
-        if (at == suspension->points.end() || norm(gradient) < least * largest) continue;
+        const auto at = std::ranges::find(suspension.points, name, &Suspension::Point::name);
+        if (at == suspension.points.end() || norm(gradient) < least * largest) continue;
         const double scale = longest * extent / largest;
-        suspension->arrows.push_back(
+        suspension.arrows.push_back(
             {at->at,
              {at->at[0] + scale * gradient[0], at->at[1] + scale * gradient[1],
               at->at[2] + scale * gradient[2]},
@@ -239,7 +237,7 @@ std::optional<FigureGroup> arrows(const JsonCursor& scene, const KeyFigure& figu
         group.table.rows.push_back(std::move(row));
     }
     const std::vector<View> views{front_view, side_view, top_view};
-    group.figures = draw_views(*suspension, views, small_frame(*suspension));
+    group.figures = draw_views(suspension, views, small_frame(suspension));
     for (std::size_t k = 0; k < views.size(); ++k) {
         group.figures[k].id = fmt::format("change-{}", views[k].id);
         group.figures[k].description =
@@ -255,22 +253,18 @@ std::optional<FigureGroup> arrows(const JsonCursor& scene, const KeyFigure& figu
 
 }  // namespace
 
-std::optional<Section> change_section(const JsonCursor& scene) {
-    const auto study = scene.find("sensitivity");
-    if (!study) return std::nullopt;
-    const auto rows = read_rows<EffectRow>((*study)["effects"]);
+std::optional<Section> change_section(const SceneAnalyses& scene) {
+    if (!scene.effects) return std::nullopt;
+    const auto& [rows, reasons, compared, apart] = *scene.effects;
     auto figures = key_figures(rows);
     if (figures.empty()) return std::nullopt;
     Section section{.id = "change",
                     .title = "Effects of the numbers of the scene",
                     .part = Part::change,
-                    .mark = (*study)["conclusive"].truth() ? Mark::none : Mark::open};
-    section.words = {{"conclusive", (*study)["conclusive"].truth()},
-                     {"reasons", (*study)["reasons"].texts()},
-                     {"compared", whole_number((*study)["compared"].whole())},
-                     {"apart", number((*study)["apart"].number(), 2)},
-                     {"trim", scene.find("trim").has_value()},
-                     {"branch", rows.front().branch}};
+                    .mark = reasons.empty() ? Mark::none : Mark::open};
+    section.words = {{"conclusive", reasons.empty()},      {"reasons", reasons},
+                     {"compared", whole_number(compared)}, {"apart", number(apart, 2)},
+                     {"trim", scene.trim.has_value()},     {"branch", rows.front().branch}};
     if (auto group = arrows(scene, figures.front(), rows))
         section.figures.push_back(std::move(*group));
     FigureGroup charts;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/text/numbers.hpp"
@@ -31,8 +30,8 @@ Levels levels_of(const std::vector<StepRow>& rows) {
             levels.step.push_back(0);
             levels.truth.push_back(0);
         }
-        levels.step[at] = worse(levels.step[at], std::abs(row.end));
-        levels.truth[at] = worse(levels.truth[at], std::abs(row.error));
+        levels.step[at] = compare::worse(levels.step[at], std::abs(row.end));
+        levels.truth[at] = compare::worse(levels.truth[at], std::abs(row.error));
     }
     return levels;
 }
@@ -44,9 +43,6 @@ std::vector<std::vector<double>> rows(const std::vector<double>& steps,
         if (values[l] > 1e-16) result.push_back({steps[l], values[l]});
     return result;
 }
-
-// "at equal wheel centre y": display name of a channel.
-std::string readable(const std::string& reading) { return ChannelInfo{reading, ""}.label(); }
 
 // Step errors of one method over one branch.
 std::optional<FigureGroup> group(const std::string& branch, const std::vector<StepRow>& steps_of) {
@@ -60,7 +56,7 @@ std::optional<FigureGroup> group(const std::string& branch, const std::vector<St
         const Levels levels = levels_of(where(steps_of, &StepRow::reading, reading));
         if (levels.steps.empty()) continue;
         const auto& [steps, phi, step, truth] = levels;
-        const std::string name = readable(reading);
+        const std::string name = as_words(reading);
         Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
                       .title = fmt::format("{}: {}", branch, name),
                       .description = {},
@@ -104,16 +100,14 @@ std::optional<FigureGroup> group(const std::string& branch, const std::vector<St
 
 }  // namespace
 
-std::optional<Section> convergence_section(const JsonCursor& scene) {
-    const auto study = scene.find("convergence");
-    if (!study) return std::nullopt;
+std::optional<Section> convergence_section(const SceneAnalyses& scene) {
+    if (!scene.study) return std::nullopt;
     Section section{.id = "convergence",
                     .title = "Convergence with the number of steps",
                     .part = Part::evidence};
-    section.words["reasons"] = (*study)["reasons"].texts();
-    const auto outputs = read_rows<StudyRow>((*study)["outputs"]);
-    const auto steps =
-        where(read_rows<StepRow>((*study)["step_errors"]), &StepRow::method, "published");
+    section.words["reasons"] = scene.study->inconclusive;
+    const auto outputs = study_rows(*scene.study);
+    const auto steps = where(step_rows(*scene.study), &StepRow::method, "published");
     for (const auto& branch : distinct(outputs, &StudyRow::branch)) {
         if (!leads(scene, branch)) continue;
         if (auto made = group(branch, where(steps, &StepRow::branch, branch)))
@@ -123,7 +117,7 @@ std::optional<Section> convergence_section(const JsonCursor& scene) {
         for (const auto& row : found)
             if (row.method == "published" && !row.not_studied.empty() && row.reading != reading)
                 section.words["notes"].push_back({{"branch", branch},
-                                                  {"reading", readable(row.reading)},
+                                                  {"reading", as_words(row.reading)},
                                                   {"why", row.not_studied}});
         section.tables.push_back(
             page_table(fmt::format("Orders and gaps, branch {}, {}", branch, reading),

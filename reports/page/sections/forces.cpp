@@ -5,9 +5,10 @@
 #include <cmath>
 #include <map>
 
-#include "compare/tables/rows.hpp"
+#include "models/kinds.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
+#include "reports/tables/elements.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -17,19 +18,18 @@ constexpr std::size_t most_elements = 40;
 
 // Beams of segments, and clearances of stops [mm].
 struct Elements {
-    std::map<std::string, std::string> beam_of;
-    std::map<std::string, double> clearance;
+    std::map<std::string, std::string> beam_of{};
+    std::map<std::string, double> clearance{};
+
+    explicit Elements(const Model& model) {
+        for (const auto& elastic : model.elastics)
+            if (elastic.written_as == WrittenAs::beam)
+                beam_of[elastic.name] = elastic.name.substr(0, elastic.name.rfind('.'));
+            else if (const auto* law = member<ScalarLaw>(elastic.kind);
+                     elastic.written_as == WrittenAs::stop && law != nullptr)
+                if (const auto free = clearance_of(*law)) clearance[elastic.name] = 1e3 * *free;
+    }
 };
-Elements elements_of(const JsonCursor& scene) {
-    Elements elements;
-    if (const auto list = scene.find("elements"))
-        for (const auto& element : list->items()) {
-            const std::string name = element["name"].text(), kind = element["kind"].text();
-            if (kind == "beam") elements.beam_of[name] = element["beam"].text();
-            if (kind == "stop") elements.clearance[name] = element["clearance_mm"].number();
-        }
-    return elements;
-}
 
 using compare::LargestForceRow;
 
@@ -41,13 +41,9 @@ struct Largest {
     const LargestForceRow *force = nullptr, *moment = nullptr;
 };
 
-}  // namespace
-
-std::optional<Section> forces_section(const JsonCursor& scene) {
-    const auto field = scene.find("largest_forces");
-    if (!field) return std::nullopt;
-    const auto forces = read_rows<LargestForceRow>(*field);
-    const Elements elements = elements_of(scene);
+// Of every element, the largest force first; a beam is one.
+std::vector<Largest> largest_of(const std::vector<LargestForceRow>& forces,
+                                const Elements& elements) {
     std::vector<Largest> largest;
     for (const auto& r : forces) {
         std::string name = r.element;
@@ -58,16 +54,40 @@ std::optional<Section> forces_section(const JsonCursor& scene) {
         auto& row = r.unit == "N" ? known->force : known->moment;
         if (size_of(&r) > size_of(row)) row = &r;
     }
-    if (largest.empty()) return std::nullopt;
     std::ranges::stable_sort(largest, std::ranges::greater{},
                              [&](const Largest& l) { return size_of(l.force); });
+    return largest;
+}
+
+// Value, where it is, and the deformation there; of a stop its penetration.
+std::vector<std::string> cells(const LargestForceRow* r, const Elements& elements) {
+    if (r == nullptr) return {"", "", ""};
+    std::string by;
+    if (double value = r->deformation; std::isfinite(value)) {
+        const auto stop = elements.clearance.find(r->element);
+        if (stop != elements.clearance.end()) value = std::max(0.0, std::abs(value) - stop->second);
+        by = quantity(value, r->deformation_unit);
+    }
+    const char axis = r->output.back();
+    return {number(r->value),
+            fmt::format("{}{}, {} {}", axis >= 'x' && axis <= 'z' ? std::string{axis} + ", " : "",
+                        r->branch, short_number(r->at), r->parameter_unit),
+            by};
+}
+
+}  // namespace
+
+std::optional<Section> forces_section(const SceneAnalyses& scene) {
+    const auto forces = largest_force_rows(scene.comparison);
+    const Elements elements(scene.model);
+    auto largest = largest_of(forces, elements);
+    if (largest.empty()) return std::nullopt;
     Section section{
         .id = "forces", .title = "Forces in bushings, springs and links", .part = Part::behaviour};
     std::vector<std::string> events;
-    for (const auto& branch : scene["branches"].items())
-        if (const auto of = branch.find("events"))
-            for (const auto& event : of->texts())
-                events.push_back(fmt::format("{} ({})", event, branch["name"].text()));
+    for (std::size_t b = 0; b < scene.lift_offs.size(); ++b)
+        for (const auto& event : scene.lift_offs[b])
+            events.push_back(fmt::format("{} ({})", event, scene.model.branches[b].name));
     if (!events.empty()) section.words["events"] = enumerated(events);
     if (largest.size() > most_elements) {
         section.words["left_out"] = whole_number(static_cast<long>(largest.size() - most_elements));
@@ -82,26 +102,10 @@ std::optional<Section> forces_section(const JsonCursor& scene) {
                     {"largest moment [N·m]"},
                     {"where", true},
                     {"deformed by"}}};
-    const auto cells = [&](const LargestForceRow* r) -> std::vector<std::string> {
-        if (r == nullptr) return {"", "", ""};
-        std::string by;
-        if (double value = r->deformation; std::isfinite(value)) {
-            const auto stop = elements.clearance.find(r->element);
-            if (stop != elements.clearance.end())
-                value = std::max(0.0, std::abs(value) - stop->second);
-            by = quantity(value, r->deformation_unit);
-        }
-        const char axis = r->output.back();
-        return {
-            number(r->value),
-            fmt::format("{}{}, {} {}", axis >= 'x' && axis <= 'z' ? std::string{axis} + ", " : "",
-                        r->branch, short_number(r->at), r->parameter_unit),
-            by};
-    };
     for (const auto& l : largest) {
         std::vector<std::string> row{l.element};
         for (const auto* r : {l.force, l.moment}) {
-            const auto three = cells(r);
+            const auto three = cells(r, elements);
             row.insert(row.end(), three.begin(), three.end());
         }
         table.rows.push_back(std::move(row));

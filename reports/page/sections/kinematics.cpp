@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "reports/document/wheels.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/candidate.hpp"
@@ -95,14 +96,14 @@ struct Push {
     double factor = 1;
     std::string positive{};  // "inwards"; empty: the parameter as it stands
 };
-Push push_of(const Case& c, const std::vector<WheelInfo>& wheels, const WheelInfo& wheel) {
-    const auto pushes = c.sweep.branches.front().find("pushes");
-    if (!pushes || !pushes->value->is_object()) return {};
-    const auto factors = (*pushes)["per_unit"].numbers();
-    Push push{0, (*pushes)["positive"].text()};
-    for (std::size_t w = 0; w < std::min(wheels.size(), factors.size()); ++w)
-        if (factors[w] != 0 && (push.factor == 0 || wheels[w].name == wheel.name))
-            push.factor = factors[w];
+Push push_of(const SceneAnalyses& scene, const Case& c, const Wheel& wheel) {
+    const auto pushes = pushes_of(scene.model, *c.sweep.branches.front().requested);
+    if (!pushes) return {};
+    Push push{0, pushes->positive};
+    for (std::size_t w = 0; w < pushes->per_unit.size(); ++w)
+        if (const double factor = pushes->per_unit[w];
+            factor != 0 && (push.factor == 0 || scene.model.wheels[w].name == wheel.name))
+            push.factor = factor;
     return push;
 }
 
@@ -113,35 +114,32 @@ struct Family {
     std::vector<Case> cases{};
     std::vector<Quantity> quantities{};
     bool over_push = false;  // each wheel over the force on it, not over the parameter
+
+    bool several() const { return cases.size() > 1; }
+    // Channel that is the abscissa of a wheel; empty: the parameter.
+    std::string by(const Wheel& wheel) const {
+        return over_travel ? output_of(wheel, "travel") : "";
+    }
 };
 
-// Channel of a quantity of a wheel, or of the whole scene; empty if there is none.
+// Channel of a quantity of a wheel, or of the whole scene.
 struct Found {
     std::string channel, unit;
-    WheelInfo wheel;
+    Wheel wheel;
     bool of_all = false;  // of no wheel alone
 };
-std::vector<Found> find(const std::vector<ChannelInfo>& channels,
-                        const std::vector<WheelInfo>& wheels, const std::string& quantity) {
+std::vector<Found> find(const SceneAnalyses& scene, const std::string& quantity) {
+    const auto& channels = scene.comparison.channels;
+    const auto& wheels = scene.model.wheels;
     std::vector<Found> found;
-    for (const auto& wheel : wheels)
-        for (const auto& c : channels)
-            if (c.name == wheel.channel(quantity)) found.push_back({c.name, c.unit, wheel});
-    if (found.empty())
-        for (const auto& c : channels)
-            if (c.name == quantity)
-                found.push_back({c.name, c.unit, wheels.empty() ? WheelInfo{} : wheels[0], true});
+    const auto add = [&](const std::string& name, const Wheel& wheel, bool of_all) {
+        if (const int c = compare::find_channel(channels, name); c >= 0)
+            found.push_back(
+                {name, symbol(channels[static_cast<std::size_t>(c)].unit), wheel, of_all});
+    };
+    for (const auto& wheel : wheels) add(output_of(wheel, quantity), wheel, false);
+    if (found.empty()) add(quantity, wheels.empty() ? Wheel{} : wheels[0], true);
     return found;
-}
-
-std::vector<double> values_of(const Case& c, const Found& of) {
-    return c.curve.channel(of.channel);
-}
-std::vector<double> abscissa_of(const Case& c, const Family& family, const WheelInfo& wheel,
-                                double push) {
-    auto x = family.over_travel ? c.curve.channel(wheel.channel("travel")) : c.curve.a;
-    for (double& value : x) value *= push;
-    return x;
 }
 
 constexpr double rest = 1e-9;  // mm, deg, N: less is rounding
@@ -153,13 +151,10 @@ bool in_order(const Rows& a, const Rows& b) {
     double size = 0;
     for (const auto& row : a)
         for (const double v : row) size = std::max(size, std::abs(v));
-    if (a.size() != b.size()) return false;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-        if (a[k].size() != b[k].size()) return false;
-        for (std::size_t j = 0; j < a[k].size(); ++j)
-            if (!(std::abs(a[k][j] - b[k][j]) <= 1e-6 * size)) return false;
-    }
-    return true;
+    return std::ranges::equal(a, b, [&](const auto& one, const auto& other) {
+        return std::ranges::equal(
+            one, other, [&](double v, double w) { return std::abs(v - w) <= 1e-6 * size; });
+    });
 }
 
 bool same(const Rows& a, const Rows& b) {
@@ -193,121 +188,153 @@ Table numbers(const Figure& figure) {
     return table;
 }
 
-std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
-                                  const std::vector<ChannelInfo>& channels,
-                                  const std::vector<WheelInfo>& wheels, const Quantity& quantity) {
-    const auto found = find(channels, wheels, quantity.name);
-    if (found.empty()) return std::nullopt;
-    Figure figure{.id = fmt::format("{}-{}", slug(quantity.name), family.id),
-                  .title = quantity.title,
-                  .x = family.x,
-                  .y = fmt::format("{} [{}]",
-                                   quantity.shown == Shown::as_is         ? as_words(quantity.name)
-                                   : quantity.shown == Shown::steer_angle ? "steer angle"
-                                                                          : "change",
-                                   found[0].unit)};
-    const bool several = family.cases.size() > 1;
-    const auto direction = [&](std::size_t k) {
-        const Push push = family.over_push ? push_of(family.cases[k], wheels, wheels[0]) : Push{};
-        return push.positive.empty() ? "" : ", " + push.positive;
-    };
-    if (!several && family.over_push) figure.x += direction(0);
+// A figure in work: the curves of one quantity over all cases and wheels.
+struct Curves {
+    const SceneAnalyses& scene;
+    const Family& family;
+    const Quantity& quantity;
+    Figure figure{};
     double low = INFINITY, high = -INFINITY, moved = 0;
-    bool apart = false;          // some wheels have curves of their own
-    std::vector<Series> others;  // measured, candidates
-    for (std::size_t k = 0; k < family.cases.size(); ++k) {
+    bool apart = false;            // some wheels have curves of their own
+    std::vector<Series> others{};  // measured, candidates
+
+    // The curve of a wheel in one case; empty where the quantity is undefined.
+    Rows rows(const std::vector<double>& x, const std::vector<double>& values, Scale scale) {
+        Rows rows;
+        double least = INFINITY, most = -INFINITY;
+        for (const auto j : thinned(values.size(), 41)) {
+            const double y = scale(values[j]);
+            if (!std::isfinite(y) || !std::isfinite(x[j])) {
+                if (!rows.empty()) rows.emplace_back();
+                continue;
+            }
+            rows.push_back({at_rest(x[j]), at_rest(y)});
+            least = std::min(least, y), most = std::max(most, y);
+        }
+        low = std::min(low, least), high = std::max(high, most);
+        if (most > least) moved = std::max(moved, most - least);
+        return rows;
+    }
+
+    void add_others(const Case& c, const Found& of, double push, Scale scale) {
+        const std::string by = family.by(of.wheel);
+        auto given = candidate_series(scene, c.sweep, by, of.channel);
+        if (auto points = measured_series(scene, c.sweep, by, of.channel))
+            given.insert(given.begin(), std::move(*points));
+        for (auto& points : given) {
+            for (auto& row : points.rows)
+                if (!row.empty()) row[0] *= push, row[1] = scale(row[1]);
+            others.push_back(std::move(points));
+        }
+    }
+
+    void add(std::size_t k, const std::vector<Found>& found) {
         const Case& c = family.cases[k];
         std::vector<Rows> drawn;
         for (const auto& of : found) {
-            const double push = family.over_push ? push_of(c, wheels, of.wheel).factor : 1;
-            const auto values = values_of(c, of), x = abscissa_of(c, family, of.wheel, push);
+            const double push = family.over_push ? push_of(scene, c, of.wheel).factor : 1;
+            const auto values = c.curve.channel(of.channel);
+            const std::string by = family.by(of.wheel);
+            auto x = by.empty() ? c.curve.a : c.curve.channel(by);
+            for (double& value : x) value *= push;
             if (values.empty() || values.size() != x.size()) continue;
             const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
-            Rows rows;
-            double least = INFINITY, most = -INFINITY;
-            for (const auto j : thinned(values.size(), 41)) {
-                const double y = scale(values[j]);
-                if (!std::isfinite(y) || !std::isfinite(x[j])) {
-                    if (!rows.empty()) rows.emplace_back();
-                    continue;
-                }
-                rows.push_back({at_rest(x[j]), at_rest(y)});
-                least = std::min(least, y), most = std::max(most, y);
-            }
-            low = std::min(low, least), high = std::max(high, most);
-            if (most > least) moved = std::max(moved, most - least);
-            const std::string by = family.over_travel ? of.wheel.channel("travel") : "";
-            if (!of.channel.empty()) {
-                auto given = candidate_series(scene, c.sweep, by, of.channel);
-                if (auto points = measured_series(scene, c.sweep, by, of.channel))
-                    given.insert(given.begin(), std::move(*points));
-                for (auto& points : given) {
-                    for (auto& row : points.rows)
-                        if (!row.empty()) row[0] *= push, row[1] = scale(row[1]);
-                    others.push_back(std::move(points));
-                }
-            }
-            if (rows.empty() ||
-                std::ranges::any_of(drawn, [&](const Rows& r) { return same(r, rows); }))
+            Rows curve = rows(x, values, scale);
+            add_others(c, of, push, scale);
+            if (curve.empty() ||
+                std::ranges::any_of(drawn, [&](const Rows& r) { return same(r, curve); }))
                 continue;
-            apart = apart || (!drawn.empty() && wheels.size() > 1);
-            const std::string whose = of.of_all || of.wheel.name.empty() ? "" : of.wheel.name;
+            const bool first = drawn.empty(), several = family.several();
+            apart = apart || (!first && scene.model.wheels.size() > 1);
+            const std::string whose = of.of_all ? "" : of.wheel.name;
             figure.series.push_back({.title = several && !whose.empty() ? c.legend() + ", " + whose
                                               : several                 ? c.legend()
                                               : whose.empty()           ? "full solution"
                                                                         : whose,
-                                     .style = !drawn.empty()      ? Series::Style::dashed
+                                     .style = !first              ? Series::Style::dashed
                                               : several && k == 0 ? Series::Style::heavy
                                                                   : Series::Style::line,
                                      .colour = several ? case_colours[k % std::size(case_colours)]
-                                                       : (drawn.empty() ? vermilion : blue),
-                                     .rows = rows,
+                                               : first ? vermilion
+                                                       : blue,
+                                     .rows = curve,
                                      .keys = {k}});
-            if (found.size() > 1) figure.series.back().keys.push_back(drawn.empty() ? 0 : 1);
-            drawn.push_back(std::move(rows));
+            if (found.size() > 1) figure.series.back().keys.push_back(first ? 0 : 1);
+            drawn.push_back(std::move(curve));
         }
     }
-    // a quantity that does not move is left out, unless it was measured
-    if (figure.series.empty() ||
-        (others.empty() && !(moved > 1e-6 * std::max(1e-3, std::max(std::abs(low), high)))))
-        return std::nullopt;
-    const auto entry = [](std::string title, Series::Style style, Colour colour) {
-        return Series{.title = std::move(title), .style = style, .colour = colour};
-    };
-    if (several || apart) {
-        if (several)
-            for (std::size_t k = 0; k < family.cases.size(); ++k)
-                figure.legend.push_back(entry(family.cases[k].legend() + direction(k),
-                                              k == 0 ? Series::Style::heavy : Series::Style::line,
-                                              case_colours[k % std::size(case_colours)]));
-        const std::size_t sides = figure.legend.size();
-        if (apart) {
-            figure.legend.push_back(
-                entry(wheels[0].name, Series::Style::line, several ? ink : vermilion));
-            figure.legend.push_back(
-                entry(wheels[1].name, Series::Style::dashed, several ? ink : blue));
-        }
-        for (auto& series : figure.series) {
-            std::vector<std::size_t> keys;
-            if (several) keys.push_back(series.keys[0]);
-            if (apart && series.keys.size() > 1) keys.push_back(sides + series.keys[1]);
-            series.keys = keys;
-        }
+
+    // ", inwards"
+    std::string direction(std::size_t k) const {
+        if (!family.over_push) return "";
+        const Push push = push_of(scene, family.cases[k], scene.model.wheels[0]);
+        return push.positive.empty() ? "" : ", " + push.positive;
     }
-    for (auto& series : others) {
-        const auto of = std::ranges::find(figure.legend, series.title, &Series::title);
-        series.keys = {static_cast<std::size_t>(of - figure.legend.begin())};
-        if (of == figure.legend.end() && !figure.legend.empty())
-            figure.legend.push_back(entry(series.title, series.style, series.colour)),
+
+    // One entry a case and one a wheel, instead of one a curve.
+    void make_legend() {
+        const auto entry = [&](std::string title, Series::Style style, Colour colour) {
+            figure.legend.push_back({.title = std::move(title), .style = style, .colour = colour});
+        };
+        const bool several = family.several();
+        const auto& wheels = scene.model.wheels;
+        if (several || apart) {
+            for (std::size_t k = 0; several && k < family.cases.size(); ++k)
+                entry(family.cases[k].legend() + direction(k),
+                      k == 0 ? Series::Style::heavy : Series::Style::line,
+                      case_colours[k % std::size(case_colours)]);
+            const std::size_t sides = figure.legend.size();
+            if (apart) {
+                entry(wheels[0].name, Series::Style::line, several ? ink : vermilion);
+                entry(wheels[1].name, Series::Style::dashed, several ? ink : blue);
+            }
+            for (auto& series : figure.series) {
+                std::vector<std::size_t> keys;
+                if (several) keys.push_back(series.keys[0]);
+                if (apart && series.keys.size() > 1) keys.push_back(sides + series.keys[1]);
+                series.keys = keys;
+            }
+        }
+        for (auto& series : others) {
+            const auto of = std::ranges::find(figure.legend, series.title, &Series::title);
+            series.keys = {static_cast<std::size_t>(of - figure.legend.begin())};
+            if (of == figure.legend.end() && !figure.legend.empty()) {
+                entry(series.title, series.style, series.colour);
                 figure.legend.back().mark = series.mark;
-        figure.series.push_back(std::move(series));
+            }
+            figure.series.push_back(std::move(series));
+        }
     }
+};
+
+std::optional<FigureGroup> figure(const SceneAnalyses& scene, const Family& family,
+                                  const Quantity& quantity) {
+    const auto found = find(scene, quantity.name);
+    if (found.empty()) return std::nullopt;
+    Curves curves{scene, family, quantity};
+    Figure& figure = curves.figure;
+    figure = {.id = fmt::format("{}-{}", slug(quantity.name), family.id),
+              .title = quantity.title,
+              .x = family.x,
+              .y = fmt::format("{} [{}]",
+                               quantity.shown == Shown::as_is         ? as_words(quantity.name)
+                               : quantity.shown == Shown::steer_angle ? "steer angle"
+                                                                      : "change",
+                               found[0].unit)};
+    if (!family.several()) figure.x += curves.direction(0);
+    for (std::size_t k = 0; k < family.cases.size(); ++k) curves.add(k, found);
+    // a quantity that does not move is left out, unless it was measured
+    const double size = std::max(1e-3, std::max(std::abs(curves.low), curves.high));
+    if (figure.series.empty() || (curves.others.empty() && !(curves.moved > 1e-6 * size)))
+        return std::nullopt;
+    curves.make_legend();
     std::vector<std::string> names;
     for (const auto& c : family.cases) names.push_back(c.sweep.name);
-    figure.description =
-        fmt::format("{} over {} by the full solution, {}: from {} to {} {}.", quantity.title,
-                    family.x, enumerated(names), number(low), number(high), found[0].unit);
-    const bool pair = found.size() > 1 && wheels.size() > 1 && !apart;
+    figure.description = fmt::format("{} over {} by the full solution, {}: from {} to {} {}.",
+                                     quantity.title, family.x, enumerated(names),
+                                     number(curves.low), number(curves.high), found[0].unit);
+    const auto& wheels = scene.model.wheels;
+    const bool pair = found.size() > 1 && wheels.size() > 1 && !curves.apart;
     FigureGroup group{
         fmt::format(
             "{}{}", quantity.sign,
@@ -322,25 +349,25 @@ std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
 // ---- Tables
 
 // Columns of a table over a sweep: a quantity of each wheel, once where the wheels agree.
-void add_columns(Table& table, const Case& c, const std::vector<std::size_t>& at,
-                 const std::vector<ChannelInfo>& channels, const std::vector<WheelInfo>& wheels,
-                 const Quantity& quantity, const std::string& heading, int digits) {
-    const auto found = find(channels, wheels, quantity.name);
+void add_columns(Table& table, const SceneAnalyses& scene, const Case& c,
+                 const std::vector<std::size_t>& at, const Quantity& quantity) {
+    const auto found = find(scene, quantity.name);
     std::vector<std::vector<std::string>> columns;
     std::vector<std::string> names;
     for (const auto& of : found) {
-        const auto values = values_of(c, of);
-        if (values.empty()) continue;
+        const auto values = c.curve.channel(of.channel);
         const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
         std::vector<std::string> cells;
         for (const auto k : at)
             cells.push_back(table.columns.empty() ? short_number(at_rest(scale(values[k])))
-                                                  : number(at_rest(scale(values[k])), digits));
+                                                  : number(at_rest(scale(values[k])), 4));
         if (std::ranges::all_of(cells, [](const auto& cell) { return cell == "–"; })) continue;
         columns.push_back(std::move(cells));
         names.push_back(of.of_all ? "" : of.wheel.name);
     }
     if (columns.size() == 2 && columns[0] == columns[1]) columns.pop_back(), names = {""};
+    const std::string heading =
+        quantity.shown == Shown::steer_angle ? "steer angle" : as_words(quantity.name);
     for (std::size_t k = 0; k < columns.size(); ++k) {
         table.columns.push_back({fmt::format("{}{}{} [{}]", heading, names[k].empty() ? "" : " ",
                                              names[k], found[0].unit)});
@@ -349,29 +376,26 @@ void add_columns(Table& table, const Case& c, const std::vector<std::size_t>& at
 }
 
 // Outputs over a sweep at some points of it.
-Table stations(const Case& c, const std::string& caption, const std::vector<ChannelInfo>& channels,
-               const std::vector<WheelInfo>& wheels, const std::vector<Quantity>& quantities) {
+Table stations(const SceneAnalyses& scene, const Case& c, const std::string& caption,
+               const std::vector<Quantity>& quantities) {
     Table table{.caption = caption};
     std::vector<std::size_t> at = thinned(c.curve.a.size(), 9);
     if (std::ranges::find(at, c.curve.start) == at.end() && c.curve.start < c.curve.a.size())
         at.insert(std::ranges::lower_bound(at, c.curve.start), c.curve.start);
     table.rows.resize(at.size());
     if (!c.sweep.lifts()) {  // else by travel
-        table.columns.push_back({c.sweep.parameter()});
+        table.columns.push_back({c.sweep.parameter});
         for (std::size_t r = 0; r < at.size(); ++r)
             table.rows[r].push_back(short_number(c.curve.a[at[r]]));
     }
-    for (const auto& quantity : quantities)
-        add_columns(table, c, at, channels, wheels, quantity,
-                    quantity.shown == Shown::steer_angle ? "steer angle" : as_words(quantity.name),
-                    4);
+    for (const auto& quantity : quantities) add_columns(table, scene, c, at, quantity);
     return table;
 }
 
 // Changes at the ends of a load case, a quantity a row.
-Table at_ends(const Case& c, const std::vector<ChannelInfo>& channels,
-              const std::vector<WheelInfo>& wheels, const std::vector<Quantity>& quantities) {
-    const std::string direction = push_of(c, wheels, wheels[0]).positive;
+Table at_ends(const SceneAnalyses& scene, const Case& c, const std::vector<Quantity>& quantities) {
+    const auto& wheels = scene.model.wheels;
+    const std::string direction = push_of(scene, c, wheels[0]).positive;
     Table table{.caption = fmt::format("{}{}{}: changes since the start of the branch", c.legend(),
                                        direction.empty() ? "" : ", ", direction),
                 .columns = {{"change", true}}};
@@ -382,19 +406,17 @@ Table at_ends(const Case& c, const std::vector<ChannelInfo>& channels,
         for (const auto& wheel : wheels)
             table.columns.push_back({fmt::format(
                 "{}{}{} {}", wheel.name, wheel.name.empty() ? "at " : ", ",
-                short_number(push_of(c, wheels, wheel).factor * c.curve.a[k]), c.sweep.unit)});
+                short_number(push_of(scene, c, wheel).factor * c.curve.a[k]), c.sweep.unit)});
     for (const auto& quantity : quantities) {
-        const auto found = find(channels, wheels, quantity.name);
+        const auto found = find(scene, quantity.name);
         if (found.size() != wheels.size()) continue;
         std::vector<std::string> row{
             fmt::format("{} [{}], {}", as_words(quantity.name), found[0].unit, quantity.sign)};
         for (const auto k : ends)
             for (const auto& of : found) {
-                const auto values = values_of(c, of);
-                row.push_back(values.empty()
-                                  ? "–"
-                                  : number(at_rest(scale_of(quantity, of.wheel.side, values,
-                                                            c.curve.start)(values[k]))));
+                const auto values = c.curve.channel(of.channel);
+                const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
+                row.push_back(number(at_rest(scale(values[k]))));
             }
         table.rows.push_back(std::move(row));
     }
@@ -403,76 +425,73 @@ Table at_ends(const Case& c, const std::vector<ChannelInfo>& channels,
 
 // ---- Sections
 
-std::vector<Case> cases_of(const JsonCursor& scene, const std::function<bool(const Sweep&)>& in) {
+std::vector<Case> cases_of(const SceneAnalyses& scene,
+                           const std::function<bool(const Sweep&)>& in) {
     std::vector<Case> cases;
-    if (!scene.find("branches")) return cases;
     for (const auto& sweep : sweeps_of(scene))
         if (in(sweep)) {
-            cases.push_back({sweep, sweep_curve(sweep)});
+            cases.push_back({sweep, SweepCurve(scene, sweep)});
             if (cases.back().curve.a.size() < 2) cases.pop_back();
         }
     return cases;
 }
 
-void add_figures(Section& section, const JsonCursor& scene, const Family& family) {
+// Whether a quantity was measured or computed by a candidate in one of the cases.
+bool is_given(const SceneAnalyses& scene, const Family& family, const Quantity& quantity) {
+    for (const auto& of : find(scene, quantity.name))
+        for (const auto& c : family.cases)
+            if (const std::string by = family.by(of.wheel);
+                measured_series(scene, c.sweep, by, of.channel) ||
+                !candidate_series(scene, c.sweep, by, of.channel).empty())
+                return true;
+    return false;
+}
+
+void add_figures(Section& section, const SceneAnalyses& scene, const Family& family) {
     if (family.cases.empty()) return;
-    const auto channels = channels_of(scene);
-    const auto wheels = wheels_of(scene);
-    for (const auto& quantity : family.quantities)
-        if (auto made = figure(scene, family, channels, wheels, quantity))
+    auto quantities = family.quantities;
+    for (const auto& quantity : when_given)
+        if (is_given(scene, family, quantity)) quantities.push_back(quantity);
+    for (const auto& quantity : quantities)
+        if (auto made = figure(scene, family, quantity))
             section.figures.push_back(std::move(*made));
-    for (const auto& quantity : when_given) {
-        const auto found = find(channels, wheels, quantity.name);
-        const bool given = std::ranges::any_of(found, [&](const Found& of) {
-            return std::ranges::any_of(family.cases, [&](const Case& c) {
-                const std::string by = family.over_travel ? of.wheel.channel("travel") : "";
-                return measured_series(scene, c.sweep, by, of.channel) ||
-                       !candidate_series(scene, c.sweep, by, of.channel).empty();
-            });
-        });
-        if (given)
-            if (auto made = figure(scene, family, channels, wheels, quantity))
-                section.figures.push_back(std::move(*made));
-    }
 }
 
 // Forces or moments of the joints that the parameter moves.
-std::vector<std::string> efforts_of(const Sweep& sweep) {
-    const auto efforts = sweep.branches.front().find("efforts");
-    return efforts ? efforts->texts() : std::vector<std::string>{};
+std::vector<std::string> efforts_of(const SceneAnalyses& scene, const Sweep& sweep) {
+    return reports::efforts_of(*sweep.branches.front().requested, scene.comparison.channels);
 }
 
 // Outputs of a scene without wheels, of those that the parameter moves.
-std::vector<Quantity> all_outputs(const JsonCursor& scene, const std::vector<Case>& cases) {
+std::vector<Quantity> all_outputs(const SceneAnalyses& scene, const std::vector<Case>& cases) {
     std::vector<Quantity> quantities;
-    for (const auto& c : channels_of(scene)) {
+    for (const auto& c : scene.comparison.channels) {
         const bool drives = std::ranges::any_of(cases, [&](const Case& k) {
-            const auto efforts = efforts_of(k.sweep);
+            const auto efforts = efforts_of(scene, k.sweep);
             return std::ranges::find(efforts, c.name) != efforts.end();
         });
         if (c.main || drives)
-            quantities.push_back({c.name, c.label(), "", drives ? Shown::as_is : Shown::change});
+            quantities.push_back(
+                {c.name, as_words(c.name), "", drives ? Shown::as_is : Shown::change});
     }
     return quantities;
 }
 
 // Diameter of the circle that the outer front wheel's patch follows, the rear wheels rolling along
 // it: 2 l / sin δ of the smaller angle.
-std::string turning_circle(const JsonCursor& scene, const Case& c) {
-    const auto vehicle = scene["wheels"].find("vehicle");
-    if (!vehicle) return {};
+std::string turning_circle(const SceneAnalyses& scene, const Case& c) {
+    if (!scene.model.vehicle) return {};
     double angle = INFINITY;
     for (const std::size_t k : {std::size_t{0}, c.curve.a.size() - 1}) {
         if (k == c.curve.start) continue;
-        for (const auto& wheel : wheels_of(scene)) {
-            const auto toe = c.curve.channel(wheel.channel("toe"));
+        for (const auto& wheel : scene.model.wheels) {
+            const auto toe = c.curve.channel(output_of(wheel, "toe"));
             if (!toe.empty()) angle = std::min(angle, std::abs(toe[k]));
         }
     }
     if (!(angle > 2 && angle < 90)) return {};
-    const double diameter =
-        2e-3 * (*vehicle)["wheelbase_mm"].number() / std::sin(angle * M_PI / 180);
-    return fmt::format("{}\u00a0m", number(diameter));
+    const double wheelbase_mm = 1e3 * scene.model.vehicle->wheelbase;
+    return fmt::format("{}\u00a0m", number(2e-3 * wheelbase_mm / std::sin(angle * M_PI / 180)));
 }
 
 bool pushes(const Sweep& sweep) {
@@ -482,12 +501,11 @@ bool pushes(const Sweep& sweep) {
 
 }  // namespace
 
-std::optional<Section> kinematics_section(const JsonCursor& scene) {
-    const auto wheels = wheels_of(scene);
+std::optional<Section> kinematics_section(const SceneAnalyses& scene) {
     const auto cases = cases_of(scene, &Sweep::lifts);
-    if (wheels.empty() || cases.empty()) return std::nullopt;
+    if (scene.model.wheels.empty() || cases.empty()) return std::nullopt;
     Section section{.id = "kinematics", .title = "Kinematics over travel", .part = Part::behaviour};
-    section.words["several"] = wheels.size() > 1;
+    section.words["several"] = scene.model.wheels.size() > 1;
     std::vector<Case> by_parameter;
     Family family{"travel", "wheel travel [mm]", true, {}, over_travel};
     for (const auto& c : cases)
@@ -495,63 +513,59 @@ std::optional<Section> kinematics_section(const JsonCursor& scene) {
     add_figures(section, scene, family);
     for (const auto& c : by_parameter)
         add_figures(section, scene,
-                    {slug(c.sweep.name), c.sweep.parameter(), false, {c}, over_travel});
+                    {slug(c.sweep.name), c.sweep.parameter, false, {c}, over_travel});
+    std::vector<Quantity> quantities{{"travel", "", ""}};
+    quantities.insert(quantities.end(), over_travel.begin(), over_travel.begin() + 6);
     std::vector<std::string> shown;
     for (const auto& c : cases) {
         if (std::ranges::find(shown, c.sweep.kind) != shown.end()) continue;
         shown.push_back(c.sweep.kind);
-        std::vector<Quantity> quantities{{"travel", "", ""}};
-        quantities.insert(quantities.end(), over_travel.begin(), over_travel.begin() + 6);
-        section.tables.push_back(stations(c,
-                                          fmt::format("{}, load case {}", c.sweep.kind, c.legend()),
-                                          channels_of(scene), wheels, quantities));
-        section.tables.back().caption[0] =
-            static_cast<char>(std::toupper(section.tables.back().caption[0]));
+        std::string caption = fmt::format("{}, load case {}", c.sweep.kind, c.legend());
+        caption[0] = static_cast<char>(std::toupper(caption[0]));
+        section.tables.push_back(stations(scene, c, caption, quantities));
     }
     return section;
 }
 
-std::optional<Section> steering_section(const JsonCursor& scene) {
+std::optional<Section> steering_section(const SceneAnalyses& scene) {
     const auto cases = cases_of(scene, [](const Sweep& s) { return s.kind == "steering"; });
     if (cases.empty()) return std::nullopt;
     Section section{.id = "steering", .title = "Steering", .part = Part::behaviour};
     for (const auto& c : cases) {
-        const Family family{slug(c.sweep.name), c.sweep.parameter(), false, {c}, over_steering};
-        add_figures(section, scene, family);
+        add_figures(section, scene,
+                    {slug(c.sweep.name), c.sweep.parameter, false, {c}, over_steering});
         std::vector<Quantity> quantities(over_steering.begin(), over_steering.begin() + 3);
-        for (const auto& effort : efforts_of(c.sweep)) quantities.push_back({effort, "", ""});
-        section.tables.push_back(stations(c, "Steering, load case " + c.legend(),
-                                          channels_of(scene), wheels_of(scene), quantities));
+        for (const auto& effort : efforts_of(scene, c.sweep))
+            quantities.push_back({effort, "", ""});
+        section.tables.push_back(
+            stations(scene, c, "Steering, load case " + c.legend(), quantities));
         if (const std::string circle = turning_circle(scene, c); !circle.empty())
             section.words["circle"] = circle;
     }
     return section;
 }
 
-std::optional<Section> compliance_section(const JsonCursor& scene) {
-    const auto wheels = wheels_of(scene);
-    auto cases = cases_of(scene, pushes);
-    if (wheels.empty() || cases.empty()) return std::nullopt;
+std::optional<Section> compliance_section(const SceneAnalyses& scene) {
+    const auto cases = cases_of(scene, pushes);
+    if (scene.model.wheels.empty() || cases.empty()) return std::nullopt;
     Section section{.id = "compliance",
                     .title = "Compliance under forces and moments",
                     .part = Part::behaviour};
-    for (const char* unit : {"N", "N·m"}) {
-        Family family{unit == std::string("N") ? "force" : "moment",
-                      fmt::format("{} [{}]", unit == std::string("N") ? "force" : "moment", unit)};
-        family.over_push = true;
+    for (const bool moment : {false, true}) {
+        const std::string unit = moment ? "N·m" : "N", id = moment ? "moment" : "force";
+        Family family{.id = id, .x = fmt::format("{} [{}]", id, unit), .over_push = true};
         for (const auto& c : cases)
             if (c.sweep.unit == unit) family.cases.push_back(c);
         family.quantities = over_load;
-        if (unit != std::string("N")) family.quantities.resize(2);
+        if (moment) family.quantities.resize(2);
         add_figures(section, scene, family);
     }
-    for (const auto& c : cases)
-        section.tables.push_back(at_ends(c, channels_of(scene), wheels, over_load));
+    for (const auto& c : cases) section.tables.push_back(at_ends(scene, c, over_load));
     return section;
 }
 
-std::optional<Section> curves_section(const JsonCursor& scene) {
-    const bool no_wheels = wheels_of(scene).empty();
+std::optional<Section> curves_section(const SceneAnalyses& scene) {
+    const bool no_wheels = scene.model.wheels.empty();
     const auto cases = cases_of(scene, [&](const Sweep& s) {
         return no_wheels || !(s.lifts() || s.kind == "steering" || pushes(s));
     });
@@ -559,12 +573,12 @@ std::optional<Section> curves_section(const JsonCursor& scene) {
     Section section{.id = "curves", .title = "Outputs over load or drive", .part = Part::behaviour};
     std::vector<std::string> done;
     for (const auto& c : cases) {
-        const std::string x = c.sweep.parameter();
+        const std::string& x = c.sweep.parameter;
         if (std::ranges::find(done, x) != done.end()) continue;
         done.push_back(x);
         Family family{slug(c.sweep.name), x};
         for (const auto& other : cases)
-            if (other.sweep.parameter() == x) family.cases.push_back(other);
+            if (other.sweep.parameter == x) family.cases.push_back(other);
         family.quantities = no_wheels ? all_outputs(scene, family.cases) : over_load;
         add_figures(section, scene, family);
     }

@@ -11,14 +11,14 @@
 
 namespace elastocheck::reports {
 
-std::optional<Section> methods_section(const JsonCursor& scene) {
+std::optional<Section> methods_section(const SceneAnalyses& scene) {
     const std::string sentence = method_sentence(scene);
     if (sentence.empty()) return std::nullopt;
     Section section{
         .id = "methods", .title = "Which fast method is good enough?", .part = Part::methods};
     section.words = {{"sentence", sentence}, {"tolerance", tolerance_of(scene)}};
     const auto rows = method_rows(scene);
-    section.words["studied"] = scene.find("trade").has_value();
+    section.words["studied"] = scene.trade.has_value();
     if (rows.empty()) return section;
     Table table{.caption = fmt::format("Fast methods against {}", tolerance_of(scene)),
                 .columns = {{"method", true},
@@ -28,7 +28,7 @@ std::optional<Section> methods_section(const JsonCursor& scene) {
                             {"[deg]"},
                             {"error at equal travel [mm]"},
                             {"[deg]"}}};
-    if (scene.find("trade")) table.columns.push_back({"work, of the full solution"});
+    if (scene.trade) table.columns.push_back({"work, of the full solution"});
     const auto size = [](double value) { return number(value, 2); };
     for (const auto& row : rows) {
         table.rows.push_back({row.method, row.setting,

@@ -38,9 +38,11 @@ std::vector<std::string> words_in(std::string name) {
 
 // "coil motion ratio" of "coil_left.motion_ratio", and the wheel: the only one with a word of the
 // name in its own, "left"; none if there is no such wheel.
-std::optional<std::pair<std::string, std::size_t>> of_wheel(const ChannelInfo& channel,
-                                                            const std::vector<WheelInfo>& wheels) {
-    const std::string owner = channel.owner(), quantity = as_words(channel.quantity());
+std::optional<std::pair<std::string, std::size_t>> of_wheel(const std::string& output,
+                                                            const std::vector<Wheel>& wheels) {
+    const auto dot = output.rfind('.');
+    const std::string owner = dot == output.npos ? "" : output.substr(0, dot),
+                      quantity = as_words(output.substr(dot + 1));
     std::optional<std::size_t> found;
     std::string others;
     for (const auto& word : words_in(owner)) {
@@ -61,12 +63,11 @@ std::optional<std::pair<std::string, std::size_t>> of_wheel(const ChannelInfo& c
     return std::pair{others + quantity, *found};
 }
 
-std::vector<Rate> rates_of(const Design& design, const std::vector<WheelInfo>& wheels) {
+std::vector<Rate> rates_of(const Design& design, const std::vector<Wheel>& wheels) {
     std::vector<Rate> rates;
     for (const auto& r : design) {
-        const ChannelInfo channel{r.output, r.unit};
-        const auto mine = of_wheel(channel, wheels);
-        const std::string name = mine ? mine->first : as_words(channel.name);
+        const auto mine = of_wheel(r.output, wheels);
+        const std::string name = mine ? mine->first : as_words(r.output);
         auto known = mine ? std::ranges::find(rates, name, &Rate::name) : rates.end();
         if (known == rates.end()) {
             rates.push_back({name, r.unit, r.definition, {}});
@@ -88,19 +89,19 @@ std::string value_at(const CharacteristicRow& row) {
     return std::abs(row.value) < rate_rounding ? "0" : number(row.value, 4);
 }
 
-double value_of(const Design& design, const WheelInfo& wheel, std::string_view rate) {
-    const auto row = std::ranges::find(design, wheel.channel(rate), &CharacteristicRow::output);
+double value_of(const Design& design, const Wheel& wheel, std::string_view rate) {
+    const auto row = std::ranges::find(design, output_of(wheel, rate), &CharacteristicRow::output);
     return row == design.end() ? NAN : row->value;
 }
 
 // Roll stiffness of an axle from the rates of its wheels in roll: each wheel moves by half the track
 // per unit of roll, K = k t² / 2. What resists roll and not heave is the anti-roll bar's.
-void add_roll_stiffness(Table& table, const JsonCursor& scene, const Design& design,
-                        const std::vector<WheelInfo>& wheels) {
+void add_roll_stiffness(Table& table, const SceneAnalyses& scene, const Design& design,
+                        const std::vector<Wheel>& wheels) {
     if (wheels.size() != 2) return;
     const auto sweep = leading_sweep(scene);
     if (!sweep) return;
-    const SweepCurve curve = sweep_curve(*sweep);
+    const SweepCurve curve(scene, *sweep);
     const auto track = curve.channel("track");
     double roll = 0, heave = 0;
     for (const auto& wheel : wheels) {
@@ -123,8 +124,8 @@ void add_roll_stiffness(Table& table, const JsonCursor& scene, const Design& des
             "roll");
 }
 
-Table rates_table(const JsonCursor& scene, const Design& design,
-                  const std::vector<WheelInfo>& wheels) {
+Table rates_table(const SceneAnalyses& scene, const Design& design,
+                  const std::vector<Wheel>& wheels) {
     Table table{.caption = "Rates at the design position", .columns = {{"rate", true}}};
     if (wheels.size() < 2)
         table.columns.push_back({"value"});
@@ -192,14 +193,13 @@ Table errors_table(const Design& design) {
     return table;
 }
 
-Design design_of(const JsonCursor& scene) {
-    const auto found = scene.find("characteristics");
-    return found ? read_rows<CharacteristicRow>((*found)["design"]) : Design{};
+Design design_of(const SceneAnalyses& scene) {
+    return scene.model.wheels.empty() ? Design{} : characteristic_rows(scene.comparison);
 }
 
 }  // namespace
 
-Table key_rates(const JsonCursor& scene) {
+Table key_rates(const SceneAnalyses& scene) {
     Table table{.caption =
                     "Key figures at the design position (lateral forces towards the middle "
                     "of the vehicle, braking to the back, traction forward; toe-in positive)"};
@@ -221,28 +221,28 @@ Table key_rates(const JsonCursor& scene) {
                                        "anti squat",
                                        "steer gradient",
                                        "roll stiffness at the wheels"};
-    const Table all = rates_table(scene, design, wheels_of(scene));
+    const Table all = rates_table(scene, design, scene.model.wheels);
     table.columns.assign(all.columns.begin(), all.columns.end() - 1);
     for (const auto& row : all.rows)
         if (wanted.contains(row[0])) table.rows.emplace_back(row.begin(), row.end() - 1);
     return table;
 }
 
-std::optional<Section> rates_section(const JsonCursor& scene) {
+std::optional<Section> rates_section(const SceneAnalyses& scene) {
     const auto design = design_of(scene);
     if (design.empty()) return std::nullopt;
     Section section{.id = "rates", .title = "Rates", .part = Part::behaviour};
-    section.tables.push_back(rates_table(scene, design, wheels_of(scene)));
+    section.tables.push_back(rates_table(scene, design, scene.model.wheels));
     return section;
 }
 
-std::optional<Section> matrices_section(const JsonCursor& scene) {
+std::optional<Section> matrices_section(const SceneAnalyses& scene) {
     const auto design = design_of(scene);
     if (design.empty()) return std::nullopt;
     Section section{.id = "matrices",
                     .title = "Compliance matrices, and the recursion’s rates",
                     .part = Part::evidence};
-    const auto compliance = read_rows<ComplianceRow>(scene["characteristics"]["compliance"]);
+    const auto compliance = compliance_rows(scene.model, scene.comparison);
     for (const char* point : {"contact patch", "wheel centre"})
         if (auto table = matrix_table(compliance, point))
             section.tables.push_back(std::move(*table));

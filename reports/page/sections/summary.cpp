@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/tables/rows.hpp"
+#include "reports/document/wheels.hpp"
 #include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
@@ -22,14 +22,12 @@ using compare::StaticRow;
 std::string static_number(double value) { return std::abs(value) < 5e-5 ? "0" : number(value, 4); }
 
 // As drawn and as settled, left and right as columns.
-std::optional<Table> alignment(const JsonCursor& scene) {
-    const auto part = scene.find("wheels");
-    if (!part) return std::nullopt;
-    const auto wheels = wheels_of(scene);
-    const auto values = read_rows<StaticRow>((*part)["static"]);
+std::optional<Table> alignment(const SceneAnalyses& scene) {
+    const auto& wheels = scene.model.wheels;
+    const auto values = static_rows(scene.model, scene.comparison);
     Table table{.caption = fmt::format(
                     "Static alignment as drawn and as settled{} (toe-in, top outwards positive)",
-                    scene.find("trim") ? " after the trim" : ""),
+                    scene.trim ? " after the trim" : ""),
                 .columns = {{"of the wheel", true}}};
     for (const char* state : {"drawn", "settled"})
         for (const auto& wheel : wheels)
@@ -50,30 +48,27 @@ std::optional<Table> alignment(const JsonCursor& scene) {
 }
 
 // What the trim adjusted. Preloads of balanced bushings are listed with the model.
-std::optional<Table> adjusted(const JsonCursor& scene) {
-    const auto trim = scene.find("trim");
-    if (!trim) return std::nullopt;
-    const bool balanced = (*trim)["bushings"].text() == "balanced";
+std::optional<Table> adjusted(const SceneAnalyses& scene) {
+    if (!scene.trim) return std::nullopt;
+    const bool balanced = scene.trim->bushings == Trim::Bushings::balanced;
     Table table{.caption = balanced
                                ? "The trim adjusted; preloads of all bushings (in “The model as "
                                  "compiled”) balance the drawn position"
                                : "The trim adjusted; bushings are unloaded as drawn",
                 .columns = {{"what", true}, {"by"}, {"makes", true, true}}};
-    for (const auto& a : (*trim)["adjusted"].items())
-        if (const auto name = a["name"].text();
-            !balanced || !name.starts_with("bushings.") || !name.ends_with(".preload"))
+    for (const auto& a : scene.trim->adjusted)
+        if (!balanced || !a.name.starts_with("bushings.") || !a.name.ends_with(".preload"))
             table.rows.push_back(
-                {name, fmt::format("{} {}", signed_number(a["by"].number(), 4), a["unit"].text()),
-                 a["makes"].text()});
+                {a.name, fmt::format("{} {}", signed_number(a.by, 4), symbol(a.unit)), a.makes});
     return table;
 }
 
 // Changes of each wheel at both ends of the leading sweep.
-void add_changes(Table& table, const JsonCursor& scene) {
+void add_changes(Table& table, const SceneAnalyses& scene) {
     const auto sweep = leading_sweep(scene);
-    const auto wheels = wheels_of(scene);
+    const auto& wheels = scene.model.wheels;
     if (!sweep || !sweep->lifts() || wheels.empty()) return;
-    const SweepCurve curve = sweep_curve(*sweep);
+    const SweepCurve curve(scene, *sweep);
     if (curve.a.size() < 2) return;
     table.caption += fmt::format(
         ", and over the branch {}: changes since its start, track change from the drawn position",
@@ -86,7 +81,7 @@ void add_changes(Table& table, const JsonCursor& scene) {
                 fmt::format("{}{} at {}{}\u00a0{}", as_words(quantity), from_drawn ? "" : " change",
                             curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};
             for (const auto& wheel : wheels) {
-                const auto values = curve.channel(wheel.channel(quantity));
+                const auto values = curve.channel(output_of(wheel, quantity));
                 row.push_back(
                     values.empty()
                         ? "–"
@@ -97,51 +92,51 @@ void add_changes(Table& table, const JsonCursor& scene) {
         }
 }
 
-}  // namespace
-
-std::optional<Section> first_section(const JsonCursor& scene) {
-    Section section{.id = "first", .title = "At a glance"};
-    section.words["trust"] = trust_sentence(scene);
-    if (const auto warnings = scene.find("warnings")) section.words["warnings"] = warnings->texts();
-    if (auto table = alignment(scene)) section.tables.push_back(std::move(*table));
-    Table key = key_rates(scene);
-    if (!key.columns.empty()) add_changes(key, scene);
-    if (!key.rows.empty()) section.tables.push_back(std::move(key));
-    if (auto table = adjusted(scene)) section.tables.push_back(std::move(*table));
-
-    const auto suspension = suspension_of(scene);
-    if (!suspension) return section;
-    const std::string noun = noun_of(*suspension);
-    bool right = !scene["drawing"]["points"].items().empty() && !suspension->wheels.empty();
-    for (const auto& wheel : suspension->wheels)  // all wheels on the right side; y points left
-        right = right && suspension->points[wheel.centre].at[1] < 0;
+// The suspension with its points; the positions at the ends of the leading sweep in pale lines.
+FigureGroup picture_of(const Suspension& suspension) {
+    const std::string noun = noun_of(suspension);
+    const View view = axonometric_view(is_right(suspension));
     FigureGroup group;
-    group.figures = draw_views(*suspension, {axonometric_view(right)}, large_frame(*suspension));
+    group.figures = draw_views(suspension, {view}, large_frame(suspension));
     Figure& figure = group.figures.front();
     figure.title = fmt::format("The {}", noun);
-    std::vector<std::string> names, moved;
-    for (const auto& point : suspension->points)
+    std::vector<std::string> names, moved, listed;
+    for (const auto& point : suspension.points)
         if (point.hardpoint && std::ranges::find(names, point.name) == names.end())
             names.push_back(point.name);
-    for (const auto& position : suspension->moved) moved.push_back(position.title);
+    for (const auto& position : suspension.moved) moved.push_back(position.title);
     figure.description = fmt::format(
-        "The {} seen {}, to scale, with its points {}{}.", noun, axonometric_view(right).from,
-        enumerated(names), moved.empty() ? "" : ", and in pale lines at " + enumerated(moved));
+        "The {} seen {}, to scale, with its points {}{}.", noun, view.from, enumerated(names),
+        moved.empty() ? "" : ", and in pale lines at " + enumerated(moved));
     group.caption = fmt::format(
         "Design position to scale{}{}.", moved.empty() ? "" : ", pale lines: " + enumerated(moved),
-        suspension->wheels.empty() ? "" : "; the tyre’s width is only drawn");
+        suspension.wheels.empty() ? "" : "; the tyre’s width is only drawn");
     group.table = {.caption = "Points",
                    .columns = {{"point", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}}};
-    std::vector<std::string> listed;
-    for (const auto& point : suspension->points) {
+    for (const auto& point : suspension.points) {
         if (std::ranges::find(listed, point.name) != listed.end()) continue;
         listed.push_back(point.name);
         group.table.rows.push_back(
             {point.name, number(point.at[0], 4), number(point.at[1], 4), number(point.at[2], 4)});
     }
     group.table.folded = true;
-    section.figures.push_back(std::move(group));
-    section.motion = motion_of(scene, *suspension, axonometric_view(right));
+    return group;
+}
+
+}  // namespace
+
+std::optional<Section> first_section(const SceneAnalyses& scene) {
+    Section section{.id = "first", .title = "At a glance"};
+    section.words["trust"] = trust_sentence(scene);
+    if (!scene.warnings.empty()) section.words["warnings"] = scene.warnings;
+    if (auto table = alignment(scene)) section.tables.push_back(std::move(*table));
+    Table key = key_rates(scene);
+    if (!key.columns.empty()) add_changes(key, scene);
+    if (!key.rows.empty()) section.tables.push_back(std::move(key));
+    if (auto table = adjusted(scene)) section.tables.push_back(std::move(*table));
+    const Suspension suspension = suspension_of(scene);
+    section.figures.push_back(picture_of(suspension));
+    section.motion = motion_of(scene, axonometric_view(is_right(suspension)));
     return section;
 }
 

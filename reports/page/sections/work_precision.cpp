@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/text/numbers.hpp"
@@ -17,7 +16,7 @@ constexpr Colour method_colours[] = {vermilion, ochre, pink, blue, sky, purple, 
 
 using compare::TradeRow;
 
-Figure figure(const JsonCursor& trade, const std::vector<TradeRow>& points, const char* id,
+Figure figure(const compare::Trade& trade, const std::vector<TradeRow>& points, const char* id,
               double TradeRow::*price, char front, const char* axis, const char* title) {
     Figure figure{.id = id,
                   .title = title,
@@ -51,18 +50,16 @@ Figure figure(const JsonCursor& trade, const std::vector<TradeRow>& points, cons
     std::ranges::sort(on_front);
     pareto.rows = on_front;
     if (!pareto.rows.empty()) figure.series.insert(figure.series.begin(), pareto);
-    if (const auto tolerance = trade["tolerance"].find("mm"); tolerance && high >= low) {
-        high = std::max(high, tolerance->number());
-        low = std::min(low, tolerance->number());
+    if (const double tolerance = trade.tolerance.mm; std::isfinite(tolerance) && high >= low) {
+        high = std::max(high, tolerance);
+        low = std::min(low, tolerance);
         figure.y_low = std::pow(10, std::floor(std::log10(low)));
-        figure.bands.push_back(
-            {figure.y_low, tolerance->number(), "within " + setting(tolerance->number(), "mm")});
+        figure.bands.push_back({figure.y_low, tolerance, "within " + setting(tolerance, "mm")});
         figure.y_high = std::pow(10, std::ceil(std::log10(high * 1.2)));
     }
-    if (const auto chosen = trade.find("recommendation")) {
-        const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
-        if (at >= points.size()) (*chosen)["position"].fail("no such point");
-        const double x = points[at].*price, y = points[at].error;
+    if (trade.recommendation) {
+        const TradeRow& chosen = points[trade.recommendation->point];
+        const double x = chosen.*price, y = chosen.error;
         if (x > 0 && y > 0)
             figure.series.push_back({"recommended", Series::Style::rings, ink, 5, {{x, y}}});
     }
@@ -78,23 +75,22 @@ Figure figure(const JsonCursor& trade, const std::vector<TradeRow>& points, cons
 
 }  // namespace
 
-std::optional<Section> price_section(const JsonCursor& scene) {
-    const auto trade = scene.find("trade");
+std::optional<Section> price_section(const SceneAnalyses& scene) {
+    const auto& trade = scene.trade;
     if (!trade) return std::nullopt;
     Section section{.id = "price", .title = "Cost of accuracy", .part = Part::evidence};
-    section.words["points"] = (*trade)["output_points"].whole();
-    section.words["not_confirmed"] = (*trade)["not_confirmed"].texts();
-    section.words["reasons"] = (*trade)["inconclusive"].texts();
+    section.words["points"] = trade->points_per_branch;
+    section.words["not_confirmed"] = trade->rejected;
+    section.words["reasons"] = trade->inconclusive;
     section.words["judged_not"] = !section.words["reasons"].empty();
-    const auto points = read_rows<TradeRow>((*trade)["points"]);
+    const auto points = trade_rows(*trade);
     const bool times = std::ranges::any_of(
         points, [](const TradeRow& point) { return std::isfinite(point.time_ratio); });
     FigureGroup group;
     group.figures.push_back(figure(*trade, points, "price-solves", &TradeRow::solves, 's',
                                    "linear solves, all branches", "Error against linear solves"));
     if (times) {
-        section.words["times"] = {{"rounds", (*trade)["rounds"].whole()},
-                                  {"noise", percent((*trade)["time_noise"].number())}};
+        section.words["times"] = {{"rounds", trade->rounds}, {"noise", percent(trade->noise)}};
         group.figures.push_back(figure(*trade, points, "price-time", &TradeRow::time_ratio, 't',
                                        "time, as a ratio to the full solution",
                                        "Error against time"));
@@ -112,19 +108,17 @@ std::optional<Section> price_section(const JsonCursor& scene) {
         section.tables.push_back(group.table);
     else
         section.figures.push_back(std::move(group));
-    if (const auto chosen = trade->find("recommendation")) {
-        const auto both = [](const JsonCursor& f) {
-            std::string text = quantity(f["mm"].number(), "mm");
-            if (const auto deg = f.find("deg")) text += ", " + quantity(deg->number(), "deg");
-            return text;
+    if (const auto& chosen = trade->recommendation) {
+        const auto both = [&](const compare::Accuracy& error) {
+            return quantity(error.mm, "mm") +
+                   (trade->angles ? ", " + quantity(error.deg, "deg") : "");
         };
-        section.words["chosen"] = {
-            {"text", configuration(*chosen)},
-            {"low", both((*chosen)["low"])},
-            {"high", both((*chosen)["high"])},
-            {"band_from", (*chosen)["band_from"].text()},
-            {"confirmed", both((*chosen)["confirmed_error"])},
-            {"numbers", whole_number((*chosen)["confirmed_numbers"].whole())}};
+        section.words["chosen"] = {{"text", configuration(trade->points[chosen->point])},
+                                   {"low", both(chosen->low)},
+                                   {"high", both(chosen->high)},
+                                   {"band_from", chosen->band_from},
+                                   {"confirmed", both(chosen->confirmed)},
+                                   {"numbers", whole_number(chosen->confirmed_numbers)}};
     }
     return section;
 }

@@ -5,146 +5,142 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/outputs/readings.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-std::string cell(const std::optional<JsonCursor>& deviation) {
-    return deviation ? signed_number((*deviation)["signed_max"].number()) : "–";
+using compare::CandidateBranch;
+using compare::CandidateJudgement;
+using compare::Deviation;
+
+// Deviation of a column; null where it has no numbers.
+const Deviation* deviation_of(const std::vector<Deviation>& columns, std::size_t c) {
+    return c < columns.size() && columns[c].compared > 0 ? &columns[c] : nullptr;
+}
+
+std::string cell(const Deviation* deviation) {
+    return deviation == nullptr ? "–" : signed_number(deviation->signed_max);
 }
 
 // Deviations of every output that the candidate gives on a branch, beside those of the recursion.
-Table beside_the_recursion(const JsonCursor& scene, const std::string& who,
-                           const JsonCursor& candidate, const JsonCursor& branch) {
-    const std::string name = branch["name"].text(), unit = branch["unit"].text();
-    const auto abscissa = branch.find("abscissa");
-    const std::string load = compare::parameter_reading(unit),
-                      travel = compare::abscissa_reading(abscissa ? abscissa->text() : "");
+Table beside_the_recursion(const SceneAnalyses& scene, const CandidateJudgement& candidate,
+                           const CandidateBranch& branch) {
+    const auto& channels = scene.comparison.channels;
+    const compare::BranchComparison& solved = scene.comparison.branch(branch.branch);
+    const std::string load = compare::parameter_reading(symbol(branch.unit)),
+                      travel = compare::abscissa_reading(
+                          branch.abscissa < 0
+                              ? ""
+                              : channels[static_cast<std::size_t>(branch.abscissa)].name);
     Table table{.caption = fmt::format("Deviation from the full solution, branch {} ({} points)",
-                                       name, branch["points"].whole()),
+                                       branch.branch, branch.points),
                 .columns = {{"output", true},
-                            {fmt::format("{}, {}", who, load)},
-                            {fmt::format("{}, {}", who, travel)},
+                            {fmt::format("{}, {}", candidate.name, load)},
+                            {fmt::format("{}, {}", candidate.name, travel)},
                             {"share of the range"},
                             {"published recursion, " + load},
                             {"published recursion, " + travel}}};
-    std::optional<JsonCursor> recursion;
-    for (const auto& of : scene["branches"].items())
-        if (of["name"].text() == name) recursion = of["deviation"];
-    for (const auto& channel : candidate["channels"].items()) {
-        const std::string output = channel["name"].text();
-        const auto of = [&](const JsonCursor& deviation,
-                            const char* reading) -> std::optional<JsonCursor> {
-            const auto found = deviation.find(reading);
-            if (!found) return std::nullopt;
-            const auto channels = found->find("channels");
-            return channels ? channels->find(output) : std::nullopt;
+    for (std::size_t c = 0; c < candidate.columns.size(); ++c) {
+        const std::size_t channel = candidate.columns[c].channel;
+        const Deviation *mine = deviation_of(branch.equal_parameter.columns, c),
+                        *across = deviation_of(branch.equal_abscissa.columns, c),
+                        *some = mine ? mine : across;
+        if (some == nullptr || (!candidate.judged[c] && some->max < 1e-6)) continue;
+        const auto recursion = [&](const compare::Reading& reading) {
+            return cell(solved.determined[channel] && channel < reading.channels.size()
+                            ? &reading.channels[channel]
+                            : nullptr);
         };
-        const auto mine = of(branch, "at_equal_parameter"),
-                   across = of(branch, "at_equal_abscissa");
-        if (!mine && !across) continue;
-        const JsonCursor& some = mine ? *mine : *across;
-        if (!channel["judged"].truth() && some["max"].number() < 1e-6) continue;
         table.rows.push_back(
-            {fmt::format("{} [{}]", output, channel["unit"].text()), cell(mine), cell(across),
-             some["range"].number() < 1e-9 ? "–"
-                                           : percent(some["max"].number() / some["range"].number()),
-             cell(recursion ? of(*recursion, "at_equal_parameter") : std::nullopt),
-             cell(recursion ? of(*recursion, "at_equal_abscissa") : std::nullopt)});
+            {fmt::format("{} [{}]", channels[channel].name, symbol(channels[channel].unit)),
+             cell(mine), cell(across), some->range < 1e-9 ? "–" : percent(some->max / some->range),
+             recursion(solved.deviation.equal_parameter),
+             recursion(solved.deviation.equal_abscissa)});
     }
     return table;
 }
 
-double largest_of(const JsonCursor& list) {
+double largest_of(const std::vector<Residuals>& list, double Residuals::*field) {
     double worst = 0;
-    for (const double v : list.numbers())
-        if (!(v <= worst)) worst = std::isnan(worst) ? worst : v;
+    for (const auto& r : list) worst = compare::worse(worst, r.*field);
     return worst;
 }
 
 // Residuals of its states in the equations of the legs.
-Table leftovers(const std::string& who, const JsonCursor& states) {
-    Table table{
-        .caption = fmt::format(
-            "Largest residuals of the states of {} in the equations of the references", who),
-        .columns = {{"branch", true},
-                    {"equations of", true},
-                    {"states"},
-                    {"force [N]"},
-                    {"moment [N·m]"},
-                    {"constraints [mm]"}}};
-    for (const auto& of : states.items()) {
-        const auto row = [&](const std::string& leg, const JsonCursor& left) {
-            table.rows.push_back(
-                {of["branch"].text(), leg, whole_number(static_cast<long>(of["a"].items().size())),
-                 number(largest_of(left["force_N"]), 2), number(largest_of(left["moment_Nm"]), 2),
-                 number(largest_of(left["constraint_mm"]), 2)});
-        };
-        row("equilibrium", of["equilibrium"]);
-        row(of["second"].text(), of["by_second"]);
-    }
+Table leftovers(const CandidateJudgement& candidate) {
+    Table table{.caption = fmt::format(
+                    "Largest residuals of the states of {} in the equations of the references",
+                    candidate.name),
+                .columns = {{"branch", true},
+                            {"equations of", true},
+                            {"states"},
+                            {"force [N]"},
+                            {"moment [N·m]"},
+                            {"constraints [mm]"}}};
+    for (const auto& of : candidate.leftovers)
+        for (const auto& [leg, left] :
+             {std::pair{compare::Leg::equilibrium, &of.truth}, std::pair{of.second, &of.by_second}})
+            table.rows.push_back({of.branch, name(leg),
+                                  whole_number(static_cast<long>(of.a.size())),
+                                  number(largest_of(*left, &Residuals::force), 2),
+                                  number(largest_of(*left, &Residuals::moment), 2),
+                                  number(1e3 * largest_of(*left, &Residuals::length), 2)});
     return table;
 }
 
 }  // namespace
 
-std::optional<Section> candidate_section(const JsonCursor& scene) {
-    const auto candidates = scene.find("candidates");
-    if (!candidates || candidates->items().empty()) return std::nullopt;
-    Section section{.id = "candidate", .title = "The candidate"};
-    section.mark = Mark::pass;
-    nlohmann::ordered_json listed = nlohmann::ordered_json::array();
-    for (const auto& candidate : candidates->items()) {
-        const std::string verdict = candidate["verdict"].text();
-        if (verdict == "fail")
+std::optional<Section> candidate_section(const SceneAnalyses& scene) {
+    if (scene.candidates.empty()) return std::nullopt;
+    Section section{.id = "candidate", .title = "The candidate", .mark = Mark::pass};
+    for (const auto& [candidate, sentence] : scene.candidates) {
+        if (candidate.verdict == compare::Grade::fail)
             section.mark = Mark::fail;
-        else if (verdict != "pass" && section.mark == Mark::pass)
+        else if (candidate.verdict != compare::Grade::pass && section.mark == Mark::pass)
             section.mark = Mark::open;
-        listed.push_back({{"sentence", candidate["sentence"].text()},
-                          {"reasons", candidate["reasons"].texts()},
-                          {"notes", candidate["notes"].texts()}});
-        const std::string who = candidate["name"].text();
-        for (const auto& branch : candidate["branches"].items())
-            if (auto table = beside_the_recursion(scene, who, candidate, branch);
-                !table.rows.empty())
+        section.words["candidates"].push_back(
+            {{"sentence", sentence}, {"reasons", candidate.reasons}, {"notes", candidate.notes}});
+        for (const auto& branch : candidate.branches)
+            if (auto table = beside_the_recursion(scene, candidate, branch); !table.rows.empty())
                 section.tables.push_back(std::move(table));
-        if (!candidate["states"].items().empty())
-            section.tables.push_back(leftovers(who, candidate["states"]));
+        if (!candidate.leftovers.empty()) section.tables.push_back(leftovers(candidate));
     }
-    section.words = {{"candidates", listed}};
     return section;
 }
 
-std::vector<Series> candidate_series(const JsonCursor& scene, const Sweep& sweep,
+std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sweep,
                                      const std::string& by, const std::string& channel) {
     std::vector<Series> list;
-    const auto candidates = scene.find("candidates");
-    if (!candidates) return list;
-    for (const auto& candidate : candidates->items()) {
-        Series series{.title = candidate["name"].text(),
-                      .style = Series::Style::rings,
-                      .colour = green,
-                      .mark = 4};
-        for (const auto& branch : candidate["branches"].items()) {
-            if (!sweep.has(branch["name"].text())) continue;
-            const JsonCursor curve = branch["curve"];
-            const auto y = curve["outputs"].find(channel);
-            const auto abscissa = branch.find("abscissa");
-            const bool over_abscissa = curve["over"].text() == "abscissa";
-            std::optional<JsonCursor> x;
-            if (over_abscissa ? abscissa && abscissa->text() == by : by.empty())
-                x = curve["at"];
-            else if (!by.empty())
-                x = curve["outputs"].find(by);
-            if (!x || !y) continue;
-            const auto xs = x->numbers(), ys = y->numbers();
-            if (xs.size() != ys.size()) y->fail("not as many numbers as points");
-            for (const auto k : thinned(xs.size(), 21))
-                if (std::isfinite(xs[k]) && std::isfinite(ys[k]))
-                    series.rows.push_back({xs[k], ys[k]});
+    const auto& channels = scene.comparison.channels;
+    for (const auto& [candidate, sentence] : scene.candidates) {
+        Series series{
+            .title = candidate.name, .style = Series::Style::rings, .colour = green, .mark = 4};
+        // its main outputs, and what places its points
+        const auto column = [&](const compare::CandidateReading& reading,
+                                const CandidateBranch& branch,
+                                const std::string& name) -> const std::vector<double>* {
+            for (std::size_t c = 0; c < reading.columns.size(); ++c)
+                if (const std::size_t k = candidate.columns[c].channel;
+                    channels[k].name == name &&
+                    (channels[k].main || static_cast<int>(k) == branch.abscissa))
+                    return &reading.candidate[c];
+            return nullptr;
+        };
+        for (const auto& branch : candidate.branches) {
+            if (!sweep.has(branch.branch)) continue;
+            const bool by_parameter = !branch.equal_parameter.columns.empty();
+            const auto& reading = by_parameter ? branch.equal_parameter : branch.equal_abscissa;
+            const std::string over = by_parameter || branch.abscissa < 0
+                                         ? ""
+                                         : channels[static_cast<std::size_t>(branch.abscissa)].name;
+            const auto* x = by == over ? &reading.at : column(reading, branch, by);
+            const auto* y = column(reading, branch, channel);
+            if (x == nullptr || y == nullptr) continue;
+            for (const auto k : thinned(x->size(), 21))
+                if (std::isfinite((*x)[k]) && std::isfinite((*y)[k]))
+                    series.rows.push_back({(*x)[k], (*y)[k]});
         }
         if (!series.rows.empty()) list.push_back(std::move(series));
     }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "reports/json/json_cursor.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/page.hpp"
 
@@ -12,7 +11,7 @@ namespace elastocheck::reports {
 
 // Points of every candidate on these branches for one output, over another one or, if `by` is
 // empty, over the parameter.
-std::vector<Series> candidate_series(const JsonCursor& scene, const Sweep& sweep,
+std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sweep,
                                      const std::string& by, const std::string& channel);
 
 }  // namespace elastocheck::reports

@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "reports/json/json_cursor.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/page.hpp"
 
@@ -12,11 +11,11 @@ namespace elastocheck::reports {
 
 // Whether the points of these branches give their parameter but no travel; figures with them use
 // the parameter then.
-bool measured_over_parameter(const JsonCursor& scene, const Sweep& sweep);
+bool measured_over_parameter(const SceneAnalyses& scene, const Sweep& sweep);
 
 // Points of these branches for a channel, over another channel or, if `by` is empty or was not
 // measured, over the parameter. Empty if it was not measured.
-std::optional<Series> measured_series(const JsonCursor& scene, const Sweep& sweep,
+std::optional<Series> measured_series(const SceneAnalyses& scene, const Sweep& sweep,
                                       const std::string& by, const std::string& channel);
 
 }  // namespace elastocheck::reports

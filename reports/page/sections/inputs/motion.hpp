@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reports/json/json_cursor.hpp"
+#include "reports/document/scene_analyses.hpp"
 #include "reports/page/views.hpp"
 
 namespace elastocheck::reports {
@@ -15,8 +15,7 @@ namespace elastocheck::reports {
 //   branches                     name, unit and parameter `a` of the stations, the one to `start`
 //                                at, displacements `d` of the points, spin axes `e`; the positions
 //                                `marks` on the figures with the abscissa `x`
-// The branches of the leading sweep come first. Null without a drawing.
-nlohmann::ordered_json motion_of(const JsonCursor& scene, const Suspension& suspension,
-                                 const View& first);
+// The branches of the leading sweep come first.
+nlohmann::ordered_json motion_of(const SceneAnalyses& scene, const View& first);
 
 }  // namespace elastocheck::reports

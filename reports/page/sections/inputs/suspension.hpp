@@ -1,17 +1,17 @@
-// Drawing data of a suspension from result.json.
+// The drawing of a scene with the positions at the ends of its leading sweep.
 #pragma once
 
-#include <optional>
-
-#include "reports/json/json_cursor.hpp"
+#include "reports/document/scene_analyses.hpp"
 #include "reports/page/views.hpp"
 
 namespace elastocheck::reports {
 
-// Empty if the scene has no drawing. Includes the positions at the ends of the leading branch.
-std::optional<Suspension> suspension_of(const JsonCursor& scene);
+Suspension suspension_of(const SceneAnalyses& scene);
 
 // "suspension", or "mechanism" for a scene without a wheel.
 const char* noun_of(const Suspension& suspension);
+
+// Whether all wheels are on the right side; y points left.
+bool is_right(const Suspension& suspension);
 
 }  // namespace elastocheck::reports

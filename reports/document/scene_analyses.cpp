@@ -1,0 +1,28 @@
+#include "reports/document/scene_analyses.hpp"
+
+#include "compare/warnings/lift_off.hpp"
+
+namespace elastocheck::reports {
+
+SceneAnalyses compiled(Scene scene, Model model) {
+    SceneAnalyses made{.scene = std::move(scene), .model = std::move(model)};
+    made.diagnosis = recursive::diagnose(made.model);
+    made.conditioning = recursive::conditioning(made.model, made.diagnosis);
+    return made;
+}
+
+void add_comparison(SceneAnalyses& scene, compare::Comparison comparison) {
+    scene.comparison = std::move(comparison);
+    for (const auto& branch : scene.comparison.branches)
+        for (const auto& reason : branch.inconclusive.texts())
+            scene.reasons.push_back(branch.branch + ": " + reason);
+    if (scene.comparison.compared == 0) scene.reasons.emplace_back("nothing was compared");
+    for (const auto& branch : scene.model.branches) {
+        auto& texts = scene.lift_offs.emplace_back();
+        for (const auto& event : compare::lift_offs(scene.model, branch, compare::Leg::equilibrium))
+            texts.push_back(event.text());
+    }
+    scene.drawing = drawing_of(scene.scene, scene.model, scene.comparison);
+}
+
+}  // namespace elastocheck::reports
