@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "compare/comparison/characteristics.hpp"
@@ -19,10 +20,14 @@ namespace elastocheck::compare {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
+
+constexpr int most_shorter = 3;     // steps of an eighth
+constexpr double one_slope = 1e-3;  // difference of the slopes to both sides that is none
 
 // Figures of one branch by one leg.
 struct OnBranch {
@@ -49,11 +54,10 @@ struct OnBranch {
         result.why_not = why;
         result.not_applicable = is_not_applicable(outcome);
     }
-    void set(std::size_t k, double place, double value) const {
+    void set(std::size_t k, double value) const {
         const Channel& channel = read[column(figures[k].name)];
         if (figures[k].change)
             value -= evaluate(model, std::span(&channel, 1), design_state(model)).front();
-        result.place[static_cast<Index>(k)] = place;
         result.value[static_cast<Index>(k)] = finite_or_nan(value);
         if (!std::isfinite(value))
             miss(fmt::format(
@@ -62,25 +66,24 @@ struct OnBranch {
     }
 
     // Figures at values of the parameter.
-    void at_parameters(const std::map<double, std::vector<std::size_t>>& at) const {
-        bool first = true;
+    void at_parameters(std::map<double, std::vector<std::size_t>> at) const {
         for (const BranchSide& side : sides_of(model, branch, 1)) {
             std::vector<double> points;
             for (const auto& [a, which] : at)
-                if (a == 0 ? first : a * side.branch.to > 0) points.push_back(a);
-            first = false;
-            if (points.empty()) continue;
+                if (a == 0 || a * side.branch.to > 0) points.push_back(a);
             std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
+            if (points.empty()) continue;
             Analyses analyses;
             const auto path = walk_through(side, leg, points, [&](const Equilibrium& state) {
                 const auto here = at.find(state.load);
                 if (here == at.end()) return;
                 const Row row = row_of(model, read, side, {.leg = leg}, state, analyses);
                 for (const std::size_t k : here->second)
-                    set(k, state.load, row.values[column(figures[k].name)]);
+                    set(k, row.values[column(figures[k].name)]);
+                at.erase(here);
             });
             for (const double a : points)
-                if (std::isnan(result.place[static_cast<Index>(at.at(a).front())]))
+                if (at.erase(a) > 0)
                     miss(fmt::format("branch '{}': {}: {}", branch.name,
                                      elastocheck::name(path.outcome), path.detail),
                          path.outcome);
@@ -92,17 +95,40 @@ struct OnBranch {
         const auto sides = sides_of(model, branch, std::min(branch.steps, interpolated_points));
         const PathCurve path = walk(model, read, branch, sides, {.leg = leg});
         for (const std::size_t k : which) {
-            const auto& [name, of, at, over, change] = figures[k];
-            const auto x = placed_by(path.curve, column(over));
-            if (reaches(x, at))
-                set(k, interpolate(x, path.curve.a, at, 6) / in_unit(unit_of(branch.unit)),
-                    interpolate(x, path.curve.channel(column(name)), at, 6));
+            const Figure& figure = figures[k];
+            const auto x = placed_by(path.curve, column(figure.over));
+            if (reaches(x, figure.at))
+                set(k, interpolate(x, path.curve.channel(column(figure.name)), figure.at, 6));
             else
-                miss(x.empty() ? fmt::format("branch '{}': {} is not monotonic", of, over)
-                               : fmt::format("branch '{}' does not reach {} = {:g} {}", of, over,
-                                             at, symbol(read[column(over)].unit)),
+                miss(x.empty()
+                         ? fmt::format("branch '{}': {} is not monotonic", branch.name, figure.over)
+                         : fmt::format("branch '{}' does not reach {} = {:g} {}", branch.name,
+                                       figure.over, figure.at,
+                                       symbol(read[column(figure.over)].unit)),
                      path.outcome);
         }
+    }
+};
+
+// Changes of the figures where a number is 2h and h smaller, h and 2h larger.
+struct Changes {
+    VectorXd far_down, down, up, far_up;
+
+    // Of one side where the other has no value; zero within rounding.
+    double rate(Index k, double h, double rounding) const {
+        const double near = up[k] - down[k], far = far_up[k] - far_down[k];
+        if (std::abs(near) <= rounding && std::abs(far) <= rounding) return 0;
+        if (std::isfinite(near) && std::isfinite(far)) return (8 * near - far) / (12 * h);
+        const double above = (4 * up[k] - far_up[k]) / (2 * h);
+        return std::isfinite(above) ? above : finite_or_nan((far_down[k] - 4 * down[k]) / (2 * h));
+    }
+    double size(Index k) const {
+        const double largest = std::max(std::abs(far_up[k]), std::abs(far_down[k]));
+        return std::isfinite(largest) ? largest : 0;
+    }
+    // h^4 of smooth functions, in proportion to h where the slopes to both sides differ
+    double kink(Index k) const {
+        return std::abs(2 * (up[k] + down[k]) - (far_up[k] + far_down[k]) / 2);
     }
 };
 
@@ -117,8 +143,7 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
 }
 
 FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg) {
-    const VectorXd none = VectorXd::Constant(std::ssize(figures), nan);
-    FigureValues result{none, none};
+    FigureValues result{VectorXd::Constant(std::ssize(figures), nan)};
     auto all = figure_outputs(model, false);
     for (const auto& branch : model.branches) {
         OnBranch on{model, branch, leg, figures, result};
@@ -127,15 +152,51 @@ FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg l
         for (std::size_t k = 0; k < figures.size(); ++k) {
             if (figures[k].branch != branch.name) continue;
             on.add(figures[k].name, all), on.add(figures[k].over, all);
-            if (figures[k].over.empty())
-                placed[figures[k].at].push_back(k);
-            else
-                over.push_back(k);
+            (figures[k].over.empty() ? placed[figures[k].at] : over).push_back(k);
         }
-        if (!placed.empty()) on.at_parameters(placed);
+        if (!placed.empty()) on.at_parameters(std::move(placed));
         if (!over.empty()) on.over_outputs(over);
     }
     return result;
+}
+
+VectorXd SearchRange::at(const VectorXd& shares) const {
+    return (start + (high - low).cwiseProduct(shares)).cwiseMax(low).cwiseMin(high);
+}
+VectorXd SearchRange::shares(const VectorXd& p) const {
+    return (p - start).cwiseQuotient(high - low);
+}
+
+MatrixXd Figures::gradient(const VectorXd& p) const {
+    const VectorXd here = value(p), rounding = here.unaryExpr(&least_movement);
+    MatrixXd rate = MatrixXd::Constant(here.size(), p.size(), nan);
+    VectorXd size = VectorXd::Zero(here.size());  // largest change by a step of any number
+    std::vector<Index> open(static_cast<std::size_t>(p.size()));
+    std::iota(open.begin(), open.end(), Index{0});
+    double share = 1;
+    for (int pass = 0; pass <= most_shorter && !open.empty(); ++pass, share /= 8) {
+        std::vector<VectorXd> points;
+        for (const Index i : open)
+            for (const double t : {-2, -1, 1, 2})
+                points.push_back(p + t * share * step[i] * VectorXd::Unit(p.size(), i));
+        const auto y = values(points);
+        std::vector<Index> kinked;
+        for (std::size_t k = 0; k < y.size(); k += 4) {
+            const Index i = open[k / 4];
+            const Changes by{y[k] - here, y[k + 1] - here, y[k + 2] - here, y[k + 3] - here};
+            bool settled = true;
+            for (Index j = 0; j < here.size(); ++j) {
+                if (pass == 0) size[j] = std::max(size[j], by.size(j));
+                if (pass > 0 && !std::isnan(rate(j, i))) continue;
+                const bool kink = by.kink(j) > one_slope * share * size[j] + rounding[j];
+                rate(j, i) = kink ? nan : by.rate(j, share * step[i], rounding[j]);
+                settled = settled && !kink;
+            }
+            if (!settled) kinked.push_back(i);
+        }
+        open = kinked;
+    }
+    return rate;
 }
 
 }  // namespace elastocheck::compare

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <stdexcept>
-#include <utility>
 
-#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
-#include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
 
@@ -23,125 +21,107 @@ using Eigen::VectorXd;
 
 constexpr double legs_agree = 1e-6;  // of a figure's movement
 
-// Reason why the trim of a scene is not reached; empty if it is.
-std::string why_not_trimmed(const Trimmed& trimmed) {
-    return !trimmed.record || trimmed.record->reached() ? "" : "trim: " + trimmed.record->detail;
+FigureValues of_trimmed(const Trimmed& trimmed, std::span<const Figure> figures, Leg leg) {
+    if (trimmed.record && !trimmed.record->reached())
+        return {VectorXd::Constant(std::ssize(figures), nan), "trim: " + trimmed.record->detail};
+    return evaluate(compile(trimmed.scene), figures, leg);
 }
 
-// Rates of the figures of one branch.
-struct BranchGradient {
-    const Scene& scene;
-    const Trimmed& trimmed;
-    const Model& model;
-    const VaryingScene& varying;
-    std::span<const Figure> figures;
-    FigureGradient& result;
-    std::vector<Channel> outputs = {};
-    std::vector<bool> changes = {};             // of `outputs`: counted from the design position
-    std::map<std::size_t, double> places = {};  // of the figures
-    std::string why = {};  // of the first rate that is missing, with its figure and number
+// By the equilibrium leg; a trim by the series from that of a similar scene, not confirmed. Without values
+// where the scene does not exist: a negative rate, points that meet.
+FigureValues values_at(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
+                       TrimStart start = {}) {
+    try {
+        return of_trimmed(trim_by_series(varied.scene(p), &start), figures, Leg::equilibrium);
+    } catch (const std::runtime_error& error) {
+        return {VectorXd::Constant(std::ssize(figures), nan), error.what()};
+    }
+}
 
-    // Position in `outputs`, where it is added.
-    Index output(const std::string& name, bool change) {
-        for (std::size_t c = 0; c < outputs.size(); ++c)
-            if (outputs[c].name == name && changes[c] == change) return static_cast<Index>(c);
-        const auto all = figure_outputs(model);
-        outputs.push_back(all[static_cast<std::size_t>(find_channel(all, name))]);
-        changes.push_back(change);
-        return std::ssize(outputs) - 1;
+// Where the trim of the scene as it is ends.
+TrimStart start_of_trims(const Varied& varied) {
+    TrimStart start;
+    try {
+        trim_by_series(varied.scene(varied.start), &start);
+    } catch (const std::runtime_error&) {
     }
-    void place(const std::string& branch) {
-        std::vector<std::size_t> which;
-        std::vector<Figure> over;
-        for (std::size_t k = 0; k < figures.size(); ++k) {
-            if (figures[k].branch != branch) continue;
-            if (figures[k].over.empty())
-                places[k] = figures[k].at;
-            else
-                which.push_back(k), over.push_back(figures[k]);
-        }
-        if (over.empty()) return;
-        const FigureValues found = evaluate(model, over, Leg::equilibrium);
-        why = found.why_not;
-        for (std::size_t i = 0; i < which.size(); ++i)
-            if (const double a = found.place[static_cast<Index>(i)]; std::isfinite(a))
-                places[which[i]] = a;
-    }
-    void add(const std::string& branch) {
-        place(branch);
-        if (places.empty()) return;
-        GradientOptions options{.branches = {branch}, .legs = {Leg::equilibrium}};
-        for (const auto& [k, a] : places) {
-            output(figures[k].name, figures[k].change);
-            options.stations[branch].push_back(a);
-            if (figures[k].over.empty()) continue;
-            output(figures[k].over, false);
-            options.by_parameter = true;
-        }
-        options.changes = changes;
-        const Gradients found = gradients(scene, trimmed, model, varying, outputs, options);
-        for (const SideGradients& side : found.sides) {
-            const LegGradients& leg = side.legs.front();
-            if (why.empty()) why = leg.failure;
-            for (const auto& [k, a] : places)
-                for (std::size_t s = 0; s < leg.at.size(); ++s)
-                    if (side.a[s] == a) row(k, leg.at[s], side.why_number[s]);
-        }
-    }
-    void row(std::size_t k, const MatrixXd& at, const std::vector<std::string>& reasons) {
-        const Figure& figure = figures[k];
-        const auto n = std::ssize(varying.numbers);
-        const Index y = output(figure.name, figure.change);
-        Eigen::RowVectorXd rate = at.row(y).head(n);
-        if (!figure.over.empty()) {
-            const Index x = output(figure.over, false);
-            // a branch that drives x has the same x at the same parameter, whatever the number
-            rate -= at(y, n) / at(x, n) * at.row(x).head(n);
-        }
-        result.rate.row(static_cast<Index>(k)) = rate;
-        for (Index p = 0; p < n && why.empty(); ++p)
-            if (!std::isfinite(rate[p])) {
-                const auto& reason = reasons[static_cast<std::size_t>(p)];
-                why = fmt::format("{} on branch '{}' by {}: {}", figure.name, figure.branch,
-                                  varying.numbers[static_cast<std::size_t>(p)].path,
-                                  reason.empty() ? "it is not defined there" : reason);
-            }
-    }
-};
+    return start;
+}
 
 }  // namespace
 
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg) {
-    const Trimmed trimmed = trim(scene);
-    const VectorXd none = VectorXd::Constant(std::ssize(figures), nan);
-    if (const auto why = why_not_trimmed(trimmed); !why.empty()) return {none, none, why};
-    return evaluate(compile(trimmed.scene), figures, leg);
+    return of_trimmed(trim(scene), figures, leg);
 }
 
-FigureGradient figure_gradient(const Scene& scene, const VaryingScene& varying,
-                               std::span<const Figure> figures, int threads) {
-    const Trimmed trimmed = trim(scene);
-    FigureGradient result{MatrixXd::Constant(std::ssize(figures), std::ssize(varying.numbers), nan),
-                          why_not_trimmed(trimmed)};
-    if (!result.why_not.empty()) return result;
-    const Model model = compile(trimmed.scene);
-    std::vector<std::string> why(model.branches.size());
-    std::vector<Job> jobs;
-    for (std::size_t b = 0; b < model.branches.size(); ++b)
-        jobs.push_back({model.branches[b].name, [&, b] {
-                            BranchGradient on{scene, trimmed, model, varying, figures, result};
-                            on.add(model.branches[b].name);
-                            why[b] = on.why;
-                        }});
-    run_jobs(jobs, threads, {});
-    if (!result.rate.allFinite())
-        for (const std::string& reason : why)
-            if (result.why_not.empty()) result.why_not = reason;
-    return result;
+Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads) {
+    VectorXd step(std::ssize(varied.numbers));
+    for (Index i = 0; i < step.size(); ++i)
+        step[i] = difference_step(varied_number(varied.numbers[static_cast<std::size_t>(i)]));
+    return {[varied, figures, threads,
+             start = start_of_trims(varied)](const std::vector<VectorXd>& points) {
+                std::vector<VectorXd> all(points.size());
+                std::vector<Job> jobs;
+                for (std::size_t k = 0; k < points.size(); ++k)
+                    jobs.push_back({"", [&, k] {
+                                        all[k] = values_at(varied, figures, points[k], start).value;
+                                    }});
+                run_jobs(jobs, threads, {});
+                return all;
+            },
+            step};
 }
 
-Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
-                     const std::vector<std::string>& units, const VectorXd& values,
+std::string why_not_solved(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
+                           const char* where) {
+    const std::string why = values_at(varied, figures, p).why_not;
+    if (!why.empty()) return fmt::format("no value at {}: {}", where, why);
+    const Figures solved = solved_figures(varied, {figures.begin(), figures.end()});
+    const MatrixXd rate = solved.gradient(p);
+    for (Index k = 0; k < rate.rows(); ++k)
+        for (Index i = 0; i < rate.cols(); ++i) {
+            if (!std::isnan(rate(k, i))) continue;
+            const Figure& figure = figures[static_cast<std::size_t>(k)];
+            std::string beside;
+            for (const double by : {solved.step[i], -solved.step[i]})
+                if (beside.empty())
+                    beside = values_at(varied, {&figure, 1}, p + by * VectorXd::Unit(p.size(), i))
+                                 .why_not;
+            return fmt::format("no rate at {}: {} on branch '{}' by {}: {}", where, figure.name,
+                               figure.branch, varied.numbers[static_cast<std::size_t>(i)].path,
+                               beside.empty() ? "it differs on both sides of this value" : beside);
+        }
+    return "";
+}
+
+std::string why_still(const Varied& varied, const Figure& figure) {
+    const Scene scene = varied.scene(varied.start);
+    std::vector<Figure> all;  // outputs of the state at the same station
+    for (const Channel& channel : channels(compile(scene))) {
+        all.push_back(figure);
+        all.back().name = channel.name;
+    }
+    const Figures outputs = solved_figures(varied, all);
+    const MatrixXd rate = outputs.gradient(varied.start);
+    std::vector<std::string> reasons;
+    for (std::size_t i = 0; i < varied.numbers.size(); ++i) {
+        const std::string& path = varied.numbers[i].path;
+        std::string why = "no output moves with it";
+        for (const auto& [what, reason] : scene.omitted) {
+            const auto from = std::min(what.find('\''), what.size() - 1) + 1;
+            const auto part = what.substr(from, what.find('\'', from) - from);
+            if (!part.empty() && path.find("." + part + ".") != std::string::npos)
+                why = fmt::format("{} is left out: {}", what, reason);
+        }
+        for (std::size_t k = all.size(); k-- > 0;)
+            if (std::abs(rate(static_cast<Index>(k), static_cast<Index>(i))) > 0)
+                why = fmt::format("it moves {}, for example, and not {}", all[k].name, figure.name);
+        reasons.push_back(path + ": " + why);
+    }
+    return fmt::format("{}", fmt::join(reasons, "\n  "));
+}
+
+Confirmation confirm(const Scene& scene, std::span<const Figure> figures, const VectorXd& values,
                      const VectorXd& movement) {
     Confirmation result;
     std::string& why = result.why_not;
@@ -156,7 +136,8 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
             const double apart = std::abs(found.value[i] - values[i]);
             if (why.empty() && std::isfinite(apart) && !(apart <= legs_agree * movement[i]))
                 why = fmt::format("{}: the {} differs by {:.2g} {}", figures[k].name,
-                                  leg == Leg::energy ? "energy leg" : "series", apart, units[k]);
+                                  leg == Leg::energy ? "energy leg" : "series", apart,
+                                  figures[k].unit);
         }
         if (why.empty()) why = found.why_not;
         if (why.empty() && !found.value.allFinite()) why = "a figure has no value by another leg";
@@ -165,36 +146,5 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
     result.confirmed = why.empty();
     return result;
 }
-
-Figures solved_figures(SceneAt scene_at, std::vector<Number> numbers, std::vector<Figure> figures,
-                       int threads) {
-    const auto value = [scene_at, figures](const VectorXd& p) -> VectorXd {
-        try {
-            return figure_values(scene_at(p), figures, Leg::equilibrium).value;
-        } catch (const std::runtime_error&) {  // no such scene: a negative rate, points that meet
-            return VectorXd::Constant(static_cast<Index>(figures.size()), nan);
-        }
-    };
-    const auto gradient = [scene_at, numbers, figures, threads](const VectorXd& p) {
-        try {
-            VaryingScene varying{{}, [&](std::size_t k, double by) {
-                                     const auto at = static_cast<Index>(k);
-                                     return scene_at(p + by * VectorXd::Unit(p.size(), at));
-                                 }};
-            for (Index k = 0; k < p.size(); ++k) {
-                Number number = numbers[static_cast<std::size_t>(k)];
-                number.value = p[k];
-                varying.numbers.push_back(varied_number(number));
-            }
-            return figure_gradient(scene_at(p), varying, figures, threads);
-        } catch (const std::runtime_error& error) {
-            return FigureGradient{MatrixXd::Constant(std::ssize(figures), p.size(), nan),
-                                  error.what()};
-        }
-    };
-    return {value, gradient};
-}
-
-double step_of(const Number& number) { return varied_number(number).step; }
 
 }  // namespace elastocheck::compare

@@ -1,11 +1,10 @@
-// Figures of a scene, outputs at stations of its branches, as functions of numbers of its file.
+// Figures of a scene, outputs at stations of its branches, as functions of numbers of its file, and
+// their rates by differences of whole solutions:
 //
-// The algorithms of this room know a scene by `Figures` alone. Its implementation here is the
-// equilibrium leg: values by solution of the scene, from the reader on, rates by the derivatives of
-// compare/sensitivity. Settled start and trim are part of the function. A figure y at a value of
-// another output x is at the parameter a where x(a, p) has it, so that
+//   dy/dp = (8 (y(h) - y(-h)) - (y(2h) - y(-2h))) / 12h
 //
-//   dy/dp = ∂y/∂p - (∂y/∂a) / (∂x/∂a) ∂x/∂p
+// Settled start and trim are part of the function. Where the slopes to both sides differ, h is
+// shortened; where they still do, there is no rate.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,51 +28,60 @@ struct Figure {
     double at = 0;          // parameter of the branch [SI]; or, with `over`, a value of that output
     std::string over = {};  // output that gives the place: "travel"; in its unit
     bool change = false;    // counts from the design position
+    std::string unit = {}, place = {};  // for readers: "deg", "jounce = 3000 N"
 };
-
-// Rates of the figures by the numbers [figures × numbers], unit of the figure per unit of the
-// number in the file.
-struct FigureGradient {
-    Eigen::MatrixXd rate;
-    std::string why_not = {};  // figure, number and reason of the first rate that is NaN
-};
-
-struct Figures {
-    // in the units of the outputs; NaN where there is none
-    std::function<Eigen::VectorXd(const Eigen::VectorXd& p)> value;
-    std::function<FigureGradient(const Eigen::VectorXd& p)> gradient;
-};
-
-// The scene with these values of the varied numbers. May throw std::runtime_error: no such scene.
-using SceneAt = std::function<Scene(const Eigen::VectorXd& p)>;
 
 // All outputs of a model that a figure can be: channels, characteristics, forces of elements, sums
 // of what redundant joints share.
 std::vector<Channel> figure_outputs(const Model& model, bool with_sums = true);
 
-// Values of figures by one leg, in their units, and the parameters of their branches where they are
-// [SI]. NaN where there is none, with the reason in `why_not` (of the first).
+// Values of figures by one leg, in their units. NaN where there is none, with the reason in `why_not`
+// (of the first).
 struct FigureValues {
-    Eigen::VectorXd value, place;
+    Eigen::VectorXd value;
     std::string why_not = {};
     bool not_applicable = false;  // the reason is that the leg does not apply to the scene
 };
 FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg);
 // Of the scene with its trim.
-FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg);
+FigureValues figure_values(const Scene& scene, std::span<const Figure> figures,
+                           Leg leg = Leg::equilibrium);
 
-// Rates of the figures by the equilibrium leg; `scene` is `varying` at its values. NaN where there is
-// none: a figure without value, a kink. Branches on several threads.
-FigureGradient figure_gradient(const Scene& scene, const VaryingScene& varying,
-                               std::span<const Figure> figures, int threads = 1);
+// Limits of the numbers of a search, in their units; infinite where there are none.
+struct SearchRange {
+    Eigen::VectorXd start, low, high;
+    // The numbers at these shares of the range from the start, within the limits; and the shares of
+    // numbers.
+    Eigen::VectorXd at(const Eigen::VectorXd& shares) const;
+    Eigen::VectorXd shares(const Eigen::VectorXd& p) const;
+};
 
-// The step in which the effect of a number is shown: 1 mm of a length, else 1 % of the value; one
-// unit where that is zero.
-double step_of(const Number& number);
+// Numbers of a scene that may change, in the units of its file.
+struct Varied : SearchRange {
+    std::vector<Number> numbers = {};
+    // The scene with these values. May throw std::runtime_error: no such scene.
+    std::function<Scene(const Eigen::VectorXd& p)> scene = {};
+};
 
-// By the equilibrium leg; `numbers`: those of p, by their paths and units.
-Figures solved_figures(SceneAt scene_at, std::vector<Number> numbers, std::vector<Figure> figures,
-                       int threads = 1);
+// The algorithms of this room know a scene by its figures at points p alone.
+struct Figures {
+    // of each point: in the units of the outputs; NaN where there is none
+    std::function<std::vector<Eigen::VectorXd>(const std::vector<Eigen::VectorXd>& p)> values;
+    Eigen::VectorXd step;  // h, per number
+
+    Eigen::VectorXd value(const Eigen::VectorXd& p) const { return values({p}).front(); }
+    // [figures × numbers], NaN where there is no rate
+    Eigen::MatrixXd gradient(const Eigen::VectorXd& p) const;
+};
+// By the equilibrium leg, points on several threads.
+Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads = 1);
+
+// Reason why one of the figures has no value, or else no rate, at p: "no rate at the start: ...".
+std::string why_not_solved(const Varied& varied, std::span<const Figure> figures,
+                           const Eigen::VectorXd& p, const char* where = "the start");
+// Reasons why none of the numbers moves a figure at the start, a line for each number:
+// "springs.coil.rate: no output moves with it".
+std::string why_still(const Varied& varied, const Figure& figure);
 
 // Figures that the equilibrium leg found, by the energy leg and by the series.
 struct Confirmation {
@@ -83,12 +91,14 @@ struct Confirmation {
     bool confirmed = false;
     std::string why_not = {};
 };
-// `values` and `movement` per figure, in the units that `units` name in messages.
 Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
-                     const std::vector<std::string>& units, const Eigen::VectorXd& values,
-                     const Eigen::VectorXd& movement);
+                     const Eigen::VectorXd& values, const Eigen::VectorXd& movement);
+
+// The step in which the effect of a number is shown: 1 mm of a length, else 1 % of the value; one
+// unit where that is zero.
+inline double step_of(const Number& number) { return varied_number(number).step; }
 
 // What moves a figure of this value by less, does not move it: rounding.
-inline double least_movement(double value) { return 1e-10 * (1 + std::abs(value)); }
+inline double least_movement(double value) { return 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace elastocheck::compare

@@ -25,24 +25,6 @@ constexpr double numbers_stay = 1e-6;     // in steps, from one robust pass to t
 constexpr double cauchy_width = 2.385;    // c
 constexpr double normal_median = 1.4826;  // standard deviation over median |.|
 
-// The values of each column.
-std::vector<VectorXd> columns_of(const VectorXd& values, const std::vector<int>& column) {
-    std::vector<VectorXd> all(1 + static_cast<std::size_t>(*std::ranges::max_element(column)));
-    for (std::size_t k = 0; k < column.size(); ++k) {
-        VectorXd& of = all[static_cast<std::size_t>(column[k])];
-        of.conservativeResize(of.size() + 1);
-        of[of.size() - 1] = values[static_cast<Index>(k)];
-    }
-    return all;
-}
-// Per value, the number of its column.
-VectorXd per_value(const std::vector<double>& of_column, const std::vector<int>& column) {
-    VectorXd all(std::ssize(column));
-    for (std::size_t k = 0; k < column.size(); ++k)
-        all[static_cast<Index>(k)] = of_column[static_cast<std::size_t>(column[k])];
-    return all;
-}
-
 double root_mean_square(const VectorXd& values) {
     return values.norm() / std::sqrt(static_cast<double>(values.size()));
 }
@@ -58,12 +40,10 @@ double range_of(const VectorXd& values) {
     return range > 0 ? range : std::max(std::abs(values[0]), 1.0);
 }
 
-// √(ψ(u) / u) per value; without the robust loss one.
-VectorXd loss_weights(const VectorXd& u, bool robust) {
-    if (!robust) return VectorXd::Ones(u.size());
+// √(ψ(u) / u) per value.
+VectorXd loss_weights(const VectorXd& u) {
     return (1 + (u / cauchy_width).array().square()).rsqrt();
 }
-
 // Factor of the covariance of a robust fit; NaN where the loss does not determine the numbers.
 double robust_factor(const VectorXd& u, Index n) {
     const double N = static_cast<double>(u.size());
@@ -88,12 +68,11 @@ void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measure
             .rowwise()
             .squaredNorm();
     const double factor = measured.robust && found.freedom > 0 ? robust_factor(u, determined) : 1;
-    const bool none = found.freedom < 1 || !std::isfinite(factor);
-    const double t = student_95(found.freedom);
-    found.interval = (t * (factor * variance).cwiseSqrt()).cwiseProduct(measured.step);
+    found.interval =
+        student_95(found.freedom) * (factor * variance).cwiseSqrt().cwiseProduct(measured.step);
     for (Index i = 0; i < n; ++i)
-        if (none || (found.undetermined.cols() > 0 &&
-                     found.undetermined.row(i).cwiseAbs().maxCoeff() > least_part))
+        if (found.freedom < 1 || !std::isfinite(factor) ||
+            (found.undetermined.array().row(i).abs() > least_part).any())
             found.interval[i] = unlimited;
 }
 
@@ -110,103 +89,96 @@ double student_95(int freedom) {
     return std::sqrt(freedom * (1 / low - 1));
 }
 
-Fitted fit(const Figures& figures, const Measured& measured) {
-    const Index n = measured.start.size(), N = measured.value.size();
-    const auto number_at = [&](const VectorXd& x) -> VectorXd {
-        return within({measured.low, measured.high}, measured.step.cwiseProduct(x));
-    };
-    Fitted found;
-    std::vector<double> least_of_column;
-    for (const VectorXd& values : columns_of(measured.value, measured.column)) {
-        found.noise.push_back(range_of(values));
-        least_of_column.push_back(least_noise * found.noise.back());
+Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& range) {
+    const Index n = range.start.size(), N = measured.value.size();
+    std::vector<std::vector<Index>> places;  // of the values of each column
+    for (std::size_t k = 0; k < measured.column.size(); ++k) {
+        const auto c = static_cast<std::size_t>(measured.column[k]);
+        places.resize(std::max(places.size(), c + 1));
+        places[c].push_back(static_cast<Index>(k));
     }
-    VectorXd weight(N), loss = VectorXd::Ones(N), residual(N), u = VectorXd::Zero(N);
+    const auto number_at = [&](const VectorXd& x) -> VectorXd {
+        return within({range.low, range.high}, measured.step.cwiseProduct(x));
+    };
+    VectorXd noise(N), loss = VectorXd::Ones(N), residual(N), u = VectorXd::Zero(N);
     LeastSquares problem{
         [&](const VectorXd& x) -> VectorXd {
-            return (figures.value(number_at(x)) - measured.value).cwiseProduct(weight);
+            return (figures.value(number_at(x)) - measured.value)
+                .cwiseProduct(loss)
+                .cwiseQuotient(noise);
         },
         [&](const VectorXd& x) -> MatrixXd {
-            return weight.asDiagonal() * figures.gradient(number_at(x)).rate *
+            return loss.cwiseQuotient(noise).asDiagonal() * figures.gradient(number_at(x)) *
                    measured.step.asDiagonal();
         },
-        {measured.low.cwiseQuotient(measured.step), measured.high.cwiseQuotient(measured.step)}};
-    problem.about = within(problem.box, measured.start.cwiseQuotient(measured.step));
+        {range.low.cwiseQuotient(measured.step), range.high.cwiseQuotient(measured.step)}};
+    problem.about = within(problem.box, range.start.cwiseQuotient(measured.step));
+    Fitted found{.p = range.start};
     const VectorXd before = figures.value(number_at(problem.about));
     if (!before.allFinite()) {
-        found.why_not = "a measured output has no value at the start";
+        found.why_not = "the start";
         return found;
     }
     const double share = 1 - static_cast<double>(n) / static_cast<double>(N);
     found.freedom = std::numeric_limits<int>::max();
-    for (const VectorXd& off : columns_of(before - measured.value, measured.column)) {
-        found.rms_before.push_back(root_mean_square(off));
+    for (const auto& at : places) {
+        const VectorXd values = measured.value(at);
+        noise(at).setConstant(range_of(values));
+        found.columns.push_back(
+            {0, root_mean_square(before(at) - values), static_cast<int>(at.size())});
         found.freedom =
-            std::min(found.freedom, static_cast<int>(share * static_cast<double>(off.size())));
+            std::min(found.freedom, static_cast<int>(share * static_cast<double>(at.size())));
     }
 
     Minimum nearest{.x = problem.about};
     bool stays = !measured.robust || N <= n;
-    const int passes = measured.robust ? most_robust_passes : reweighted;
-    for (int pass = 0; pass <= passes; ++pass) {
-        weight = loss.cwiseQuotient(per_value(found.noise, measured.column));
+    for (int pass = 0; pass <= (measured.robust ? most_robust_passes : reweighted); ++pass) {
         const VectorXd last = nearest.x;
         nearest = minimise(problem, last);
-        residual = nearest.residual.cwiseQuotient(weight);
+        residual = nearest.residual.cwiseProduct(noise).cwiseQuotient(loss);
         if (N <= n) break;
-        if (measured.robust && pass > reweighted &&
-            (nearest.x - last).cwiseAbs().maxCoeff() <= numbers_stay) {
-            stays = true;
-            break;
+        stays = stays ||
+                (pass > reweighted && (nearest.x - last).cwiseAbs().maxCoeff() <= numbers_stay);
+        if (measured.robust && stays) break;
+        for (const auto& at : places) {
+            const VectorXd off = residual(at);
+            noise(at).setConstant(std::max(
+                least_noise * range_of(measured.value(at)),
+                (measured.robust ? normal_median * median_size(off) : root_mean_square(off)) /
+                    std::sqrt(share)));
         }
-        const auto columns = columns_of(residual, measured.column);
-        for (std::size_t c = 0; c < columns.size(); ++c)
-            found.noise[c] = std::max(least_of_column[c],
-                                      (measured.robust ? normal_median * median_size(columns[c])
-                                                       : root_mean_square(columns[c])) /
-                                          std::sqrt(share));
-        u = residual.cwiseQuotient(per_value(found.noise, measured.column));
-        loss = loss_weights(u, measured.robust);
+        if (measured.robust) loss = loss_weights(residual.cwiseQuotient(noise));
     }
-    if (N > n) u = residual.cwiseQuotient(per_value(found.noise, measured.column));
-    for (const VectorXd& of : columns_of(u, measured.column))
-        found.outliers.push_back(static_cast<int>((of.cwiseAbs().array() > outlying).count()));
+    if (N > n) u = residual.cwiseQuotient(noise);
+    for (std::size_t c = 0; c < places.size(); ++c) {
+        found.columns[c].noise = noise[places[c].front()];
+        found.columns[c].outliers =
+            static_cast<int>((u(places[c]).array().abs() > outlying).count());
+    }
     found.p = number_at(nearest.x);
     found.converged = nearest.converged && stays;
     for (Index i = 0; i < n; ++i)
         found.at_limit.push_back(nearest.x[i] <= problem.box.low[i] ||
                                  nearest.x[i] >= problem.box.high[i]);
-    const FigureGradient gradient = figures.gradient(found.p);
-    if (!gradient.rate.allFinite()) {
-        found.converged = false;
-        found.why_not = "no rate at the result: " + gradient.why_not;
+    const MatrixXd rate = figures.gradient(found.p);
+    if (rate.allFinite()) {
+        set_intervals(noise.cwiseInverse().asDiagonal() * rate * measured.step.asDiagonal(), u,
+                      measured, found);
         return found;
     }
-    const VectorXd noise = per_value(found.noise, measured.column);
-    set_intervals(noise.cwiseInverse().asDiagonal() * gradient.rate * measured.step.asDiagonal(), u,
-                  measured, found);
+    found.converged = false;
+    found.why_not = "the result";
     return found;
 }
 
-std::vector<Proposal> proposals(const FigureGradient& gradient, const VectorXd& value,
-                                const VectorXd& extent, const VectorXd& step,
-                                const MatrixXd& undetermined) {
-    std::vector<Proposal> all;
-    for (Index k = 0; k < undetermined.cols(); ++k) {
-        const VectorXd change =
-            step.cwiseProduct(undetermined.col(k)) / undetermined.col(k).cwiseAbs().maxCoeff();
-        const VectorXd movement = gradient.rate * change;
-        Proposal best;
-        for (Index j = 0; j < movement.size(); ++j) {
-            const double size = std::abs(movement[j]), least = least_movement(value[j]);
-            if (!std::isfinite(size) || !(extent[j] > least) || !(size > least) ||
-                !(size / extent[j] > best.share))
-                continue;
-            best = {.figure = j, .movement = movement[j], .share = size / extent[j]};
-        }
-        all.push_back(best);
-    }
-    return all;
+Proposal proposal(const MatrixXd& gradient, const VectorXd& extent, const VectorXd& combination) {
+    const VectorXd movement = gradient * combination / combination.cwiseAbs().maxCoeff();
+    Proposal best;
+    for (Index j = 0; j < movement.size(); ++j)
+        if (const double share = std::abs(movement[j]) / extent[j];
+            std::isfinite(share) && share > best.share)
+            best = {j, movement[j], share};
+    return best;
 }
 
 }  // namespace elastocheck::compare

@@ -21,8 +21,8 @@
 //
 //   K² [Σ ψ² / (N - n)] / [mean ψ']²,   K = 1 + (n/N) var ψ' / [mean ψ']²
 //
-// A combination v_k of the numbers with S_k ≤ 1e-6 S_1 is not determined by the data: it stays near its start value (`pull` of
-// least_squares.hpp), and a number with a part in it has no interval.
+// A combination v_k of the numbers with S_k ≤ 1e-6 S_1 is not determined by the data: it stays near
+// its start value (`pull` of least_squares.hpp), and a number with a part in it has no interval.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,50 +34,46 @@
 namespace elastocheck::compare {
 
 struct Measured {
-    Eigen::VectorXd value;      // per figure, in its unit
-    std::vector<int> column;    // per figure: 0, 1, ...
-    Eigen::VectorXd start;      // per number, in its unit
-    Eigen::VectorXd low, high;  // limits, infinite where there are none
-    Eigen::VectorXd step;       // per number (step_of)
+    Eigen::VectorXd value;    // per figure, in its unit
+    std::vector<int> column;  // per figure: 0, 1, ...
+    Eigen::VectorXd step;     // per number (step_of)
     bool robust = false;
 };
+
+struct FittedColumn {
+    double noise = 0;              // s_c
+    double rms_before = 0;         // of f - y, at the start
+    int values = 0, outliers = 0;  // those with |f - y| > outlying s_c
+};
+inline constexpr double outlying = 4;
 
 struct Fitted {
     Eigen::VectorXd p = {};
     // half of the 95 % interval; infinite: not determined
     Eigen::VectorXd interval = {};
-    std::vector<double> noise = {};        // s_c per column
-    std::vector<double> rms_before = {};   // of f - y per column, at the start
-    std::vector<int> outliers = {};        // per column: values with |f - y| > outlying s_c
+    std::vector<FittedColumn> columns = {};
     std::vector<bool> at_limit = {};       // per number: its interval is not valid
     Eigen::VectorXd singular_values = {};  // S, in falling order
     // columns: the undetermined combinations, as changes of the numbers in steps
     Eigen::MatrixXd undetermined = {};
     int freedom = 0;  // of the column with the fewest; below 1 there are no intervals
     bool converged = false;
-    std::string why_not = {};  // reason why there is no fit
+    std::string why_not = {};  // where there is no value or rate: "the start", "the result"
 };
-
-inline constexpr double outlying = 4;
 
 // t with P(|T| ≤ t) = 0.95, of Student's distribution with this many degrees of freedom.
 double student_95(int freedom);
 
-Fitted fit(const Figures& figures, const Measured& measured);
+Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& range);
 
-// A figure that tells an undetermined combination apart from its opposite.
+// Of these figures the one that tells an undetermined combination apart from its opposite: the one
+// that moves most with it, as a share of its extent.
 struct Proposal {
     Eigen::Index figure = -1;  // -1: none moves with the combination
-    // of the figure, with the combination whose largest change is one step; in its unit
-    double movement = 0;
-    double share = 0;  // |movement| / extent
+    double movement = 0;       // with the combination whose largest change is one step; in its unit
+    double share = 0;          // |movement| / extent
 };
-
-// Per undetermined combination (a column), of these figures the one whose gradient has the largest
-// component along it, as a share of the figure's extent. Figures without a rate, and those without
-// an extent, are left out.
-std::vector<Proposal> proposals(const FigureGradient& gradient, const Eigen::VectorXd& value,
-                                const Eigen::VectorXd& extent, const Eigen::VectorXd& step,
-                                const Eigen::MatrixXd& undetermined);
+Proposal proposal(const Eigen::MatrixXd& gradient, const Eigen::VectorXd& extent,
+                  const Eigen::VectorXd& combination);
 
 }  // namespace elastocheck::compare

@@ -9,7 +9,6 @@
 #include <limits>
 #include <memory>
 #include <random>
-#include <utility>
 
 #include "compare/design/least_squares.hpp"
 
@@ -34,17 +33,13 @@ constexpr double multiplier_pull = 1e-7;  // makes the multipliers of parallel �
 // The problem in x, with the last evaluated point, and the best point within the bands.
 struct Problem {
     const Figures& figures;
-    const Goals& goals;
-    VectorXd range = {}, scale = {};
-    // sides of the bands, c = per (f - bound): their figures, 1 / g or -1 / g, their bounds
-    std::vector<Index> side = {};
-    VectorXd per = {}, bound = {};
-    Box box = {};
+    const SearchRange& range;
+    const VectorXd& scale;
+    int minimised = -1;
+    std::vector<Bound> bands = {}, limits = {};  // bounds of the figures that move, of the numbers
 
-    VectorXd at = {}, f = {};
-    VectorXd gradient_at = {};
-    MatrixXd f_x = {};  // ∂f/∂x
-    int evaluations = 0;
+    VectorXd at = {}, p = {}, f = {};
+    MatrixXd f_x = {};  // ∂f/∂x; empty until it is needed
 
     VectorXd best = {};
     double least_cost = none;
@@ -54,31 +49,38 @@ struct Problem {
     int repeats = 0;
     std::exception_ptr failed = {};
 
-    VectorXd number_at(const VectorXd& x) const {
-        return within({goals.least, goals.most}, goals.start + range.cwiseProduct(x));
-    }
-    double unit_of(const ActiveBound& one) const {
-        return one.of_number ? range[one.which] : scale[one.which];
-    }
-    void add_side(Index figure, double sign, double value) {
-        if (!std::isfinite(value)) return;
-        side.push_back(figure);
-        for (VectorXd* each : {&per, &bound}) each->conservativeResize(std::ssize(side));
-        per[std::ssize(side) - 1] = sign / scale[figure], bound[std::ssize(side) - 1] = value;
+    double unit_of(const Bound& one) const {
+        return one.of_number ? range.high[one.which] - range.low[one.which] : scale[one.which];
     }
     double cost() const {
-        return goals.minimised < 0 ? at.squaredNorm() / 2
-                                   : f[goals.minimised] / scale[goals.minimised];
+        return minimised < 0 ? at.squaredNorm() / 2 : f[minimised] / scale[minimised];
     }
     VectorXd cost_gradient() const {
-        if (goals.minimised < 0) return at;
-        return f_x.row(goals.minimised).transpose() / scale[goals.minimised];
+        if (minimised < 0) return at;
+        return f_x.row(minimised).transpose() / scale[minimised];
     }
-    VectorXd excess() const { return per.cwiseProduct(VectorXd(f(side)) - bound); }
-    MatrixXd excess_gradient() const { return per.asDiagonal() * MatrixXd(f_x(side, Eigen::all)); }
-    bool has_value() const { return excess().allFinite() && std::isfinite(cost()); }
+    VectorXd excess(const std::vector<Bound>& bounds) const {
+        return VectorXd::NullaryExpr(std::ssize(bounds), [&](Index k) {
+            const Bound& one = bounds[static_cast<std::size_t>(k)];
+            const double over = (one.of_number ? p : f)[one.which] - one.bound;
+            return (one.upper ? over : -over) / unit_of(one);
+        });
+    }
+    MatrixXd excess_gradient(const std::vector<Bound>& bounds) const {
+        MatrixXd all = MatrixXd::Zero(std::ssize(bounds), at.size());
+        for (Index k = 0; k < all.rows(); ++k) {
+            const Bound& one = bounds[static_cast<std::size_t>(k)];
+            if (one.of_number)
+                all(k, one.which) = 1;
+            else
+                all.row(k) = f_x.row(one.which) / scale[one.which];
+            if (!one.upper) all.row(k) *= -1;
+        }
+        return all;
+    }
+    bool has_value() const { return excess(bands).allFinite() && std::isfinite(cost()); }
     double largest_excess() const {
-        const VectorXd c = excess();
+        const VectorXd c = excess(bands);
         return c.size() == 0 ? -none : c.allFinite() ? c.maxCoeff() : none;
     }
 
@@ -87,42 +89,34 @@ struct Problem {
             if (++repeats >= calls_at_one_point && run) nlopt_force_stop(run);
             return;
         }
-        at = x;
+        at = x, p = range.at(x), f = figures.value(p), f_x = {};
         repeats = 0;
-        ++evaluations;
-        f = figures.value(number_at(x));
-        if (has_value() && largest_excess() <= within_bands && cost() < least_cost) {
-            best = x;
-            least_cost = cost();
-        }
+        if (has_value() && largest_excess() <= within_bands && cost() < least_cost)
+            best = x, least_cost = cost();
     }
     void differentiate() {
-        if (gradient_at.size() > 0 && gradient_at == at) return;
-        f_x = figures.gradient(number_at(at)).rate * range.asDiagonal();
-        gradient_at = at;
+        if (f_x.size() == 0) f_x = figures.gradient(p) * (range.high - range.low).asDiagonal();
+    }
+    // A call in the library of C, through which no exception may pass.
+    template <class Read>
+    void called(unsigned n, const double* x, bool gradient, const Read& read) {
+        try {
+            move_to(Eigen::Map<const VectorXd>(x, n));
+            if (gradient) differentiate();
+            read();
+        } catch (...) {
+            failed = std::current_exception();
+            nlopt_force_stop(run);
+        }
     }
 };
-
-// Calls in the library of C, through which no exception may pass.
-template <class Evaluate>
-void guarded(Problem& problem, const Evaluate& evaluate) {
-    try {
-        evaluate();
-    } catch (...) {
-        problem.failed = std::current_exception();
-        nlopt_force_stop(problem.run);
-    }
-}
 
 double slsqp_cost(unsigned n, const double* x, double* gradient, void* data) {
     Problem& problem = *static_cast<Problem*>(data);
     double cost = HUGE_VAL;  // SLSQP then shortens its step
-    guarded(problem, [&] {
-        problem.move_to(Eigen::Map<const VectorXd>(x, n));
+    problem.called(n, x, gradient != nullptr, [&] {
         if (problem.has_value()) cost = problem.cost();
-        if (!gradient) return;
-        problem.differentiate();
-        Eigen::Map<VectorXd>(gradient, n) = problem.cost_gradient();
+        if (gradient) Eigen::Map<VectorXd>(gradient, n) = problem.cost_gradient();
     });
     return cost;
 }
@@ -132,24 +126,25 @@ void slsqp_excess(unsigned m, double* result, unsigned n, const double* x, doubl
     Problem& problem = *static_cast<Problem*>(data);
     Eigen::Map<VectorXd> c(result, m);
     c.setZero();
-    guarded(problem, [&] {
-        problem.move_to(Eigen::Map<const VectorXd>(x, n));
-        if (problem.has_value()) c = problem.excess();
-        if (!gradient) return;
-        problem.differentiate();
+    problem.called(n, x, gradient != nullptr, [&] {
+        if (problem.has_value()) c = problem.excess(problem.bands);
         // row-major [m × n] is column-major [n × m]
-        Eigen::Map<MatrixXd>(gradient, n, m) = problem.excess_gradient().transpose();
+        if (gradient)
+            Eigen::Map<MatrixXd>(gradient, n, m) =
+                problem.excess_gradient(problem.bands).transpose();
     });
 }
 
 void run_slsqp(Problem& problem, VectorXd x) {
-    const auto n = static_cast<unsigned>(x.size()), m = static_cast<unsigned>(problem.side.size());
-    const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> run(nlopt_create(NLOPT_LD_SLSQP, n),
-                                                                nlopt_destroy);
+    const auto m = static_cast<unsigned>(problem.bands.size());
+    const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> run(
+        nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(x.size())), nlopt_destroy);
     problem.run = run.get();
     problem.repeats = 0;
-    nlopt_set_lower_bounds(run.get(), problem.box.low.data());
-    nlopt_set_upper_bounds(run.get(), problem.box.high.data());
+    const VectorXd low = problem.range.shares(problem.range.low),
+                   high = problem.range.shares(problem.range.high);
+    nlopt_set_lower_bounds(run.get(), low.data());
+    nlopt_set_upper_bounds(run.get(), high.data());
     nlopt_set_min_objective(run.get(), slsqp_cost, &problem);
     const std::vector<double> within(m, within_bands / 10);
     if (m > 0)
@@ -163,32 +158,20 @@ void run_slsqp(Problem& problem, VectorXd x) {
 }
 
 // The bounds that hold at the evaluated point with their prices, and what they leave of ∇F.
-struct Conditions {
-    std::vector<ActiveBound> active = {};
-    double left = 0, size = 0;  // |∇F + Σ λ ∇c|, |∇F|
-    bool fulfilled() const { return left <= optimal_within * size + least_residual; }
-};
-Conditions conditions(const Problem& problem) {
-    const VectorXd &x = problem.at, c = problem.excess(), F_x = problem.cost_gradient();
-    const MatrixXd c_x = problem.excess_gradient();
-    const Goals& goals = problem.goals;
-    const Index n = x.size();
-    Conditions all{.size = F_x.norm()};
-    MatrixXd A(n, 0);  // ∇c
-    const auto add = [&](double by, const ActiveBound& bound, const VectorXd& gradient) {
-        if (!(by >= -active_within)) return;
-        all.active.push_back(bound);
-        A.conservativeResize(n, A.cols() + 1);
-        A.rightCols(1) = gradient;
-    };
-    for (Index k = 0; k < c.size(); ++k)
-        add(c[k],
-            {false, problem.side[static_cast<std::size_t>(k)], problem.per[k] > 0,
-             problem.bound[k]},
-            c_x.row(k));
-    for (Index i = 0; i < n; ++i) {
-        add(problem.box.low[i] - x[i], {true, i, false, goals.least[i]}, -VectorXd::Unit(n, i));
-        add(x[i] - problem.box.high[i], {true, i, true, goals.most[i]}, VectorXd::Unit(n, i));
+void set_conditions(Problem& problem, Search& found) {
+    problem.differentiate();
+    const VectorXd F_x = problem.cost_gradient();
+    MatrixXd A(F_x.size(), 0);  // ∇c
+    found.active.clear();
+    for (const auto* bounds : {&problem.bands, &problem.limits}) {
+        const VectorXd c = problem.excess(*bounds);
+        const MatrixXd c_x = problem.excess_gradient(*bounds);
+        for (Index k = 0; k < c.size(); ++k) {
+            if (!(c[k] >= -active_within)) continue;
+            found.active.push_back((*bounds)[static_cast<std::size_t>(k)]);
+            A.conservativeResize(Eigen::NoChange, A.cols() + 1);
+            A.rightCols(1) = c_x.row(k).transpose();
+        }
     }
     const VectorXd zero = VectorXd::Zero(A.cols());
     const Minimum multipliers =
@@ -198,174 +181,140 @@ Conditions conditions(const Problem& problem) {
                   zero,
                   multiplier_pull},
                  zero);
-    all.left = multipliers.residual.norm();
+    const double left = multipliers.residual.norm(), size = F_x.norm();
+    found.converged = left <= optimal_within * size + least_residual;
+    found.optimality = size > 0 ? left / size : 0;
     // dF per unit of the shown cost
-    const double unit = goals.minimised < 0 ? x.norm() : 1 / problem.scale[goals.minimised];
-    for (std::size_t k = 0; k < all.active.size(); ++k) {
-        ActiveBound& one = all.active[k];
-        const double lambda = multipliers.x[static_cast<Index>(k)];
-        one.price = unit > 0 ? lambda / problem.unit_of(one) / unit : 0;
-    }
-    std::ranges::stable_sort(all.active, std::ranges::greater{}, [&](const ActiveBound& one) {
-        return one.price * problem.unit_of(one);
-    });
-    return all;
+    const double unit =
+        problem.minimised < 0 ? problem.at.norm() : 1 / problem.scale[problem.minimised];
+    for (std::size_t k = 0; k < found.active.size(); ++k)
+        if (Bound& one = found.active[k]; unit > 0)
+            one.price = multipliers.x[static_cast<Index>(k)] / problem.unit_of(one) / unit;
+    std::ranges::stable_sort(found.active, std::ranges::greater{},
+                             [&](const Bound& one) { return one.price * problem.unit_of(one); });
 }
 
-// max(0, c), zero also where a band is met as far as it counts; NaN of NaN.
-double outside_of_band(double c) { return c <= within_bands / 10 ? 0 : c; }
-
-// |max(0, c)|²
-LeastSquares excess_from(Problem& problem, const VectorXd& start) {
-    return {[&](const VectorXd& x) -> VectorXd {
-                problem.move_to(x);
-                return problem.excess().unaryExpr(&outside_of_band);
-            },
-            [&](const VectorXd& x) -> MatrixXd {
-                problem.move_to(x);
-                problem.differentiate();
-                MatrixXd J = problem.excess_gradient();
-                const VectorXd c = problem.excess();
-                for (Index k = 0; k < c.size(); ++k)
-                    if (outside_of_band(c[k]) == 0) J.row(k).setZero();
-                return J;
-            },
-            problem.box, start};
+// Within the bands and of less cost, or nearer to them; by more than rounding, so that the first of
+// equal ones is taken.
+bool is_better(const Search& one, const Search& other) {
+    if (one.met != other.met) return one.met;
+    const auto size = [&](const Search& of) { return one.met ? of.cost : of.nearest.off.norm(); };
+    return size(one) < size(other) - 1e-6 * std::abs(size(other));
 }
 
-// A search, and what is at its end.
-struct Found {
-    Search search = {};
-    VectorXd x = {}, outside = {};   // the positive excess over each side of a band
-    std::vector<int> at_limit = {};  // as in Optimum
-    Conditions at_end = {};
-
-    // Within the bands and of less cost, or nearer to them; by more than rounding, so that the first
-    // of equal ones is taken.
-    bool is_better_than(const Found& other) const {
-        if (search.met != other.search.met) return search.met;
-        const auto size = [&](const Found& one) {
-            return search.met ? one.search.cost : one.outside.norm();
-        };
-        return size(*this) < size(other) - 1e-6 * std::abs(size(other));
+Search search_from(Problem& problem, const Bands& bands, const VectorXd& start) {
+    Search found{.p = start, .excess = none, .cost = none};
+    problem.best = {}, problem.least_cost = none;
+    const SearchRange& range = problem.range;
+    problem.move_to(range.shares(start));
+    found.has_value = problem.has_value();
+    if (!found.has_value) return found;
+    found.nearest = solve_for(problem.figures, bands, range, start);
+    problem.move_to(range.shares(found.nearest.p));
+    found.met = problem.best.size() > 0;
+    if (found.met) {
+        problem.move_to(problem.best);
+        set_conditions(problem, found);
+        for (int run = 0; run < most_runs && !found.converged; ++run) {
+            run_slsqp(problem, problem.best);
+            problem.move_to(problem.best);
+            set_conditions(problem, found);
+        }
+    } else {
+        found.converged = found.nearest.converged;
     }
-};
-
-Found search_from(Problem& problem, const VectorXd& p) {
-    Found found{.search = {.to = p, .excess = none, .cost = none}};
-    Search& search = found.search;
-    problem.evaluations = 0;
-    problem.best = {};
-    problem.least_cost = none;
-    found.x = within(problem.box, (p - problem.goals.start).cwiseQuotient(problem.range));
-    problem.move_to(found.x);
-    search.has_value = problem.has_value();
-    search.evaluations = problem.evaluations;
-    if (!search.has_value) return found;
-    const LeastSquares excess = excess_from(problem, found.x);
-    const Minimum nearest = minimise(excess, found.x);
-    found.x = nearest.x, found.outside = nearest.residual;
-    search.met = problem.best.size() > 0;
-    search.converged = !search.met && nearest.converged;
-    if (!search.met) found.at_limit = limits_reached(excess, nearest);
-    for (int run = 0; search.met && run < most_runs && !search.converged; ++run) {
-        run_slsqp(problem, problem.best);
-        found.x = problem.best;
-        problem.move_to(found.x);
-        problem.differentiate();
-        found.at_end = conditions(problem);
-        search.converged = found.at_end.fulfilled();
-    }
-    problem.move_to(found.x);
-    search.excess = problem.largest_excess();
-    search.cost = problem.goals.minimised < 0 ? found.x.norm() : problem.f[problem.goals.minimised];
-    search.to = problem.number_at(found.x);
-    search.evaluations = problem.evaluations;
+    found.excess = problem.largest_excess();
+    found.cost = problem.minimised < 0 ? problem.at.norm() : problem.f[problem.minimised];
+    found.p = problem.p;
     return found;
 }
 
-// The goals that do not move, the scales, and the sides of the bands that move.
-Problem problem_of(const Figures& figures, const Goals& goals, Optimum& optimum) {
-    Problem problem{.figures = figures, .goals = goals, .range = goals.most - goals.least};
-    problem.box = {(goals.least - goals.start).cwiseQuotient(problem.range),
-                   (goals.most - goals.start).cwiseQuotient(problem.range)};
-    const VectorXd movement = (optimum.gradient.rate * problem.range.asDiagonal()).rowwise().norm();
+// The goals that do not move, the scales, and the bounds of those that move.
+Problem problem_of(const Figures& figures, const Goals& goals, const SearchRange& range,
+                   Optimum& optimum) {
     const auto goal_of = [&](Index j) {
         return static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(j)]);
     };
-    std::vector<double> largest(1 +
-                                static_cast<std::size_t>(*std::ranges::max_element(goals.goal)));
-    optimum.still.assign(largest.size(), true);
-    for (Index j = 0; j < movement.size(); ++j) {
-        if (movement[j] > least_movement(optimum.before[j])) optimum.still[goal_of(j)] = false;
-        largest[goal_of(j)] = std::max(largest[goal_of(j)], movement[j]);
+    const Index m = goals.low.size();
+    VectorXd largest = VectorXd::Zero(1 + *std::ranges::max_element(goals.goal));
+    optimum.still.assign(static_cast<std::size_t>(largest.size()), true);
+    for (Index j = 0; j < m; ++j) {
+        double& most = largest[static_cast<Index>(goal_of(j))];
+        most = std::max(most, optimum.start.movement[j]);
+        if (!optimum.start.still[static_cast<std::size_t>(j)]) optimum.still[goal_of(j)] = false;
     }
-    problem.scale.resize(movement.size());
-    for (Index j = 0; j < movement.size(); ++j) {
-        problem.scale[j] = largest[goal_of(j)] > 0 ? largest[goal_of(j)] : 1;
-        if (optimum.still[goal_of(j)]) continue;
-        problem.add_side(j, -1, goals.low[j]);
-        problem.add_side(j, 1, goals.high[j]);
-    }
-    optimum.scale = problem.scale;
+    optimum.scale = largest(goals.goal);
+    optimum.scale = (optimum.scale.array() > 0).select(optimum.scale, 1);
+    Problem problem{figures, range, optimum.scale, goals.minimised};
+    const auto add = [](std::vector<Bound>& to, bool of_number, Index which, double low,
+                        double high) {
+        if (std::isfinite(low)) to.push_back({of_number, which, false, low});
+        if (std::isfinite(high)) to.push_back({of_number, which, true, high});
+    };
+    for (Index j = 0; j < m; ++j)
+        if (!optimum.still[goal_of(j)]) add(problem.bands, false, j, goals.low[j], goals.high[j]);
+    for (Index i = 0; i < range.start.size(); ++i)
+        add(problem.limits, true, i, range.low[i], range.high[i]);
     return problem;
 }
 
 }  // namespace
 
-std::vector<VectorXd> starts_of(const Goals& goals, int count) {
-    std::vector<VectorXd> all{goals.start};
+std::vector<VectorXd> starts_of(const SearchRange& range, int count) {
+    std::vector<VectorXd> all{range.start};
     std::mt19937_64 random(1);
     while (static_cast<int>(all.size()) < count)
-        all.push_back(VectorXd::NullaryExpr(goals.start.size(), [&](Index i) {
+        all.push_back(VectorXd::NullaryExpr(range.start.size(), [&](Index i) {
             const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-            return goals.least[i] + share * (goals.most[i] - goals.least[i]);
+            return range.low[i] + share * (range.high[i] - range.low[i]);
         }));
     return all;
 }
 
-Optimum optimise(const Figures& figures, const Goals& goals, const std::vector<VectorXd>& starts,
-                 const Progress& progress, const BestSoFar& best_so_far) {
-    Optimum optimum{.p = goals.start, .before = figures.value(goals.start)};
-    optimum.after = optimum.before;
-    if (!optimum.before.allFinite()) return optimum;
-    optimum.gradient = figures.gradient(goals.start);
-    if (!optimum.gradient.rate.allFinite()) return optimum;
-    Problem problem = problem_of(figures, goals, optimum);
+Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& range,
+                 const std::vector<VectorXd>& starts, const Progress& progress,
+                 const BestSoFar& best_so_far) {
+    Optimum optimum;
+    optimum.p = range.start;
+    optimum.start = start_of(figures, range);
+    optimum.after = optimum.start.value;
+    if (!optimum.start.complete()) return optimum;
+    int evaluations = 0;
+    const Figures counted{[&](const std::vector<VectorXd>& points) {
+                              evaluations += static_cast<int>(points.size());
+                              return figures.values(points);
+                          },
+                          figures.step};
+    Problem problem = problem_of(counted, goals, range, optimum);
+    Bands bands{VectorXd::Constant(goals.low.size(), -none),
+                VectorXd::Constant(goals.low.size(), none), optimum.scale};
+    for (const Bound& one : problem.bands)
+        (one.upper ? bands.high : bands.low)[one.which] = one.bound;
     if (goals.minimised >= 0 &&
         optimum
             .still[static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(goals.minimised)])])
         return optimum;
 
-    Found best;
+    Search& best = optimum;
     for (std::size_t k = 0; k < starts.size(); ++k) {
         if (progress)
             progress(fmt::format("start {} of {}{}", k + 1, starts.size(),
-                                 optimum.best < 0  ? ""
-                                 : best.search.met ? ", bands met"
-                                                   : ", bands not met yet"),
+                                 optimum.best < 0 ? ""
+                                 : best.met       ? ", bands met"
+                                                  : ", bands not met yet"),
                      static_cast<double>(k) / static_cast<double>(starts.size()));
-        Found found = search_from(problem, starts[k]);
-        optimum.searches.push_back(found.search);
-        if (!found.search.has_value || (optimum.best >= 0 && !found.is_better_than(best))) continue;
+        evaluations = 0;
+        Search& found = optimum.searches.emplace_back(search_from(problem, bands, starts[k]));
+        found.evaluations = evaluations;
+        if (!found.has_value || (optimum.best >= 0 && !is_better(found, best))) continue;
         optimum.best = static_cast<int>(k);
-        best = std::move(found);
-        if (best_so_far) best_so_far(best.search.to, best.search.met);
+        best = found;
+        if (best_so_far) best_so_far(best.p, best.met);
     }
     if (optimum.best < 0) return optimum;
-    optimum.p = best.search.to;
     optimum.after = figures.value(optimum.p);
-    optimum.met = best.search.met && optimum.after.allFinite();
-    optimum.converged = best.search.converged;
-    optimum.cost = best.search.cost;
-    optimum.optimality = best.at_end.size > 0 ? best.at_end.left / best.at_end.size : 0;
-    optimum.active = best.at_end.active;
-    optimum.conflict = VectorXd::Zero(goals.low.size());
-    for (Index k = 0; !optimum.met && k < best.outside.size(); ++k)
-        optimum.conflict[problem.side[static_cast<std::size_t>(k)]] +=
-            best.outside[k] / best.outside.norm();
-    optimum.at_limit = best.at_limit;
-    optimum.at_limit.resize(static_cast<std::size_t>(goals.start.size()));
+    optimum.met = best.met && optimum.after.allFinite();
+    optimum.conflict = optimum.met ? VectorXd::Zero(goals.low.size()) : best.nearest.conflict();
     return optimum;
 }
 

@@ -4,10 +4,10 @@
 //
 //   minimise  F = |x|² / 2  (the smallest change)  or  f_k / g   over  c ≤ 0,  low ≤ p ≤ high
 //
-// g of a goal is the largest |∂f_j/∂x| of its figures at the start. From each start first the sum
-// of squares of max(0, c) is minimised (least_squares.hpp): to numbers within the bands, or to the
-// nearest ones. From there SLSQP of NLopt minimises F. Its status is no evidence: a result counts
-// by its excess over the bands and by the conditions of Karush, Kuhn and Tucker,
+// g of a goal is the largest |∂f_j/∂x| of its figures at the start. From each start first solve_for():
+// to numbers within the bands, or to the nearest ones. From there SLSQP of NLopt minimises F where
+// that is not done. Its status is no evidence: a result counts by its excess over the bands and by the
+// conditions of Karush, Kuhn and Tucker,
 //
 //   ∇F + Σ λ_i ∇c_i = 0,   λ_i ≥ 0,   over the active bands and limits of numbers
 //
@@ -16,27 +16,23 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
-#include "compare/design/figures.hpp"
+#include "compare/design/solve_for.hpp"
 #include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
 
 struct Goals {
-    Eigen::VectorXd low, high;    // band per figure, in its unit; infinite: no bound
-    std::vector<int> goal;        // per figure: 0, 1, ...; those of one curve have one goal
-    int minimised = -1;           // figure, alone in its goal; -1: the change of the numbers
-    Eigen::VectorXd start;        // p_0 per number, in its unit
-    Eigen::VectorXd least, most;  // limits, least < most
+    Eigen::VectorXd low, high;  // band per figure, in its unit; infinite: no bound
+    std::vector<int> goal;      // per figure: 0, 1, ...; those of one curve have one goal
+    int minimised = -1;         // figure, alone in its goal; -1: the change of the numbers
 };
 
 // Points to search from: the start, and `count - 1` within the limits, the same on every run.
-std::vector<Eigen::VectorXd> starts_of(const Goals& goals, int count);
+std::vector<Eigen::VectorXd> starts_of(const SearchRange& range, int count);
 
-// A bound that holds at the result.
-struct ActiveBound {
+struct Bound {
     bool of_number = false;  // else of a figure
     Eigen::Index which = 0;  // number or figure
     bool upper = false;
@@ -48,32 +44,26 @@ struct ActiveBound {
 
 // Search from one start.
 struct Search {
-    Eigen::VectorXd to = {};
+    Solution nearest = {};   // to the bands
+    Eigen::VectorXd p = {};  // where it ended
     bool has_value = false;  // the figures have values at its start
-    bool met = false, converged = false;
-    double excess = 0;  // largest over a band, as a share of g; below zero within
-    double cost = 0;
-    int evaluations = 0;
+    // no figure is outside of its band by more than `within_bands` g
+    bool met = false;
+    bool converged = false;          // conditions of the optimum, or of the nearest numbers
+    double excess = 0;               // largest over a band, as a share of g; below zero within
+    double cost = 0;                 // |x|, or the minimised figure in its unit
+    double optimality = 0;           // |∇F + Σ λ ∇c| / |∇F|
+    std::vector<Bound> active = {};  // bounds that hold at the end
+    int evaluations = 0;             // of the scene
 };
-
 inline constexpr double within_bands = 1e-9;
 
-struct Optimum {
-    Eigen::VectorXd p = {};                   // of the best search
-    Eigen::VectorXd before = {}, after = {};  // figures at the start and at p
-    FigureGradient gradient = {};             // at the start
-    // per goal: no number moves a figure of it at the start
-    std::vector<bool> still = {};
-    Eigen::VectorXd scale = {};  // g per figure, in its unit
-    bool met = false;            // no figure is outside of its band by more than `within_bands` g
-    bool converged = false;      // conditions of the optimum, or of the nearest numbers
-    double cost = 0;             // |x|, or the minimised figure in its unit
-    double optimality = 0;       // |∇F + Σ λ ∇c| / |∇F|
-    std::vector<ActiveBound> active = {};
-    // if the bands cannot be met, as in Solution: share of each figure in the conflict, and numbers
-    // at a limit beyond which the bands would come nearer
-    Eigen::VectorXd conflict = {};
-    std::vector<int> at_limit = {};
+struct Optimum : Search {  // the best search
+    SearchStart start = {};
+    std::vector<bool> still = {};   // per goal: no number moves a figure of it at the start
+    Eigen::VectorXd scale = {};     // g per figure, in its unit
+    Eigen::VectorXd after = {};     // figures at p
+    Eigen::VectorXd conflict = {};  // share of each figure; zero if the bands are met
     std::vector<Search> searches = {};
     int best = -1;  // of the searches; -1: none, because a goal that counts does not move
 };
@@ -81,10 +71,10 @@ struct Optimum {
 // Called with the numbers of each search that is better than all before.
 using BestSoFar = std::function<void(const Eigen::VectorXd& p, bool met)>;
 
-// The figures have values and rates at the start (NaN in `before` or `gradient` if not, and nothing
-// else is set). Figures of still goals are left out of the search; the caller refuses those that
-// are outside of their bands, and a minimised figure that is still.
-Optimum optimise(const Figures& figures, const Goals& goals,
+// Nothing but `start` is set where that is not complete. Figures of still goals are left out of the
+// search; the caller refuses those that are outside of their bands, and a minimised figure that is
+// still.
+Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& range,
                  const std::vector<Eigen::VectorXd>& starts, const Progress& progress = {},
                  const BestSoFar& best_so_far = {});
 

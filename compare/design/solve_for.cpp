@@ -1,102 +1,47 @@
 #include "compare/design/solve_for.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-
 #include "compare/design/least_squares.hpp"
-#include "elastocheck/compile.hpp"
 
 namespace elastocheck::compare {
-namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::array weights_of_change{1e-2, 1e-4, 1e-6};  // μ
-
-}  // namespace
-
-std::vector<std::string> why_still(const SceneAt& scene_at, const Figure& figure,
-                                   const std::vector<Number>& numbers, const VectorXd& p) {
-    const Scene scene = scene_at(p);
-    // All outputs of the state at the same station.
-    std::vector<Figure> all;
-    const Model model = compile(scene);
-    for (const Channel& channel : channels(model)) {
-        all.push_back(figure);
-        all.back().name = channel.name;
-    }
-    const Figures outputs = solved_figures(scene_at, numbers, all);
-    const VectorXd values = outputs.value(p);
-    const FigureGradient gradient = outputs.gradient(p);
-    std::vector<std::string> reasons;
-    for (Index i = 0; i < p.size(); ++i) {
-        const Number& number = numbers[static_cast<std::size_t>(i)];
-        std::string why = "no output moves with it";
-        for (const Omission& omission : scene.omitted) {
-            const auto name = omission.what.find('\'');
-            const std::string_view quoted =
-                std::string_view(omission.what).substr(std::min(name + 1, omission.what.size()));
-            const auto part = quoted.substr(0, quoted.find('\''));
-            if (!part.empty() &&
-                number.path.find("." + std::string(part) + ".") != std::string::npos)
-                why = fmt::format("{} is left out: {}", omission.what, omission.why);
-        }
-        for (Index k = 0; k < values.size(); ++k) {
-            const double effect = std::abs(gradient.rate(k, i)) * step_of(number);
-            if (!(effect > least_movement(values[k]))) continue;
-            const std::string& moved = all[static_cast<std::size_t>(k)].name;
-            why = fmt::format("it moves {}, for example, and not {}", moved, figure.name);
-            break;
-        }
-        reasons.push_back(number.path + ": " + why);
-    }
-    return reasons;
+SearchStart start_of(const Figures& figures, const SearchRange& range) {
+    SearchStart start{figures.value(range.start), {}};
+    if (!start.value.allFinite()) return start;
+    start.gradient = figures.gradient(range.start);
+    start.movement = (start.gradient * (range.high - range.low).asDiagonal()).rowwise().norm();
+    for (Index j = 0; j < start.value.size(); ++j)
+        start.still.push_back(!(start.movement[j] > least_movement(start.value[j])));
+    return start;
 }
 
-Solution solve_for(const Figures& figures, const Wishes& wishes) {
-    const VectorXd range = wishes.high - wishes.low;
-    Solution found{.p = wishes.start, .before = figures.value(wishes.start)};
-    found.after = found.before;
-    if (!found.before.allFinite()) return found;
-    found.gradient = figures.gradient(found.p);
-    if (!found.gradient.rate.allFinite()) return found;
-    found.movement = (found.gradient.rate * range.asDiagonal()).rowwise().norm();
-    for (Index j = 0; j < found.movement.size(); ++j)
-        found.still.push_back(!(found.movement[j] > least_movement(found.before[j])));
-    if (std::ranges::count(found.still, true) > 0) return found;
-
-    const auto number_at = [&](const VectorXd& x) -> VectorXd {
-        return within({wishes.low, wishes.high}, wishes.start + range.cwiseProduct(x));
-    };
-    const VectorXd weight = found.movement.cwiseInverse();
+Solution solve_for(const Figures& figures, const Bands& bands, const SearchRange& range,
+                   const VectorXd& p) {
     LeastSquares problem{
         [&](const VectorXd& x) -> VectorXd {
-            return (figures.value(number_at(x)) - wishes.target).cwiseProduct(weight);
+            const VectorXd f = figures.value(range.at(x));
+            return (f - f.cwiseMax(bands.low).cwiseMin(bands.high)).cwiseQuotient(bands.scale);
         },
         [&](const VectorXd& x) -> MatrixXd {
-            return weight.asDiagonal() * figures.gradient(number_at(x)).rate * range.asDiagonal();
+            const VectorXd f = figures.value(range.at(x));
+            MatrixXd J = bands.scale.cwiseInverse().asDiagonal() * figures.gradient(range.at(x)) *
+                         (range.high - range.low).asDiagonal();
+            for (Index j = 0; j < J.rows(); ++j)
+                if (f[j] > bands.low[j] && f[j] < bands.high[j]) J.row(j).setZero();
+            return J;
         },
-        {(wishes.low - wishes.start).cwiseQuotient(range),
-         (wishes.high - wishes.start).cwiseQuotient(range)},
-        VectorXd::Zero(range.size())};
-    Minimum nearest{.x = within(problem.box, problem.about)};
-    for (const double mu : weights_of_change) {
+        {range.shares(range.low), range.shares(range.high)},
+        VectorXd::Zero(p.size())};
+    Minimum nearest{within(problem.box, range.shares(p))};
+    for (const double mu : {1e-2, 1e-4, 1e-6}) {
         problem.pull = mu;
         nearest = minimise(problem, nearest.x);
     }
-    found.converged = nearest.converged;
-    found.p = number_at(nearest.x);
-    found.after = figures.value(found.p);
-    const VectorXd r = nearest.residual.cwiseAbs();
-    found.met = r.allFinite() && r.maxCoeff() <= met_within;
-    found.conflict = found.met ? VectorXd::Zero(r.size()) : VectorXd(r / r.norm());
-    found.at_limit =
-        found.met ? std::vector<int>(wishes.start.size(), 0) : limits_reached(problem, nearest);
-    return found;
+    return {range.at(nearest.x), nearest.converged, nearest.residual,
+            limits_reached(problem, nearest)};
 }
 
 }  // namespace elastocheck::compare

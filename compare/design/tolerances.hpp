@@ -7,23 +7,20 @@
 //                                               makes the number reduce the scatter)
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace elastocheck::compare {
 
-// A number with its standard deviation and its largest deviation, of the worst case, in its unit.
-struct Tolerated {
-    std::string path;
-    double sd = 0, largest = 0;
+struct ToleratedNumbers {
+    std::vector<std::string> numbers;
+    // standard deviations, and largest deviations of the worst case, in the units of the numbers
+    Eigen::VectorXd sd, largest;
+    Eigen::MatrixXd correlation;  // is_correlation()
 };
-inline Tolerated normal(std::string path, double sd) { return {std::move(path), sd, 3 * sd}; }
-inline Tolerated uniform(std::string path, double half_width) {
-    return {std::move(path), half_width / std::sqrt(3.0), half_width};
-}
 
 struct Scatter {  // of a figure, in its unit
     double sd = 0, worst_case = 0;
@@ -31,10 +28,20 @@ struct Scatter {  // of a figure, in its unit
 };
 
 // Whether a matrix is symmetric with ones on its diagonal and has no negative eigenvalue.
-bool is_correlation(const Eigen::MatrixXd& matrix);
+inline bool is_correlation(const Eigen::MatrixXd& matrix) {
+    if (matrix.rows() != matrix.cols() || matrix != matrix.transpose() ||
+        (matrix.diagonal().array() != 1).any())
+        return false;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
+    return solver.eigenvalues().minCoeff() >= -1e-12 * static_cast<double>(matrix.rows());
+}
 
-// `correlation` [numbers × numbers], is_correlation(); empty: independent numbers.
-std::vector<Scatter> scatter(const Eigen::MatrixXd& gradient, const std::vector<Tolerated>& numbers,
-                             const Eigen::MatrixXd& correlation = {});
+inline Scatter scatter(const Eigen::VectorXd& gradient, const ToleratedNumbers& tolerances) {
+    const Eigen::VectorXd g = gradient.cwiseProduct(tolerances.sd),
+                          parts = g.cwiseProduct(tolerances.correlation * g);
+    const double variance = std::max(parts.sum(), 0.0);  // rounding
+    return {std::sqrt(variance), gradient.cwiseAbs().dot(tolerances.largest),
+            variance > 0 ? Eigen::VectorXd(parts / variance) : Eigen::VectorXd::Zero(g.size())};
+}
 
 }  // namespace elastocheck::compare

@@ -9,16 +9,16 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double in_degrees = 180 / std::numbers::pi;
 
-std::vector<ColumnOf<FoundEquilibrium>> columns() {
+std::vector<ColumnOf<FoundEquilibrium>> equilibrium_columns() {
     using enum Digits;
     using Found = FoundEquilibrium;
     return {{"stability", words, [](const Found& f) { return f.stable ? "stable" : "unstable"; },
              "by the sign of the least stiffness"},
             {"distance", three, [](const Found& f) { return 1e3 * f.length; },
              "from that of the branch, or from the end of the branch", "mm"},
-            {"turned", three, [](const Found& f) { return degrees * f.angle; }, "likewise", "deg"},
+            {"turned", three, [](const Found& f) { return in_degrees * f.angle; }, "likewise", "deg"},
             {"proof", words, [](const Found& f) { return name(f.proof.answer); }},
             {"within", size, [](const Found& f) { return 1e3 * f.proof.error.length; },
              "proved distance to the true equilibrium, at most", "mm"},
@@ -60,7 +60,7 @@ Table poses(const Model& model, const AllEquilibria& all) {
 
 Result result_of(const Model& model, const AllEquilibria& all) {
     Result result{.analysis = "equilibria"};
-    Table list = table("equilibria", columns(), all.list);
+    Table list = table("equilibria", equilibrium_columns(), all.list);
     list.columns.insert(list.columns.begin(), {.name = "number", .digits = Digits::whole});
     for (std::size_t k = 0; k < list.rows.size(); ++k)
         list.rows[k].insert(list.rows[k].begin(), static_cast<double>(k + 1));

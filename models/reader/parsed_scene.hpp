@@ -19,6 +19,8 @@ class ParsedScene {
     // `folder` is that of the scene's file, for the files that it refers to. Throws SceneError for
     // text that is not YAML.
     ParsedScene(std::string_view text, std::string name, Folder folder);
+    // Of a file. Throws SceneError if it cannot be read.
+    explicit ParsedScene(const std::filesystem::path& file);
 
     // As read_whole() of the text; without `warnings` nothing is checked for them. Throws SceneError.
     // Thread-safe.

@@ -291,10 +291,19 @@ Scene read_trees(const Trees& trees, const std::string& name, const Folder& fold
     return scene;
 }
 
+std::string text_of(const std::filesystem::path& file) {
+    TextFile read = read_text(file, Pipes::allowed);
+    if (!read.trouble.empty()) fail(file.string(), 0, "", read.trouble);
+    return std::move(read.text);
+}
+
 }  // namespace
 
 ParsedScene::ParsedScene(std::string_view text, std::string name, Folder folder)
     : tree_(parse_yaml(text, name)), name_(std::move(name)), folder_(std::move(folder)) {}
+
+ParsedScene::ParsedScene(const std::filesystem::path& file)
+    : ParsedScene(text_of(file), file.string(), file.parent_path()) {}
 
 Scene ParsedScene::read(std::span<const Setting> settings,
                         std::vector<std::string>* warnings) const {
@@ -358,10 +367,7 @@ std::vector<RequestedDefinition> requested_definitions(const Cursor& scene) {
 
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,
                                           std::span<const Setting> settings) {
-    const std::string name = file.string();
-    const TextFile read = read_text(file, Pipes::allowed);
-    if (!read.trouble.empty()) fail(name, 0, "", read.trouble);
-    return read_whole(read.text, name, settings, file.parent_path());
+    return read_whole(text_of(file), file.string(), settings, file.parent_path());
 }
 
 }  // namespace reader

@@ -22,18 +22,16 @@ namespace {
 
 using compare::Figure;
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using json = nlohmann::ordered_json;
 
-// Half the distance of a central difference, as a share of the range of a number; and the difference
-// that counts as none, of 1 and the value: the trim is solved to about 1e-10.
-constexpr double share_of_range = 1e-4, rounding = 1e-9;
+constexpr double share_of_range = 1e-4;  // of a number: the step of its differences
 
 struct Varied {
     std::vector<std::string> paths;
     std::vector<Figure> figures;
-    compare::Wishes wishes;
+    VectorXd target;
+    compare::SearchRange range;
 };
 
 [[noreturn]] void not_as_described() {
@@ -55,23 +53,22 @@ Varied varied_of(const json& read, const Scene& scene, const Model& model) {
     if (!vary.is_array() || !want.is_array() || vary.empty() || want.empty())
         throw std::invalid_argument("at least one number and one wanted figure are needed");
     Varied all;
-    compare::Wishes& wishes = all.wishes;
-    for (VectorXd* list : {&wishes.start, &wishes.low, &wishes.high})
-        list->resize(std::ssize(vary));
-    wishes.target.resize(std::ssize(want));
+    compare::SearchRange& range = all.range;
+    for (VectorXd* list : {&range.start, &range.low, &range.high}) list->resize(std::ssize(vary));
+    all.target.resize(std::ssize(want));
     for (std::size_t i = 0; i < vary.size(); ++i) {
         const auto at = static_cast<Index>(i);
         const std::string path = text_at(vary[i], 0);
         const auto number = std::ranges::find(scene.numbers, path, &Number::path);
         if (number == scene.numbers.end())
             throw std::invalid_argument(path + ": the scene has no such number");
-        wishes.start[at] = number->value;
-        wishes.low[at] = number_at(vary[i], 1), wishes.high[at] = number_at(vary[i], 2);
-        if (!(wishes.low[at] < wishes.high[at] && wishes.low[at] <= number->value &&
-              number->value <= wishes.high[at]))
+        range.start[at] = number->value;
+        range.low[at] = number_at(vary[i], 1), range.high[at] = number_at(vary[i], 2);
+        if (!(range.low[at] < range.high[at] && range.low[at] <= number->value &&
+              number->value <= range.high[at]))
             throw std::invalid_argument(fmt::format("{}: {} is not within its limits {} to {}",
-                                                    path, number->value, wishes.low[at],
-                                                    wishes.high[at]));
+                                                    path, number->value, range.low[at],
+                                                    range.high[at]));
         all.paths.push_back(path);
     }
     const auto outputs = channels_of(model);
@@ -82,28 +79,10 @@ Varied varied_of(const json& read, const Scene& scene, const Model& model) {
             throw std::invalid_argument(fmt::format("the scene has no output '{}' on branch '{}'",
                                                     figure.name, figure.branch));
         figure.at = number_at(want[j], 2) / in_unit(compare::unit_of(branch->unit));
-        wishes.target[static_cast<Index>(j)] = number_at(want[j], 3);
+        all.target[static_cast<Index>(j)] = number_at(want[j], 3);
         all.figures.push_back(std::move(figure));
     }
     return all;
-}
-
-// Central differences, within the limits.
-MatrixXd differences(const std::function<VectorXd(const VectorXd&)>& value,
-                     const compare::Wishes& wishes, const VectorXd& p) {
-    MatrixXd J(wishes.target.size(), p.size());
-    for (Index i = 0; i < p.size(); ++i) {
-        const double h = share_of_range * (wishes.high[i] - wishes.low[i]);
-        VectorXd up = p, down = p;
-        up[i] = std::min(p[i] + h, wishes.high[i]);
-        down[i] = std::max(p[i] - h, wishes.low[i]);
-        const VectorXd above = value(up), by = above - value(down);
-        for (Index j = 0; j < by.size(); ++j)
-            J(j, i) = std::abs(by[j]) <= rounding * (1 + std::abs(above[j]))
-                          ? 0
-                          : by[j] / (up[i] - down[i]);
-    }
-    return J;
 }
 
 json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
@@ -134,24 +113,32 @@ json wish(Session& session, std::string_view text) {
         return model ? compare::evaluate(*model, all.figures, compare::Leg::series).value
                      : VectorXd::Constant(std::ssize(all.figures), compare::nan);
     };
-    const auto found = compare::solve_for(
-        {value,
-         [&](const VectorXd& p) {
-             return compare::FigureGradient{differences(value, all.wishes, p), {}};
-         }},
-        all.wishes);
+    const auto at_all = [&](const std::vector<VectorXd>& points) {
+        std::vector<VectorXd> values;
+        for (const VectorXd& p : points) values.push_back(value(p));
+        return values;
+    };
+    const compare::SearchRange& range = all.range;
+    const compare::Figures figures{at_all, share_of_range * (range.high - range.low)};
+    const auto start = compare::start_of(figures, range);
+    const bool moves = start.complete() && std::ranges::count(start.still, true) == 0;
+    compare::Solution found{.p = range.start, .off = VectorXd::Zero(all.target.size())};
+    if (moves)
+        found = compare::solve_for(figures, {all.target, all.target, start.movement}, range,
+                                   range.start);
+    const VectorXd after = figures.value(found.p);
+    const bool met = moves && found.excess() <= compare::met_within;
 
-    json answer = {{"met", found.met}, {"converged", found.converged}};
+    json answer = {{"met", met}, {"converged", found.converged}};
     for (Index i = 0; i < found.p.size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
-        answer["numbers"].push_back(
-            {{"path", all.paths[at]},
-             {"from", all.wishes.start[i]},
-             {"to", found.p[i]},
-             {"at_limit", found.at_limit.empty() ? 0 : found.at_limit[at]}});
+        answer["numbers"].push_back({{"path", all.paths[at]},
+                                     {"from", range.start[i]},
+                                     {"to", found.p[i]},
+                                     {"at_limit", met || !moves ? 0 : found.at_limit[at]}});
     }
     const auto outputs = channels_of(*drawn);
-    for (Index j = 0; j < found.before.size(); ++j) {
+    for (Index j = 0; j < after.size(); ++j) {
         const auto at = static_cast<std::size_t>(j);
         const Figure& figure = all.figures[at];
         const auto& output =
@@ -162,14 +149,13 @@ json wish(Session& session, std::string_view text) {
              {"branch", figure.branch},
              {"a", compare::parameter_in(compare::unit_of(branch->unit), figure.at)},
              {"unit", symbol(output.unit)},
-             {"target", all.wishes.target[j]},
-             {"before", or_null(found.before[j])},
-             {"after", or_null(found.after[j])},
-             {"still", !found.still.empty() && found.still[at]},
-             {"conflict", found.conflict.size() == 0 ? 0 : found.conflict[j]}});
-        const bool has_value = std::isfinite(found.before[j]),
-                   no_rate =
-                       found.gradient.rate.rows() > 0 && !found.gradient.rate.row(j).allFinite();
+             {"target", all.target[j]},
+             {"before", or_null(start.value[j])},
+             {"after", or_null(after[j])},
+             {"still", !start.still.empty() && start.still[at]},
+             {"conflict", met || !moves ? 0 : found.conflict()[j]}});
+        const bool has_value = std::isfinite(start.value[j]),
+                   no_rate = start.gradient.rows() > 0 && !start.gradient.row(j).allFinite();
         if ((!has_value || no_rate) && !answer.contains("why_not"))
             answer["why_not"] = fmt::format(
                 "{} has no {} at {} {} of {}", figure.name, has_value ? "rate" : "value",

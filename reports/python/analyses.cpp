@@ -31,7 +31,6 @@
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/studies/design_tables.hpp"
 #include "reports/tables/studies/sensitivity.hpp"
 
 namespace elastocheck::python {
@@ -157,18 +156,9 @@ Report sensitivity(const SceneOfFile& scene, reports::GradientsRequest request, 
 
 Report fit(const SceneOfFile& scene, const std::string& measured,
            const std::vector<std::string>& vary, const std::string& map, bool robust, int threads) {
-    const reports::Varied varied = reports::parse_varied(vary, scene.loaded.scene);
-    const reports::FittedScene result =
-        reports::fitted({scene.file, scene.settings, measured, map, robust, threads_of(threads)},
-                        scene.loaded, varied);
-    if (!result.fitted.why_not.empty())
-        return {.text = "no fit: " + result.fitted.why_not + "\n",
-                .document = {{"converged", false}, {"why_not", result.fitted.why_not}},
-                .exit_code = could_not_judge};
-    const bool determined = result.fitted.converged && result.fitted.interval.allFinite();
-    return {.text = reports::fit_text(result),
-            .document = reports::fit_json(result),
-            .exit_code = determined ? fine : could_not_judge};
+    return report_of(result_of(reports::fitted(
+        {scene.file, scene.settings, vary, measured, map, robust, threads_of(threads)},
+        scene.loaded)));
 }
 
 // ---- A candidate: a Python function as a leg.

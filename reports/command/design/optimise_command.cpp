@@ -4,86 +4,326 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 
-#include "compare/proofs/certify.hpp"
+#include "compare/design/results.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/trim.hpp"
+#include "models/reader/document/cursor.hpp"
+#include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
 #include "reports/command/design/request.hpp"
-#include "reports/command/options/goals_file.hpp"
-#include "reports/command/program/command.hpp"
+#include "reports/command/program/exit_code.hpp"
 #include "reports/files/files.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
+using compare::Figure;
+using compare::Goal;
 using Eigen::Index;
 using Eigen::VectorXd;
+using reader::Cursor;
 
 // Points that are added where a curve leaves its band between its points, and the search repeated.
 constexpr int most_rounds = 3;
 constexpr double between_within = 1e-6;  // outside of a band, as a share of the movement
+constexpr int between_points = 3;        // at which a curve is looked at in each gap
+constexpr int default_points = 33;
 
 struct OptimiseRequest : DesignRequest {
     std::string file;
     int starts = 4;
 };
 
-VectorXd values_of(const Scene& scene, const std::vector<GoalPoint>& points) {
-    std::vector<compare::Figure> figures;
-    for (const GoalPoint& point : points) figures.push_back(point.figure);
-    return compare::figure_values(scene, figures, compare::Leg::equilibrium).value;
+// ---- The file of goals: numbers that may change, and bands of figures and curves.
+
+struct GoalsFile {
+    compare::Varied varied = {};
+    std::vector<Goal> goals = {};
+    std::optional<Figure> minimised = {};
+    int minimised_line = 0;
+};
+
+// Reads a word; a mistake has its place in the file.
+template <class Read>
+auto at_place(const Cursor& at, const Read& read) {
+    try {
+        return read();
+    } catch (const std::invalid_argument& error) {
+        at.fail(error.what());
+    }
+}
+Figure figure_at(const Cursor& at, const std::string& word, const Model& model) {
+    return at_place(at, [&] { return parse_figure(word, model); });
 }
 
-// The points of the curves between theirs at which they are furthest outside of their bands, one a
-// gap; each curve of which any is, receives them.
-std::optional<Between> add_points_outside(const Scene& scene, const VectorXd& scale,
-                                          std::vector<Goal>& goals, bool add) {
-    std::optional<Between> worst;
+void read_band(const Cursor& at, Goal& goal) {
+    const auto within = at.optional("within"), least = at.optional("at_least"),
+               most = at.optional("at_most");
+    if (within.has_value() == (least || most))
+        at.fail(
+            "allowed: either within: [LOW, HIGH], or at_least: LOW and at_most: HIGH or one of "
+            "them");
+    if (within) {
+        const auto both = within->list(2, "bounds, [LOW, HIGH]");
+        goal.low = both[0].number(), goal.high = both[1].number();
+    }
+    if (least) goal.low = least->number();
+    if (most) goal.high = most->number();
+    if (!(goal.low < goal.high)) at.fail("the lower bound is not below the upper one");
+}
+
+// A point of a curve at another place.
+Figure moved_to(const Goal& goal, Figure point, double at) {
+    point.at = at;
+    point.place = fmt::format("{} = {:g} {}", goal.along, goal.along_factor * at, goal.along_unit);
+    return point;
+}
+
+// Puts points of a curve over an output on the first branches where they have values. Returns these.
+VectorXd put_on_branches(const Scene& scene, const Model& model, std::vector<Figure>& points) {
+    VectorXd values = VectorXd::Constant(std::ssize(points), compare::nan);
+    for (const Branch& branch : model.branches) {
+        std::vector<Figure> here = points;
+        for (Figure& point : here) point.branch = branch.name;
+        const VectorXd found = compare::figure_values(scene, here).value;
+        for (std::size_t k = 0; k < points.size(); ++k)
+            if (const auto i = static_cast<Index>(k);
+                std::isnan(values[i]) && !std::isnan(found[i]))
+                points[k].branch = branch.name, values[i] = found[i];
+    }
+    return values;
+}
+
+void add_curve(const Cursor& at, const LoadedScene& loaded, const std::string& name, Goal& goal) {
+    const Model& model = loaded.model;
+    const double from = at.require("from").number(), to = at.require("to").number();
+    if (!(from < to)) at.fail("from is not below to");
+    const auto count = at.optional("points"), branch = at.optional("branch"),
+               over = at.optional("over");
+    const int points = count ? count->whole_number(2, 1000) : default_points;
+    if (name.find('@') != name.npos && goal.points.front().name != name)
+        at.require("figure").fail("of a curve without @; its place is branch, over, from and to");
+    const std::string on =
+        branch ? branch->text("a branch of the scene") : model.branches.front().name;
+    Figure point = figure_at(branch ? *branch : at, name + "@" + on, model);
+    if (over) {
+        const Figure abscissa = figure_at(*over, over->text("an output of the scene"), model);
+        point.over = goal.along = abscissa.name, goal.along_unit = abscissa.unit;
+        goal.any_branch = !branch;
+    } else {
+        const auto unit =
+            compare::unit_of(std::ranges::find(model.branches, on, &Branch::name)->unit);
+        goal.along = on, goal.along_unit = symbol(unit), goal.along_factor = compare::in_unit(unit);
+        for (const double end : {from, to})
+            (void)figure_at(at, fmt::format("{}@{}:{}", name, on, end), model);
+    }
+    goal.where = fmt::format("{} from {:g} to {:g} {}{}", goal.along, from, to, goal.along_unit,
+                             over && branch ? " on " + on : "");
+    goal.points.clear();
+    for (int k = 0; k < points; ++k)
+        // from a share on either side, so that ±80 has exactly 0 in its middle
+        goal.points.push_back(moved_to(
+            goal, point, (from * (points - 1 - k) + to * k) / (points - 1) / goal.along_factor));
+    if (!goal.any_branch) return;
+    auto places = goal.points;
+    for (Figure& place : places) place.name = place.over;
+    const VectorXd reached = put_on_branches(loaded.scene, model, places);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (std::isnan(reached[static_cast<Index>(k)]))
+            at.fail(fmt::format("no branch reaches {} = {:g}", goal.along, places[k].at));
+        goal.points[k].branch = places[k].branch;
+    }
+}
+
+Goal read_goal(const Cursor& at, const LoadedScene& loaded) {
+    at.only_keys({"figure", "within", "at_least", "at_most", "branch", "over", "from", "to",
+                  "points", "change"});
+    const Cursor figure = at.require("figure");
+    const std::string& name = figure.text("an output of the scene");
+    Goal goal{.line = at.value->line};
+    read_band(at, goal);
+    goal.points = {figure_at(figure, name, loaded.model)};
+    goal.where = goal.points.front().place;
+    if (at.optional("from") || at.optional("to"))
+        add_curve(at, loaded, name, goal);
+    else
+        for (const char* field : {"branch", "over", "points"})
+            if (const auto extra = at.optional(field))
+                extra->fail(
+                    "only of a curve, with from and to; a point is OUTPUT@BRANCH:PARAMETER");
+    const auto change = at.optional("change");
+    for (Figure& point : goal.points) point.change = change && change->yes_or_no();
+    return goal;
+}
+
+void add_varied(const Cursor& at, const std::string& name, const Scene& scene,
+                compare::Varied& varied) {
+    const auto limits = at.list(2, "limits, [LOW, HIGH]");
+    const double low = limits[0].number(), high = limits[1].number();
+    const std::size_t before = varied.numbers.size();
+    at_place(at, [&] { add_numbers(varied, scene, name, low, high); });
+    for (const Number& number : std::span(varied.numbers).subspan(before))
+        if (!(number.value >= low && number.value <= high))
+            at.fail(fmt::format("{} is {:g} in the scene, which is not within {:g} to {:g}",
+                                number.path, number.value, low, high));
+}
+
+// reports/README.md, "Goals". Curves over an output are placed on the branches of the scene as it
+// is. Throws SceneError "file:line: field: ...".
+GoalsFile read_goals(const std::string& file, const LoadedScene& loaded) {
+    const reader::Value tree = reader::parse_yaml(read_whole(file, largest_baseline), file);
+    std::vector<Number> ignored;
+    const Cursor whole{&tree, "", &file, &ignored};
+    whole.only_keys({"vary", "goals", "minimise"});
+    GoalsFile all;
+    const Cursor vary = whole.require("vary");
+    if (vary.value->kind != reader::Value::Kind::map || vary.value->keys.empty())
+        vary.fail("expected numbers with their limits, such as points.tie_rod_inner.z: [260, 340]");
+    for (std::size_t k = 0; k < vary.value->keys.size(); ++k) {
+        const std::string& name = vary.value->keys[k];
+        add_varied(vary.at(vary.value->items[k], reader::child_path(vary.path, name)), name,
+                   loaded.scene, all.varied);
+    }
+    const auto goals = whole.optional("goals"), minimised = whole.optional("minimise");
+    if (goals) {
+        if (!goals->is_list())
+            goals->fail("expected a list of goals, such as - {figure: toe, within: [-0.1, 0.1]}");
+        for (const Cursor& goal : goals->items()) all.goals.push_back(read_goal(goal, loaded));
+    }
+    if (minimised) {
+        all.minimised =
+            figure_at(*minimised, minimised->text("an output of the scene"), loaded.model);
+        all.minimised_line = minimised->value->line;
+    }
+    if (all.goals.empty() && !all.minimised) whole.fail("neither goals nor a figure to minimise");
+    return all;
+}
+
+// ---- The search.
+
+// The figures of the goals, curve by curve, and then the minimised one; with their bands.
+struct GoalFigures {
+    std::vector<Figure> figures = {};
+    compare::Goals bands = {};
+
+    void add(const Figure& figure, int goal, double low, double high) {
+        figures.push_back(figure);
+        bands.goal.push_back(goal);
+        const auto n = std::ssize(figures);
+        bands.low.conservativeResize(n), bands.high.conservativeResize(n);
+        bands.low[n - 1] = low, bands.high[n - 1] = high;
+    }
+};
+GoalFigures figures_of(const std::vector<Goal>& goals, const std::optional<Figure>& minimised) {
+    GoalFigures all;
+    for (std::size_t g = 0; g < goals.size(); ++g)
+        for (const Figure& point : goals[g].points)
+            all.add(point, static_cast<int>(g), goals[g].low, goals[g].high);
+    if (minimised) {
+        all.bands.minimised = static_cast<int>(all.figures.size());
+        all.add(*minimised, static_cast<int>(goals.size()), -INFINITY, INFINITY);
+    }
+    return all;
+}
+
+// Adds the points of the curves between theirs at which they are outside of their bands. Returns the
+// furthest.
+std::optional<compare::Between> add_points_outside(const compare::OptimisedScene& all,
+                                                   const Model& model, std::vector<Goal>& goals) {
+    const Scene scene = all.varied.scene(all.optimum.p);
+    std::optional<compare::Between> worst;
     Index first = 0;
     for (Goal& goal : goals) {
-        const double within = between_within * scale[first];
-        first += static_cast<Index>(goal.points.size());
-        if (goal.points.size() < 2) continue;
-        auto candidates = points_between(goal, BranchOf::before);
-        VectorXd values = values_of(scene, candidates);
-        // Between the last point of a branch and the first of the next, either may be the one.
-        if (!values.allFinite()) {
-            const auto others = points_between(goal, BranchOf::after);
-            const VectorXd other_values = values_of(scene, others);
-            for (std::size_t k = 0; k < others.size(); ++k)
-                if (const auto i = static_cast<Index>(k); !std::isfinite(values[i]))
-                    candidates[k] = others[k], values[i] = other_values[i];
-        }
-        std::vector<GoalPoint> added;
-        const std::size_t in_gap = candidates.size() / (goal.points.size() - 1);
-        for (std::size_t k = 0; k < candidates.size(); k += in_gap) {
-            double most = within;
-            std::size_t at = k + in_gap;
-            for (std::size_t i = k; i < k + in_gap; ++i) {
-                const double value = values[static_cast<Index>(i)];
-                const double excess = std::max(goal.low - value, value - goal.high);
-                if (!(excess <= most)) most = excess, at = i;
-                if (std::isnan(most)) break;
+        const double within = between_within * all.optimum.scale[first];
+        first += std::ssize(goal.points);
+        std::vector<Figure> between;
+        for (std::size_t k = 0; k + 1 < goal.points.size(); ++k)
+            for (int i = 1; i <= between_points; ++i) {
+                const double a = goal.points[k].at, b = goal.points[k + 1].at;
+                between.push_back(
+                    moved_to(goal, goal.points[k], a + (b - a) * i / (between_points + 1)));
             }
-            if (at == k + in_gap) continue;
-            if (std::isfinite(most)) added.push_back(candidates[at]);
-            if (!worst || (!std::isnan(worst->excess) && !(most <= worst->excess)))
-                worst = Between{most, goal.output + " at " + candidates[at].place +
-                                          (std::isnan(most) ? " (no value there)" : "")};
+        if (between.empty()) continue;
+        const VectorXd values = goal.any_branch ? put_on_branches(scene, model, between)
+                                                : compare::figure_values(scene, between).value;
+        for (std::size_t k = 0; k < between.size(); ++k) {
+            const double value = values[static_cast<Index>(k)];
+            const double excess = std::max(goal.low - value, value - goal.high);
+            if (excess <= within) continue;
+            if (std::isfinite(excess)) goal.points.push_back(between[k]);
+            if (!worst || (!std::isnan(worst->excess) && !(excess <= worst->excess)))
+                worst = {excess, goal.output() + " at " + between[k].place +
+                                     (std::isnan(excess) ? " (no value there)" : "")};
         }
-        if (!add) continue;
-        std::ranges::copy(added, std::back_inserter(goal.points));
-        std::ranges::stable_sort(goal.points, {},
-                                 [](const GoalPoint& point) { return point.figure.at; });
+        std::ranges::stable_sort(goal.points, {}, &Figure::at);
     }
     return worst;
 }
 
+// Searches, adds points to curves that leave their bands between theirs, and searches again.
+struct Searching {
+    const OptimiseRequest& request;
+    const LoadedScene& loaded;
+    compare::OptimisedScene& all;
+
+    void write(const VectorXd& p, bool met, bool last) const {
+        request.write(fmt::format("optimise: {}{}{}", last ? "" : "not finished, ",
+                                  met ? "" : "nearest to ", request.file),
+                      all.varied, p, last);
+    }
+    compare::Optimum search(const GoalFigures& of, const std::vector<VectorXd>& starts) const {
+        return compare::optimise(
+            compare::solved_figures(all.varied, of.figures, threads_of(request.running)), of.bands,
+            all.varied, starts, progress,
+            [&](const VectorXd& p, bool met) { write(p, met, false); });
+    }
+    void add_points(const std::vector<VectorXd>& starts) const {
+        for (int round = 0; all.optimum.met; ++round) {
+            std::vector<Goal> goals = all.goals;
+            all.between = add_points_outside(all, loaded.model, goals);
+            if (!all.between || round == most_rounds || !std::isfinite(all.between->excess)) return;
+            const GoalFigures of = figures_of(goals, all.minimised);
+            compare::Optimum next = search(of, {all.optimum.p});
+            if (!next.met) next = search(of, starts);
+            if (next.best < 0) return;  // an added point has no value in the scene as it is
+            all.goals = std::move(goals), all.figures = of.figures, all.optimum = std::move(next);
+        }
+    }
+};
+
+// A goal that does not move is refused unless it is met, which is noted.
+void judge_still(const GoalsFile& file, const std::string& name, const GoalFigures& of,
+                 compare::OptimisedScene& all) {
+    for (std::size_t g = 0; g < all.optimum.still.size(); ++g) {
+        if (!all.optimum.still[g]) continue;
+        const bool is_goal = g < all.goals.size();
+        bool met = is_goal;
+        std::size_t last = 0;
+        for (std::size_t k = 0; k < of.figures.size(); ++k)
+            if (of.bands.goal[k] == static_cast<int>(g)) {
+                const auto i = static_cast<Index>(k);
+                const double value = all.optimum.start.value[i];
+                met = met && value >= of.bands.low[i] && value <= of.bands.high[i];
+                last = k;
+            }
+        const std::string why = compare::why_still(all.varied, of.figures[last]);
+        if (!met)
+            reader::fail(
+                name, is_goal ? all.goals[g].line : file.minimised_line,
+                is_goal ? "goals" : "minimise",
+                fmt::format("{}: none of the numbers moves it:\n  {}", of.figures[last].name, why));
+        all.goals[g].not_moved = why;
+    }
+}
+
 // Interval proofs of the equilibrium leg's states on the branches of the goals.
-compare::CertifyStudy certificate(const Scene& scene, const std::vector<compare::Figure>& figures,
+compare::CertifyStudy certificate(const Scene& scene, const std::vector<Figure>& figures,
                                   int threads) {
     Model model = compile(compare::trim(scene).scene);
     std::erase_if(model.branches, [&](const Branch& branch) {
-        return std::ranges::find(figures, branch.name, &compare::Figure::branch) == figures.end();
+        return std::ranges::find(figures, branch.name, &Figure::branch) == figures.end();
     });
     return compare::certify(model, {.solvers = {{.leg = compare::Leg::equilibrium}},
                                     .tolerance = compare::claim(compare::claimed_accuracy),
@@ -92,103 +332,35 @@ compare::CertifyStudy certificate(const Scene& scene, const std::vector<compare:
                                     .progress = progress});
 }
 
-// A goal that does not move is refused unless it is met, which is noted.
-void judge_still(const compare::SceneAt& scene, const GoalFigures& all,
-                 const compare::Optimum& optimum, const std::string& name, GoalsFile& file) {
-    for (std::size_t g = 0; g < optimum.still.size(); ++g) {
-        if (!optimum.still[g]) continue;
-        const bool is_goal = g < file.goals.size();
-        bool met = is_goal;
-        std::size_t last = 0;
-        for (std::size_t k = 0; k < all.goals.goal.size(); ++k) {
-            if (all.goals.goal[k] != static_cast<int>(g)) continue;
-            const auto i = static_cast<Index>(k);
-            met = met && optimum.before[i] >= all.goals.low[i] &&
-                  optimum.before[i] <= all.goals.high[i];
-            last = k;
-        }
-        const auto reasons =
-            compare::why_still(scene, all.figures[last], file.varied.numbers, file.varied.start);
-        const std::string why = fmt::format("{}", fmt::join(reasons, "\n  "));
-        if (!met)
-            reader::fail(name, is_goal ? file.goals[g].line : file.minimised_line,
-                         is_goal ? "goals" : "minimise",
-                         fmt::format("{}: none of the numbers moves it:\n  {}",
-                                     all.figures[last].name, why));
-        file.goals[g].not_moved = why;
-    }
-}
-
 // Exit code 0: the bands are met at the least cost that was found, confirmed and proved; 1: they
 // cannot be met; 3: a figure has no value, or the result is not confirmed, not proved or not
 // converged.
 int optimise(const OptimiseRequest& request, const Delivery& delivery) {
-    if (!request.output.empty()) check_may_write_scene(request.output);
+    check_may_write_scene(request.output);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
-    GoalsFile file = read_goals(read_whole(request.file, largest_baseline), request.file,
-                                loaded.scene, loaded.model);
-    const Varied& varied = file.varied;
-    const auto scene = scene_at(request.scene, request.settings, varied.numbers);
-    const int threads = threads_of(request.running);
-    GoalFigures all = figures_of(file);
-    const auto write = [&](const VectorXd& p, bool met, bool last) {
-        request.write(fmt::format("optimise: {}{}{}", last ? "" : "not finished, ",
-                                  met ? "" : "nearest to ", request.file),
-                      varied, p, last);
-    };
-    const auto search = [&](const std::vector<VectorXd>& starts) {
-        return compare::optimise(
-            compare::solved_figures(scene, varied.numbers, all.figures, threads), all.goals, starts,
-            progress, [&](const VectorXd& p, bool met) { write(p, met, false); });
-    };
-    const auto starts = compare::starts_of(all.goals, request.starts);
-    OptimisedScene result{.numbers = varied.numbers, .optimum = search(starts)};
-    compare::Optimum& optimum = result.optimum;
-    if (!optimum.before.allFinite() || !optimum.gradient.rate.allFinite()) {
+    GoalsFile file = read_goals(request.file, loaded);
+    set_scene(file.varied, request.scene, request.settings);
+    const GoalFigures of = figures_of(file.goals, file.minimised);
+    compare::OptimisedScene all{file.varied, file.goals, file.minimised, of.figures};
+    const Searching searching{request, loaded, all};
+    const auto starts = compare::starts_of(file.varied, request.starts);
+    all.optimum = searching.search(of, starts);
+    if (!all.optimum.start.complete()) {
         progress("");
-        print_error("{}\n", why_no_start(loaded.scene, all.figures, optimum.gradient));
+        print_error("{}\n", why_not_solved(all.varied, all.figures, all.varied.start));
         return could_not_judge;
     }
-    judge_still(scene, all, optimum, request.file, file);
-    result.searches = optimum.searches;
-    for (int round = 0; optimum.met; ++round) {
-        const bool again = round < most_rounds;
-        const std::vector<Goal> goals = file.goals;
-        result.between = add_points_outside(scene(optimum.p), optimum.scale, file.goals, again);
-        if (!result.between || !again || !std::isfinite(result.between->excess)) {
-            file.goals = goals;
-            break;
-        }
-        all = figures_of(file);
-        compare::Optimum next = search({optimum.p});
-        if (!next.met) next = search(starts);
-        if (next.best < 0) {  // an added point has no value in the scene as it is
-            file.goals = goals;
-            all = figures_of(file);
-            break;
-        }
-        optimum = std::move(next);
-    }
-    result.goals = file.goals, result.limits = all.goals;
-    std::vector<std::string> units;
-    for (const Goal& goal : file.goals) units.insert(units.end(), goal.points.size(), goal.unit);
-    if (file.minimised) {
-        result.minimised = file.minimised->figure.name + " at " + file.minimised->place;
-        result.minimised_unit = symbol(file.minimised->output.unit);
-        units.push_back(result.minimised_unit);
-    }
-    const Scene changed = scene(optimum.p);
-    result.confirmation =
-        compare::confirm(changed, all.figures, units, optimum.after, optimum.scale);
-    if (optimum.met) result.certificate = certificate(changed, all.figures, threads);
+    judge_still(file, request.file, of, all);
+    all.searches = all.optimum.searches;
+    searching.add_points(starts);
+    const Scene changed = all.varied.scene(all.optimum.p);
+    all.by = compare::confirm(changed, all.figures, all.optimum.after, all.optimum.scale);
+    if (all.optimum.met)
+        all.certificate = certificate(changed, all.figures, threads_of(request.running));
     progress("");
-    delivery.print_text(optimise_text(result));
-    write(optimum.p, optimum.met, true);
-    print_result(delivery, optimise_schema, optimise_json(result));
-    if (!result.confirmation.confirmed) return could_not_judge;
-    if (!optimum.met) return limit_broken;
-    if (result.between && !std::isfinite(result.between->excess)) return could_not_judge;
-    return optimum.converged && result.certificate->conclusive() ? fine : could_not_judge;
+    const int code = deliver_result(delivery, document_of(loaded, request.scene), result_of(all));
+    searching.write(all.optimum.p, all.optimum.met, true);
+    return code;
 }
 
 }  // namespace

@@ -2,22 +2,24 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "compare/design/results.hpp"
 #include "reports/command/options/design_options.hpp"
-#include "reports/command/options/load_scene.hpp"
-#include "reports/tables/studies/design_tables.hpp"
 
 namespace elastocheck::reports {
 
 struct FitInput {
     std::string scene;
     Settings settings;
+    std::vector<std::string> vary;
     std::string measured, map;  // files; no map: empty
     bool robust = false;
     int threads = 1;
 };
 
-// Where there is no fit, the reason is in Fitted::why_not. Throws SheetError, SceneError, FileError.
-FittedScene fitted(const FitInput& input, const LoadedScene& loaded, const Varied& varied);
+// Where there is no fit, the reason is in Fitted::why_not. Throws SheetError, SceneError, FileError, and
+// std::invalid_argument as parse_varied().
+compare::FittedScene fitted(const FitInput& input, const LoadedScene& loaded);
 
 }  // namespace elastocheck::reports

@@ -1,0 +1,86 @@
+// Results of solve-for, optimise, fit and tolerances for readers.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/design/fit.hpp"
+#include "compare/design/optimise.hpp"
+#include "compare/design/tolerances.hpp"
+#include "compare/proofs/certify.hpp"
+#include "compare/result/result.hpp"
+
+namespace elastocheck::compare {
+
+struct SolvedFor {
+    const Varied& varied;
+    std::vector<Figure> wanted = {};
+    Eigen::VectorXd target = {};
+    SearchStart start = {};
+    Solution solution = {};
+    Eigen::VectorXd after = {};  // the figures at its numbers
+    Confirmation by = {};
+    bool met() const { return after.allFinite() && solution.excess() <= met_within; }
+};
+Result result_of(const SolvedFor& solved);
+
+// A band of an output at one point, or at the points of a curve.
+struct Goal {
+    std::vector<Figure> points = {};  // in the order of their places
+    double low = -INFINITY, high = INFINITY;
+    std::string where = {};  // the place of its point, or "travel from -80 to 80 mm"
+    // of a curve: what its points lie on, "travel" in mm, or a branch by its parameter
+    std::string along = {}, along_unit = {};
+    double along_factor = 1;     // from Figure::at to the unit
+    bool any_branch = false;     // its points lie on the branches that reach their places
+    int line = 0;                // of the file
+    std::string not_moved = {};  // reason why no number moves it; the search leaves it out
+
+    std::string output() const;  // "toe (change)"
+};
+// Where a curve is furthest outside of its band between its points, in the unit of the output.
+struct Between {
+    double excess = 0;
+    std::string what;  // "toe at travel = 77.5 mm"
+};
+struct OptimisedScene {
+    const Varied& varied;
+    std::vector<Goal> goals = {};
+    std::optional<Figure> minimised = {};  // none: the change
+    // of the figures: the points of the goals in order, then the minimised one
+    std::vector<Figure> figures = {};
+    Optimum optimum = {};
+    std::vector<Search> searches = {};  // before points were added
+    Confirmation by = {};
+    std::optional<Between> between = {};
+    std::optional<CertifyStudy> certificate = {};  // if the bands are met
+};
+Result result_of(const OptimisedScene& scene);
+
+// An output that was not measured and tells an undetermined combination apart.
+struct ProposedOutput {
+    Figure figure = {};  // without a name: none moves with the combination
+    Proposal by = {};
+};
+struct FittedScene {
+    Varied varied;
+    Measured measured;
+    std::vector<Channel> columns;
+    std::vector<std::string> left_out;
+    Fitted fitted = {};
+    std::vector<ProposedOutput> proposed = {};  // per undetermined combination
+};
+Result result_of(const FittedScene& fit);
+
+struct ToleratedScene {
+    ToleratedNumbers tolerances = {};
+    std::vector<Figure> figures = {};
+    std::vector<double> nominal = {};
+    std::vector<Scatter> scatter = {};
+    std::vector<std::string> missing = {};  // reasons why requested figures have no scatter
+};
+// `most` shares of each figure, the largest; 0: all.
+Result result_of(const ToleratedScene& all, int most);
+
+}  // namespace elastocheck::compare
