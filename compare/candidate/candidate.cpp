@@ -6,11 +6,10 @@
 #include <cmath>
 #include <map>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/definitions/definitions.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/studies/findings.hpp"

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "compare/candidate/candidate.hpp"
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/equilibrium.hpp"
@@ -51,7 +51,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
     std::vector<Channel> channels;  // all but characteristics, which need the tangent of a leg
     std::vector<std::size_t> position;
     for (std::size_t c = 0; c < comparison.channels.size(); ++c)
-        if (!std::holds_alternative<Characteristic>(comparison.channels[c].reads))
+        if (comparison.channels[c].kind() != ChannelKind::characteristic)
             channels.push_back(comparison.channels[c]), position.push_back(c);
     for (const std::size_t c : position) result.points.columns.push_back({c, false, {}});
 

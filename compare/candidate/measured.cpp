@@ -8,8 +8,8 @@
 
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/definitions/definitions.hpp"
 #include "compare/deviation/deviation.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare_with.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/deviation/proof.hpp"
 #include "compare/jobs/jobs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/soft_motion.hpp"
@@ -35,7 +35,7 @@ double seconds_alone(const std::vector<BranchSide>& sides, const SolverSettings&
 
 bool has_characteristics(const std::vector<Channel>& channels) {
     return std::ranges::any_of(
-        channels, [](const Channel& c) { return std::holds_alternative<Characteristic>(c.reads); });
+        channels, [](const Channel& c) { return c.kind() == ChannelKind::characteristic; });
 }
 
 // Responses at the landmarks, as the outputs there were read from them.
@@ -346,7 +346,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!branch.determined[c]) continue;
         const double off = reading.channels[c].max,
-                     bound = std::holds_alternative<Characteristic>(channels[c].reads)
+                     bound = channels[c].kind() == ChannelKind::characteristic
                                  ? bound_of_characteristic(equilibrium.curve.channel(c))
                                  : bound_of(channels[c].unit, branch.bounds);
         if (const double part = share(off, bound); !(part <= 1))
@@ -509,7 +509,7 @@ Comparison compare(const Model& model, const Options& options, const std::vector
             result.compared +=
                 count(p->equal_parameter, b.determined) + count(p->equal_abscissa, b.determined);
     for (std::size_t c = 0; c < result.channels.size(); ++c) {
-        if (!std::holds_alternative<Characteristic>(result.channels[c].reads)) continue;
+        if (result.channels[c].kind() != ChannelKind::characteristic) continue;
         double largest = 0;
         for (const auto& branch : result.branches)
             if (std::isfinite(branch.extents[c])) largest = std::max(largest, branch.extents[c]);

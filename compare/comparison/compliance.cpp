@@ -1,9 +1,12 @@
 #include "compare/comparison/compliance.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <variant>
 
+#include "compare/outputs/catalogue/subject.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/branch.hpp"
@@ -16,21 +19,6 @@ namespace elastocheck::compare {
 namespace {
 
 using Eigen::Vector3d;
-
-// A jack: a plane that carries a point of a wheel and is active only where driven.
-bool is_jack(const Model& model, std::size_t joint) {
-    const ModelJoint& j = model.joints[joint];
-    return j.active_only_where_driven && j.j == ground &&
-           std::ranges::any_of(model.constraints,
-                               [&](const Constraint& c) {
-                                   return c.joint == static_cast<int>(joint) &&
-                                          std::holds_alternative<PointInPlane>(c.kind);
-                               }) &&
-           std::ranges::any_of(model.wheels, [&](const Wheel& wheel) {
-               return (wheel.body == j.i && wheel.centre_local == j.at.s_local) ||
-                      (wheel.contact.body == j.i && wheel.contact.s_local == j.at.s_local);
-           });
-}
 
 struct ResponseCase {
     Model model;
@@ -151,15 +139,6 @@ std::string failure_text(const Response& response) {
 
 }  // namespace
 
-int steering_joint(const Model& model) {
-    for (const auto& branch : model.branches)
-        for (const auto& driver : branch.drivers)
-            if (const int joint = driven_joint(driver.what);
-                joint >= 0 && driver.rate != 0 && !is_jack(model, static_cast<std::size_t>(joint)))
-                return joint;
-    return -1;
-}
-
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
                          std::optional<recursive::ResponseAnalysis>& analysis) {
@@ -238,14 +217,48 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     return response;
 }
 
-Vector3d turned(const Motions& motions, BodyId body) {
-    return body == ground ? Vector3d::Zero() : motions[static_cast<std::size_t>(body)].dpi;
+Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
+                           const WheelResponse& response) {
+    const auto n = static_cast<Eigen::Index>(response.free.size());
+    const int force = point == WheelPoint::centre ? at_centre : at_patch;
+    Eigen::MatrixXd C(6 * n, 6 * n);
+    for (Eigen::Index j = 0; j < n; ++j)
+        for (int k = 0; k < 6; ++k) {
+            const auto& by = response.free[static_cast<std::size_t>(j)]
+                                          [static_cast<std::size_t>(k < 3 ? force + k : k)];
+            for (Eigen::Index i = 0; i < n; ++i) {
+                const Subject wheel{model, &state, static_cast<std::size_t>(i)};
+                const bool centre = point == WheelPoint::centre;
+                C.block<6, 1>(6 * i, 6 * j + k)
+                    << wheel.moved_by(by, centre ? wheel.centre() : wheel.patch()),
+                    wheel.turned_by(by);
+                // as the longitudinal force, that of a braked wheel
+                if (!centre) C(6 * i, 6 * j + k) = wheel.moved_by(by, wheel.braked()).x();
+            }
+        }
+    return C;
 }
 
-Vector3d moved(const Equilibrium& state, const Motions& motions, const Point& point) {
-    if (point.body == ground) return Vector3d::Zero();
-    const auto b = static_cast<std::size_t>(point.body);
-    return motions[b].dr + motions[b].dpi.cross(state.poses[b].p * point.s_local);
+double reciprocity(const Model& model, const Eigen::MatrixXd& C) {
+    if (C.size() == 0) return nan;
+    Eigen::VectorXd size = Eigen::VectorXd::Ones(C.rows());
+    for (std::size_t w = 0; w < model.wheels.size(); ++w) {
+        const double radius = drawn_arm(model, model.wheels[w]).norm();
+        if (radius > 0) size.segment<3>(static_cast<Eigen::Index>(6 * w + 3)).setConstant(radius);
+    }
+    const Eigen::MatrixXd even = size.asDiagonal() * C * size.asDiagonal();
+    return (even - even.transpose()).cwiseAbs().maxCoeff() / even.cwiseAbs().maxCoeff();
+}
+
+double in_table_units(const Eigen::MatrixXd& C, Eigen::Index row, Eigen::Index column) {
+    return C(row, column) * in_unit(row % 6 < 3 ? Unit::mm : Unit::deg) *
+           (column % 6 < 3 ? 1e3 : 100);
+}
+
+std::string compliance_row_name(const Model& model, const std::string& point, Eigen::Index row) {
+    const std::string& wheel = model.wheels[static_cast<std::size_t>(row / 6)].name;
+    return fmt::format("{}, {}{} {}", point, wheel.empty() ? "" : wheel + " ",
+                       row % 6 < 3 ? "displacement" : "rotation", "xyz"[row % 3]);
 }
 
 }  // namespace elastocheck::compare

@@ -20,17 +20,11 @@
 #include <vector>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/wheel_response.hpp"
 #include "models/response.hpp"
 #include "recursive/linear_response.hpp"
 
 namespace elastocheck::compare {
-
-// per Model::bodies, per unit of the cause [m/N, m/(N·m), m/m, ...]
-using Motions = std::vector<Increment>;
-
-// Wrenches on a wheel, ground axes: a force at the wheel centre, a moment, a force at the contact
-// patch.
-inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 
 // Cached analyses of the recursion for the response models of a branch side. They do not depend on
 // the state, but for the elimination orders, which are those of the last one: they change rounding.
@@ -38,27 +32,6 @@ struct Analyses {
     std::optional<recursive::ResponseAnalysis> free, jacked, tied;  // computed on first use
     std::optional<std::vector<int>> dependent_rows;                 // of diagnosis.hpp, likewise
 };
-
-struct WheelResponse {
-    // per wheel, jacked: its centre raised by 1 m, the other wheel centres held
-    std::vector<Motions> travel;
-    // jacked: steering joint driven by 1 m or 1 rad; empty without a steering joint
-    Motions steering;
-    std::vector<std::array<Motions, causes>> held;  // per wheel and cause, jacked: per N, per N·m
-    std::vector<std::array<Motions, causes>> free;  // likewise, free; empty with `why_not_free`
-    // the wheels move only together: `jacked` has one jack, under the first wheel. `travel` then
-    // holds that motion first, and its other entries are empty
-    bool tied = false;
-    std::string why_not;       // reason why travel, steering and held are missing
-    std::string why_not_free;  // reason why `free` is missing
-    // These reasons are no failures: the joints hold the wheels, so that no jack raises them; a
-    // wheel moves freely.
-    bool blocked = false, nothing_resists = false;
-};
-
-// Position of the steering joint in Model::joints: the first joint, other than a jack, that some
-// branch drives; -1 if none.
-int steering_joint(const Model& model);
 
 // Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix
 // that its method factorises. `steering`: position in Model::joints, or -1. `analyses` belong to
@@ -78,8 +51,23 @@ Response linear_response(const SolverSettings& solver, const Model& model, const
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
                          std::optional<recursive::ResponseAnalysis>& analysis);
 
-// Displacement of a point of a body, and rotation of the body.
-Eigen::Vector3d moved(const Equilibrium& state, const Motions& motions, const Point& point);
-Eigen::Vector3d turned(const Motions& motions, BodyId body);
+// ---- Compliance matrices.
+
+// Compliance matrix of the wheels, ground axes [6 × 6 per wheel]: rows are the displacement of the
+// point [m] and the rotation [rad], columns the force at the point [N] and the moment [N·m], wheel
+// by wheel; jacks and tyres removed. Empty where a wheel moves without resistance.
+enum class WheelPoint { centre, patch };
+Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
+                           const WheelResponse& response);
+
+// Reciprocity error |C - Cᵀ| / |C|, both the largest entry, lengths divided by the tyre radius (1 m
+// where patch and centre coincide). Zero where all forces have a potential and the state is in
+// equilibrium, up to the moments that the state carries.
+double reciprocity(const Model& model, const Eigen::MatrixXd& C);
+
+// An entry in display units: mm or deg per kN or per 100 N·m. And the name of a row: "contact
+// patch, left displacement x".
+double in_table_units(const Eigen::MatrixXd& C, Eigen::Index row, Eigen::Index column);
+std::string compliance_row_name(const Model& model, const std::string& point, Eigen::Index row);
 
 }  // namespace elastocheck::compare

@@ -9,11 +9,11 @@
 #include <set>
 
 #include "compare/comparison/compliance.hpp"
+#include "compare/outputs/catalogue/subject.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/positions.hpp"
-#include "compare/outputs/wheel_load.hpp"
 #include "elastocheck/compare.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
@@ -170,8 +170,10 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
     int element = -1;
     ElementState at{};
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (const auto* of = std::get_if<WheelLoad>(&channels[c].reads))
-            values[c] = wheel_load(model, branch, state, of->wheel);
+        if (const auto* of = std::get_if<Catalogued>(&channels[c].reads);
+            of != nullptr && of->entry->kind == ChannelKind::element)
+            values[c] =
+                in_unit(channels[c].unit) * of->entry->formula({model, &state, of->of, &branch});
         const auto* of = std::get_if<OfElement>(&channels[c].reads);
         if (of == nullptr) continue;
         if (of->element != element)
@@ -212,7 +214,8 @@ std::string why_undefined(const Channel& channel) {
                "A+B.force_x, is determined";
     if (channel.kind() == ChannelKind::characteristic && channel.undefined.empty())
         return "the joints hold the wheel: it does not rise";
-    if (std::holds_alternative<WheelLoad>(channel.reads))
+    if (const auto* of = std::get_if<Catalogued>(&channel.reads);
+        of != nullptr && of->entry->kind == ChannelKind::element)
         return "another force on the wheel's body may be the road's or not";
     return channel.undefined;
 }

@@ -10,11 +10,12 @@
 #include <tuple>
 #include <utility>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/deviation/tolerance.hpp"
 #include "compare/jobs/jobs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/energy.hpp"
@@ -199,8 +200,7 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
     response.reset();
     std::optional<bool> corner;
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);
-        if (characteristic == nullptr) continue;
+        if (channels[c].kind() != ChannelKind::characteristic) continue;
         // At the corner of a law a stiffness has two values; rounding would select one of them.
         if (channels[c].unit == Unit::newton_per_mm && channels[c].may_be_undefined()) {
             if (!corner) corner = at_corner(side.model, side.branch, state);
@@ -210,15 +210,13 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
             }
         }
         if (!response) {
-            const bool with_free = std::ranges::any_of(channels, [](const Channel& channel) {
-                const auto* which = std::get_if<Characteristic>(&channel.reads);
-                return which != nullptr && needs_free(*which);
-            });
+            const bool with_free = std::ranges::any_of(channels, needs_free);
             response =
                 wheel_response(side, solver, steering_joint(model), state, analyses, with_free);
         }
         row.values[c] =
-            in_unit(channels[c].unit) * value_of(side.model, *characteristic, state, *response);
+            in_unit(channels[c].unit) *
+            value_of(side.model, std::get<Catalogued>(channels[c].reads), state, *response);
     }
     return row;
 }

@@ -11,6 +11,7 @@
 #include "compare/comparison/legs.hpp"
 #include "compare/comparison/trim_once.hpp"
 #include "compare/deviation/agreement.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
@@ -62,15 +63,12 @@ Channel channel_of(const Model& model, const ConditionKind& kind) {
                        const Wheel& wheel = model.wheels[static_cast<std::size_t>(c.wheel)];
                        return counted({wheel.body, wheel.centre_local}, 2);
                    },
-                   [](const WheelToe& c) {
-                       return Channel{.name = "",
-                                      .unit = Unit::deg,
-                                      .reads = Toe{static_cast<std::size_t>(c.wheel)}};
+                   [&](const WheelToe& c) {
+                       return figure_channel(model, figure::toe, static_cast<std::size_t>(c.wheel));
                    },
-                   [](const WheelCamber& c) {
-                       return Channel{.name = "",
-                                      .unit = Unit::deg,
-                                      .reads = Camber{static_cast<std::size_t>(c.wheel)}};
+                   [&](const WheelCamber& c) {
+                       return figure_channel(model, figure::camber,
+                                             static_cast<std::size_t>(c.wheel));
                    },
                    [&](const ProbeCoordinate& c) {
                        return counted(model.probes[static_cast<std::size_t>(c.probe)].at, c.axis);

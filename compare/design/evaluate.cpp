@@ -7,13 +7,13 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/comparison/points.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/deviation/deviation.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
@@ -29,6 +29,30 @@ constexpr int interpolated_points = 40;
 constexpr int most_shorter = 3;     // steps of an eighth
 constexpr double one_slope = 1e-3;  // difference of the slopes to both sides that is none
 
+// Outputs of a model by their names: a figure of the catalogue is made alone; the list of all outputs
+// when another one is asked for, with the sums, which take an analysis, only where it has none.
+class Outputs {
+  public:
+    explicit Outputs(const Model& model) : model_(model) {}
+    Channel operator()(const std::string& name) {
+        for (const Entry& entry : catalogue())
+            if (!entry.on_request && name.ends_with(entry.name))
+                for (const Named& owner : owners(model_, entry.owner))
+                    if (Channel channel = channel_of(model_, entry, owner); channel.name == name)
+                        return channel;
+        for (const bool with_sums : {false, true}) {
+            if (all_.empty() || with_sums) all_ = figure_outputs(model_, with_sums);
+            if (const int c = find_channel(all_, name); c >= 0)
+                return all_[static_cast<std::size_t>(c)];
+        }
+        throw std::invalid_argument(fmt::format("the scene has no output '{}'", name));
+    }
+
+  private:
+    const Model& model_;
+    std::vector<Channel> all_;
+};
+
 // Figures of one branch by one leg.
 struct OnBranch {
     const Model& model;
@@ -38,13 +62,8 @@ struct OnBranch {
     FigureValues& result;
     std::vector<Channel> read = {};  // outputs of the figures, each once
 
-    // `all` without sums, which take an analysis, until one is asked for.
-    void add(const std::string& name, std::vector<Channel>& all) {
-        if (name.empty() || find_channel(read, name) >= 0) return;
-        if (find_channel(all, name) < 0) std::ranges::move(sums(model), std::back_inserter(all));
-        const int c = find_channel(all, name);
-        if (c < 0) throw std::invalid_argument(fmt::format("the scene has no output '{}'", name));
-        read.push_back(all[static_cast<std::size_t>(c)]);
+    void add(const std::string& name, Outputs& outputs) {
+        if (!name.empty() && find_channel(read, name) < 0) read.push_back(outputs(name));
     }
     std::size_t column(const std::string& name) const {
         return static_cast<std::size_t>(find_channel(read, name));
@@ -144,14 +163,14 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
 
 FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg) {
     FigureValues result{VectorXd::Constant(std::ssize(figures), nan)};
-    auto all = figure_outputs(model, false);
+    Outputs outputs(model);
     for (const auto& branch : model.branches) {
         OnBranch on{model, branch, leg, figures, result};
         std::map<double, std::vector<std::size_t>> placed;
         std::vector<std::size_t> over;
         for (std::size_t k = 0; k < figures.size(); ++k) {
             if (figures[k].branch != branch.name) continue;
-            on.add(figures[k].name, all), on.add(figures[k].over, all);
+            on.add(figures[k].name, outputs), on.add(figures[k].over, outputs);
             (figures[k].over.empty() ? placed[figures[k].at] : over).push_back(k);
         }
         if (!placed.empty()) on.at_parameters(std::move(placed));

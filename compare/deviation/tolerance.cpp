@@ -92,7 +92,7 @@ std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve
         double low = std::numeric_limits<double>::infinity(), high = -low;
         for (const auto& point : truth.values)
             low = std::min(low, point[c]), high = std::max(high, point[c]);
-        const double part = std::holds_alternative<Characteristic>(channel.reads) ? 1 : of_value;
+        const double part = channel.kind() == ChannelKind::characteristic ? 1 : of_value;
         double extent = truth.values.empty()
                             ? 0
                             : std::max(high - low, part * std::max(std::abs(low), std::abs(high)));

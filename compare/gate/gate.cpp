@@ -8,7 +8,8 @@
 #include <set>
 #include <tuple>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
@@ -252,8 +253,7 @@ std::vector<std::string> common_branches(const Baseline& baseline, const Measure
 // the range of the equilibrium leg.
 void add_curves(const BranchComparison& branch, std::size_t c, const Channel& channel,
                 const GatedBranch& kept, const std::vector<std::size_t>& at, Measurement& result) {
-    const auto* rate = std::get_if<Characteristic>(&channel.reads);
-    const bool arm = rate != nullptr && is_swing_arm(*rate);
+    const bool rate = channel.kind() == ChannelKind::characteristic, arm = is_swing_arm(channel);
     const std::string unit = arm ? per_metre : symbol(channel.unit);
     const auto value = [&](const Curve& curve, std::size_t point) {
         const double v = curve.values[point][c];
@@ -269,15 +269,14 @@ void add_curves(const BranchComparison& branch, std::size_t c, const Channel& ch
     const auto kept_of = [&](const Curve& curve) {
         std::vector<double> values;
         for (const std::size_t k : at) values.push_back(value(curve, curve.start - before + k));
-        if (rate == nullptr) return values;
+        if (!rate) return values;
         std::vector<double> few;
         for (const std::size_t k : stations(kept.a)) few.push_back(values[k]);
         return few;
     };
     add(rate ? Quantity::characteristic_recursive : Quantity::recursive, kept_of(of_r), false);
     add(rate ? Quantity::characteristic_equilibrium : Quantity::equilibrium, kept_of(of_e),
-        rate || std::holds_alternative<Steering>(channel.reads) ? result.branches.empty()
-                                                                : channel.main);
+        rate || reads_steering_axis(channel) ? result.branches.empty() : channel.main);
     if (!rate && !channel.kinematic()) return;
     std::vector<double> all;
     for (std::size_t k = 0; k < of_e.values.size(); ++k) all.push_back(value(of_e, k));
@@ -458,10 +457,9 @@ Measurement measure(const Model& model, const Comparison& comparison) {
 
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const auto& channel = comparison.channels[c];
-            const auto* rate = std::get_if<Characteristic>(&channel.reads);
-            if (branch.determined[c] || (rate != nullptr && is_swing_arm(*rate)))
+            if (branch.determined[c] || is_swing_arm(channel))
                 add_curves(branch, c, channel, kept, at, result);
-            if (!branch.determined[c] || rate != nullptr) continue;
+            if (!branch.determined[c] || channel.kind() == ChannelKind::characteristic) continue;
             for (const auto& [quantity, reading] :
                  {std::pair{Quantity::deviation_at_equal_parameter,
                             &branch.deviation.equal_parameter},

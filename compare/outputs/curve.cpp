@@ -14,11 +14,6 @@ namespace {
 // A smaller movement is rounding of coordinates in metres.
 constexpr double still = 1e-9;  // [mm], [deg], [N], [N·m]
 
-double range_of(const std::vector<double>& x) {
-    const auto [low, high] = std::ranges::minmax(x);
-    return high - low;
-}
-
 }  // namespace
 
 std::vector<double> Curve::channel(std::size_t c) const {
@@ -70,20 +65,6 @@ Trend trend(std::span<const double> x) {
     for (std::size_t k = 1; k < x.size(); ++k)
         if (!(up ? x[k] > x[k - 1] : x[k] < x[k - 1])) return {Course::turning, k - 1};
     return {up ? Course::rising : Course::falling, 0};
-}
-
-int default_abscissa(std::span<const Channel> channels, const Curve& curve) {
-    int best = -1;
-    double farthest = -1;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        const auto* coordinate = std::get_if<Coordinate>(&channels[c].reads);
-        if (coordinate == nullptr) continue;
-        if (!channels[c].main) return static_cast<int>(c);  // travel
-        const auto y = curve.channel(c);
-        const double range = y.empty() ? 0 : range_of(y);
-        if (range > farthest) farthest = range, best = static_cast<int>(c);
-    }
-    return best;
 }
 
 Abscissa abscissa(std::span<const Channel> channels, int channel, const Curve& a, const Curve& b) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compare/outputs/deformation.hpp"
+#include "compare/outputs/wheel_response.hpp"
 #include "elastocheck/channels.hpp"
 #include "models/kinds.hpp"
 
@@ -88,6 +89,29 @@ double wheel_load(const Model& model, const Branch& branch, const Equilibrium& s
             road -= stress(tyre, e, branch, state, deformation(tyre, e, branch, state)).z();
         }
     return road;
+}
+
+bool is_jack(const Model& model, std::size_t joint) {
+    const ModelJoint& j = model.joints[joint];
+    return j.active_only_where_driven && j.j == ground &&
+           std::ranges::any_of(model.constraints,
+                               [&](const Constraint& c) {
+                                   return c.joint == static_cast<int>(joint) &&
+                                          std::holds_alternative<PointInPlane>(c.kind);
+                               }) &&
+           std::ranges::any_of(model.wheels, [&](const Wheel& wheel) {
+               return (wheel.body == j.i && wheel.centre_local == j.at.s_local) ||
+                      (wheel.contact.body == j.i && wheel.contact.s_local == j.at.s_local);
+           });
+}
+
+int steering_joint(const Model& model) {
+    for (const auto& branch : model.branches)
+        for (const auto& driver : branch.drivers)
+            if (const int joint = driven_joint(driver.what);
+                joint >= 0 && driver.rate != 0 && !is_jack(model, static_cast<std::size_t>(joint)))
+                return joint;
+    return -1;
 }
 
 }  // namespace elastocheck::compare

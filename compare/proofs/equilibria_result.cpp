@@ -9,22 +9,23 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double in_degrees = 180 / std::numbers::pi;
+constexpr double deg_per_rad = 180 / std::numbers::pi;
 
 std::vector<ColumnOf<FoundEquilibrium>> equilibrium_columns() {
     using enum Digits;
     using Found = FoundEquilibrium;
-    return {{"stability", words, [](const Found& f) { return f.stable ? "stable" : "unstable"; },
-             "by the sign of the least stiffness"},
-            {"distance", three, [](const Found& f) { return 1e3 * f.length; },
-             "from that of the branch, or from the end of the branch", "mm"},
-            {"turned", three, [](const Found& f) { return in_degrees * f.angle; }, "likewise", "deg"},
-            {"proof", words, [](const Found& f) { return name(f.proof.answer); }},
-            {"within", size, [](const Found& f) { return 1e3 * f.proof.error.length; },
-             "proved distance to the true equilibrium, at most", "mm"},
-            {"alone within", size, [](const Found& f) { return 1e3 * f.proof.unique.length; },
-             "proved: no other equilibrium within this distance", "mm"},
-            {"what it means", words, [](const Found& f) { return f.meaning; }}};
+    return {
+        {"stability", words, [](const Found& f) { return f.stable ? "stable" : "unstable"; },
+         "by the sign of the least stiffness"},
+        {"distance", three, [](const Found& f) { return 1e3 * f.length; },
+         "from that of the branch, or from the end of the branch", "mm"},
+        {"turned", three, [](const Found& f) { return deg_per_rad * f.angle; }, "likewise", "deg"},
+        {"proof", words, [](const Found& f) { return name(f.proof.answer); }},
+        {"within", size, [](const Found& f) { return 1e3 * f.proof.error.length; },
+         "proved distance to the true equilibrium, at most", "mm"},
+        {"alone within", size, [](const Found& f) { return 1e3 * f.proof.unique.length; },
+         "proved: no other equilibrium within this distance", "mm"},
+        {"what it means", words, [](const Found& f) { return f.meaning; }}};
 }
 
 // A body in one of the equilibria.

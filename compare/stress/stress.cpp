@@ -10,6 +10,7 @@
 #include "compare/comparison/compare_with.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/jobs/jobs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
@@ -46,8 +47,8 @@ std::optional<Output> output(const Model& model, const Channel& channel, std::si
     if (const auto* at = std::get_if<Coordinate>(&channel.reads);
         at != nullptr && channel.name.ends_with("_x"))
         return Output{channel.name, of_position, c, {at->at.body}};
-    if (const auto* toe = std::get_if<Toe>(&channel.reads)) {
-        const Wheel& wheel = model.wheels[toe->wheel];
+    if (is_figure(channel, figure::toe)) {
+        const Wheel& wheel = model.wheels[std::get<Catalogued>(channel.reads).of];
         return Output{channel.name, of_direction, c, {wheel.body}, double(wheel.side)};
     }
     if (const auto* of = std::get_if<Reaction>(&channel.reads);

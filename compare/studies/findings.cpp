@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/kinds.hpp"
 
@@ -151,8 +152,8 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 return static_cast<std::size_t>(found - comparison.channels.begin());
             };
             const std::string prefix = wheel.name.empty() ? "" : wheel.name + ".";
-            const std::size_t travel =
-                channel([&](const Channel& c) { return c.name == prefix + "travel"; });
+            const std::size_t travel = channel(
+                [&](const Channel& c) { return c.name == prefix + std::string(figure::travel); });
             const std::size_t force = channel([&](const Channel& c) {
                 const auto* effort = std::get_if<Effort>(&c.reads);
                 return effort != nullptr && effort->joint == by.joint;

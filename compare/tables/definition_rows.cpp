@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/definitions/definitions.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/tables/rows.hpp"
 #include "elastocheck/compare.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
@@ -56,7 +56,7 @@ std::vector<CharacteristicRow> characteristic_rows(const Comparison& comparison)
     const BranchComparison& branch = comparison.branches.front();
     for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
         const Channel& channel = comparison.channels[c];
-        if (!std::holds_alternative<Characteristic>(channel.reads)) continue;
+        if (channel.kind() != ChannelKind::characteristic) continue;
         const double is = at_start(branch.run(Leg::equilibrium), c),
                      second = at_start(branch.run(branch.second), c),
                      recursion = at_start(branch.run(Leg::recursive), c);

@@ -8,17 +8,16 @@
 #include <stdexcept>
 #include <utility>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/definitions/figure_words.hpp"
+#include "compare/design/figure_words.hpp"
 #include "compare/design/figures.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/overloaded.hpp"
 #include "models/structure.hpp"
 
 namespace elastocheck::compare::variants {
@@ -38,10 +37,7 @@ bool is_extreme(const VariantFigure& figure) { return figure.over != Over::stati
 
 // Whether the channel holds numbers of the design position, of which a variant has its own.
 bool holds_numbers(const Channel& channel) {
-    return std::visit(
-        overloaded{[](const Coordinate&) { return true; }, [](const Compression&) { return true; },
-                   [](const Ackermann&) { return true; }, [](const auto&) { return false; }},
-        channel.reads);
+    return std::holds_alternative<Coordinate>(channel.reads);
 }
 
 // Whether a leg ended a branch that another may follow further. At a limit point or a bifurcation the

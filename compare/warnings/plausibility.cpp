@@ -9,9 +9,9 @@
 #include <optional>
 #include <span>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
@@ -23,25 +23,12 @@ using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// ---- What is plausible of a car at rest, in the unit of the output.
+// ---- What is plausible of a car at rest, beside the figures of the catalogue, in mm and N.
 
-enum class Of { wheel, spring, bushing };
-struct Range {
-    Of of;
-    const char* output;
-    double from, to;
-    const char* asks;
-};
-constexpr Range ranges[] = {
-    {Of::wheel, "toe", -10, 10, "is a tie rod missing, or a rate in another unit?"},
-    {Of::wheel, "camber", -15, 15, "is a link missing, or a rate in another unit?"},
-    {Of::wheel, "shift", 0, 50,
-     "is a preload or a trim missing, or a rate in another unit?"},  // of the centre, from the drawing
-    {Of::wheel, "wheel_rate", -infinity, 2000, "is a rate in another unit?"},
-    {Of::spring, "force", -20, infinity,
-     "it is in tension: does a load point down, or is its preload missing?"},
-    {Of::bushing, "displacement", 0, 20, "is its rate in another unit?"},
-};
+constexpr Plausible movement{0, 50, "is a preload or a trim missing, or a rate in another unit?"};
+constexpr Plausible spring_force{
+    -20, infinity, "it is in tension: does a load point down, or is its preload missing?"};
+constexpr Plausible bushing_displacement{0, 20, "is its rate in another unit?"};
 // Figures of a wheel that together turn negative where x points rearward.
 constexpr double clearly = -0.5;  // [deg], [mm], [%]
 
@@ -82,72 +69,87 @@ std::optional<AtRest> at_rest(const Model& model) {
 
 std::string prefix(const std::string& name) { return name.empty() ? "" : name + "."; }
 
-struct Read {
+struct Reading {
     std::vector<std::string> place;
     double value;
     const char* unit;
 };
+std::vector<std::string> place_of(const Wheel& wheel) {
+    if (wheel.name.empty()) return {"wheel"};
+    return {"wheels", wheel.name};
+}
 
-// The values of one row, in the order of the wheels or elements.
-std::vector<Read> read(const AtRest& state, const Range& range) {
-    std::vector<Read> list;
-    const std::string output = range.output;
-    if (range.of == Of::wheel) {
-        for (const auto& wheel : state.model.wheels) {
-            const std::string of = prefix(wheel.name);
-            const auto place = wheel.name.empty() ? std::vector<std::string>{"wheel"}
-                                                  : std::vector<std::string>{"wheels", wheel.name};
-            if (output == "shift") {
-                const Vector3d by(state.moved(of + "wheel_centre_x"),
-                                  state.moved(of + "wheel_centre_y"),
-                                  state.moved(of + "wheel_centre_z"));
-                list.push_back({place, by.norm(), "mm"});
-            } else if (const auto value = state.find(of + output)) {
-                const int k = find_channel(state.channels, of + output);
-                list.push_back(
-                    {place, *value, symbol(state.channels[static_cast<std::size_t>(k)].unit)});
-            }
-        }
-        return list;
+std::vector<Reading> of_wheels(const AtRest& state, const Entry& entry) {
+    std::vector<Reading> list;
+    for (const auto& wheel : state.model.wheels)
+        if (const auto value = state.find(prefix(wheel.name) + entry.name))
+            list.push_back({place_of(wheel), *value, symbol(entry.unit)});
+    return list;
+}
+// Of the wheel centres, from the drawing.
+std::vector<Reading> movements(const AtRest& state) {
+    std::vector<Reading> list;
+    for (std::size_t w = 0; w < state.model.wheels.size(); ++w) {
+        const Wheel& wheel = state.model.wheels[w];
+        Vector3d by;
+        for (const Entry& entry : catalogue())
+            if (entry.point != nullptr && entry.is.main)
+                by[entry.axis] = state.moved(prefix(wheel.name) + entry.name);
+        list.push_back({place_of(wheel), by.norm(), "mm"});
     }
+    return list;
+}
+std::vector<Reading> of_elements(const AtRest& state, bool springs) {
+    std::vector<Reading> list;
     for (const auto& elastic : state.model.elastics) {
         const bool is_spring = member<ScalarLaw>(elastic.kind) != nullptr;
-        if (elastic.written_as != WrittenAs::itself || is_spring != (range.of == Of::spring))
-            continue;
+        if (elastic.written_as != WrittenAs::itself || is_spring != springs) continue;
         if (is_spring) {
-            if (const auto value = state.find(elastic.name + "." + output))
+            if (const auto value = state.find(elastic.name + ".force"))
                 list.push_back({{"springs", elastic.name}, *value, "N"});
             continue;
         }
         double sum = 0;
         for (const char* axis : axes)
             sum = std::hypot(
-                sum, state.find(fmt::format("{}.{}_{}", elastic.name, output, axis)).value_or(0));
+                sum, state.find(fmt::format("{}.displacement_{}", elastic.name, axis)).value_or(0));
         list.push_back({{"bushings", elastic.name}, sum, "mm"});
     }
     return list;
 }
 
-std::string plausible(const Range& range) {
+std::string words_of(const Plausible& range) {
     return range.to == infinity      ? fmt::format("at least {:g}", range.from)
            : range.from == -infinity ? fmt::format("at most {:g}", range.to)
                                      : fmt::format("{:g} to {:g}", range.from, range.to);
 }
 
+// The first reading out of the range, with the number of others.
+void judge(const std::vector<Reading>& readings, const std::string& output, const Plausible& range,
+           std::vector<Implausible>& list) {
+    int more = -1;
+    for (const auto& [place, value, unit] : readings)
+        if (!(value >= range.from && value <= range.to) && ++more == 0)
+            list.push_back({place, fmt::format("{} {:.4g} {} at rest, plausible: {}; {}", output,
+                                               value, unit, words_of(range), range.asks)});
+    if (more > 0) list.back().what += fmt::format(" (and {} more)", more);
+}
+
 // Caster, trail and the support under braking of a wheel.
 std::optional<Implausible> rearward(const AtRest& state, const Wheel& wheel) {
-    const std::string of = prefix(wheel.name);
-    const auto caster = state.find(of + "caster"), trail = state.find(of + "mechanical_trail");
-    const bool front = state.find(of + "anti_dive").has_value();
-    const auto anti = state.find(of + (front ? "anti_dive" : "anti_lift"));
+    const auto find = [&](std::string_view name) {
+        return state.find(prefix(wheel.name) + std::string(name));
+    };
+    const auto caster = find(figure::caster), trail = find(figure::mechanical_trail);
+    const bool front = find(figure::anti_dive).has_value();
+    const auto anti = find(front ? figure::anti_dive : figure::anti_lift);
     if (!caster || !trail || !anti || *caster > clearly || *trail > clearly || *anti > clearly)
         return std::nullopt;
-    std::vector<std::string> place{"wheel"};
-    if (!wheel.name.empty()) place = {"wheels", wheel.name};
     return Implausible{
-        place, fmt::format("caster {:.3g} deg, mechanical trail {:.3g} mm and {} {:.3g} % are all "
-                           "negative; does x point rearward?",
-                           *caster, *trail, front ? "anti-dive" : "anti-lift", *anti)};
+        place_of(wheel),
+        fmt::format("caster {:.3g} deg, mechanical trail {:.3g} mm and {} {:.3g} % are all "
+                    "negative; does x point rearward?",
+                    *caster, *trail, front ? "anti-dive" : "anti-lift", *anti)};
 }
 
 // ---- Points and bodies.
@@ -277,18 +279,15 @@ std::vector<Implausible> implausible(const Model& model) {
     std::vector<Implausible> list;
     const auto state = at_rest(model);
     if (!state) return list;
-    for (const Range& range : ranges) {
-        int more = -1;
-        for (const auto& [place, value, unit] : read(*state, range)) {
-            if (value >= range.from && value <= range.to) continue;
-            if (++more > 0) continue;
-            std::string output = range.output;
+    for (const Entry& entry : catalogue())
+        if (entry.is.plausible.asks != nullptr) {
+            std::string output = entry.name;
             std::ranges::replace(output, '_', ' ');
-            list.push_back({place, fmt::format("{} {:.4g} {} at rest, plausible: {}; {}", output,
-                                               value, unit, plausible(range), range.asks)});
+            judge(of_wheels(*state, entry), output, entry.is.plausible, list);
         }
-        if (more > 0) list.back().what += fmt::format(" (and {} more)", more);
-    }
+    judge(movements(*state), "shift", movement, list);
+    judge(of_elements(*state, true), "force", spring_force, list);
+    judge(of_elements(*state, false), "displacement", bushing_displacement, list);
     for (const auto& wheel : model.wheels)
         if (auto found = rearward(*state, wheel)) {
             list.push_back(std::move(*found));

@@ -22,7 +22,7 @@ enum class Unit {
     newton,
     newton_metre,
     none,
-    // Units of rates, which are characteristics (characteristics.hpp).
+    // Units of rates.
     deg_per_m,
     deg_per_100mm,
     mm_per_100mm,
@@ -49,66 +49,12 @@ enum class ChannelKind {
 };
 const char* name(ChannelKind kind);  // "motion", ...
 
-// sign (p_axis - counted_from)
+// p_axis - counted_from
 struct Coordinate {
     static constexpr ChannelKind kind = ChannelKind::motion;
     Point at;
     int axis = 0;             // 0 x, 1 y, 2 z
     double counted_from = 0;  // [m]
-    int sign = +1;
-};
-struct Toe {
-    static constexpr ChannelKind kind = ChannelKind::motion;
-    std::size_t wheel = 0;  // position in Model::wheels
-};
-struct Camber {
-    static constexpr ChannelKind kind = ChannelKind::motion;
-    std::size_t wheel = 0;
-};
-// Position of a wheel's steering axis in the road plane, the horizontal plane through the contact
-// patch. With u from the lower to the upper end of the axis, c the patch, e the spin axis pointing
-// outboard, h and n horizontal unit vectors along the wheel and across it (outboard), p the
-// intersection of the axis with the road plane (side +1 left, -1 right):
-//
-//   caster               atan(-u_x / u_z)             n = (e_x, e_y, 0) / |(e_x, e_y, 0)|
-//   kingpin inclination  atan(-side u_y / u_z)        h = side n × z
-//   scrub radius         -n · (p - c)                 p = l + u (c_z - l_z) / u_z,  l the lower end
-//   mechanical trail      h · (p - c)
-//
-// All four are undefined (NaN) for an axis within 0.1 rad of the road plane.
-struct Steering {
-    static constexpr ChannelKind kind = ChannelKind::motion;
-    enum class Figure {
-        caster,
-        kingpin_inclination,
-        scrub_radius,
-        mechanical_trail
-    } figure = Figure::caster;
-    std::size_t wheel = 0;  // position in Model::wheels, with a steering axis
-};
-// Track: y of the left contact patch minus that of the right.
-struct Track {
-    static constexpr ChannelKind kind = ChannelKind::motion;
-    std::size_t left = 0, right = 0;  // positions in Model::wheels
-};
-// Ackermann fraction, 1 where the perpendiculars to the two steered wheels meet on the line of the
-// other axle. With δ the steer angles, positive to the left, δ = -side · toe:
-//
-//   (cot δ_right - cot δ_left) l / j      1 where they meet on it, 0 for parallel wheels
-//
-// Undefined (NaN) unless both wheels turn the same way by 2 deg or more: 0/0 straight ahead.
-struct Ackermann {
-    static constexpr ChannelKind kind = ChannelKind::motion;
-    std::size_t left = 0, right = 0;
-    // wheelbase l over j: lateral distance between the points where the steering axes meet the road
-    // in the design position, or between the patches for a wheel without an axis
-    double wheelbase_by_pivots = 0;
-};
-// Reduction of the distance between two points since the design position.
-struct Compression {
-    static constexpr ChannelKind kind = ChannelKind::motion;
-    Point i, j;
-    double drawn = 0;  // distance in the design position [m]
 };
 // Deformation, or elastic force, of an element in its own axes; evaluated only by
 // compare/comparison/elements.hpp, which needs the branch.
@@ -124,11 +70,6 @@ struct AxialForce {
     static constexpr ChannelKind kind = ChannelKind::element;
     int joint = 0;       // position in Model::joints
     int constraint = 0;  // position in Model::constraints, a DistanceBetween
-};
-// Vertical force of the road on a wheel (compare/outputs/wheel_load.hpp); evaluated with a branch only.
-struct WheelLoad {
-    static constexpr ChannelKind kind = ChannelKind::element;
-    std::size_t wheel = 0;  // position in Model::wheels
 };
 // Driver effort of a joint, work-conjugate to the driven offset: effort · d(offset) is the work of
 // the driver. With the wrench (F, M) of the joint on its body i:
@@ -153,21 +94,13 @@ struct Total {
     BodyId on = ground;
     int component = 0;
 };
-// Kinematics or compliance characteristic of a state and its response (characteristics.hpp).
-struct Characteristic {
-    static constexpr ChannelKind kind = ChannelKind::characteristic;
-    std::size_t entry = 0;  // position in the list of characteristics
-    std::size_t of = 0;     // index of the wheel, spring or damper
+// A figure of a wheel, axle, spring or damper (compare/outputs/catalogue/catalogue.hpp).
+struct Entry;
+struct Catalogued {
+    const Entry* entry = nullptr;
+    std::size_t of = 0;  // its owner, in Model::wheels, elastics or dampers
 };
-// A figure of a wheel by another definition (compare/definitions); it has no derivatives.
-struct Defined {
-    static constexpr ChannelKind kind = ChannelKind::motion;
-    double (*value)(const Model& model, std::size_t wheel, const Equilibrium& state) = nullptr;
-    std::size_t wheel = 0;
-};
-using Reads =
-    std::variant<Coordinate, Toe, Camber, Steering, Track, Ackermann, Compression, Effort, Reaction,
-                 Total, OfElement, AxialForce, WheelLoad, Characteristic, Defined>;
+using Reads = std::variant<Coordinate, Catalogued, Effort, Reaction, Total, OfElement, AxialForce>;
 
 // Value of an output that is undefined, for example the length of an arm whose end is at infinity.
 // NaN means a failure.
@@ -190,21 +123,10 @@ struct Channel {
 };
 
 // The channels of a model, in order; those of a wheel with a name as NAME.toe and so on:
-//   wheel_centre_x, _y, _z   position of the wheel centre, ground axes
-//   toe      = atan2(e_x, side·e_y), positive toe-in          e = unit spin axis pointing outboard
-//   camber   = -asin(e_z), positive when the top leans out    side = +1 left, -1 right
-//                            of each wheel, never the axle total
-//   travel                   z of the wheel centre minus its design value, positive in jounce
-//   contact_patch_x, _y, _z  position of the body point that is the contact patch in the design
-//                            position
-//   track_change             of this wheel's patch, positive outwards
-//   wheelbase_change         likewise, where the scene has a vehicle
-//   caster, kingpin_inclination, scrub_radius, mechanical_trail   of wheels with a steering axis
-//   track                    of two opposite wheels
-//   ackermann                of two opposite wheels at the front of a vehicle
+//   the figures of the catalogue that a state has, wheel by wheel; of the axle
 //   PROBE_x, _y, _z          position of a probe
 //   NAME.compression         of every spring and damper
-//   wheel_load               vertical force of the road on every wheel, positive up
+//   wheel_load               of every wheel
 //   JOINT.drive_force or .drive_moment   effort of the driver, of every joint moved by some branch
 //   JOINT.force_x ... moment_z           wrench of a joint on its first body
 std::vector<Channel> channels(const Model& model);

@@ -153,7 +153,7 @@ struct Landmarks {
     std::optional<Equilibrium> front, start, middle, back;
 };
 
-// Compliance matrices at one point of a branch (characteristics.hpp) about the wheel centres and
+// Compliance matrices at one point of a branch (compliance.hpp) about the wheel centres and
 // the contact patches, SI; empty where a wheel moves without resistance.
 struct Compliance {
     double a = 0;  // parameter of the branch, in its unit

@@ -1,5 +1,5 @@
 // The definitions of figures that a scene asks for. The reader knows no definition: the caller
-// checks the names (compare/definitions/definitions.hpp).
+// checks the names (compare/outputs/catalogue/catalogue.hpp).
 #pragma once
 
 #include <string>

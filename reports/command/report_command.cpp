@@ -12,6 +12,7 @@
 #include "compare/comparison/compare_with.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/jobs/jobs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/solves.hpp"
 #include "compare/studies/study.hpp"
@@ -141,22 +142,18 @@ struct KeyOutputs {
 KeyOutputs key_outputs(const Model& model) {
     KeyOutputs key;
     const auto all = compare::figure_outputs(model);
-    const std::string owner = model.wheels.empty() || model.wheels.front().name.empty()
-                                  ? ""
-                                  : model.wheels.front().name + ".";
-    const auto add = [&](std::vector<compare::Channel>& list, const char* name) {
-        for (const std::string& whose : {owner + name, std::string(name)})
-            if (const int c = compare::find_channel(all, whose); c >= 0) {
-                list.push_back(all[static_cast<std::size_t>(c)]);
-                return;
-            }
+    // of the first wheel, or of the axle
+    const auto is_first = [&](const compare::Channel& channel) {
+        const std::string_view figure = compare::without_owner(channel.name);
+        return channel.name.size() == figure.size() ||
+               channel.name == model.wheels.front().name + "." + std::string(figure);
     };
-    if (!model.wheels.empty()) {
-        for (const char* name :
-             {"bump_steer", "bump_camber", "roll_centre_height", "wheel_rate",
-              "lateral_force_steer", "lateral_force_steer@parallel", "anti_dive"})
-            add(key.at_design, name);
-        for (const char* name : {"toe", "camber"}) add(key.at_ends, name);
+    for (const auto& channel : all) {
+        if (model.wheels.empty() || !is_first(channel)) continue;
+        const compare::Entry* entry = compare::find_entry(channel.name);
+        if (entry != nullptr && entry->is.explained) key.at_design.push_back(channel);
+        if (entry != nullptr && entry->is.main && entry->unit == compare::Unit::deg)
+            key.at_ends.push_back(channel);
     }
     constexpr std::size_t without_wheel = 3;
     for (const auto& channel : all)

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/comparison/points.hpp"
 #include "compare/deviation/deviation.hpp"
 #include "compare/gate/gate.hpp"

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "compare/comparison/elements.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -348,7 +349,7 @@ Table read_table(std::string_view csv, const std::string& file, const Names& nam
 }  // namespace
 
 bool is_travel(const compare::Channel& channel) {
-    return channel.name == "travel" || channel.name.ends_with(".travel");
+    return compare::is_figure(channel, compare::figure::travel);
 }
 
 void keep_rows(PointTable& table, const std::function<std::string(std::size_t point)>& why_not) {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/deviation/agreement.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/findings.hpp"
 #include "compare/tables/rows.hpp"
@@ -348,9 +348,8 @@ json described_channels(const Model& model, const compare::Comparison& compariso
     json channels = channels_json(comparison.channels);
     const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
     for (std::size_t c = 0; c < drawn.size(); ++c) {
-        const auto* rate = std::get_if<compare::Characteristic>(&comparison.channels[c].reads);
         if (comparison.channels[c].kinematic()) channels[c]["drawn"] = drawn[c];
-        if (rate != nullptr && compare::is_swing_arm(*rate)) channels[c]["reciprocal"] = true;
+        if (compare::is_swing_arm(comparison.channels[c])) channels[c]["reciprocal"] = true;
     }
     return channels;
 }

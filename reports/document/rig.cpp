@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "reports/document/wheels.hpp"
 
 namespace elastocheck::reports {
@@ -46,45 +47,14 @@ constexpr std::array tests{Test{"bounce", {"heave", "travel"}},
                            Test{"driving", {"longitudinal force", ""}},
                            Test{"lateral", {"lateral force", ""}}};
 
-// Words of a heading, and the output that they mean; the side is taken out before.
+// Words of a heading that means a column other than an output, and which; the side is taken out before.
+// Those of outputs are in the catalogue.
 struct Heading {
     std::string_view words;
-    std::string_view output;
+    std::string_view column;
     std::string_view moves = {};  // of a parameter
 };
-constexpr std::array headings{Heading{"toe", "toe"},
-                              Heading{"toe angle", "toe"},
-                              Heading{"wheel toe", "toe"},
-                              Heading{"camber", "camber"},
-                              Heading{"camber angle", "camber"},
-                              Heading{"wheel camber", "camber"},
-                              Heading{"caster", "caster"},
-                              Heading{"castor", "caster"},
-                              Heading{"caster angle", "caster"},
-                              Heading{"castor angle", "caster"},
-                              Heading{"kingpin inclination", "kingpin_inclination"},
-                              Heading{"kpi", "kingpin_inclination"},
-                              Heading{"travel", "travel"},
-                              Heading{"wheel travel", "travel"},
-                              Heading{"jounce", "travel"},
-                              Heading{"wheel vertical displacement", "travel"},
-                              Heading{"wheel centre z displacement", "travel"},
-                              Heading{"wheel center z displacement", "travel"},
-                              Heading{"wheel centre x", "wheel_centre_x"},
-                              Heading{"wheel centre y", "wheel_centre_y"},
-                              Heading{"wheel centre z", "wheel_centre_z"},
-                              Heading{"wheel center x", "wheel_centre_x"},
-                              Heading{"wheel center y", "wheel_centre_y"},
-                              Heading{"wheel center z", "wheel_centre_z"},
-                              Heading{"track change", "track_change"},
-                              Heading{"half track change", "track_change"},
-                              Heading{"wheelbase change", "wheelbase_change"},
-                              Heading{"wheel load", "wheel_load"},
-                              Heading{"vertical load", "wheel_load"},
-                              Heading{"tyre load", "wheel_load"},
-                              Heading{"tire load", "wheel_load"},
-                              Heading{"wheel vertical force", "wheel_load"},
-                              Heading{"lateral force", "parameter", "lateral force"},
+constexpr std::array headings{Heading{"lateral force", "parameter", "lateral force"},
                               Heading{"longitudinal force", "parameter", "longitudinal force"},
                               Heading{"vertical force", "parameter", "heave"},
                               Heading{"braking force", "parameter", "longitudinal force"},
@@ -157,13 +127,14 @@ std::optional<RigHeading> heading_of_rig(std::string_view heading,
     std::string joined;
     for (const auto& word : words) joined += (joined.empty() ? "" : " ") + word;
     const auto known = std::ranges::find(headings, joined, &Heading::words);
-    if (known == headings.end()) return std::nullopt;
-    std::string name(known->output);
-    std::string_view moves = known->moves;
+    const compare::Entry* entry = compare::find_by_heading(joined);
+    if (known == headings.end() && entry == nullptr) return std::nullopt;
+    std::string name(entry != nullptr ? std::string_view(entry->name) : known->column);
+    std::string_view moves = entry != nullptr ? "" : known->moves;
     if (moves == "heave" && std::ranges::none_of(tests, [&](const TestBranch& test) {
             return test.moves == moves && !test.by_travel;
         }))
-        name = "wheel_load", moves = "";
+        name = compare::figure::wheel_load, moves = "";
     if (name != "branch" && name != "parameter" && !side.empty()) {
         const auto is = [&](const std::string& output) {
             return compare::find_channel(comparison.channels, output) >= 0;

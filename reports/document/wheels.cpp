@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/wheel_load.hpp"
 #include "models/kinds.hpp"
@@ -142,14 +143,9 @@ std::vector<compare::StaticRow> static_rows(const Model& model,
         const std::string& wheel = model.wheels[w].name;
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const auto& channel = comparison.channels[c];
-            const bool mine =
-                std::visit(overloaded{[&](const compare::Toe& r) { return r.wheel == w; },
-                                      [&](const compare::Camber& r) { return r.wheel == w; },
-                                      [&](const compare::Steering& r) { return r.wheel == w; },
-                                      [&](const compare::WheelLoad& r) { return r.wheel == w; },
-                                      [](const auto&) { return false; }},
-                           channel.reads);
-            if (mine)
+            const auto* of = std::get_if<compare::Catalogued>(&channel.reads);
+            if (of != nullptr && of->of == w && of->entry->is.at_rest &&
+                channel.name.starts_with(wheel))  // not of the axle
                 rows.push_back({wheel, channel.name.substr(wheel.empty() ? 0 : wheel.size() + 1),
                                 symbol(channel.unit), compare::finite_or_nan(drawn[c]),
                                 curve.a.empty()

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/legs.hpp"
 #include "reports/live/prepared.hpp"
 

@@ -10,9 +10,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/analysis.hpp"
@@ -187,13 +188,19 @@ json open(Session& session, std::string_view text, const std::string& name,
                                       {"steps", branch.steps}});
     }
     answer["channels"] = json::array();
-    for (const Channel& channel : channels_of(model))
+    for (const Channel& channel : channels_of(model)) {
+        const compare::Entry* entry = compare::find_entry(channel.name);
+        const compare::Properties is = entry == nullptr ? compare::Properties{} : entry->is;
         answer["channels"].push_back({{"name", channel.name},
                                       {"unit", symbol(channel.unit)},
                                       {"kind", compare::name(channel.kind())},
                                       {"main", channel.main},
+                                      {"at_rest", is.at_rest},
+                                      {"cause", is.cause},
+                                      {"usual", is.live},
                                       {"definition", channel.definition},
                                       {"undefined", compare::why_undefined(channel)}});
+    }
     return answer;
 }
 

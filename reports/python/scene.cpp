@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "compare/comparison/characteristics.hpp"
-#include "compare/definitions/definitions.hpp"
+#include "compare/comparison/compliance.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/curve.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"

@@ -7,8 +7,7 @@
 #include <iterator>
 #include <optional>
 
-#include "compare/comparison/characteristics.hpp"
-#include "compare/definitions/definitions.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -16,56 +15,7 @@ namespace {
 using compare::Channel;
 using compare::Unit;
 
-// An output and the component of which it is, which the axes turn.
-enum class Component { none, lateral, yaw };
-struct Quantity {
-    const char* output;                // of a wheel
-    const char* name;                  // in the file
-    Component component;               // lateral: along y; yaw: about z
-    bool outwards = false;             // of the wheel: +y on the left
-    const char* definition = nullptr;  // instead of that of the output
-};
-constexpr Quantity quantities[] = {
-    {"toe", "toe", Component::none},
-    {"toe@steer", "steer", Component::yaw, false,
-     "angle of the wheel plane to the x axis about z, right-handed about the z axis of this file"},
-    {"camber", "camber", Component::none},
-    {"camber@inclination", "inclination", Component::none, false,
-     "camber about the x axis, right-handed, of either wheel positive where the top leans to the "
-     "right"},
-    {"caster", "caster", Component::none},
-    {"kingpin_inclination", "kingpin_inclination", Component::none},
-    {"wheelbase_change@centre", "longitudinal", Component::none, false,
-     "displacement of the wheel centre along x from the design position, forward"},
-    {"track_change@centre", "lateral", Component::lateral, true,
-     "displacement of the wheel centre along the y axis of this file from the design position"},
-    {"wheel_rate", "wheel_rate", Component::none},
-};
-constexpr const char* coefficients[] = {"lateral_force_steer",
-                                        "lateral_force_steer@opposed",
-                                        "lateral_force_steer@parallel",
-                                        "lateral_force_camber",
-                                        "lateral_force_camber@opposed",
-                                        "lateral_force_camber@parallel",
-                                        "braking_force_steer",
-                                        "braking_force_steer@both",
-                                        "braking_force_camber",
-                                        "braking_force_camber@both",
-                                        "traction_force_steer",
-                                        "traction_force_steer@both",
-                                        "aligning_torque_steer",
-                                        "aligning_torque_steer@opposed",
-                                        "aligning_torque_steer@parallel",
-                                        "aligning_torque_camber",
-                                        "aligning_torque_camber@opposed",
-                                        "aligning_torque_camber@parallel",
-                                        "lateral_stiffness",
-                                        "lateral_stiffness@opposed",
-                                        "lateral_stiffness@parallel",
-                                        "longitudinal_stiffness",
-                                        "longitudinal_stiffness@both",
-                                        "longitudinal_stiffness_at_centre",
-                                        "longitudinal_stiffness_at_centre@both"};
+using Component = compare::Block::Component;
 
 const char* si_symbol(Unit unit) {
     switch (unit) {
@@ -88,18 +38,20 @@ std::optional<InDegrees> in_degrees(Unit unit) {
     return std::nullopt;
 }
 
-std::vector<WheelOutput> chosen(const Model& model, const std::vector<const char*>& outputs) {
+// The outputs of each wheel whose entry in the catalogue has a property, in its order.
+std::vector<WheelOutput> chosen(const Model& model, bool (*has)(const compare::Entry&)) {
     std::vector<Channel> all = compare::channels(model);
     std::ranges::move(compare::characteristics(model), std::back_inserter(all));
     std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
     std::vector<WheelOutput> list;
     for (const Wheel& wheel : model.wheels)
-        for (const char* output : outputs) {
-            const std::string name = wheel.name.empty() ? output : wheel.name + "." + output;
+        for (const compare::Entry& entry : compare::catalogue()) {
+            if (!has(entry)) continue;
+            const std::string name = (wheel.name.empty() ? "" : wheel.name + ".") + entry.name;
             const auto at = std::ranges::find(all, name, &Channel::name);
             if (at == all.end()) continue;
             const char* side = wheel.side > 0 ? "left" : "right";
-            list.push_back({*at, output, wheel.name.empty() ? side : wheel.name, wheel.side});
+            list.push_back({*at, entry.name, wheel.name.empty() ? side : wheel.name, wheel.side});
         }
     return list;
 }
@@ -140,13 +92,11 @@ std::string described(const Breakpoints& points, BlockAxes axes) {
 }  // namespace
 
 std::vector<WheelOutput> block_outputs(const Model& model) {
-    std::vector<const char*> outputs;
-    for (const Quantity& quantity : quantities) outputs.push_back(quantity.output);
-    return chosen(model, outputs);
+    return chosen(model, [](const compare::Entry& e) { return e.is.block.name != nullptr; });
 }
 
 std::vector<WheelOutput> compliance_outputs(const Model& model) {
-    return chosen(model, {std::begin(coefficients), std::end(coefficients)});
+    return chosen(model, [](const compare::Entry& e) { return e.is.compliance; });
 }
 
 std::string blocks_csv(const KCBlocks& blocks, BlockAxes axes) {
@@ -163,8 +113,7 @@ std::string blocks_csv(const KCBlocks& blocks, BlockAxes axes) {
         columns.name.empty() ? std::vector<std::size_t>{0} : ascending(columns);
     for (std::size_t c = 0; c < blocks.outputs.size(); ++c) {
         const auto& [channel, output, wheel, side] = blocks.outputs[c];
-        const Quantity& quantity = *std::ranges::find_if(
-            quantities, [&name = output](const Quantity& q) { return q.output == name; });
+        const compare::Block& quantity = compare::find_entry(output)->is.block;
         // outwards is +y of ISO on the left wheel
         double sign = quantity.outwards && side < 0 ? -1 : 1;
         if (sae && quantity.component != Component::none) sign = -sign;

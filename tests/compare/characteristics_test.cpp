@@ -8,9 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/outputs/catalogue/subject.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
@@ -226,7 +227,7 @@ TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
     const auto list = characteristics(model);
     const auto& rate = list[static_cast<std::size_t>(find_channel(list, "wheel_rate"))];
     const auto value = [&] {
-        return value_of(model, std::get<Characteristic>(rate.reads), is.state, is.response);
+        return value_of(model, std::get<Catalogued>(rate.reads), is.state, is.response);
     };
     EXPECT_TRUE(std::isfinite(value()));
     is.response.free.clear();
@@ -524,7 +525,8 @@ TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
         const Point& patch = model.wheels[0].contact;
         const double y = position(is.state.poses, patch).y();
         // The jack acts at the centre; the rise of the patch differs slightly with camber.
-        const double rises = moved(is.state, is.response.travel[0], patch).z();
+        const double rises =
+            Subject::moved_by(is.response.travel[0], Subject{model, &is.state}.placed(patch)).z();
         EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;
     }
 }

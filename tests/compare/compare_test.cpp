@@ -33,7 +33,7 @@ bool is_undefined(const Comparison& all, const BranchComparison& branch, std::si
 
 // Allowed error of a rate of the equilibrium leg; 0 for other channels.
 double share_of_rate(const Comparison& all, const BranchComparison& branch, std::size_t c) {
-    if (!std::holds_alternative<Characteristic>(all.channels[c].reads)) return 0;
+    if (all.channels[c].kind() != ChannelKind::characteristic) return 0;
     double largest = 1e-3;
     for (const double value : branch.runs[1].curve.channel(c))
         largest = std::max(largest, std::abs(value));

@@ -1,5 +1,5 @@
 // Other definitions of figures: values by hand, and a column by another definition is recognised.
-#include "compare/definitions/definitions.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,6 @@
 #include <set>
 
 #include "compare/candidate/candidate.hpp"
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
@@ -569,8 +568,8 @@ TEST(Definitions, InAColumnAreRecognisedWithSignUnitAndOffset) {
             }
     }
     std::string unseen;
-    for (const Definition& definition : definitions()) {
-        const std::string name = definition.figure + "@" + definition.name;
+    for (const Entry* definition : definitions()) {
+        const std::string& name = definition->name;
         if (!recognised.contains(name))
             unseen += name +
                       (simpler.contains(name) ? " (simpler)"
@@ -592,8 +591,8 @@ TEST(Definitions, InAColumnAreRecognisedWithSignUnitAndOffset) {
         // of every axle the figure itself
         "braking_force_steer@both", "braking_force_camber@both", "traction_force_steer@both",
         "longitudinal_stiffness@both", "longitudinal_stiffness_at_centre@both"};
-    for (const Definition& definition : definitions()) {
-        const std::string name = definition.figure + "@" + definition.name;
+    for (const Entry* definition : definitions()) {
+        const std::string& name = definition->name;
         EXPECT_NE(recognised.contains(name), never.contains(name)) << name;
     }
     for (const char* name :
@@ -632,17 +631,27 @@ TEST(Definitions, AndFactorsDoNotExplainAColumnThatHardlyMoves) {
 
 // ---- The page.
 
-// The table of the definitions and sets, as in README.md beside definitions.hpp.
+// The tables of figures, definitions and sets, as in README.md beside catalogue.hpp.
 std::string table_of_definitions() {
     const auto cell = [](std::string text) {
         for (std::size_t k = 0; (k = text.find('|', k)) != text.npos; k += 2) text.insert(k, "\\");
         return text;
     };
+    const auto row = [&](const Entry& entry) {
+        std::string definition = entry.definition;
+        if (const auto at = definition.find(" '{}'"); at != definition.npos)
+            definition.erase(at, 5);
+        return fmt::format("| `{}` | {} | {} | {} |\n", entry.name, symbol(entry.unit),
+                           cell(definition), cell(entry.is.elsewhere));
+    };
     std::string text =
-        "| output | unit | definition | found in; names elsewhere |\n|---|---|---|---|\n";
-    for (const Definition& d : definitions())
-        text += fmt::format("| `{}@{}` | {} | {} | {} |\n", d.figure, d.name, symbol(d.unit),
-                            cell(d.formula), cell(d.used_by));
+        "| output | unit | definition | formula; sources, and what others call it |\n"
+        "|---|---|---|---|\n";
+    for (const Entry& entry : catalogue())
+        if (!entry.on_request) text += row(entry);
+    text += "\n| output | unit | definition | found in; names elsewhere |\n|---|---|---|---|\n";
+    for (const Entry* entry : definitions())
+        if (entry->on_request) text += row(*entry);
     text += "\n| set | source | outputs |\n|---|---|---|\n";
     for (const DefinitionSet& set : definition_sets()) {
         std::string members;
@@ -657,15 +666,15 @@ TEST(Definitions, AreThoseOfTheirPage) {
     std::ifstream file(ELASTOCHECK_DEFINITIONS "/README.md");
     const std::string page{std::istreambuf_iterator<char>(file), {}};
     const std::string table = table_of_definitions();
-    EXPECT_NE(page.find(table), page.npos) << "compare/definitions/README.md has to contain\n\n"
-                                           << table;
+    EXPECT_NE(page.find(table), page.npos)
+        << "compare/outputs/catalogue/README.md has to contain\n\n"
+        << table;
     // members exist, and a name is defined once
     std::set<std::string> names;
-    for (const Definition& d : definitions()) {
-        const std::string name = d.figure + "@" + d.name;
+    for (const Entry* d : definitions())
         // of springs and of dampers
-        EXPECT_TRUE(names.insert(name).second || d.figure == "motion_ratio") << name;
-    }
+        EXPECT_TRUE(names.insert(d->name).second || figure_of(d->name) == "motion_ratio")
+            << d->name;
     for (const DefinitionSet& set : definition_sets())
         for (const auto& member : set.members) EXPECT_TRUE(names.contains(member)) << member;
 }

@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/design/least_squares.hpp"
 #include "compare/design/optimise.hpp"
 #include "compare/design/tolerances.hpp"

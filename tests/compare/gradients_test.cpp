@@ -10,9 +10,9 @@
 #include <numbers>
 #include <set>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
@@ -163,7 +163,9 @@ TEST(Gradients, AreTheRecordedExactOnes) {
             "scene.yaml", support::replaced(support::text_of(file_of(scene)), "spin_axis: y,",
                                             "spin_axis: y, contact: carrier,"));
         Asked all = asked(file, {}, "none");
-        std::ranges::move(characteristics_otherwise(all.model), std::back_inserter(all.outputs));
+        for (auto& channel : definition_channels(all.model))
+            if (channel.kind() == ChannelKind::characteristic)
+                all.outputs.push_back(std::move(channel));
         std::set<std::string> outputs, numbers, branches;
         for (const Recorded& entry : entries) {
             outputs.insert(entry.output);
@@ -245,8 +247,7 @@ TEST(Gradients, AreTheDifferencesOfScenesWithANumberSet) {
                 continue;
             }
             // an arm by its reciprocal
-            const auto* which = std::get_if<Characteristic>(&all.outputs[c].reads);
-            const bool arm = which != nullptr && is_swing_arm(*which);
+            const bool arm = is_swing_arm(all.outputs[c]);
             const auto of = [&](double y) { return arm ? 1 / y : y; };
             const double y = by.sides.front().values.back()[c],
                          exact = arm ? -entry(c) / (y * y) : entry(c);

@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/definitions/definitions.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 

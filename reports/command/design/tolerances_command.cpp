@@ -6,7 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "compare/comparison/characteristics.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/design/results.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"

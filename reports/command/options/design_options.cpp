@@ -9,7 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "compare/definitions/figure_words.hpp"
+#include "compare/design/figure_words.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/parsed_scene.hpp"
 #include "reports/files/files.hpp"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "compare/definitions/figure_words.hpp"
+#include "compare/design/figure_words.hpp"
 #include "compare/design/figures.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/suggestions.hpp"

@@ -6,9 +6,8 @@
 
 #include <algorithm>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/definitions/definitions.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/warnings/plausibility.hpp"
 #include "models/branch.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -64,17 +63,19 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
             if (!any) wrong(fmt::format("the scene has none of its figures"));
             continue;
         }
-        for (const auto& known : definitions)
-            if (known.figure == one.figure && std::ranges::find(names, known.name) == names.end())
-                names.push_back(known.name);
-        if (names.empty()) {
-            std::vector<std::string> figures;
-            for (const auto& known : definitions)
-                if (std::ranges::find(figures, known.figure) == figures.end())
-                    figures.push_back(known.figure);
+        std::vector<std::string> figures;
+        const auto add_once = [](std::vector<std::string>& words, std::string word) {
+            if (std::ranges::find(words, word) == words.end()) words.push_back(std::move(word));
+        };
+        for (const compare::Entry* known : definitions) {
+            const auto at = known->name.find('@');
+            add_once(figures, known->name.substr(0, at));
+            if (known->name.substr(0, at) == one.figure)
+                add_once(names, known->name.substr(at + 1));
+        }
+        if (names.empty())
             wrong(fmt::format("no figure with other definitions{}",
                               reader::did_you_mean(one.figure, figures, "allowed")));
-        }
         if (std::ranges::find(names, one.name) == names.end())
             wrong(fmt::format("there is no definition {}{}", reader::quote(one.name),
                               reader::did_you_mean(one.name, names, "allowed")));

@@ -1,8 +1,5 @@
 // ---- Curves: one chart for each chosen output of the shown branch, or of every branch
-const wanted = ['toe', 'camber', 'track_change', 'wheelbase_change', 'wheel_rate', 'bump_steer', 'roll_centre_height', 'caster',
-  'lateral_force_steer', 'lateral_force_steer@parallel', 'lateral_force_steer@opposed', 'lateral_stiffness', 'braking_force_steer', 'braking_force_steer@both', 'ackermann', 'travel'];
 const words = name => name.replaceAll('_', ' ').replace('@', ', ');
-const last = name => name.slice(name.lastIndexOf('.') + 1);
 const range = curve => {
   const values = curve.map(p => p[1]).filter(Number.isFinite);
   return values.length ? [Math.min(...values), Math.max(...values)] : null;
@@ -10,7 +7,7 @@ const range = curve => {
 const moves = curve => { const r = range(curve); return r && r[1] - r[0] > 1e-6 * Math.max(1, Math.abs(r[0]), Math.abs(r[1])); };
 const defaultCurves = (run, branch) => {
   const usable = state.info.channels.filter(c => ['motion', 'characteristic'].includes(c.kind) && moves(run.curve(branch, c.name)));
-  const list = wanted.flatMap(name => usable.filter(c => last(c.name) === name));
+  const list = usable.filter(c => c.usual).sort((a, b) => a.usual - b.usual);
   for (const channel of usable) if (list.length < 4 && channel.main && !list.includes(channel)) list.push(channel);
   return list.slice(0, 9).map(c => c.name);
 };

@@ -1,12 +1,5 @@
 // ---- Tables: what the trim adjusts, static values, characteristics by what acts, forces, compliance matrices; each as
 // opened, now, and the change
-const staticFigures = ['toe', 'camber', 'caster', 'kingpin_inclination', 'scrub_radius', 'mechanical_trail', 'track'];
-// What a characteristic is a response to, by its name.
-const causes = [
-  ['lateral force at the contact patch', /^lateral_/], ['braking force at the contact patch', /^(braking_|longitudinal_stiffness(@|$))/],
-  ['traction force at the wheel centre', /^(traction_|longitudinal_stiffness_at_centre)/], ['aligning torque', /^aligning_/],
-  ['steering', /(^steer_|_steered$|^ackermann|^turning)/], ['roll', /(^roll_|_in_roll$)/], ['vertical travel and load', /./]];
-const causeOf = name => causes.find(([, pattern]) => pattern.test(last(name)))[0];
 const tableHead = (...columns) => sketch('thead', {}, sketch('tr', {}, ...columns.map(t => sketch('th', {scope: 'col'}, t))));
 const differs = (was, value) => Number.isFinite(value - was) && Math.abs(value - was) > 1e-9 * Math.max(1, Math.abs(was));
 const tableRow = (name, unit, was, value, more = {}, ...cells) => sketch('tr', more, sketch('td', {title: more.title ?? '', 'data-unit': unit}, name), sketch('td', {}, unit),
@@ -21,11 +14,11 @@ const drawTables = () => {
   const [old, j] = here ? stationAsOpened() : [branchOf(base, first), branchOf(base, first)?.start];
   const rowOf = c => channelRow(c, valueAt(base, old, c.name, j), valueAt(now, is, c.name, k));
   const adjusted = (now.trim ?? []).map(t => tableRow(t.name, t.unit, (base.trim ?? []).find(b => b.name === t.name)?.by ?? NaN, t.by, {title: t.makes, 'data-trim': t.name}));
-  const rates = info.channels.filter(c => c.kind === 'characteristic'), angles = info.channels.filter(c => c.kind === 'motion' && staticFigures.includes(last(c.name)));
+  const rates = info.channels.filter(c => c.kind === 'characteristic'), angles = info.channels.filter(c => c.kind === 'motion' && c.at_rest);
   const plain = rates.length + angles.length ? angles : info.channels.filter(c => c.kind === 'motion' && c.main);
   show($('static'), tableHead('', 'unit', 'as opened', 'now', 'change'), sketch('tbody', {}, ...group('adjusted by the trim', adjusted),
     ...group(now.trim ? 'static values after the trim' : 'static values', plain.map(rowOf)),
-    ...causes.flatMap(([title]) => group(title, rates.filter(c => causeOf(c.name) === title).map(rowOf)))));
+    ...[...new Set(rates.map(c => c.cause))].flatMap(cause => group(cause, rates.filter(c => c.cause === cause).map(rowOf)))));
   $('table-place').textContent = is ? `${here ? '' : 'start of the first branch, '}${is.name} ${shown(now.a(is, k) ?? NaN)} ${is.unit}` : '';
   drawForces();
   drawMatrix();
@@ -77,10 +70,12 @@ for (const id of ['forces', 'matrix']) $(id).addEventListener('toggle', () => st
 for (const id of ['table-at', 'forces-at', 'matrix-at']) $(id).onchange = () => state.now && drawTables();
 
 // ---- Curves chosen together
+// By a force or moment in the plane of the road.
+const isPushed = c => /force|torque/.test(c.cause);
 const presets = {
   'usual curves': () => null,
-  'steering and camber': c => ['toe', 'camber', 'bump_steer', 'bump_camber', 'roll_steer', 'roll_camber', 'steer_gradient', 'caster'].includes(last(c.name)),
-  'compliance': c => c.kind === 'characteristic' && !['vertical travel and load', 'roll', 'steering'].includes(causeOf(c.name)),
+  'steering and camber': c => c.unit.startsWith('deg') && (c.kind === 'motion' ? c.main || c.at_rest : c.kind === 'characteristic' && !isPushed(c)),
+  'compliance': c => c.kind === 'characteristic' && isPushed(c),
   'forces of bushings': c => c.kind === 'element' && /\.elastic_force_[xyz]$/.test(c.name),
   'moments of bushings': c => c.kind === 'element' && /\.elastic_moment_[xyz]$/.test(c.name),
   'forces of springs, stops and links': c => c.kind === 'element' && c.unit === 'N' && !/elastic_force/.test(c.name),

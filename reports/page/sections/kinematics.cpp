@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "reports/document/wheels.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
@@ -16,54 +17,10 @@
 namespace elastocheck::reports {
 namespace {
 
-// How a quantity of a wheel is shown.
-enum class Shown {
-    as_is,
-    change,          // since the start of the branch, where the suspension is settled
-    outward_change,  // likewise, of a y coordinate
-    steer_angle,     // toe, positive to the left
-};
-
-struct Quantity {
-    std::string name;  // "toe"; "wheel_load"
-    std::string title, sign;
-    Shown shown = Shown::as_is;
-};
-
-const std::vector<Quantity> over_travel{
-    {"toe", "Toe angle", "toe-in positive"},
-    {"camber", "Camber angle", "top outwards positive"},
-    {"track_change", "Lateral position of the contact patch",
-     "from its drawn position, outwards positive"},
-    {"wheel_centre_x", "Longitudinal movement of the wheel centre",
-     "since the start of the branch, forward positive", Shown::change},
-    {"caster", "Caster angle", "top backwards positive"},
-    {"wheel_load", "Wheel load", "the force of the road; negative: the wheel would lift off"},
-    {"wheel_rate", "Wheel rate", "both wheels loaded alike, without the tyre"},
-    {"roll_centre_height", "Roll centre height", "above the road"},
-};
-const std::vector<Quantity> over_steering{
-    {"toe", "Steer angle", "to the left positive", Shown::steer_angle},
-    {"camber", "Camber angle", "top outwards positive"},
-    {"ackermann", "Ackermann", "100 %: no tyre slips at low speed"},
-    {"caster", "Caster angle", "top backwards positive"},
-    {"scrub_radius", "Scrub radius", "steering axis inboard of the patch positive"},
-    {"mechanical_trail", "Mechanical trail", "steering axis ahead of the patch positive"},
-};
-const std::vector<Quantity> over_load{
-    {"toe", "Toe change", "toe-in positive", Shown::change},
-    {"camber", "Camber change", "top outwards positive", Shown::change},
-    {"track_change", "Lateral displacement of the contact patch", "outwards positive",
-     Shown::change},
-    {"wheel_centre_x", "Longitudinal displacement of the wheel centre", "forward positive",
-     Shown::change},
-};
-// Drawn only where they were measured, or computed by a candidate.
-const std::vector<Quantity> when_given{
-    {"wheel_centre_y", "Lateral movement of the wheel centre", "outwards positive",
-     Shown::outward_change},
-    {"wheel_centre_z", "Vertical movement of the wheel centre", "up positive", Shown::change},
-};
+using compare::drawn_over;
+using compare::Over;
+using Quantity = compare::DrawnFigure;
+using compare::Shown;
 
 // From the values of an output to what is shown: factor · (value - origin).
 struct Scale {
@@ -118,7 +75,7 @@ struct Family {
     bool several() const { return cases.size() > 1; }
     // Channel that is the abscissa of a wheel; empty: the parameter.
     std::string by(const Wheel& wheel) const {
-        return over_travel ? output_of(wheel, "travel") : "";
+        return over_travel ? output_of(wheel, compare::figure::travel) : "";
     }
 };
 
@@ -450,7 +407,7 @@ bool is_given(const SceneAnalyses& scene, const Family& family, const Quantity& 
 void add_figures(Section& section, const SceneAnalyses& scene, const Family& family) {
     if (family.cases.empty()) return;
     auto quantities = family.quantities;
-    for (const auto& quantity : when_given)
+    for (const auto& quantity : drawn_over(Over::if_given))
         if (is_given(scene, family, quantity)) quantities.push_back(quantity);
     for (const auto& quantity : quantities)
         if (auto made = figure(scene, family, quantity))
@@ -485,7 +442,7 @@ std::string turning_circle(const SceneAnalyses& scene, const Case& c) {
     for (const std::size_t k : {std::size_t{0}, c.curve.a.size() - 1}) {
         if (k == c.curve.start) continue;
         for (const auto& wheel : scene.model.wheels) {
-            const auto toe = c.curve.channel(output_of(wheel, "toe"));
+            const auto toe = c.curve.channel(output_of(wheel, compare::figure::toe));
             if (!toe.empty()) angle = std::min(angle, std::abs(toe[k]));
         }
     }
@@ -507,15 +464,16 @@ std::optional<Section> kinematics_section(const SceneAnalyses& scene) {
     Section section{.id = "kinematics", .title = "Kinematics over travel", .part = Part::behaviour};
     section.words["several"] = scene.model.wheels.size() > 1;
     std::vector<Case> by_parameter;
-    Family family{"travel", "wheel travel [mm]", true, {}, over_travel};
+    Family family{"travel", "wheel travel [mm]", true, {}, drawn_over(Over::travel)};
     for (const auto& c : cases)
         (measured_over_parameter(scene, c.sweep) ? by_parameter : family.cases).push_back(c);
     add_figures(section, scene, family);
     for (const auto& c : by_parameter)
         add_figures(section, scene,
-                    {slug(c.sweep.name), c.sweep.parameter, false, {c}, over_travel});
-    std::vector<Quantity> quantities{{"travel", "", ""}};
-    quantities.insert(quantities.end(), over_travel.begin(), over_travel.begin() + 6);
+                    {slug(c.sweep.name), c.sweep.parameter, false, {c}, family.quantities});
+    std::vector<Quantity> quantities{{std::string(compare::figure::travel), "", ""}};
+    quantities.insert(quantities.end(), family.quantities.begin(),
+                      family.quantities.begin() + 6);
     std::vector<std::string> shown;
     for (const auto& c : cases) {
         if (std::ranges::find(shown, c.sweep.kind) != shown.end()) continue;
@@ -532,9 +490,10 @@ std::optional<Section> steering_section(const SceneAnalyses& scene) {
     if (cases.empty()) return std::nullopt;
     Section section{.id = "steering", .title = "Steering", .part = Part::behaviour};
     for (const auto& c : cases) {
-        add_figures(section, scene,
-                    {slug(c.sweep.name), c.sweep.parameter, false, {c}, over_steering});
-        std::vector<Quantity> quantities(over_steering.begin(), over_steering.begin() + 3);
+        const Family family{
+            slug(c.sweep.name), c.sweep.parameter, false, {c}, drawn_over(Over::steering)};
+        add_figures(section, scene, family);
+        std::vector<Quantity> quantities(family.quantities.begin(), family.quantities.begin() + 3);
         for (const auto& effort : efforts_of(scene, c.sweep))
             quantities.push_back({effort, "", ""});
         section.tables.push_back(
@@ -556,11 +515,11 @@ std::optional<Section> compliance_section(const SceneAnalyses& scene) {
         Family family{.id = id, .x = fmt::format("{} [{}]", id, unit), .over_push = true};
         for (const auto& c : cases)
             if (c.sweep.unit == unit) family.cases.push_back(c);
-        family.quantities = over_load;
+        family.quantities = drawn_over(Over::load);
         if (moment) family.quantities.resize(2);
         add_figures(section, scene, family);
     }
-    for (const auto& c : cases) section.tables.push_back(at_ends(scene, c, over_load));
+    for (const auto& c : cases) section.tables.push_back(at_ends(scene, c, drawn_over(Over::load)));
     return section;
 }
 
@@ -579,7 +538,7 @@ std::optional<Section> curves_section(const SceneAnalyses& scene) {
         Family family{slug(c.sweep.name), x};
         for (const auto& other : cases)
             if (other.sweep.parameter == x) family.cases.push_back(other);
-        family.quantities = no_wheels ? all_outputs(scene, family.cases) : over_load;
+        family.quantities = no_wheels ? all_outputs(scene, family.cases) : drawn_over(Over::load);
         add_figures(section, scene, family);
     }
     if (section.figures.empty()) return std::nullopt;

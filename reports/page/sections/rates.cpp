@@ -7,9 +7,9 @@
 #include <iterator>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <sstream>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
@@ -26,6 +26,7 @@ using Design = std::vector<CharacteristicRow>;
 // or one, which all columns share.
 struct Rate {
     std::string name, unit, definition;
+    bool is_key = false;
     std::vector<std::optional<CharacteristicRow>> rows{};  // one a wheel in their order
 };
 
@@ -70,7 +71,8 @@ std::vector<Rate> rates_of(const Design& design, const std::vector<Wheel>& wheel
         const std::string name = mine ? mine->first : as_words(r.output);
         auto known = mine ? std::ranges::find(rates, name, &Rate::name) : rates.end();
         if (known == rates.end()) {
-            rates.push_back({name, r.unit, r.definition, {}});
+            const compare::Entry* entry = compare::find_entry(r.output);
+            rates.push_back({name, r.unit, r.definition, entry != nullptr && entry->is.key, {}});
             known = rates.end() - 1;
             known->rows.resize(std::max<std::size_t>(1, wheels.size()));
         }
@@ -102,11 +104,11 @@ void add_roll_stiffness(Table& table, const SceneAnalyses& scene, const Design& 
     const auto sweep = leading_sweep(scene);
     if (!sweep) return;
     const SweepCurve curve(scene, *sweep);
-    const auto track = curve.channel("track");
+    const auto track = curve.channel(std::string(compare::figure::track));
     double roll = 0, heave = 0;
     for (const auto& wheel : wheels) {
-        roll += value_of(design, wheel, "wheel_rate_in_roll") / 2;
-        heave += value_of(design, wheel, "wheel_rate") / 2;
+        roll += value_of(design, wheel, compare::figure::wheel_rate_in_roll) / 2;
+        heave += value_of(design, wheel, compare::figure::wheel_rate) / 2;
     }
     if (track.empty() || !std::isfinite(roll)) return;
     const double t = track[curve.start];  // [mm]; N/mm · mm² = N·mm per rad
@@ -125,7 +127,7 @@ void add_roll_stiffness(Table& table, const SceneAnalyses& scene, const Design& 
 }
 
 Table rates_table(const SceneAnalyses& scene, const Design& design,
-                  const std::vector<Wheel>& wheels) {
+                  const std::vector<Wheel>& wheels, bool only_key = false) {
     Table table{.caption = "Rates at the design position", .columns = {{"rate", true}}};
     if (wheels.size() < 2)
         table.columns.push_back({"value"});
@@ -135,6 +137,7 @@ Table rates_table(const SceneAnalyses& scene, const Design& design,
     table.columns.push_back({.name = "definition", .words = true, .note = true});
     const std::size_t width = table.columns.size() - 3;
     for (const auto& rate : rates_of(design, wheels)) {
+        if (only_key && !rate.is_key) continue;
         std::vector<std::string> row{rate.name};
         std::string undefined;
         for (std::size_t k = 0; k < width; ++k) {
@@ -205,26 +208,9 @@ Table key_rates(const SceneAnalyses& scene) {
                     "of the vehicle, braking to the back, traction forward; toe-in positive)"};
     const auto design = design_of(scene);
     if (design.empty()) return table;
-    const std::set<std::string> wanted{"wheel rate",
-                                       "ride rate",
-                                       "roll centre height",
-                                       "bump steer",
-                                       "bump camber",
-                                       "roll steer",
-                                       "lateral force steer",
-                                       "lateral force steer, parallel",
-                                       "lateral force steer, opposed",
-                                       "braking force steer",
-                                       "braking force steer, both",
-                                       "traction force steer, both",
-                                       "anti dive",
-                                       "anti squat",
-                                       "steer gradient",
-                                       "roll stiffness at the wheels"};
-    const Table all = rates_table(scene, design, scene.model.wheels);
+    const Table all = rates_table(scene, design, scene.model.wheels, true);
     table.columns.assign(all.columns.begin(), all.columns.end() - 1);
-    for (const auto& row : all.rows)
-        if (wanted.contains(row[0])) table.rows.emplace_back(row.begin(), row.end() - 1);
+    for (const auto& row : all.rows) table.rows.emplace_back(row.begin(), row.end() - 1);
     return table;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "reports/document/wheels.hpp"
 #include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
@@ -73,21 +74,23 @@ void add_changes(Table& table, const SceneAnalyses& scene) {
     table.caption += fmt::format(
         ", and over the branch {}: changes since its start, track change from the drawn position",
         sweep->name);
-    for (const char* quantity : {"toe", "camber", "track_change"})
+    for (const auto& quantity : compare::drawn_over(compare::Over::load))
         for (const std::size_t end : {std::size_t{0}, curve.a.size() - 1}) {
             if (end == curve.start) continue;
-            const bool from_drawn = quantity == std::string("track_change");
-            std::vector<std::string> row{
-                fmt::format("{}{} at {}{}\u00a0{}", as_words(quantity), from_drawn ? "" : " change",
-                            curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};
+            const compare::Entry& entry = *compare::find_entry(quantity.name);
+            if (entry.point != nullptr) continue;  // a position
+            const bool from_drawn = !entry.is.main;
+            std::vector<std::string> row{fmt::format(
+                "{}{} at {}{}\u00a0{}", as_words(quantity.name), from_drawn ? "" : " change",
+                curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};
             for (const auto& wheel : wheels) {
-                const auto values = curve.channel(output_of(wheel, quantity));
+                const auto values = curve.channel(output_of(wheel, quantity.name));
                 row.push_back(
                     values.empty()
                         ? "–"
                         : static_number(values[end] - (from_drawn ? 0 : values[curve.start])));
             }
-            row.emplace_back(from_drawn ? "mm" : "deg");
+            row.emplace_back(symbol(entry.unit));
             if (row.size() == table.columns.size()) table.rows.push_back(std::move(row));
         }
 }

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <regex>
 
-#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/import/export/export_chrono.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "reports/page/common.hpp"
 
 namespace elastocheck::reports {
@@ -28,7 +29,7 @@ json marks_of(const SceneAnalyses& scene, const Sweep& sweep, const std::vector<
     json marks = json::array();
     const SweepCurve curve(scene, sweep);
     for (const auto& wheel : scene.model.wheels) {
-        const auto travel = curve.channel(output_of(wheel, "travel"));
+        const auto travel = curve.channel(output_of(wheel, compare::figure::travel));
         json mark = json::array();
         for (const double at : a) {
             const auto k =

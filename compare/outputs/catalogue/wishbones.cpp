@@ -1,34 +1,30 @@
-#include "compare/definitions/wishbones.hpp"
+#include "compare/outputs/catalogue/wishbones.hpp"
 
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "compare/outputs/positions.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-using Eigen::Vector3d;
-
 // Points at which a body is held to another, in ground axes.
-std::vector<Vector3d> points_between(const Model& model, BodyId body, BodyId other,
-                                     const std::vector<Pose>& poses) {
+std::vector<Vector3d> points_between(const Subject& x, BodyId body, BodyId other) {
     std::vector<Vector3d> points;
-    for (const Constraint& constraint : model.constraints)
+    for (const Constraint& constraint : x.model.constraints)
         std::visit(overloaded{[&](const CoincidentPoints& c) {
                                   if ((c.i.body == body && c.j.body == other) ||
                                       (c.i.body == other && c.j.body == body))
-                                      points.push_back(position(poses, c.i));
+                                      points.push_back(x.placed(c.i).at);
                               },
                               [](const auto&) {}},
                    constraint.kind);
-    for (const auto& elastic : model.elastics)
+    for (const auto& elastic : x.model.elastics)
         std::visit(overloaded{[&](const Bushing& b) {
                                   if ((b.i.body == body && b.j.body == other) ||
                                       (b.i.body == other && b.j.body == body))
-                                      points.push_back(position(poses, b.i.body, b.i.s_local));
+                                      points.push_back(x.placed(b.i.body, b.i.s_local).at);
                               },
                               [](const auto&) {}},
                    elastic.kind);
@@ -36,22 +32,18 @@ std::vector<Vector3d> points_between(const Model& model, BodyId body, BodyId oth
 }
 
 // The axis of a joint that two of its constraints keep perpendicular to two directions.
-std::optional<Vector3d> axis_between(const Model& model, BodyId body, BodyId other,
-                                     const std::vector<Pose>& poses) {
+std::optional<Vector3d> axis_between(const Subject& x, BodyId body, BodyId other) {
     std::optional<Vector3d> axis;
     std::optional<PerpendicularDirections> first;
     int of_first = -1;
-    const auto in_ground = [&](const Direction& d) -> Vector3d {
-        return compare::pose(poses, d.body).p * d.u_local;
-    };
-    for (const Constraint& constraint : model.constraints)
+    for (const Constraint& constraint : x.model.constraints)
         std::visit(overloaded{[&](const PerpendicularDirections& c) {
                                   if (!((c.i.body == body && c.j.body == other) ||
                                         (c.i.body == other && c.j.body == body)))
                                       return;
                                   if (of_first == constraint.joint && first) {
-                                      if (c.i.u_local == first->i.u_local) axis = in_ground(c.i);
-                                      if (c.j.u_local == first->j.u_local) axis = in_ground(c.j);
+                                      if (c.i.u_local == first->i.u_local) axis = x.direction(c.i);
+                                      if (c.j.u_local == first->j.u_local) axis = x.direction(c.j);
                                   }
                                   first = c, of_first = constraint.joint;
                               },
@@ -62,18 +54,17 @@ std::optional<Vector3d> axis_between(const Model& model, BodyId body, BodyId oth
 
 }  // namespace
 
-std::vector<Plane> wishbone_planes(const Model& model, BodyId wheel,
-                                   const std::vector<Pose>& poses) {
+std::vector<Plane> wishbone_planes(const Subject& x) {
+    const BodyId wheel = x.wheel().body;
     std::vector<Plane> planes;
-    for (BodyId arm = 0; arm < static_cast<BodyId>(model.bodies.size()); ++arm) {
+    for (BodyId arm = 0; arm < static_cast<BodyId>(x.model.bodies.size()); ++arm) {
         if (arm == wheel) continue;
-        const auto outer = points_between(model, arm, wheel, poses),
-                   inner = points_between(model, arm, ground, poses);
+        const auto outer = points_between(x, arm, wheel), inner = points_between(x, arm, ground);
         if (outer.size() != 1 || inner.empty()) continue;
         Vector3d line;
         if (inner.size() == 2)
             line = inner[1] - inner[0];
-        else if (const auto axis = axis_between(model, arm, ground, poses); axis)
+        else if (const auto axis = axis_between(x, arm, ground); axis)
             line = *axis;
         else
             continue;

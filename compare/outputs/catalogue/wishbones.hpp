@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "elastocheck/model.hpp"
+#include "compare/outputs/catalogue/subject.hpp"
 
 namespace elastocheck::compare {
 
@@ -14,9 +14,8 @@ struct Plane {
     double offset = 0;       // normal · p of its points [m]
 };
 
-// In a state, one plane per wishbone of the body. The line to ground is that of two bushings or
-// ball joints, or the axis of a revolute or cylindrical joint.
-std::vector<Plane> wishbone_planes(const Model& model, BodyId wheel,
-                                   const std::vector<Pose>& poses);
+// One plane per wishbone of the wheel's body. The line to ground is that of two bushings or ball joints,
+// or the axis of a revolute or cylindrical joint.
+std::vector<Plane> wishbone_planes(const Subject& wheel);
 
 }  // namespace elastocheck::compare

@@ -1,4 +1,4 @@
-#include "compare/definitions/figure_words.hpp"
+#include "compare/design/figure_words.hpp"
 
 #include <fmt/format.h>
 

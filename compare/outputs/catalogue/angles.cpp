@@ -1,0 +1,504 @@
+// Figures that are read from the state alone: positions, angles, the steering axis, and what holds of two
+// wheels; and the same figures by other definitions.
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+
+#include "compare/outputs/catalogue/subject.hpp"
+#include "compare/outputs/catalogue/wishbones.hpp"
+#include "compare/outputs/wheel_load.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+// ---- The steering axis in the road plane, the horizontal plane through the contact patch. With u from
+// the lower to the upper end of the axis, c the patch, h and n horizontal unit vectors along the wheel
+// and across it (outboard), p the intersection of the axis with the road plane:
+//
+//   caster               atan(-u_x / u_z)             n = (e_x, e_y, 0) / |(e_x, e_y, 0)|
+//   kingpin inclination  atan(-side u_y / u_z)        h = side n × z
+//   scrub radius         -n · (p - c)                 p = l + u (c_z - l_z) / u_z,  l the lower end
+//   mechanical trail      h · (p - c)
+//
+// All four are undefined for an axis within 0.1 rad of the road plane.
+
+constexpr double flattest = 0.1;  // [rad]
+bool is_flat(const Subject& x) {
+    const Vector3d u = x.axis();
+    return !(std::abs(u.z()) > std::sin(flattest) * u.norm());
+}
+template <auto formula>
+double unless_flat(const Subject& x) {
+    return is_flat(x) ? undefined : formula(x);
+}
+
+// ---- Two steered wheels.
+
+// The wheelbase over the lateral distance between the points where the steering axes meet the road as
+// drawn, or between the patches for a wheel without an axis.
+double wheelbase_by_pivots(const Subject& x) {
+    const auto y = [&](std::size_t w) {
+        const Subject drawn = x.of(w).drawn();
+        const double patch = drawn.patch().at.y();
+        if (!drawn.wheel().steering_axis || is_flat(drawn)) return patch;
+        return patch + drawn.axis_from(drawn.patch().at).y();
+    };
+    const std::size_t left = left_wheel(x.model);
+    return x.model.vehicle->wheelbase / (y(left) - y(1 - left));
+}
+// Steer angles, positive to the left: δ = -side · toe.
+struct SteerAngles {
+    double left, right;
+};
+std::optional<SteerAngles> steer_angles(const Subject& x) {
+    constexpr double least = 2 * std::numbers::pi / 180;
+    const std::size_t l = left_wheel(x.model);
+    const double left = -x.of(l).toe(), right = x.of(1 - l).toe();
+    if (!(left * right > 0 && std::min(std::abs(left), std::abs(right)) >= least))
+        return std::nullopt;
+    return SteerAngles{left, right};
+}
+// 1 where the perpendiculars to the two wheels meet on the line of the other axle, 0 for parallel wheels:
+//
+//   (cot δ_right - cot δ_left) l / j
+//
+// Undefined unless both wheels turn the same way by 2 deg or more: 0/0 straight ahead.
+double ackermann(const Subject& x) {
+    const auto at = steer_angles(x);
+    return at ? (1 / std::tan(at->right) - 1 / std::tan(at->left)) * wheelbase_by_pivots(x)
+              : undefined;
+}
+// Towards the side to which the axle turns; the angle of the outer wheel for the inner one,
+// cot δ_o = cot δ_i + j/l, and the reverse.
+struct Steered {
+    double inner = 0, outer = 0, outer_ideal = 0, inner_ideal = 0;
+};
+double of_steered(const Subject& x, double (*formula)(const Steered&)) {
+    const auto at = steer_angles(x);
+    if (!at) return undefined;
+    const bool to_the_left = at->left > 0;
+    Steered s{std::abs(to_the_left ? at->left : at->right),
+              std::abs(to_the_left ? at->right : at->left)};
+    const double l_j = wheelbase_by_pivots(x);
+    s.outer_ideal = std::atan(1 / (1 / std::tan(s.inner) + 1 / l_j));
+    s.inner_ideal = std::atan(1 / (1 / std::tan(s.outer) - 1 / l_j));
+    return formula(s);
+}
+
+// Lines from the patches to the instant centres of the planes of the wishbones, in the transverse plane
+// of the drawn wheel centre; for one wheel, with the middle of the vehicle.
+double roll_centre_by_planes(const Subject& of) {
+    struct PatchLine {
+        double y, z, slope;  // of the patch; dz/dy
+    };
+    std::vector<PatchLine> lines;
+    for (std::size_t w = 0; w < of.model.wheels.size(); ++w) {
+        const Subject wheel = of.of(w);
+        const auto planes = wishbone_planes(wheel);
+        if (planes.size() != 2) return undefined;
+        const double x = wheel.drawn().centre().at.x();
+        const auto& [a, b] = std::pair(planes[0].normal, planes[1].normal);
+        const double p = planes[0].offset - a.x() * x, q = planes[1].offset - b.x() * x,
+                     determinant = a.y() * b.z() - a.z() * b.y();
+        // the instant centre (y, z) = (n_y, n_z) / determinant; at infinity for parallel planes
+        const double n_y = p * b.z() - q * a.z(), n_z = a.y() * q - b.y() * p;
+        const Vector3d patch = wheel.patch().at;
+        lines.push_back({patch.y(), patch.z(),
+                         (n_z - determinant * patch.z()) / (n_y - determinant * patch.y())});
+    }
+    const PatchLine& left = lines.front();
+    if (lines.size() == 1) return -left.y * left.slope;
+    const PatchLine& right = lines.back();
+    const double y = (left.y * left.slope - left.z - right.y * right.slope + right.z) /
+                     (left.slope - right.slope);
+    const double z = left.z + (y - left.y) * left.slope;
+    return std::isfinite(z) ? z - (left.z + right.z) / 2 : undefined;
+}
+
+double wheel_travel(const Subject& x) { return x.centre().at.z() - x.drawn().centre().at.z(); }
+double compression(const Subject& x, const Point& i, const Point& j) {
+    const auto length = [&](const Subject& at) {
+        return (at.placed(j).at - at.placed(i).at).norm();
+    };
+    return length(x.drawn()) - length(x);
+}
+
+// ---- Positions: an entry an axis.
+
+void add_position(std::vector<Entry>& all, Owner owner, const std::string& stem,
+                  const std::string& of, Point (*point)(const Wheel&),
+                  std::array<Properties, 3> is = {}) {
+    for (int k = 0; k < 3; ++k) {
+        const auto a = static_cast<std::size_t>(k);
+        Entry entry{owner,    stem + "_" + axes[a],
+                    Unit::mm, "position of " + of + ", " + axis_words(k),
+                    "",       {},
+                    is[a]};
+        entry.axis = k, entry.point = point;
+        all.push_back(std::move(entry));
+    }
+}
+Point centre_of(const Wheel& wheel) { return {wheel.body, wheel.centre_local}; }
+Point patch_of(const Wheel& wheel) { return wheel.contact; }
+
+// ---- The entries.
+
+const Entry of_wheel[] = {
+    Entry(
+        Owner::wheel, std::string(figure::toe), Unit::deg,
+        "angle of the wheel plane to the x axis seen from above, positive toe-in (front of the "
+        "wheel turned to the vehicle's middle), of this wheel alone",
+        "", [](const Subject& x) { return x.toe(); },
+        {.elsewhere = "atan2(e_x, side·e_y). Toe angle of ISO 8855; steer angles count positive to "
+                      "the left, for which a left wheel has −toe. Elsewhere also toe-out positive, "
+                      "or the axle's total",
+         .main = true,
+         .at_rest = true,
+         .live = 1,
+         .rig = "toe, toe angle, wheel toe",
+         .block = {"toe"},
+         .plausible = {-10, 10, "is a tie rod missing, or a rate in another unit?"},
+         .drawn = {{Over::travel, 1, "Toe angle", "toe-in positive"},
+                   {Over::steering, 1, "Steer angle", "to the left positive", Shown::steer_angle},
+                   {Over::load, 1, "Toe change", "toe-in positive", Shown::change}}}),
+    Entry(Owner::wheel, std::string(figure::camber), Unit::deg,
+          "angle of the wheel plane to the vertical, positive where the top leans outwards", "",
+          [](const Subject& x) { return x.camber(); },
+          {.elsewhere = "-asin(e_z). ISO 8855, SAE J670",
+           .main = true,
+           .at_rest = true,
+           .live = 2,
+           .rig = "camber, camber angle, wheel camber",
+           .block = {"camber"},
+           .plausible = {-15, 15, "is a link missing, or a rate in another unit?"},
+           .drawn = {{Over::travel, 2, "Camber angle", "top outwards positive"},
+                     {Over::steering, 2, "Camber angle", "top outwards positive"},
+                     {Over::load, 2, "Camber change", "top outwards positive", Shown::change}}}),
+    Entry(Owner::wheel, std::string(figure::travel), Unit::mm,
+          "vertical displacement of the wheel centre from its design position, positive in jounce "
+          "(up)",
+          "", wheel_travel,
+          {.elsewhere = "wheel travel, bump",
+           .live = 16,
+           .rig = "travel, wheel travel, jounce, wheel vertical displacement, wheel centre z "
+                  "displacement, wheel center z displacement"}),
+};
+
+const Entry of_patch[] = {
+    Entry(Owner::wheel, "track_change", Unit::mm,
+          "lateral displacement of this wheel's contact patch from its design position, positive "
+          "outwards",
+          "",
+          [](const Subject& x) { return x.side() * (x.patch().at.y() - x.drawn().patch().at.y()); },
+          {.elsewhere = "half-track change",
+           .live = 3,
+           .rig = "track change, half track change",
+           .drawn = {{Over::travel, 3, "Lateral position of the contact patch",
+                      "from its drawn position, outwards positive"},
+                     {Over::load, 3, "Lateral displacement of the contact patch",
+                      "outwards positive", Shown::change}}}),
+    Entry(Owner::wheel_of_vehicle, "wheelbase_change", Unit::mm,
+          "longitudinal displacement of this wheel's contact patch from its design position, "
+          "positive where the wheelbase grows (forward in front, rearward at the rear)",
+          "",
+          [](const Subject& x) {
+              const int forward = x.model.vehicle->axle == Axle::front ? +1 : -1;
+              return forward * (x.patch().at.x() - x.drawn().patch().at.x());
+          },
+          {.elsewhere = "only with a `vehicle` in the scene, which has the axle",
+           .live = 4,
+           .rig = "wheelbase change"}),
+    Entry(Owner::wheel_with_steering_axis, std::string(figure::caster), Unit::deg,
+          "angle of the steering axis to the vertical seen from the side, positive where its top "
+          "leans backwards; undefined where it lies flatter than 0.1 rad",
+          "", unless_flat<[](const Subject& x) { return x.caster(); }>,
+          {.elsewhere = "atan(-u_x/u_z). Castor angle of ISO 8855; Reimpell's τ",
+           .quotient = true,
+           .at_rest = true,
+           .live = 8,
+           .rig = "caster, castor, caster angle, castor angle",
+           .block = {"caster"},
+           .drawn = {{Over::travel, 5, "Caster angle", "top backwards positive"},
+                     {Over::steering, 4, "Caster angle", "top backwards positive"}}}),
+    Entry(Owner::wheel_with_steering_axis, "kingpin_inclination", Unit::deg,
+          "angle of the steering axis to the vertical seen from behind, positive where its top "
+          "leans inwards; undefined where it lies flatter than 0.1 rad",
+          "", unless_flat<[](const Subject& x) { return x.kingpin(); }>,
+          {.elsewhere =
+               "atan(-side u_y/u_z). Steering-axis inclination of ISO 8855, SAI; Reimpell's σ",
+           .quotient = true,
+           .at_rest = true,
+           .rig = "kingpin inclination, kpi",
+           .block = {"kingpin_inclination"}}),
+    Entry(
+        Owner::wheel_with_steering_axis, "scrub_radius", Unit::mm,
+        "distance across the wheel from the contact patch to the intersection of the steering "
+        "axis with the road (the horizontal plane through the patch), positive inboard; "
+        "undefined where the axis lies flatter than 0.1 rad",
+        "",
+        unless_flat<[](const Subject& x) { return -x.across().dot(x.axis_from(x.patch().at)); }>,
+        {.elsewhere = "-n·(p - c). Steering-axis offset at ground, kingpin offset; Reimpell's r_σ",
+         .quotient = true,
+         .at_rest = true,
+         .drawn = {{Over::steering, 5, "Scrub radius",
+                    "steering axis inboard of the patch positive"}}}),
+    Entry(Owner::wheel_with_steering_axis, std::string(figure::mechanical_trail), Unit::mm,
+          "distance along the wheel from the contact patch to the intersection of the steering "
+          "axis with the road (the horizontal plane through the patch), positive in front; "
+          "undefined where the axis lies flatter than 0.1 rad",
+          "",
+          unless_flat<[](const Subject& x) { return x.along().dot(x.axis_from(x.patch().at)); }>,
+          {.elsewhere = "h·(p - c). Castor offset at ground, caster trail",
+           .quotient = true,
+           .at_rest = true,
+           .drawn = {{Over::steering, 6, "Mechanical trail",
+                      "steering axis ahead of the patch positive"}}}),
+    Entry(Owner::axle, std::string(figure::track), Unit::mm,
+          "lateral distance between the contact patches of the two wheels, positive where the left "
+          "one is to the left",
+          "",
+          [](const Subject& x) {
+              const std::size_t left = left_wheel(x.model);
+              return x.of(left).patch().at.y() - x.of(1 - left).patch().at.y();
+          },
+          {.elsewhere = "in scenes with one left and one right wheel", .at_rest = true}),
+    Entry(Owner::front_axle, "ackermann", Unit::percent,
+          "(cot of the right wheel's angle less cot of the left one's) times the wheelbase over "
+          "the lateral distance between the pivots on the road: positive where the inner wheel "
+          "turns more, 100 % where the perpendiculars to the two wheels meet on the line of the "
+          "rear axle; undefined unless both are turned in the same direction by 2 deg or more",
+          "", ackermann,
+          {.elsewhere =
+               "for the two front wheels of a `vehicle`; angles -side·toe, to the left; pivots: "
+               "the points p at the design position, or c for a wheel without axis. 100 % is "
+               "Ackermann's condition cot δ_outer - cot δ_inner = j/l (Reimpell, Milliken). Other "
+               "tools give a ratio of the angles, which is a different number",
+           .quotient = true,
+           .live = 15,
+           .drawn = {{Over::steering, 3, "Ackermann", "100 %: no tyre slips at low speed"}}}),
+    Entry(Owner::spring, "compression", Unit::mm,
+          "design length less length of spring '{}', positive in compression", "",
+          [](const Subject& x) {
+              const auto& spring = std::get<AxialSpring>(x.model.elastics[x.k].kind);
+              return compression(x, spring.i, spring.j);
+          },
+          {.elsewhere = "spring travel"}),
+    Entry(Owner::damper, "compression", Unit::mm,
+          "design length less length of damper '{}', positive in compression", "",
+          [](const Subject& x) {
+              const Damper& damper = x.model.dampers[x.k];
+              return compression(x, damper.i, damper.j);
+          },
+          {.elsewhere = "damper travel"}),
+};
+
+// Needs the branch, of which it counts the loads and drivers.
+Entry wheel_load_entry() {
+    Entry entry(
+        Owner::wheel, std::string(figure::wheel_load), Unit::newton,
+        "vertical force of the road on the wheel, positive up: of its tyre, its jacks, and forces "
+        "at its contact patch or centre, static ones included (weights are loads of their bodies); "
+        "undefined where another force on the wheel's body may be the road's or not",
+        "",
+        [](const Subject& x) {
+            return x.branch == nullptr ? nan : wheel_load(x.model, *x.branch, *x.state, x.k);
+        },
+        {.elsewhere = "wheel vertical force",
+         .at_rest = true,
+         .rig = "wheel load, vertical load, tyre load, tire load, wheel vertical force",
+         .drawn = {{Over::travel, 6, "Wheel load",
+                    "the force of the road; negative: the wheel would lift off"}}});
+    entry.kind = ChannelKind::element;
+    return entry;
+}
+
+// ---- By other definitions.
+
+constexpr auto manufacturer = "a manufacturer's table (tests/outside/README.md)";
+constexpr auto nearly_straight = "the wheels are nearly straight ahead";
+
+const Entry angles_otherwise[] = {
+    Entry(Owner::wheel, "toe@lateral", Unit::deg,
+          "angle of an axis that is lateral in the design position, plus the drawn toe", "",
+          [](const Subject& x) {
+              return x.drawn().toe() + std::atan2(x.lateral().x(), x.side() * x.lateral().y());
+          },
+          {.elsewhere = manufacturer}),
+    Entry(Owner::wheel, "toe@steer", Unit::deg,
+          "steer angle: of the wheel plane to the x axis about z, of either wheel positive to the "
+          "left",
+          "", [](const Subject& x) { return -x.side() * x.toe(); },
+          {.elsewhere = "ISO 8855 7.1.1: steer angle",
+           .set = "iso8855",
+           .block = {"steer", Block::Component::yaw, false,
+                     "angle of the wheel plane to the x axis about z, right-handed about the z "
+                     "axis of this file"}}),
+    Entry(Owner::two_wheels, "toe@axle", Unit::deg, "sum of the toe of both wheels", "",
+          [](const Subject& x) { return x.of(0).toe() + x.of(1).toe(); },
+          {.elsewhere = "ISO 8855 7.1.7: total toe angle", .set = "iso8855"}),
+    Entry(Owner::wheel, "camber@lateral", Unit::deg,
+          "inclination of an axis that is lateral in the design position, plus the drawn camber",
+          "", [](const Subject& x) { return x.drawn().camber() - std::asin(x.lateral().z()); },
+          {.elsewhere = "programs whose wheel carrier is drawn without camber"}),
+    Entry(Owner::wheel, "camber@front_view", Unit::deg,
+          "inclination of the spin axis in the transverse plane, -atan(e_z / |e_y|)", "",
+          [](const Subject& x) { return -std::atan2(x.spin().z(), std::abs(x.spin().y())); },
+          {.elsewhere = "front view; Altair MotionView; a closed form by Rill and Castro"}),
+    Entry(Owner::wheel_with_steering_axis, "camber@kingpin", Unit::deg,
+          "drawn camber less the change of the kingpin inclination", "",
+          [](const Subject& x) { return x.drawn().camber() - (x.kingpin() - x.drawn().kingpin()); },
+          {.elsewhere = manufacturer}),
+    Entry(Owner::wheel, "camber@inclination", Unit::deg,
+          "camber about x, of either wheel positive where the top leans to the right", "",
+          [](const Subject& x) { return -x.side() * x.camber(); },
+          {.elsewhere = "ISO 8855: inclination angle",
+           .set = "iso8855",
+           .block = {"inclination", Block::Component::none, false,
+                     "camber about the x axis, right-handed, of either wheel positive where the "
+                     "top leans to the right"}}),
+    Entry(Owner::wheel_with_steering_axis, "caster@wheel_plane", Unit::deg,
+          "angle of the steering axis to the vertical seen across the wheel, which steers", "",
+          [](const Subject& x) { return std::atan(-x.axis().dot(x.along()) / x.axis().z()); },
+          {.elsewhere = "alignment benches"}),
+    Entry(Owner::wheel_with_steering_axis, "kingpin_inclination@wheel_plane", Unit::deg,
+          "angle of the steering axis to the vertical seen along the wheel, which steers", "",
+          [](const Subject& x) { return std::atan(-x.axis().dot(x.across()) / x.axis().z()); },
+          {.elsewhere = "alignment benches"}),
+    Entry(Owner::wheel_with_steering_axis, "mechanical_trail@across_axis", Unit::mm,
+          "trail on the road times the cosine of the caster: perpendicular to the steering axis",
+          "",
+          [](const Subject& x) {
+              return x.axis_from(x.patch().at).dot(x.along()) * std::cos(x.caster());
+          },
+          {.elsewhere = "mechanical trail of a kinematics program (tests/outside/README.md)"}),
+    Entry(Owner::wheel_with_steering_axis, "mechanical_trail@centre", Unit::mm,
+          "distance along the wheel from the wheel centre to the steering axis at its height", "",
+          [](const Subject& x) { return x.axis_from(x.centre().at).dot(x.along()); },
+          {.elsewhere = "ISO 8855: castor offset at wheel centre; hub trail", .set = "iso8855"}),
+    Entry(Owner::wheel_with_steering_axis, "mechanical_trail@ground_axes", Unit::mm,
+          "distance along x from the contact patch to the steering axis on the road", "",
+          [](const Subject& x) { return x.axis_from(x.patch().at).x(); },
+          {.elsewhere = "SAE J670e: caster offset, in side elevation", .set = "sae"}),
+    Entry(Owner::wheel_with_steering_axis, "scrub_radius@centre", Unit::mm,
+          "distance across the wheel from the wheel centre to the steering axis at its height", "",
+          [](const Subject& x) { return -x.axis_from(x.centre().at).dot(x.across()); },
+          {.elsewhere = "ISO 8855: steering-axis offset at wheel centre", .set = "iso8855"}),
+    Entry(
+        Owner::wheel_with_steering_axis, "scrub_radius@ground_axes", Unit::mm,
+        "distance along y from the contact patch to the steering axis on the road, positive "
+        "inboard",
+        "", [](const Subject& x) { return -x.side() * x.axis_from(x.patch().at).y(); },
+        {.elsewhere = "SAE J670e: kingpin offset at the ground, in front elevation", .set = "sae"}),
+    Entry(Owner::wheel_with_steering_axis, "scrub_radius@distance", Unit::mm,
+          "distance on the road from the contact patch to the steering axis, in any direction", "",
+          [](const Subject& x) {
+              const Vector3d p = x.axis_from(x.patch().at);
+              return std::hypot(p.x(), p.y());
+          },
+          {.elsewhere = "ISO 8855: scrub radius", .set = "iso8855"}),
+    Entry(Owner::wheel, "travel@patch", Unit::mm, "vertical displacement of the contact patch", "",
+          [](const Subject& x) { return x.patch().at.z() - x.drawn().patch().at.z(); },
+          {.elsewhere = "deflection at the tyre"}),
+    Entry(Owner::wheel, "travel@lowest", Unit::mm,
+          "vertical displacement of the lowest point of a circle of the drawn radius in the "
+          "wheel's plane",
+          "", [](const Subject& x) { return x.lowest().z() - x.drawn().lowest().z(); },
+          {.elsewhere = "deflection at the tyre"}),
+    Entry(
+        Owner::wheel, "track_change@centre", Unit::mm,
+        "lateral displacement of the wheel centre, outwards", "",
+        [](const Subject& x) { return x.side() * (x.centre().at.y() - x.drawn().centre().at.y()); },
+        {.elsewhere = "half track at the wheel centre",
+         .block = {"lateral", Block::Component::lateral, true,
+                   "displacement of the wheel centre along the y axis of this file from the design "
+                   "position"}}),
+    Entry(Owner::wheel, "track_change@lowest", Unit::mm,
+          "lateral displacement, outwards, of the lowest point of a circle of the drawn radius in "
+          "the wheel's plane",
+          "", [](const Subject& x) { return x.side() * (x.lowest().y() - x.drawn().lowest().y()); },
+          {.elsewhere = "half track at the contact of a rolling wheel"}),
+    Entry(
+        Owner::wheel_of_vehicle, "wheelbase_change@centre", Unit::mm,
+        "longitudinal displacement of the wheel centre, forward", "",
+        [](const Subject& x) { return x.centre().at.x() - x.drawn().centre().at.x(); },
+        {.elsewhere = "wheelbase at the wheel centres",
+         .block = {"longitudinal", Block::Component::none, false,
+                   "displacement of the wheel centre along x from the design position, forward"}}),
+    Entry(Owner::front_axle, "ackermann@error", Unit::deg,
+          "steer angle of the outer wheel less that for which the perpendiculars of both wheels "
+          "meet on the line of the other axle; positive where the outer wheel steers too much",
+          nearly_straight,
+          [](const Subject& x) {
+              return of_steered(x, [](const Steered& s) { return s.outer - s.outer_ideal; });
+          },
+          {.elsewhere = "ISO 8855: Ackermann error", .set = "iso8855"}),
+    Entry(Owner::front_axle, "ackermann@outer", Unit::percent,
+          "difference of the steer angles over that with this outer angle for the inner one",
+          nearly_straight,
+          [](const Subject& x) {
+              return of_steered(x, [](const Steered& s) {
+                  return (s.inner - s.outer) / (s.inner - s.outer_ideal);
+              });
+          },
+          {.elsewhere = "per cent Ackermann, of the outer wheel"}),
+    Entry(Owner::front_axle, "ackermann@inner", Unit::percent,
+          "difference of the steer angles over that with this inner angle for the outer one",
+          nearly_straight,
+          [](const Subject& x) {
+              return of_steered(x, [](const Steered& s) {
+                  return (s.inner - s.outer) / (s.inner_ideal - s.outer);
+              });
+          },
+          {.elsewhere = "per cent Ackermann, of the inner wheel"}),
+    Entry(
+        Owner::wheels, "roll_centre_height@planes", Unit::mm,
+        "intersection of the lines from the patches to the instant centres, where the planes of "
+        "both wishbones meet in the transverse plane of the drawn wheel centre; above the patches",
+        "", roll_centre_by_planes,
+        {.elsewhere = "drawings in front view; tables of manufacturers", .set = "planes"}),
+};
+
+}  // namespace
+
+std::string axis_words(int axis) {
+    constexpr std::array towards{"forward", "to the left", "up"};
+    const auto a = static_cast<std::size_t>(axis);
+    return std::string("ground axis ") + axes[a] + ", positive " + towards[a];
+}
+
+void add_angles(std::vector<Entry>& all) {
+    const auto moves = [](const char* rig, const Drawing& drawn) {
+        return Properties{.main = true, .rig = rig, .drawn = {drawn}};
+    };
+    Properties x = moves("wheel centre x, wheel center x",
+                         {Over::travel, 4, "Longitudinal movement of the wheel centre",
+                          "since the start of the branch, forward positive", Shown::change});
+    x.drawn.push_back({Over::load, 4, "Longitudinal displacement of the wheel centre",
+                       "forward positive", Shown::change});
+    add_position(all, Owner::wheel, "wheel_centre", "the wheel centre", centre_of,
+                 {x,
+                  moves("wheel centre y, wheel center y",
+                        {Over::if_given, 1, "Lateral movement of the wheel centre",
+                         "outwards positive", Shown::outward_change}),
+                  moves("wheel centre z, wheel center z",
+                        {Over::if_given, 2, "Vertical movement of the wheel centre", "up positive",
+                         Shown::change})});
+    std::ranges::copy(of_wheel, std::back_inserter(all));
+    add_position(all, Owner::rolling_wheel, "contact_patch",
+                 "the contact patch, the lowest point of the rolling wheel", patch_of);
+    add_position(all, Owner::wheel_with_fixed_patch, "contact_patch",
+                 "the point of the carrier that is the contact patch at the design position",
+                 patch_of);
+    std::ranges::copy(of_patch, std::back_inserter(all));
+    all.push_back(wheel_load_entry());
+}
+
+void add_angles_otherwise(std::vector<Entry>& all) {
+    for (const Entry& entry : angles_otherwise) {
+        all.push_back(entry);
+        all.back().is.quotient = true;
+    }
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,183 @@
+// The catalogue of outputs: every figure of a wheel, an axle, a spring or a damper, once, with all that
+// is known of it. Names from the model (probes, joints, elements) are not in it.
+//
+// A new figure is one entry in angles.cpp (read from the state alone), rates.cpp (from a response) or
+// force_tests.cpp. Tables, documents, pages and studies choose by the properties of an entry.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elastocheck/channels.hpp"
+
+namespace elastocheck::compare {
+
+struct Subject;        // subject.hpp
+struct WheelResponse;  // outputs/wheel_response.hpp
+
+// What has such a figure; those of wheels that need more, only where a scene has it.
+enum class Owner {
+    wheel,
+    rolling_wheel,
+    wheel_with_fixed_patch,
+    wheel_with_steering_axis,
+    wheel_of_vehicle,
+    wheel_on_tyre,
+    steered_wheel,    // some branch drives a joint other than a jack, ...
+    wheel_on_rack,    // ... a translation
+    wheel_on_column,  // ... a rotation
+    front_wheel,      // of a scene with a `vehicle`
+    rear_wheel,
+    wheel_of_axle,       // one of a left and a right one
+    wheel_without_axle,  // of another scene
+    // one figure for all wheels together
+    wheels,
+    two_wheels,
+    axle,
+    front_axle,  // of a scene with a `vehicle`
+    spring,
+    damper,
+};
+// An owner in a model: its name, empty where the model has one of the kind without a name; its position
+// in Model::wheels, elastics or dampers.
+struct Named {
+    std::string name;
+    std::size_t k = 0;
+};
+std::vector<Named> owners(const Model& model, Owner of);
+struct Entry;
+Channel channel_of(const Model& model, const Entry& entry, const Named& owner);
+
+// A curve of the report: over what, in which place among the figures there, and how.
+enum class Over { travel, steering, load, if_given };  // if_given: only where measured or computed
+enum class Shown {
+    as_is,
+    change,          // since the start of the branch, where the suspension is settled
+    outward_change,  // likewise, of a y coordinate
+    steer_angle,     // toe, positive to the left
+};
+struct Drawing {
+    Over over;
+    int place;
+    const char *title, *sign;
+    Shown shown = Shown::as_is;
+};
+
+// A block of `export --format blocks`: its name there; what the axes of the file turn.
+struct Block {
+    const char* name = nullptr;  // null: none
+    enum class Component { none, lateral, yaw } component = Component::none;
+    bool outwards = false;             // of the wheel: +y on the left
+    const char* definition = nullptr;  // instead of that of the output
+};
+// What is plausible of a car at rest, in the unit of the output.
+struct Plausible {
+    double from = -1 / 0.0, to = 1 / 0.0;
+    const char* asks = nullptr;  // null: nothing is known
+};
+
+inline constexpr const char* vertical_cause = "vertical travel and load";
+
+struct Properties {
+    const char* elsewhere = "";  // where it is found; names for it elsewhere
+    const char* set = "";        // of another definition: definition_sets()
+    bool main = false;           // judged and compared first
+    bool swing_arm = false;      // endless where two links are parallel: compared by its reciprocal
+    bool reads_free = false;     // WheelResponse::free, beside every rate in N/mm and on tyres
+    bool quotient = false;       // may be undefined without `undefined`
+    bool at_rest = false;        // of the alignment of a car at rest
+    bool key = false;            // shown first in a report
+    bool explained = false;      // a report shows which numbers of the scene move it
+    bool compliance = false;     // a coefficient of compliance at the design position
+    int live = 0;                // place among the usual curves of the live page; 0: none
+    const char* cause = vertical_cause;  // what a characteristic responds to
+    const char* rig = "";                // headings of measured files, lower case, with commas
+    Block block = {};
+    Plausible plausible = {};
+    std::vector<Drawing> drawn = {};
+};
+
+struct Entry {
+    Owner owner;
+    std::string name;  // "toe", "wheel_rate@patch"
+    Unit unit;
+    std::string definition;  // one line with its sign; "{}" is the name of the owner
+    std::string undefined;   // meaning of an undefined value; empty where it always has one
+    // Value in SI; `undefined` where there is none, NaN where the leg failed to compute the response.
+    std::function<double(const Subject&)> formula;
+    Properties is = {};
+    ChannelKind kind = ChannelKind::motion;  // characteristic: reads a response
+    bool on_request = false;                 // by another definition than the project's own
+    int axis = -1;                           // of a coordinate of a point
+    Point (*point)(const Wheel&) = nullptr;  // which point
+};
+
+// All entries: the project's own, of states, then of responses; then those by other definitions.
+const std::vector<Entry>& catalogue();
+
+// Entries by other definitions, "wheel_rate@patch", and the figures under the tests of an axle,
+// "lateral_force_steer@parallel": of states, then of responses.
+std::vector<const Entry*> definitions();
+
+// What is drawn over this, in its places; the name of an output with how it is shown.
+struct DrawnFigure {
+    std::string name, title, sign;
+    Shown shown = Shown::as_is;
+};
+std::vector<DrawnFigure> drawn_over(Over over);
+
+// The entry of an output of this name, "left.camber@kingpin" or "camber"; null if there is none. Owners
+// of several kinds may have it.
+const Entry* find_entry(std::string_view output);
+// The entry that rigs call so, "wheel toe"; null if there is none.
+const Entry* find_by_heading(std::string_view words);
+// "camber@kingpin" of "left.camber@kingpin"; and "camber" of it and of "left.camber".
+std::string_view without_owner(std::string_view output);
+std::string figure_of(std::string_view output);
+
+// Whether a channel is this figure, "toe", of any owner; and the figure of a wheel.
+bool is_figure(const Channel& channel, std::string_view figure);
+Channel figure_channel(const Model& model, std::string_view figure, std::size_t wheel);
+
+// ---- The outputs of a model.
+
+// Characteristics, as outputs beside channels(model), none of them a main output; empty without a wheel.
+std::vector<Channel> characteristics(const Model& model);
+
+// An output per definition and wheel that has a value in the design position, "left.camber@kingpin";
+// figures of an axle once, without the name of a wheel. None of them is a main output.
+std::vector<Channel> definition_channels(const Model& model);
+// The outputs among them that define `figure`, "left.camber", otherwise.
+std::vector<Channel> definitions_of(std::span<const Channel> defined, const std::string& figure);
+
+// Definitions by the name of a standard or a way of drawing, for scenes that ask for them.
+struct DefinitionSet {
+    std::string name;                  // "sae"
+    const char* source;                // what they have in common, and where it is defined
+    std::vector<std::string> members;  // "scrub_radius@ground_axes"
+};
+std::vector<DefinitionSet> definition_sets();
+
+// Value of a characteristic in SI; `undefined` where it has none, NaN where the leg failed.
+double value_of(const Model& model, const Catalogued& what, const Equilibrium& state,
+                const WheelResponse& response);
+// Whether it reads WheelResponse::free.
+bool needs_free(const Channel& channel);
+// Whether it is compared by its reciprocal; whether it is a figure of the steering axis.
+bool is_swing_arm(const Channel& channel);
+bool reads_steering_axis(const Channel& channel);
+
+// Names of figures that are read for what they are.
+namespace figure {
+inline constexpr std::string_view toe = "toe", camber = "camber", travel = "travel",
+                                  caster = "caster", mechanical_trail = "mechanical_trail",
+                                  track = "track", wheel_rate = "wheel_rate",
+                                  wheel_rate_in_roll = "wheel_rate_in_roll",
+                                  anti_dive = "anti_dive", anti_lift = "anti_lift",
+                                  wheel_load = "wheel_load";
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,660 @@
+// Figures from the response of a state: rates over travel, roll and steering, stiffnesses, centres. Each
+// is an exact rate by the tangent of the leg that found the state, never a difference of two points, and
+// has the same value for a wheel and for its mirror image.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "compare/outputs/catalogue/subject.hpp"
+#include "models/kinds.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double pneumatic_trail = 0.03;  // [m]
+
+constexpr auto never = "";
+constexpr auto no_vertical = "the wheel does not rise";
+constexpr auto does_not_steer = "the steering does not turn the wheel about an upright axis here";
+constexpr auto not_steered = "the steering is not driven or held on this branch";
+constexpr auto does_not_roll = "its wheels move only together: the axle does not roll";
+constexpr auto unresisted = "the travel of the wheel is unresisted";
+constexpr auto no_roll_centre = "no finite roll centre";
+constexpr auto no_rate =
+    "the travel of the wheel is unresisted or blocked, or an element is at a kink of its law";
+constexpr auto endless_in_front =
+    "the carrier does not rotate as seen from the front: the arm is infinite";
+constexpr auto endless_from_side =
+    "the carrier does not rotate as seen from the side: the arm is infinite";
+constexpr auto axis_elsewhere = "instantaneous, virtual or compliance-based steering axis";
+constexpr auto milliken =
+    "Milliken and Milliken, *Race Car Vehicle Dynamics*, ch. 17; needs `vehicle` in the scene";
+constexpr auto instant_axis = "virtual steering axis of multi-link suspensions";
+
+// ---- Motions of the wheels.
+
+using Causes = std::vector<std::array<Motions, causes>>;
+
+Motions sum(const std::vector<std::pair<double, const Motions*>>& weighted) {
+    Motions total(weighted.front().second->size());
+    for (const auto& [weight, motions] : weighted)
+        for (std::size_t b = 0; b < total.size(); ++b) {
+            total[b].dr += weight * (*motions)[b].dr;
+            total[b].dpi += weight * (*motions)[b].dpi;
+        }
+    return total;
+}
+// A unit cause on this wheel, and `other` times as much on the others.
+Motions of_axle(const Causes& by, const Subject& x, int cause, double other) {
+    std::vector<std::pair<double, const Motions*>> weighted;
+    for (std::size_t w = 0; w < by.size(); ++w)
+        weighted.emplace_back(w == x.k ? 1 : other, &by[w][static_cast<std::size_t>(cause)]);
+    return sum(weighted);
+}
+const Motions& held(const Subject& x, int cause) {
+    return x.response->held[x.k][static_cast<std::size_t>(cause)];
+}
+// The wheel loads stay: jacks and tyres give no more force. Null where the wheel moves freely.
+const Motions* unheld(const Subject& x, int cause) {
+    return x.response->free.empty() ? nullptr
+                                    : &x.response->free[x.k][static_cast<std::size_t>(cause)];
+}
+double nothing(const Subject& x) { return x.response->nothing_resists ? undefined : nan; }
+
+// Heave: all wheels raised by 1 m; with tied wheels, their common motion scaled so that this wheel
+// rises by 1 m. Roll: the wheels of an axle in opposition, the left up; not for tied wheels.
+Motions raised(const Subject& x) {
+    const auto& travel = x.response->travel;
+    const double whole = x.response->tied ? 1 / x.moved_by(travel.front(), x.centre()).z() : 1;
+    std::vector<std::pair<double, const Motions*>> weighted;
+    for (const Motions& motions : travel) weighted.emplace_back(whole, &motions);
+    return sum(weighted);
+}
+Motions rolled(const Subject& x) {
+    std::vector<std::pair<double, const Motions*>> weighted;
+    for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
+        weighted.emplace_back(x.of(w).side(), &x.response->travel[w]);
+    return sum(weighted);
+}
+// Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by half
+// the track, the other one goes down by as much.
+Motions rolled_towards(const Subject& x) {
+    Motions roll = rolled(x);
+    const double half = std::abs(x.of(0).patch().at.y() - x.of(1).patch().at.y()) / 2 * x.side();
+    for (auto& motion : roll) motion.dr *= half, motion.dpi *= half;
+    return roll;
+}
+double in_roll(const Subject& x, double (Subject::*angle)(const Motions&) const) {
+    return x.response->tied ? undefined : (x.*angle)(rolled_towards(x));
+}
+
+// ---- Centres and axes.
+
+// The solution of A P = b, of coincident lines the nearest; none of parallel ones.
+std::optional<Vector2d> crossing(const Eigen::Matrix2d& A, const Vector2d& b, double track) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> lines;
+    lines.setThreshold(1e-9);
+    lines.compute(A);
+    const Vector2d P = lines.solve(b);
+    if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= nowhere)) return std::nullopt;
+    return P;
+}
+// Instant centre in front view: the patch of a wheel moves perpendicularly to the line through its
+// instant centre. The roll centre lies on that line: for an axle in roll at the intersection of both
+// lines; for one wheel at the middle of the vehicle, y = 0.
+//
+//   (P - c) · (dy, dz) = 0      h = P_z - c_z
+//
+// Two coincident lines (arms that guide the wheels vertically) meet halfway between the wheels.
+//
+// `point`: of each wheel, the patch; its motion and its place are those of the line.
+double roll_centre(const Subject& x, Placed (Subject::*point)() const) {
+    const auto seen = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
+    if (!is_axle(x.model)) {
+        const Placed of = (x.*point)();
+        const Vector3d d = x.moved_by(x.response->travel[0], of);
+        return ratio(of.at.y() * d.y(), d.z(), nowhere) + of.at.z() - x.patch().at.z();
+    }
+    if (x.response->tied) return undefined;
+    const Motions roll = rolled(x);
+    Eigen::Matrix2d A;
+    Vector2d c[2], b;
+    double above = 0;  // the road
+    for (std::size_t w = 0; w < 2; ++w) {
+        const Placed of = (x.of(w).*point)();
+        c[w] = seen(of.at);
+        above += (of.at.z() - x.of(w).patch().at.z()) / 2;
+        A.row(static_cast<Eigen::Index>(w)) = seen(x.moved_by(roll, of)).normalized().transpose();
+    }
+    const Vector2d middle = (c[0] + c[1]) / 2;
+    for (int w = 0; w < 2; ++w) b[w] = A.row(w).dot(c[w] - middle);
+    const auto P = crossing(A, b, std::abs(c[0].x() - c[1].x()));
+    return P ? P->y() + above : undefined;
+}
+// Lateral forces on all patches in one direction, with vertical ones that keep the wheel centres at
+// their height (of an axle: from rolling); the roll centre is where the resultant acts. With C the
+// rise of the centres, of an axle that of the left less that of the right one:
+//
+//   f_z = -f_y C_y / C_z      h = -(t/2) f_z / f_y      t/2 = y of the patch of one wheel
+double roll_centre_by_forces(const Subject& x) {
+    const Causes& free = x.response->free;
+    if (free.empty()) return nothing(x);
+    const auto rise = [](const Subject& wheel, const Motions& motions) {
+        return wheel.moved_by(motions, wheel.centre()).z();
+    };
+    if (!is_axle(x.model))
+        return ratio(x.patch().at.y() * rise(x, free[0][at_patch + 1]),
+                     rise(x, free[0][at_patch + 2]), nowhere);
+    if (x.response->tied) return undefined;
+    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const auto roll = [&](const Motions& by) { return rise(left, by) - rise(right, by); };
+    return ratio((left.patch().at.y() - right.patch().at.y()) / 2 *
+                     roll(of_axle(free, left, at_patch + 1, 1)),
+                 roll(of_axle(free, left, at_patch + 2, -1)), nowhere);
+}
+
+// Instant centre of the carrier in side and front view, from the wheel centre, with velocity v and
+// rate ω:
+//   from the side   (x, z): (v_z, -v_x) / ω_y      from the front   (y, z): (-v_z, v_y) / ω_x
+double front_view_arm(const Subject& x) {
+    const Motions by = raised(x);
+    return ratio(x.side() * x.moved_by(by, x.centre()).z(), x.turned_by(by).x(), nowhere);
+}
+double side_view_arm(const Subject& x) {
+    const Motions by = raised(x);
+    return ratio(x.moved_by(by, x.centre()).z(), x.turned_by(by).y(), nowhere);
+}
+
+// Virtual steering axis: screw axis of the carrier when the rack moves at constant wheel-centre height.
+// n upward, through  c + ω × v / ω².
+struct Axis {
+    Vector3d n, through;
+};
+std::optional<Axis> steering_axis(const Subject& x) {
+    if (x.response->steering.empty()) return std::nullopt;
+    const Vector3d omega = x.turned_by(x.response->steering),
+                   v = x.moved_by(x.response->steering, x.centre());
+    const double rate = omega.norm();
+    if (!(v.norm() <= nowhere * rate) || !(std::abs(omega.z()) > 1e-6 * rate)) return std::nullopt;
+    return Axis{omega.normalized() * (omega.z() > 0 ? 1 : -1),
+                x.centre().at + omega.cross(v) / omega.squaredNorm()};
+}
+double caster_steered(const Subject& x) {
+    const auto axis = steering_axis(x);
+    return axis ? std::atan2(-axis->n.x(), axis->n.z()) : undefined;
+}
+double kingpin_steered(const Subject& x) {
+    const auto axis = steering_axis(x);
+    return axis ? std::atan2(-x.side() * axis->n.y(), axis->n.z()) : undefined;
+}
+// Vector from the patch to the intersection of the axis with the road.
+Vector3d on_the_road(const Subject& x, const Axis& axis) {
+    const Vector3d patch = x.patch().at;
+    return axis.through + axis.n * ((patch.z() - axis.through.z()) / axis.n.z()) - patch;
+}
+double scrub_steered(const Subject& x) {
+    const auto axis = steering_axis(x);
+    return axis ? -x.across().dot(on_the_road(x, *axis)) : undefined;
+}
+double trail_steered(const Subject& x) {
+    const auto axis = steering_axis(x);
+    return axis ? x.along().dot(on_the_road(x, *axis)) : undefined;
+}
+double steer_gradient(const Subject& x) {
+    return x.response->steering.empty() ? undefined : x.toe(x.response->steering);
+}
+
+// ---- Stiffness and rates.
+
+// Vertical force on this wheel, and `other` times as much on the other one, over the rise of a point;
+// the wheels free.
+double vertical_rate(const Subject& x, int force, const Placed& at, double other = 1) {
+    if (x.response->free.empty()) return nothing(x);
+    return ratio(1, x.moved_by(of_axle(x.response->free, x, force, other), at).z(), rigid);
+}
+double wheel_rate(const Subject& x) { return vertical_rate(x, at_patch + 2, x.centre()); }
+double ride_rate(const Subject& x) {
+    const double k_w = wheel_rate(x), k_t = x.wheel().tyre_rate;
+    return std::isinf(k_w) ? undefined : k_w * k_t / (k_w + k_t);
+}
+
+// Longitudinal displacement of a point per wheel travel, all wheels raised together: tangent of the
+// angle at which the links, not the springs, carry a longitudinal force. Milliken & Milliken, Race Car
+// Vehicle Dynamics, 1995, ch. 17: axle share · tan φ · wheelbase / height of the centre of gravity.
+double anti(const Subject& x, const Placed& at, double share, double sign) {
+    const Vector3d d = x.moved_by(raised(x.of(0)), at);
+    const Vehicle& vehicle = *x.model.vehicle;
+    return sign * share * ratio(d.x(), d.z(), nowhere) * vehicle.wheelbase / vehicle.cg_height;
+}
+double brake_share(const Subject& x) { return x.model.vehicle->brake_share; }
+double drive_share(const Subject& x) { return x.model.vehicle->drive_share; }
+// Point at which a driving force acts on the links: the patch where an axle housing carries the drive
+// torque, the wheel centre where the car body carries it through a shaft.
+Placed driven_at(const Subject& x) {
+    const bool housing = is_axle(x.model) && x.of(0).wheel().body == x.of(1).wheel().body;
+    return housing ? x.braked() : x.centre();
+}
+
+// ---- Springs and dampers.
+
+// Shortening of a spring or damper per travel of the wheel centres.
+double shortening(const Subject& x, const Placed& i, const Placed& j) {
+    const Motions motions = raised(x.of(0));
+    const Vector3d D = j.at - i.at, dD = x.moved_by(motions, j) - x.moved_by(motions, i);
+    return -(D.dot(dD) / D.norm());
+}
+double spring_ratio(const Subject& x) {
+    const auto& spring = std::get<AxialSpring>(x.model.elastics[x.k].kind);
+    return shortening(x, x.placed(spring.i), x.placed(spring.j));
+}
+double damper_ratio(const Subject& x) {
+    const Damper& damper = x.model.dampers[x.k];
+    return shortening(x, x.placed(damper.i), x.placed(damper.j));
+}
+// Rise of the patches, or length of their path, per travel of the wheel centres, their mean.
+double mean_of_patches(const Subject& x, double (*of)(const Vector3d& displacement)) {
+    const Motions motions = raised(x.of(0));
+    double mean = 0;
+    for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
+        mean += of(x.moved_by(motions, x.of(w).patch())) / double(x.model.wheels.size());
+    return mean;
+}
+double mean_rise(const Subject& x) {
+    return mean_of_patches(x, [](const Vector3d& d) { return d.z(); });
+}
+double mean_path(const Subject& x) {
+    return mean_of_patches(x, [](const Vector3d& d) { return std::sqrt(d.squaredNorm()); });
+}
+
+// ---- Compliance under a lateral force, otherwise.
+
+// Sign towards the middle of the vehicle, for equal values of a wheel and its mirror image.
+double inward(const Subject& x) { return -x.side(); }
+
+// The wheels stand on tyres, vertical rates at the patches. With z the rise of the patches without
+// tyres and C that by forces f on them:
+//
+//   f = -k (z + C f)      (1 + k C) f = -k z
+double steer_on_tyres(const Subject& x) {
+    const Motions* by = unheld(x, at_patch + 1);
+    const auto& free = x.response->free;
+    const std::size_t n = free.size();
+    if (by == nullptr || n > 2) return nothing(x);
+    const auto rise = [&](const Motions& motions, std::size_t w) {
+        return x.moved_by(motions, x.of(w).patch()).z();
+    };
+    const auto k = [&](std::size_t w) { return x.of(w).wheel().tyre_rate; };
+    const auto entry = [&](std::size_t i, std::size_t j) {
+        return double(i == j ? 1 : 0) + k(i) * rise(free[j][at_patch + 2], i);
+    };
+    std::vector<std::pair<double, const Motions*>> weighted{{1, by}};
+    const double determinant =
+        n == 1 ? entry(0, 0) : entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        double f = -k(i) * rise(*by, i);
+        if (n == 2) f = f * entry(1 - i, 1 - i) + k(1 - i) * rise(*by, 1 - i) * entry(i, 1 - i);
+        weighted.emplace_back(f / determinant, &free[i][at_patch + 2]);
+    }
+    return inward(x) * x.toe(sum(weighted));
+}
+// The lateral force acts at the height of the road, `pneumatic_trail` behind the patch.
+double steer_with_trail(const Subject& x) {
+    return inward(x) *
+           x.toe(sum({{1, &held(x, at_patch + 1)}, {-pneumatic_trail, &held(x, moment_on + 2)}}));
+}
+
+// ---- The entries.
+
+const Entry over_travel[] = {
+    Entry(Owner::wheel, "bump_steer", Unit::deg_per_m,
+          "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
+          "positive towards toe-in in jounce",
+          never, [](const Subject& x) { return x.toe(raised(x)); },
+          {.elsewhere = "ride steer, toe gradient", .key = true, .explained = true, .live = 6}),
+    Entry(Owner::wheel, "bump_camber", Unit::deg_per_100mm,
+          "change of camber over travel of the wheel centre, all wheels rising by the same amount; "
+          "positive where the top leans out in jounce",
+          never, [](const Subject& x) { return x.camber(raised(x)); },
+          {.elsewhere = "ride camber, camber gain", .key = true, .explained = true}),
+    Entry(Owner::wheel, "track_gradient", Unit::mm_per_100mm,
+          "lateral displacement of the contact patch over travel, all wheels rising by the same "
+          "amount; positive outwards in jounce",
+          never, [](const Subject& x) { return x.side() * x.moved_by(raised(x), x.patch()).y(); },
+          {.elsewhere = "half-track change, lateral scrub"}),
+    Entry(Owner::wheel, "recession_gradient", Unit::mm_per_100mm,
+          "longitudinal displacement of the wheel centre over travel, all wheels rising by the "
+          "same amount; positive to the back in jounce",
+          never, [](const Subject& x) { return -x.moved_by(raised(x), x.centre()).x(); },
+          {.elsewhere = "wheel recession"}),
+    Entry(Owner::wheel, "front_view_swing_arm", Unit::mm,
+          "lateral distance from the wheel centre to the instant centre of the carrier seen from "
+          "the front, all wheels rising by the same amount; positive inboard",
+          endless_in_front, front_view_arm,
+          {.elsewhere = "fvsa, virtual swing axle; d camber = −travel / arm", .swing_arm = true}),
+    Entry(Owner::wheel, "side_view_swing_arm", Unit::mm,
+          "longitudinal distance from the wheel centre to the instant centre of the carrier seen "
+          "from the side, all wheels rising by the same amount; positive ahead of the wheel",
+          endless_from_side, side_view_arm, {.elsewhere = "svsa", .swing_arm = true}),
+    Entry(
+        Owner::wheel, std::string(figure::wheel_rate), Unit::newton_per_mm,
+        "vertical force at the contact patch over vertical displacement of the wheel centre, all "
+        "wheels with the same load",
+        no_rate, wheel_rate,
+        {.elsewhere = "SAE J670: suspension rate at the wheel",
+         .key = true,
+         .explained = true,
+         .live = 5,
+         .block = {"wheel_rate"},
+         .plausible = {-INFINITY, 2000, "is a rate in another unit?"},
+         .drawn = {{Over::travel, 7, "Wheel rate", "both wheels loaded alike, without the tyre"}}}),
+};
+
+const Entry of_response[] = {
+    Entry(Owner::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
+          "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
+          ride_rate, {.key = true}),
+    Entry(Owner::wheel_on_rack, "steer_gradient", Unit::deg_per_mm,
+          "change of toe over the displacement of the steering joint, wheel centres held at their "
+          "height; positive towards toe-in",
+          not_steered, steer_gradient, {.key = true, .cause = "steering"}),
+    Entry(Owner::wheel_on_column, "steer_gradient", Unit::deg_per_deg,
+          "change of toe over the angle of the steering joint, wheel centres held at their height; "
+          "positive towards toe-in",
+          not_steered, steer_gradient, {.key = true, .cause = "steering"}),
+    Entry(
+        Owner::steered_wheel, "caster_steered", Unit::deg,
+        "angle to the vertical seen from the side of the axis about which the carrier turns when "
+        "the steering moves, wheel centres held at their height; positive where its top leans back",
+        does_not_steer, caster_steered, {.elsewhere = axis_elsewhere, .cause = "steering"}),
+    Entry(Owner::steered_wheel, "kingpin_inclination_steered", Unit::deg,
+          "angle to the vertical seen from the front of the same axis; positive where its top "
+          "leans inwards",
+          does_not_steer, kingpin_steered, {.elsewhere = axis_elsewhere, .cause = "steering"}),
+    Entry(Owner::steered_wheel, "scrub_radius_steered", Unit::mm,
+          "distance across the wheel from the contact patch to the intersection of the same axis "
+          "with the road, positive inboard",
+          does_not_steer, scrub_steered, {.elsewhere = axis_elsewhere, .cause = "steering"}),
+    Entry(Owner::steered_wheel, "mechanical_trail_steered", Unit::mm,
+          "distance along the wheel from the contact patch to the intersection of the same axis "
+          "with the road, positive in front",
+          does_not_steer, trail_steered, {.elsewhere = axis_elsewhere, .cause = "steering"}),
+    Entry(Owner::front_wheel, std::string(figure::anti_dive), Unit::percent,
+          "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
+          "patch: share of the load transfer under braking that the links carry; positive where "
+          "they resist dive",
+          no_vertical, [](const Subject& x) { return anti(x, x.braked(), brake_share(x), 1); },
+          {.elsewhere = milliken, .key = true, .explained = true}),
+    Entry(Owner::front_wheel, std::string(figure::anti_lift), Unit::percent,
+          "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
+          "centre (of a rigid axle the patch); positive where the links resist lift of the front "
+          "when the axle drives",
+          no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), 1); },
+          {.elsewhere = milliken}),
+    Entry(Owner::rear_wheel, std::string(figure::anti_lift), Unit::percent,
+          "brake_share · wheelbase / cg_height · rearward over vertical displacement of the "
+          "contact patch: share of the load transfer under braking that the links carry; positive "
+          "where they resist lift of the rear",
+          no_vertical, [](const Subject& x) { return anti(x, x.braked(), brake_share(x), -1); },
+          {.elsewhere = milliken}),
+    Entry(Owner::rear_wheel, "anti_squat", Unit::percent,
+          "drive_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
+          "centre (of a rigid axle the patch); positive where the links resist squat when the axle "
+          "drives",
+          no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), -1); },
+          {.elsewhere = milliken, .key = true}),
+    Entry(
+        Owner::wheels, "roll_centre_height", Unit::mm,
+        "height above the contact patches of the intersection of the lines that are perpendicular, "
+        "seen from the front, to the motion of the patches: of both wheels for an axle that rolls, "
+        "with the middle plane of the vehicle for one wheel; positive above the road",
+        no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::patch); },
+        {.elsewhere = "kinematic or geometric roll centre; force-based ones (SAE J670) are the "
+                      "same wherever virtual work holds, which a test shows",
+         .key = true,
+         .explained = true,
+         .live = 7,
+         .cause = "roll",
+         .drawn = {{Over::travel, 8, "Roll centre height", "above the road"}}}),
+    Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
+          "change of toe over the roll of the car body towards this wheel, wheels on the road; "
+          "positive towards toe-in",
+          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::toe); },
+          {.elsewhere = "roll steer coefficient", .key = true, .cause = "roll"}),
+    Entry(Owner::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
+          "change of camber against the car body over its roll towards this wheel; positive where "
+          "the top leans out",
+          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber); },
+          {.elsewhere = "often given relative to the road, which adds 1", .cause = "roll"}),
+    Entry(Owner::wheel_of_axle, std::string(figure::wheel_rate_in_roll), Unit::newton_per_mm,
+          "vertical force at the contact patch over vertical displacement of the wheel centre, "
+          "with the opposite force on the other wheel",
+          no_rate, [](const Subject& x) { return vertical_rate(x, at_patch + 2, x.centre(), -1); },
+          {.elsewhere = "with the anti-roll bar", .cause = "roll"}),
+    Entry(
+        Owner::spring, "motion_ratio", Unit::none,
+        "shortening of the spring over travel of the wheel centres, all rising by the same amount",
+        never, spring_ratio,
+        {.elsewhere = "installation ratio; its inverse has the same name elsewhere"}),
+    Entry(
+        Owner::damper, "motion_ratio", Unit::none,
+        "shortening of the damper over travel of the wheel centres, all rising by the same amount",
+        never, damper_ratio,
+        {.elsewhere = "installation ratio; its inverse has the same name elsewhere"}),
+};
+
+const Entry otherwise[] = {
+    Entry(Owner::wheel, "bump_steer@patch", Unit::deg_per_m,
+          "change of toe over the vertical displacement of the contact patch, all wheels rising "
+          "alike",
+          never,
+          [](const Subject& x) {
+              const auto by = raised(x);
+              return ratio(x.toe(by), x.moved_by(by, x.patch()).z(), nowhere);
+          },
+          {.elsewhere = "deflection counted at the tyre"}),
+    Entry(Owner::wheel_of_axle, "bump_steer@alone", Unit::deg_per_m,
+          "change of toe over travel of this wheel centre, the other one held at its height",
+          does_not_roll,
+          [](const Subject& x) {
+              return x.response->tied ? undefined : x.toe(x.response->travel[x.k]);
+          },
+          {.elsewhere = "single wheel travel"}),
+    Entry(Owner::wheel, "front_view_swing_arm@patch", Unit::mm,
+          "lateral distance from the contact patch to the instant centre of the carrier seen from "
+          "the front; positive inboard",
+          endless_in_front,
+          [](const Subject& x) {
+              return front_view_arm(x) + x.side() * (x.patch().at.y() - x.centre().at.y());
+          },
+          {.elsewhere = "SAE J670e: swing arm radius, from the centre of tire contact",
+           .set = "sae",
+           .swing_arm = true}),
+    Entry(Owner::wheel, "front_view_swing_arm@camber", Unit::mm,
+          "travel of the wheel centre over change of camber, its sign turned; positive where "
+          "jounce leans the top in",
+          "camber does not change: the arm is infinite",
+          [](const Subject& x) { return ratio(-1, x.camber(raised(x)), nowhere); },
+          {.elsewhere = "rigs, which measure camber over travel", .swing_arm = true}),
+    Entry(Owner::wheel, "side_view_swing_arm@patch", Unit::mm,
+          "longitudinal distance from the contact patch to the instant centre of the carrier seen "
+          "from the side; positive ahead of the wheel",
+          endless_from_side,
+          [](const Subject& x) { return side_view_arm(x) + x.centre().at.x() - x.patch().at.x(); },
+          {.elsewhere = "drawings in side view", .swing_arm = true}),
+    Entry(Owner::wheel, "wheel_rate@patch", Unit::newton_per_mm,
+          "vertical force over vertical displacement, both of the contact patch, all wheels with "
+          "the same load",
+          no_rate, [](const Subject& x) { return vertical_rate(x, at_patch + 2, x.patch()); },
+          {.elsewhere = "rigs, which measure the pad under the tyre less the tyre's deflection",
+           .reads_free = true}),
+    Entry(Owner::wheel, "wheel_rate@centre", Unit::newton_per_mm,
+          "vertical force over vertical displacement, both of the wheel centre, all wheels with "
+          "the same load",
+          no_rate, [](const Subject& x) { return vertical_rate(x, at_centre + 2, x.centre()); },
+          {.elsewhere = "programs that load the spindle", .reads_free = true}),
+    Entry(Owner::wheel_of_axle, "wheel_rate@alone", Unit::newton_per_mm,
+          "vertical force at the contact patch over vertical displacement of the wheel centre, the "
+          "other wheel with its load unchanged",
+          no_rate, [](const Subject& x) { return vertical_rate(x, at_patch + 2, x.centre(), 0); },
+          {.elsewhere = "single wheel bump", .reads_free = true}),
+    Entry(Owner::axle, "wheel_rate@axle", Unit::newton_per_mm,
+          "sum of the wheel rates of both wheels", no_rate,
+          [](const Subject& x) { return wheel_rate(x.of(0)) + wheel_rate(x.of(1)); },
+          {.elsewhere = "axle rate; ride models of half a car", .reads_free = true}),
+};
+
+// Of a spring or damper.
+std::vector<Entry> motion_ratios(Owner owner, const std::string& word,
+                                 double (*motion_ratio)(const Subject&), const char* inverse) {
+    const std::string of = "shortening of the " + word,
+                      still = "the " + word + " does not move with the wheel",
+                      rise = "the vertical displacement of the contact patches, their mean";
+    return {
+        Entry(owner, "motion_ratio@inverse", Unit::none, "travel of the wheel centres over " + of,
+              still, [=](const Subject& x) { return ratio(1, motion_ratio(x), nowhere); },
+              {.elsewhere = inverse}),
+        Entry(owner, "motion_ratio@patch", Unit::none, of + " over " + rise, never,
+              [=](const Subject& x) { return ratio(motion_ratio(x), mean_rise(x), nowhere); },
+              {.elsewhere = "deflection counted at the tyre"}),
+        Entry(owner, "motion_ratio@patch_inverse", Unit::none, rise.substr(4) + ", over " + of,
+              still,
+              [=](const Subject& x) { return ratio(mean_rise(x), motion_ratio(x), nowhere); },
+              {.elsewhere = owner == Owner::spring ? "deflection at the tyre over spring travel"
+                                                   : "deflection at the tyre over damper travel"}),
+        Entry(owner, "motion_ratio@patch_path", Unit::none,
+              "path of the contact patches in space, their mean, over " + of, still,
+              [=](const Subject& x) { return ratio(mean_path(x), motion_ratio(x), nowhere); },
+              {.elsewhere = owner == Owner::spring
+                                ? "OptimumK: wheel displacement over spring displacement"
+                                : "OptimumK: wheel displacement over damper displacement"})};
+}
+
+const Entry more_otherwise[] = {
+    Entry(Owner::front_wheel, "anti_dive@inboard", Unit::percent,
+          "brake_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
+          "centre: inboard brakes, whose torque the car body carries",
+          no_vertical, [](const Subject& x) { return anti(x, x.centre(), brake_share(x), 1); },
+          {.elsewhere = "inboard brakes"}),
+    Entry(Owner::front_wheel, "anti_dive@whole", Unit::percent,
+          "wheelbase / cg_height · forward over vertical displacement of the contact patch: per "
+          "cent of the load transfer if this axle braked alone",
+          no_vertical, [](const Subject& x) { return anti(x, x.braked(), 1, 1); },
+          {.elsewhere = "programs without a brake distribution"}),
+    Entry(Owner::front_wheel, "anti_lift@outboard", Unit::percent,
+          "drive_share · wheelbase / cg_height · forward over vertical displacement of the contact "
+          "patch: the carrier carries the drive torque",
+          no_vertical, [](const Subject& x) { return anti(x, x.braked(), drive_share(x), 1); },
+          {.elsewhere = "wheel hub motors; live axles"}),
+    Entry(Owner::rear_wheel, "anti_lift@inboard", Unit::percent,
+          "brake_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
+          "centre: inboard brakes, whose torque the car body carries",
+          no_vertical, [](const Subject& x) { return anti(x, x.centre(), brake_share(x), -1); },
+          {.elsewhere = "inboard brakes"}),
+    Entry(Owner::rear_wheel, "anti_lift@whole", Unit::percent,
+          "wheelbase / cg_height · rearward over vertical displacement of the contact patch: per "
+          "cent of the load transfer if this axle braked alone",
+          no_vertical, [](const Subject& x) { return anti(x, x.braked(), 1, -1); },
+          {.elsewhere = "programs without a brake distribution"}),
+    Entry(Owner::rear_wheel, "anti_squat@outboard", Unit::percent,
+          "drive_share · wheelbase / cg_height · rearward over vertical displacement of the "
+          "contact patch: the carrier carries the drive torque",
+          no_vertical, [](const Subject& x) { return anti(x, x.braked(), drive_share(x), -1); },
+          {.elsewhere = "wheel hub motors; live axles"}),
+    Entry(Owner::rear_wheel, "anti_squat@whole", Unit::percent,
+          "wheelbase / cg_height · rearward over vertical displacement of the wheel centre (of a "
+          "rigid axle the patch): per cent of the load transfer if this axle drove alone",
+          no_vertical, [](const Subject& x) { return anti(x, driven_at(x), 1, -1); },
+          {.elsewhere = "rear wheel drive: the same figure"}),
+    Entry(Owner::wheel, "lateral_force_steer@centre", Unit::deg_per_kN,
+          "change of toe over a force at the wheel centre of this wheel alone towards the middle "
+          "of the vehicle, wheel centres held at their height",
+          never, [](const Subject& x) { return inward(x) * x.toe(held(x, at_centre + 1)); },
+          {.elsewhere = "programs that load the spindle"}),
+    Entry(Owner::wheel, "lateral_force_steer@trail", Unit::deg_per_kN,
+          "change of toe over a force towards the middle of the vehicle that acts on the road 30 "
+          "mm behind the contact patch of this wheel alone, wheel centres held at their height",
+          never, steer_with_trail, {.elsewhere = "rigs with a pneumatic trail of 30 mm"}),
+    Entry(Owner::wheel, "lateral_force_steer@constant_load", Unit::deg_per_kN,
+          "change of toe over a force at the contact patch of this wheel alone towards the middle "
+          "of the vehicle, the wheel loads unchanged and the wheels free to rise",
+          unresisted,
+          [](const Subject& x) {
+              const auto* by = unheld(x, at_patch + 1);
+              return by == nullptr ? nothing(x) : inward(x) * x.toe(*by);
+          },
+          {.elsewhere = "programs whose wheels are free", .reads_free = true}),
+    Entry(Owner::wheel_on_tyre, "lateral_force_steer@on_tyres", Unit::deg_per_kN,
+          "change of toe over a force at the contact patch of this wheel alone towards the middle "
+          "of the vehicle, the wheels on their tyres",
+          unresisted, steer_on_tyres, {.elsewhere = "rigs that load the tyre", .reads_free = true}),
+    Entry(Owner::wheel, "braking_force_steer@inboard", Unit::deg_per_kN,
+          "change of toe over a force to the back at the wheel centre of this wheel alone, wheel "
+          "centres held at their height: the car body carries the brake torque",
+          never, [](const Subject& x) { return -x.toe(held(x, at_centre)); },
+          {.elsewhere = "inboard brakes; wheel free to roll"}),
+    Entry(Owner::wheel, "traction_force_steer@patch", Unit::deg_per_kN,
+          "change of toe over a force forward at the contact patch of this wheel alone, wheel "
+          "centres held at their height: the carrier carries the drive torque",
+          never, [](const Subject& x) { return x.toe(held(x, at_patch)); },
+          {.elsewhere = "wheel hub motors; rigs with the wheel locked"}),
+    Entry(Owner::steered_wheel, "caster@instant_axis", Unit::deg,
+          "angle to the vertical seen from the side of the axis about which the carrier turns when "
+          "the steering moves, wheel centres held at their height",
+          does_not_steer, caster_steered, {.elsewhere = instant_axis}),
+    Entry(Owner::steered_wheel, "kingpin_inclination@instant_axis", Unit::deg,
+          "angle to the vertical seen from the front of the axis about which the carrier turns "
+          "when the steering moves, wheel centres held at their height",
+          does_not_steer, kingpin_steered, {.elsewhere = instant_axis}),
+    Entry(Owner::steered_wheel, "scrub_radius@instant_axis", Unit::mm,
+          "distance across the wheel from the contact patch to the point on the road of the axis "
+          "about which the carrier turns when the steering moves, positive inboard",
+          does_not_steer, scrub_steered, {.elsewhere = instant_axis}),
+    Entry(Owner::steered_wheel, "mechanical_trail@instant_axis", Unit::mm,
+          "distance along the wheel from the contact patch to the point on the road of the axis "
+          "about which the carrier turns when the steering moves, positive in front",
+          does_not_steer, trail_steered, {.elsewhere = instant_axis}),
+    Entry(
+        Owner::wheels, "roll_centre_height@centre", Unit::mm,
+        "height above the contact patches of the intersection of the lines that are perpendicular, "
+        "seen from the front, to the motion of the wheel centres and pass through them",
+        no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::centre); },
+        {.elsewhere = "tracks that are measured at the wheel centres"}),
+    Entry(Owner::wheels, "roll_centre_height@forces", Unit::mm,
+          "height above the contact patches of the point at which a lateral force on the body "
+          "leaves the wheel centres at their height (of an axle: the body without roll), the same "
+          "lateral force on each patch, elements included",
+          no_roll_centre, roll_centre_by_forces,
+          {.elsewhere = "SAE J670e: roll center; force-based roll centre",
+           .set = "sae",
+           .reads_free = true}),
+    Entry(Owner::wheel_of_axle, "roll_camber@road", Unit::deg_per_deg,
+          "change of camber against the road over the roll of the car body towards this wheel; "
+          "positive where the top leans out",
+          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber) + 1; },
+          {.elsewhere = "inclination to the ground"}),
+};
+
+}  // namespace
+
+void add_rates(std::vector<Entry>& all) {
+    std::ranges::copy(over_travel, std::back_inserter(all));
+    add_force_tests(all, false);
+    std::ranges::copy(of_response, std::back_inserter(all));
+}
+
+void add_rates_otherwise(std::vector<Entry>& all) {
+    std::ranges::copy(otherwise, std::back_inserter(all));
+    std::ranges::move(
+        motion_ratios(
+            Owner::spring, "spring", spring_ratio,
+            "wheel travel over spring travel; a manufacturer's table (tests/outside/README.md)"),
+        std::back_inserter(all));
+    std::ranges::move(
+        motion_ratios(Owner::damper, "damper", damper_ratio, "wheel travel over damper travel"),
+        std::back_inserter(all));
+    std::ranges::copy(more_otherwise, std::back_inserter(all));
+    add_force_tests(all, true);
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,138 @@
+// A wheel, spring or damper in a state, as the formulas of the catalogue read it: positions, angles, and
+// rates along the motions of a response.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "compare/outputs/catalogue/catalogue.hpp"
+#include "compare/outputs/not_a_number.hpp"
+#include "compare/outputs/positions.hpp"
+#include "compare/outputs/wheel_response.hpp"
+
+namespace elastocheck::compare {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// A point or direction of a body: where it is, and from the origin of its body.
+struct Placed {
+    BodyId body;
+    Vector3d at, lever;
+};
+
+struct Subject {
+    const Model& model;
+    const Equilibrium* state = nullptr;       // null: as drawn
+    std::size_t k = 0;                        // position in Model::wheels, elastics or dampers
+    const Branch* branch = nullptr;           // of a wheel load
+    const WheelResponse* response = nullptr;  // of a characteristic
+
+    Subject drawn() const { return {model, nullptr, k}; }
+    Subject of(std::size_t other) const { return {model, state, other, branch, response}; }
+
+    // ---- The state. Ground axes.
+    const Wheel& wheel() const { return model.wheels[k]; }
+    double side() const { return wheel().side; }
+    const Pose& pose(BodyId body) const {
+        static const Pose at_rest;
+        if (body == ground) return at_rest;
+        const auto b = static_cast<std::size_t>(body);
+        return state == nullptr ? model.bodies[b].design : state->poses[b];
+    }
+    Placed placed(BodyId body, const Vector3d& s_local) const {
+        const Vector3d s = pose(body).p * s_local;
+        return {body, pose(body).r + s, s};
+    }
+    Placed placed(const Point& p) const { return placed(p.body, p.s_local); }
+    Vector3d direction(const Direction& u) const { return pose(u.body).p * u.u_local; }
+    const Wrench& wrench(int joint) const {
+        return state->reactions[static_cast<std::size_t>(joint)];
+    }
+    Placed centre() const { return placed(wheel().body, wheel().centre_local); }
+    Placed patch() const { return placed(wheel().contact); }
+    // The patch as a point of the carrier, to which the brake holds the wheel.
+    Placed braked() const {
+        if (!wheel().rolls()) return patch();
+        const Vector3d at = patch().at;
+        return {wheel().body, at, at - pose(wheel().body).r};
+    }
+    // Pointing outboard: the spin axis; the axis of the carrier that is lateral as drawn.
+    Vector3d spin() const { return pose(wheel().body).p * wheel().spin_axis_local; }
+    Vector3d lateral() const {
+        return pose(wheel().body).p *
+               (drawn().pose(wheel().body).p.conjugate() * (side() * Vector3d::UnitY()));
+    }
+    // Horizontal unit vectors across the wheel, outboard, and along it, forward.
+    Vector3d across() const { return Vector3d(spin().x(), spin().y(), 0).normalized(); }
+    Vector3d along() const { return side() * across().cross(Vector3d::UnitZ()); }
+    // Where a circle of the drawn radius in the wheel's plane is lowest.
+    Vector3d lowest() const {
+        const Vector3d e = spin();
+        const double radius = drawn_arm(model, wheel()).norm();
+        return centre().at + radius * (e * e.z() - Vector3d::UnitZ()).normalized();
+    }
+
+    // Of a wheel with a steering axis, from its lower to its upper end; and from a point to the axis at
+    // the height of the point.
+    Vector3d axis() const {
+        const auto& [lower, upper] = *wheel().steering_axis;
+        return placed(upper).at - placed(lower).at;
+    }
+    Vector3d axis_from(const Vector3d& at) const {
+        const Vector3d lower = placed(wheel().steering_axis->lower).at, u = axis();
+        return lower + u * ((at.z() - lower.z()) / u.z()) - at;
+    }
+
+    double toe() const { return std::atan2(spin().x(), side() * spin().y()); }
+    double camber() const { return -std::asin(spin().z()); }
+    double caster() const { return std::atan(-axis().x() / axis().z()); }
+    double kingpin() const { return std::atan(-side() * axis().y() / axis().z()); }
+
+    // ---- Rates along a motion.
+    double toe(const Motions& motions) const {
+        const Vector3d e = spin(), de = turned(motions, wheel().body).cross(e);
+        const double x = side() * e.y(), dx = side() * de.y();
+        return (x * de.x() - e.x() * dx) / (x * x + e.x() * e.x());
+    }
+    double camber(const Motions& motions) const {
+        const Vector3d e = spin(), de = turned(motions, wheel().body).cross(e);
+        return -(de.z() / std::sqrt(1 - e.z() * e.z()));
+    }
+    Vector3d turned_by(const Motions& motions) const { return turned(motions, wheel().body); }
+    static Vector3d moved_by(const Motions& motions, const Placed& point) {
+        if (point.body == ground) return Vector3d::Zero();
+        const auto& body = motions[static_cast<std::size_t>(point.body)];
+        return body.dr + body.dpi.cross(point.lever);
+    }
+};
+
+// Arms and centres farther than this are at infinity, and joints stiffer than this are rigid: beyond,
+// the quotient is round-off of a part that does not rotate or deform.
+inline constexpr double nowhere = 1e4;  // [m]
+inline constexpr double rigid = 1e12;   // [N/m]
+
+inline double ratio(double value, double by, double limit) {
+    if (std::isnan(value) || std::isnan(by)) return nan;
+    return std::abs(value) <= limit * std::abs(by) && by != 0 ? value / by : undefined;
+}
+
+// One left and one right wheel.
+inline bool is_axle(const Model& model) {
+    return model.wheels.size() == 2 && model.wheels[0].side * model.wheels[1].side < 0;
+}
+// Position of the left wheel of an axle; the other one is the right one.
+inline std::size_t left_wheel(const Model& model) { return model.wheels[0].side > 0 ? 0 : 1; }
+
+// "ground axis x, positive forward"
+std::string axis_words(int axis);
+
+// ---- The parts of the catalogue, in its order.
+void add_angles(std::vector<Entry>& all);            // angles.cpp
+void add_rates(std::vector<Entry>& all);             // rates.cpp
+void add_angles_otherwise(std::vector<Entry>& all);  // other_angles.cpp
+void add_rates_otherwise(std::vector<Entry>& all);   // other_rates.cpp
+// force_tests.cpp; alone: of one wheel of an axle
+void add_force_tests(std::vector<Entry>& all, bool alone);
+
+}  // namespace elastocheck::compare
