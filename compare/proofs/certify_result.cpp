@@ -2,15 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "compare/proofs/certify.hpp"
 #include "compare/result/result.hpp"
 
 namespace elastocheck::compare {
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 std::string claim_of(const Tolerance& tolerance) {
     return fmt::format("{:g} mm and {:g} deg", tolerance.mm, tolerance.deg);
@@ -45,7 +42,7 @@ double bound(const CertifiedSide& side, double value) {
     return side.tally.proved > 0 ? value : nan;
 }
 
-std::vector<ColumnOf<CertifiedSide>> columns() {
+std::vector<ColumnOf<CertifiedSide>> certified_columns() {
     using enum Digits;
     using Side = CertifiedSide;
     return {
@@ -63,7 +60,8 @@ std::vector<ColumnOf<CertifiedSide>> columns() {
          "of the proved points: all stiffnesses positive in the whole box"},
         {"error", size, [](const Side& s) { return bound(s, 1e3 * s.tally.error.length); },
          "of the proved points: bound of the error of a body's origin", "mm", "off at most"},
-        {"angle error", size, [](const Side& s) { return bound(s, degrees * s.tally.error.angle); },
+        {"angle error", size,
+         [](const Side& s) { return bound(s, in_unit(Unit::deg) * s.tally.error.angle); },
          "likewise of its orientation", "deg", "at most"},
         {"force error", size, [](const Side& s) { return bound(s, s.tally.error.force); },
          "likewise of a joint's reaction force", "N", "at most"},
@@ -122,7 +120,7 @@ Result result_of(const CertifyStudy& study) {
     Result result{.analysis = "certify"};
     for (const auto& branch : distinct(study.sides, &CertifiedSide::branch)) {
         const auto sides = where(study.sides, &CertifiedSide::branch, branch);
-        Table& part = result.tables.emplace_back(table("sides", columns(), sides));
+        Table& part = result.tables.emplace_back(table("sides", certified_columns(), sides));
         part.caption = fmt::format("branch '{}'", branch);
         for (const auto& side : sides) add_notes(part.notes, side);
     }

@@ -1,31 +1,27 @@
 // All equilibria found at one load for readers.
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "compare/proofs/multiple_equilibria.hpp"
 #include "compare/result/result.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-constexpr double deg_per_rad = 180 / std::numbers::pi;
-
-std::vector<ColumnOf<FoundEquilibrium>> equilibrium_columns() {
+std::vector<ColumnOf<FoundEquilibrium>> found_columns() {
     using enum Digits;
     using Found = FoundEquilibrium;
-    return {
-        {"stability", words, [](const Found& f) { return f.stable ? "stable" : "unstable"; },
-         "by the sign of the least stiffness"},
-        {"distance", three, [](const Found& f) { return 1e3 * f.length; },
-         "from that of the branch, or from the end of the branch", "mm"},
-        {"turned", three, [](const Found& f) { return deg_per_rad * f.angle; }, "likewise", "deg"},
-        {"proof", words, [](const Found& f) { return name(f.proof.answer); }},
-        {"within", size, [](const Found& f) { return 1e3 * f.proof.error.length; },
-         "proved distance to the true equilibrium, at most", "mm"},
-        {"alone within", size, [](const Found& f) { return 1e3 * f.proof.unique.length; },
-         "proved: no other equilibrium within this distance", "mm"},
-        {"what it means", words, [](const Found& f) { return f.meaning; }}};
+    return {{"stability", words, [](const Found& f) { return f.stable ? "stable" : "unstable"; },
+             "by the sign of the least stiffness"},
+            {"distance", three, [](const Found& f) { return 1e3 * f.length; },
+             "from that of the branch, or from the end of the branch", "mm"},
+            {"turned", three, [](const Found& f) { return in_unit(Unit::deg) * f.angle; },
+             "likewise", "deg"},
+            {"proof", words, [](const Found& f) { return name(f.proof.answer); }},
+            {"within", size, [](const Found& f) { return 1e3 * f.proof.error.length; },
+             "proved distance to the true equilibrium, at most", "mm"},
+            {"alone within", size, [](const Found& f) { return 1e3 * f.proof.unique.length; },
+             "proved: no other equilibrium within this distance", "mm"},
+            {"what it means", words, [](const Found& f) { return f.meaning; }}};
 }
 
 // A body in one of the equilibria.
@@ -61,7 +57,7 @@ Table poses(const Model& model, const AllEquilibria& all) {
 
 Result result_of(const Model& model, const AllEquilibria& all) {
     Result result{.analysis = "equilibria"};
-    Table list = table("equilibria", equilibrium_columns(), all.list);
+    Table list = table("equilibria", found_columns(), all.list);
     list.columns.insert(list.columns.begin(), {.name = "number", .digits = Digits::whole});
     for (std::size_t k = 0; k < list.rows.size(); ++k)
         list.rows[k].insert(list.rows[k].begin(), static_cast<double>(k + 1));

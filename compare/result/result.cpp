@@ -9,7 +9,8 @@ namespace elastocheck::compare {
 std::vector<std::string> table_ids(const Result& result) {
     std::vector<std::string> ids;
     for (const auto& table : result.tables)
-        if (std::ranges::find(ids, table.id) == ids.end()) ids.push_back(table.id);
+        if (!table.id.empty() && std::ranges::find(ids, table.id) == ids.end())
+            ids.push_back(table.id);
     return ids;
 }
 

@@ -16,6 +16,7 @@ struct Verdict {
     std::string sentence{};              // "Proved: all 12 points are equilibria to 1e-06 mm."
     std::vector<std::string> reasons{};  // of `not_judged`
     int compared = 0;                    // numbers that the verdict rests on
+    bool requested = true;               // else only the deviations were asked for
 };
 
 // Curves over columns of a table.

@@ -21,11 +21,13 @@ using Cell = std::variant<double, std::string>;  // a missing number is NaN
 enum class Digits {
     hidden,
     words,
-    whole,    // 120
-    given,    // 1e-06: as entered
-    size,     // 2.6e-13: an error, of which the magnitude matters
-    three,    // 0.137
-    percent,  // 13.7 %, of a share
+    whole,      // 120
+    given,      // 1e-06: as entered
+    size,       // 2.6e-13: an error, of which the magnitude matters
+    three,      // 0.137
+    deviation,  // +0.137; rounding is 0: less than 1e-9 mm, deg, N, N·m
+    rounded,    // 0.14, 14; likewise
+    percent,    // 14 %, of a share
 };
 
 // What a description says of a field besides its name.
@@ -49,8 +51,9 @@ struct Column {
 struct Table {
     std::vector<Column> columns{};
     std::vector<std::vector<Cell>> rows{};  // one cell per column, of the column's kind
-    // "sides": name of its file and in a document. Tables of one id have the same columns and are one
-    // table there, of which readers see the parts apart, each with its caption and notes.
+    // "sides": name of its file and in a document; empty: for readers alone. Tables of one id have the
+    // same columns and are one table there, of which readers see the parts apart, each with its
+    // caption and notes.
     std::string id{};
     std::string caption{};             // above it
     std::vector<std::string> notes{};  // below it

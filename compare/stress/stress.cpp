@@ -431,7 +431,8 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
 }  // namespace
 
 const char* name(CellVerdict verdict) {
-    constexpr std::array names{"right", "unpromised", "honest", "elsewhere", "unjudged", "wrong"};
+    constexpr std::array names{"right",     "no claim", "reported failure",
+                               "elsewhere", "unjudged", "wrong"};
     return names[static_cast<std::size_t>(verdict)];
 }
 

@@ -104,6 +104,9 @@ struct Survival {
 
 Survival stress(std::span<const Trial> trials, int threads = 2, const Progress& progress = {});
 
+struct Result;
+Result result_of(const Survival& survival);
+
 //   0 ... 9  digits of a converged result (9: nine or more)     !  reported failure
 //   ~  another equilibrium than that of the branch              ?  converged, truth unknown
 //   X  wrong

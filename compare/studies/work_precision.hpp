@@ -113,6 +113,9 @@ Trade trade(const Model& model, const TradeOptions& options = {});
 struct Solves;
 Trade trade(Solves& solves, const TradeOptions& options);
 
+struct Result;
+Result result_of(const Model& model, const Trade& trade);
+
 // Error of a configuration point by point along a branch, at equal parameter, from the equilibrium
 // leg: at the finest points of the solves, or at every step of the configuration if that is coarser.
 Profile profile(Solves& solves, std::size_t branch, const TradePoint& configuration);

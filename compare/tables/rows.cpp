@@ -12,7 +12,6 @@
 #include "compare/outputs/readings.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
 #include "compare/studies/formulations.hpp"
-#include "compare/studies/order_study.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compare.hpp"
@@ -253,33 +252,6 @@ std::vector<GapRow> gap_rows(const std::vector<Channel>& main,
                      std::ranges::copy(s.combinations, rows.back().following.begin());
                  }
              });
-    return rows;
-}
-
-std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders) {
-    std::vector<OrderRow> rows;
-    for (const auto& branch : orders)
-        for (const auto& l : branch.levels)
-            rows.push_back({branch.branch,
-                            1e3 * l.tolerance,
-                            count(l.order),
-                            elastocheck::name(l.outcome),
-                            count(l.expansions),
-                            count(l.rejected),
-                            count(l.work.factorisations),
-                            count(l.work.solves),
-                            count(l.work.evaluations),
-                            l.error.mm,
-                            l.error.deg,
-                            l.force,
-                            l.error_end,
-                            l.first_reach,
-                            branch.uncertainty.mm,
-                            branch.uncertainty.deg,
-                            l.nearest.radius,
-                            l.nearest.angle,
-                            l.nearest.misfit,
-                            branch.failure});
     return rows;
 }
 

@@ -264,44 +264,6 @@ void describe(auto& field, Described<GapRow> auto& r) {
     field("not attributed", r.not_attributed, {"", "why", words});
 }
 
-// The series over a side of a branch, at one tolerance and order.
-struct OrderRow {
-    std::string branch{};
-    double tolerance = nan, order = nan;
-    std::string outcome{};
-    double expansions = nan, rejected = nan, factorisations = nan, solves = nan, evaluations = nan,
-           error = nan, angle_error = nan, residual = nan, error_at_ends = nan, first_reach = nan,
-           apart = nan, angles_apart = nan, singularity = nan, its_angle = nan, its_misfit = nan;
-    std::string not_compared{};
-};
-void describe(auto& field, Described<OrderRow> auto& r) {
-    using enum Digits;
-    field("branch", r.branch);
-    field("tolerance", r.tolerance, {"mm", "that is required of the method", given});
-    field("order", r.order, {"", "", whole});
-    field("outcome", r.outcome, {"", "", words});
-    field("expansions", r.expansions, {"", "", whole});
-    field("rejected", r.rejected);
-    field("factorisations", r.factorisations, {"", "", whole});
-    field("solves", r.solves, {"", "", whole});
-    field("evaluations", r.evaluations);
-    field("error", r.error, {"mm", "from the equilibrium leg, largest over all points", size});
-    field("angle error", r.angle_error, {"deg", "likewise", size, "error"});
-    field("residual", r.residual,
-          {"N", "or N·m: largest residual of an expansion in the balance", size});
-    field("error at ends", r.error_at_ends,
-          {"m", "largest at the end of an expansion, as it estimates it"});
-    field("first reach", r.first_reach,
-          {"", "of the first expansion, share of the branch", percent});
-    field("references apart", r.apart, {"mm"});
-    field("references' angles apart", r.angles_apart, {"deg"});
-    field("singularity", r.singularity,
-          {"", "distance of the nearest, seen from the start, in lengths of the branch"});
-    field("its angle", r.its_angle, {"rad", "direction"});
-    field("its misfit", r.its_misfit, {"", "relative residual of the fit to the coefficients"});
-    field("not compared", r.not_compared, {"", "why"});
-}
-
 // A configuration of a method, or a leg.
 struct TradeRow {
     std::string leg{}, method{};
@@ -362,7 +324,6 @@ void describe(auto& field, Described<EffectRow> auto& r) {
 }
 
 struct BranchAttribution;
-struct BranchOrders;
 struct Channel;
 struct Comparison;
 struct FormulationStudy;
@@ -386,7 +347,6 @@ std::vector<StudyRow> study_rows(const Study& study);
 std::vector<StepRow> step_rows(const Study& study);
 std::vector<GapRow> gap_rows(const std::vector<Channel>& main,
                              const std::vector<BranchAttribution>& attribution);
-std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders);
 std::vector<TradeRow> trade_rows(const Trade& trade);
 // Per side of a branch, station, output and number; the design position only of the first side.
 std::vector<EffectRow> effect_rows(const Gradients& all);

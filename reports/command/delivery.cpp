@@ -44,14 +44,13 @@ void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& fi
 }
 
 int deliver_result(const Delivery& delivery, nlohmann::ordered_json scene,
-                   const compare::Result& result) {
+                   const compare::Result& result, std::vector<NamedContent> files) {
     delivery.print_text(text(result));
     if (delivery.wants_document()) {
         scene["results"] = nlohmann::ordered_json::array({json_of(result)});
-        std::vector<NamedContent> tables;
         for (const auto& id : table_ids(result))
-            tables.push_back({id + ".csv", csv(whole_table(result, id))});
-        deliver(delivery, std::move(scene), std::move(tables));
+            files.push_back({id + ".csv", csv(whole_table(result, id))});
+        deliver(delivery, std::move(scene), std::move(files));
     }
     return exit_code_of(result.verdict.grade);
 }

@@ -20,7 +20,7 @@ struct Delivery {
 
     bool wants_document() const { return as_json || !folder.empty(); }
     void print_text(std::string_view text) const {
-        if (!as_json) print(text);
+        as_json ? print_beside_document(text) : print(text);
     }
 };
 
@@ -54,10 +54,10 @@ void print_result(const Delivery& delivery, const char* schema,
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files);
 
 // Prints a result or writes it: to the terminal as text; as result.json and a CSV file for each of its
-// tables to the folder, in one step; with --json as the document. `scene` is document_of() of its scene.
+// tables to the folder, in one step, with `files`; with --json as the document. `scene` is document_of() of its scene.
 // Returns the exit code of its verdict.
 int deliver_result(const Delivery& delivery, nlohmann::ordered_json scene,
-                   const compare::Result& result);
+                   const compare::Result& result, std::vector<NamedContent> files = {});
 
 // Writes the result document of one scene: to the folder, with `tables` beside it, in one step; to
 // standard output; or both.

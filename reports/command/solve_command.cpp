@@ -9,6 +9,7 @@
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"
+#include "compare/tables/compare_result.hpp"
 #include "compare/warnings/lift_off.hpp"
 #include "elastocheck/channels.hpp"
 #include "recursive/series/path.hpp"
@@ -22,7 +23,6 @@
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/csv.hpp"
 
 namespace elastocheck::reports {
@@ -144,7 +144,7 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         code = could_not_judge;
     }
     if (const auto why =
-            not_determined(channels, [&](std::size_t c) { return bool(is_undefined[c]); });
+            compare::not_determined(channels, [&](std::size_t c) { return bool(is_undefined[c]); });
         !why.empty())
         print_error("{}\n", why);
     if (csv) csv->finish();

@@ -18,8 +18,6 @@
 #include "reports/extremes/extremes.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/render/render.hpp"
-#include "reports/tables/studies/stress_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -61,18 +59,9 @@ int stress(const StressRequest& request, const Delivery& delivery) {
     const compare::Survival survival =
         compare::stress(trials, threads_of(request.running), progress);
     progress("");
-    delivery.print_text(stress_text(survival));
-    if (delivery.wants_document()) {
-        nlohmann::ordered_json document = document_head(stress_schema, delivery.command);
-        document.update(stress_json(survival));
-        if (!delivery.folder.empty())
-            deliver_files(delivery, {{"stress.json", document.dump(1) + "\n"},
-                                     {"cells.csv", csv(cell_table(survival))}});
-        if (delivery.as_json) print_document(document);
-    }
-    return survival.count(compare::CellVerdict::wrong) > 0 ? limit_broken
-           : survival.judged() == 0                        ? could_not_judge
-                                                           : fine;
+    return deliver_result(
+        delivery, {{"name", request.scenes.empty() ? "all built-in scenes" : "the given scenes"}},
+        result_of(survival));
 }
 
 }  // namespace
@@ -86,7 +75,8 @@ const Command stress_command{
             "SCENE", request->scenes,
             "scene files (YAML); default: all built-in scenes and those with extreme geometry"));
         add_set(command, request->settings);
-        add_output(command, request->folder, "folder for stress.json and cells.csv");
+        add_output(command, request->folder,
+                   "folder for result.json, map.csv, cells.csv and counts.csv");
         add_json(command, request->as_json);
         add_running(command, request->running);
         return [request](const std::string& line) {

@@ -7,7 +7,9 @@
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/curve.hpp"
+#include "compare/studies/converge.hpp"
 #include "compare/studies/findings.hpp"
+#include "compare/tables/compare_result.hpp"
 #include "compare/tables/rows.hpp"
 #include "compare/warnings/plausibility.hpp"
 #include "models/overloaded.hpp"
@@ -18,7 +20,6 @@
 #include "reports/render/render.hpp"
 #include "reports/tables/elements.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/studies/study_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -440,17 +441,20 @@ void add_verdict(json& scene_document, int numbers_compared,
 
 namespace {
 
-json formulations_json(const compare::FormulationStudy& study,
-                       const compare::Comparison& comparison) {
-    json formulations = json::array(), not_solved = json::array();
-    for (const auto& one : compare::formulations) formulations.push_back(one.name);
-    for (const auto& branch : study.branches)
-        for (const auto& why : branch.not_solved) not_solved.push_back(branch.branch + ": " + why);
-    return {{"formulations", formulations},
-            {"bushings", study.bushings},
-            {"spread", table_json(formulation_rows(study, comparison))},
-            {"not_solved", not_solved},
-            {"inconclusive", study.inconclusive}};
+// What the analyses found, each as its command writes it.
+json results_json(const SceneAnalyses& s) {
+    json results = json::array();
+    if (s.judgement) {
+        compare::Result compared = result_of(s.model, s.comparison, *s.judgement);
+        compared.verdict.sentence = sentence(*s.judgement);
+        if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);
+        results.push_back(json_of(compared));
+    }
+    if (s.study)
+        results.push_back(
+            json_of(result_of(s.model, compare::ConvergenceStudies{.methods = s.study})));
+    if (s.trade) results.push_back(json_of(result_of(s.model, *s.trade)));
+    return results;
 }
 
 json gap_json(const compare::GapPart& part) {
@@ -487,18 +491,14 @@ json scene_json(const SceneAnalyses& s) {
                                {"compared", s.effects->compared},
                                {"apart", s.effects->apart},
                                {"effects", table_json(s.effects->rows)}};
-    if (s.formulations) part["formulations"] = formulations_json(*s.formulations, s.comparison);
-    if (s.study) {
+    if (s.study)
         if (const auto gap = compare::gap_part(s.comparison, *s.study, "published"))
             part["findings"]["gap"] = gap_json(*gap);
-        part["convergence"] = study_json(*s.study, {});
-    }
-    if (s.trade) part["trade"] = trade_json(*s.trade);
+    part["results"] = results_json(s);
     if (s.recommended) part["recommended"] = recommended_json(*s.recommended);
     for (const auto& [judgement, sentence] : s.candidates)
         part["candidates"].push_back(candidate_json(judgement, s.comparison, sentence));
     add_verdict(part, s.comparison.compared, s.reasons);
-    if (s.judgement) part["judgement"] = judgement_json(*s.judgement);
     if (s.against) part["against"] = against_json(*s.against);
     return part;
 }

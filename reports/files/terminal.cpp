@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-bool write(std::FILE* stream, std::string_view lines) {
+std::string safe_lines(std::string_view lines) {
     std::string safe;
     safe.reserve(lines.size());
     while (!lines.empty()) {
@@ -31,8 +31,15 @@ bool write(std::FILE* stream, std::string_view lines) {
         safe += '\n';
         lines.remove_prefix(end + 1);
     }
+    return safe;
+}
+
+bool write(std::FILE* stream, std::string_view lines) {
+    const std::string safe = safe_lines(lines);
     return std::fwrite(safe.data(), 1, safe.size(), stream) == safe.size();
 }
+
+Collected* collected = nullptr;
 
 [[noreturn]] void fail() {
     if (errno == EPIPE) throw OutputClosed();
@@ -106,14 +113,29 @@ std::string_view cut(std::string_view text, int characters) {
 
 }  // namespace
 
+Collecting::Collecting(Collected& into) { collected = &into; }
+Collecting::~Collecting() { collected = nullptr; }
+
+void print_beside_document(std::string_view text) {
+    if (collected != nullptr) collected->text += safe_lines(text);
+}
+
 void print(std::string_view lines) {
     const std::lock_guard guard(display().lock);
+    if (collected != nullptr) {
+        collected->printed += safe_lines(lines);
+        return;
+    }
     display().clear();
     if (!write(stdout, lines)) fail();
 }
 
 void print_error(std::string_view lines) {
     const std::lock_guard guard(display().lock);
+    if (collected != nullptr) {
+        collected->errors += safe_lines(lines);
+        return;
+    }
     display().clear();
     (void)write(stderr, lines);
 }
@@ -139,6 +161,10 @@ std::string progress_line(std::string_view what, double done, double seconds, in
 }
 
 void progress(std::string_view what, double done) {
+    if (collected != nullptr) {
+        if (collected->progress && !what.empty()) collected->progress(what, done);
+        return;
+    }
     Display& shown = display();
     const std::lock_guard guard(shown.lock);
     if (shown.hidden) return;
@@ -153,6 +179,10 @@ void progress(std::string_view what, double done) {
 }
 
 void hide_progress() {
+    if (collected != nullptr) {
+        collected->progress = {};
+        return;
+    }
     progress("");
     const std::lock_guard guard(display().lock);
     display().hidden = true;

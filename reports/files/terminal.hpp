@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -33,6 +34,22 @@ void print_error(fmt::format_string<First, Rest...> format, First&& first, Rest&
 // May be called by any thread.
 void progress(std::string_view what, double done = std::numeric_limits<double>::quiet_NaN());
 void hide_progress();  // from now on
+
+// What a command writes, kept for a program that runs it in its own process.
+struct Collected {
+    std::function<void(std::string_view what, double done)> progress = {};
+    std::string printed = {}, errors = {};
+    std::string text = {};  // of a result that is printed as a document
+};
+// While one exists, nothing is written to the streams of the process.
+struct Collecting {
+    explicit Collecting(Collected& into);
+    Collecting(const Collecting&) = delete;
+    Collecting& operator=(const Collecting&) = delete;
+    ~Collecting();
+};
+// The text of a result, where the document is printed: dropped, unless output is collected.
+void print_beside_document(std::string_view text);
 
 // Line of progress after so many seconds: "[######------]  50 %, 12 s left: jounce: energy leg", cut
 // to the width of the terminal; without a bar for a width of zero.

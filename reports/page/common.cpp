@@ -197,7 +197,9 @@ std::string written(double value, Digits digits) {
             return std::abs(value) < 1e15 ? whole_number(std::lround(value)) : number(value);
         case Digits::given: return given(value);
         case Digits::size: return number(value, 2);
-        case Digits::three: return number(value, 3);
+        case Digits::three:
+        case Digits::deviation:
+        case Digits::rounded: return number(value, 3);
         case Digits::percent: return percent(value);
         case Digits::hidden:
         case Digits::words: break;

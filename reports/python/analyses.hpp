@@ -1,12 +1,12 @@
-// The analyses of the commands as functions of the Python module. Each returns what the command
-// reports: its text, its document, and its exit code.
+// The commands, and the judgement of a Python function, in the Python module.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
 namespace elastocheck::python {
 
-// Adds Report and the functions compare, judge, certify, sensitivity, fit to the module.
+// Adds to the module: run(words of the command line, progress) and judge(...), each of which returns
+// (exit code, what is printed, text beside a printed document, errors).
 void bind_analyses(pybind11::module_& module);
 // Figures of many variants of a scene, and what the study of them (package/study/) takes from the
 // program: its reader of YAML, its pages, its files.

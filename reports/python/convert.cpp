@@ -11,32 +11,6 @@ namespace elastocheck::python {
 
 namespace py = pybind11;
 
-py::object object_of(const nlohmann::ordered_json& value) {
-    using Type = nlohmann::ordered_json::value_t;
-    switch (value.type()) {
-        case Type::object: {
-            py::dict dict;
-            for (const auto& [key, item] : value.items()) dict[py::str(key)] = object_of(item);
-            return dict;
-        }
-        case Type::array: {
-            py::list list;
-            for (const auto& item : value) list.append(object_of(item));
-            return list;
-        }
-        case Type::string: return py::str(value.get_ref<const std::string&>());
-        case Type::boolean: return py::bool_(value.get<bool>());
-        case Type::number_integer: return py::int_(value.get<std::int64_t>());
-        case Type::number_unsigned: return py::int_(value.get<std::uint64_t>());
-        case Type::number_float: {
-            const double number = value.get<double>();
-            return py::float_(std::isfinite(number) ? number
-                                                    : std::numeric_limits<double>::quiet_NaN());
-        }
-        default: return py::none();
-    }
-}
-
 reports::Settings settings_of(const py::dict& values) {
     reports::Settings settings;
     for (const auto& [key, value] : values) {

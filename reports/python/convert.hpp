@@ -4,7 +4,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,9 +11,6 @@
 #include "reports/command/options/load_scene.hpp"
 
 namespace elastocheck::python {
-
-// A document as dicts, lists, texts and numbers. A number that is not finite is nan.
-pybind11::object object_of(const nlohmann::ordered_json& value);
 
 // {"springs.coil.rate": 28}: numbers with the fewest digits that read back as the same, texts as
 // they are. Throws Python's TypeError for other values.

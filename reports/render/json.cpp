@@ -38,7 +38,9 @@ json json_of(const compare::Result& result) {
                           {"log_y", chart.log_y}});
     return {{"analysis", result.analysis},
             {"verdict",
-             {{"grade", name(verdict.grade)},
+             {{"grade", verdict.requested || verdict.grade == compare::Grade::not_judged
+                            ? name(verdict.grade)
+                            : "not requested"},
               {"sentence", verdict.sentence},
               {"reasons", verdict.reasons},
               {"compared", verdict.compared}}},

@@ -18,6 +18,16 @@ bool empty(const Cell& cell) {
     return std::get<std::string>(cell).empty();
 }
 
+bool rounding(double value) { return std::abs(value) < 1e-9; }
+
+std::string share(double value) {
+    const double percent = 100 * value;
+    if (rounding(value)) return "0";
+    if (percent > 1000) return ">1000 %";
+    if (std::abs(percent) < 0.001) return "<0.001 %";
+    return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
+}
+
 std::string written(double value, Digits digits) {
     if (!std::isfinite(value)) return "-";
     switch (digits) {
@@ -25,7 +35,12 @@ std::string written(double value, Digits digits) {
         case Digits::given: return fmt::format("{:g}", value);
         case Digits::size: return value == 0 ? "0" : fmt::format("{:.1e}", value);
         case Digits::three: return fmt::format("{:.3g}", value);
-        case Digits::percent: return fmt::format("{:.1f} %", 100 * value);
+        case Digits::deviation: return rounding(value) ? "0" : fmt::format("{:+.3g}", value);
+        case Digits::rounded:
+            return rounding(value) ? "0"
+                   : value < 10    ? fmt::format("{:.2g}", value)
+                                   : fmt::format("{:.0f}", value);
+        case Digits::percent: return share(value);
         case Digits::hidden:
         case Digits::words: break;
     }

@@ -100,15 +100,6 @@ std::string deviations(const Assessment& j) {
                        text.substr(1), compared(j));
 }
 
-json worst_json(const std::optional<Worst>& worst) {
-    if (!worst) return nullptr;
-    return {{"channel", worst->channel},
-            {"branch", worst->branch},
-            {"unit", symbol(worst->unit)},
-            {"max", worst->max},
-            {"share", worst->extent > 0 ? json(worst->max / worst->extent) : json(nullptr)}};
-}
-
 }  // namespace
 
 std::string deviation_text(double value, double limit, const char* unit) {
@@ -169,32 +160,6 @@ std::string sentence(const Assessment& j) {
 nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool given) {
     return {{"mm", tolerance.mm},           {"deg", tolerance.deg},     {"N", tolerance.newton},
             {"Nm", tolerance.newton_metre}, {"share", tolerance.share}, {"asked", given}};
-}
-
-json judgement_json(const Assessment& j) {
-    json rate = nullptr;
-    if (j.wheel_rate)
-        rate = {{"branch", j.wheel_rate->branch},
-                {"wheel", j.wheel_rate->wheel},
-                {"to", j.wheel_rate->to},
-                {"unit", symbol(j.wheel_rate->unit)},
-                {"off", j.wheel_rate->off},
-                {"as_position_mm", compare::as_position(*j.wheel_rate)}};
-    const bool judged = j.requested || j.verdict == Grade::not_judged;
-    return {{"verdict", judged ? compare::name(j.verdict) : "not asked"},
-            {"sentence", sentence(j)},
-            {"method", j.method},
-            {"tolerance", tolerance_json(j.tolerance, j.tolerance_given)},
-            {"position", worst_json(j.position)},
-            {"angle", worst_json(j.angle)},
-            {"position_across", worst_json(j.position_across)},
-            {"angle_across", worst_json(j.angle_across)},
-            {"other", worst_json(j.other)},
-            {"other_across", worst_json(j.other_across)},
-            {"wheel_rate", rate},
-            {"outputs", j.outputs},
-            {"others", j.others},
-            {"reasons", j.reasons}};
 }
 
 }  // namespace elastocheck::reports

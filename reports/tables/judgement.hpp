@@ -25,16 +25,4 @@ std::string not_judged(const std::vector<std::string>& reasons);
 // A tolerance: mm, deg, N, Nm, share, and whether the user gave it ("asked").
 nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool given);
 
-//   verdict         "pass", "fail", "not judged"; "not asked" where no verdict was requested
-//   sentence        as above
-//   method          of the recursion
-//   tolerance       mm, deg, N, Nm, share, and whether it was given or is the default
-//   position, angle, other and, at equal abscissa, position_across, angle_across, other_across:
-//                   channel, branch, unit, max; of `other` (the force, moment or rate with the
-//                   largest share of its limit) also the share of the output's extent
-//   outputs, others number of judged outputs; of these, neither positions nor angles
-//   wheel_rate      branch, wheel, to, unit, off
-//   reasons         reasons for "not judged"
-nlohmann::ordered_json judgement_json(const compare::Assessment& judgement);
-
 }  // namespace elastocheck::reports

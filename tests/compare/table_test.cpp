@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "compare/studies/order_study.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compile.hpp"
@@ -38,10 +37,6 @@ TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
     expect_whole(study_rows(s), 2 * 2 * 3);
     expect_whole(step_rows(s), 2 * 2 * 3 * 5);
     expect_whole(gap_rows(s.channels, attribute_gap(model)), 2 * 2 * 3);
-    OrderOptions orders;
-    orders.orders = {4, 8};
-    orders.tolerances = {1e-6};
-    expect_whole(order_rows(order_study(model, orders)), 2 * 2);
     TradeOptions trade_options;
     trade_options.most_steps = 20;
     trade_options.rounds = 0;

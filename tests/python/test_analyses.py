@@ -30,10 +30,10 @@ def test_compare_is_that_of_the_command(scenes, command, tmp_path):
                                  progress=lambda what, done: told.append((what, done)))
     assert (without_times(report.text), report.exit_code) == (without_times(said), code)
     assert told and all(0 <= done <= 1 for _, done in told)
-    assert report.document["judgement"]["verdict"] == "fail"
+    assert report.document["scenes"][0]["results"][0]["verdict"]["grade"] == "fail"
     command("compare", file, "-o", tmp_path / "out", "--method", "published", "--within", "0.01mm,0.001deg")
     curves = pandas.read_csv(tmp_path / "out/curves.csv", float_precision="round_trip")
-    pandas.testing.assert_frame_equal(report.frame(), curves, check_exact=True)
+    pandas.testing.assert_frame_equal(report.frame("curves"), curves, check_exact=True)
 
 
 @pytest.mark.parametrize("method", ["series", "equilibrium"])
@@ -42,7 +42,7 @@ def test_certify_is_that_of_the_command(scenes, command, method):
     said, code, _ = command("certify", file, "--method", method, "--points", "4")
     report = elastocheck.certify(elastocheck.read(file), method, points=4)
     assert (report.text, report.exit_code, bool(report)) == (said, code, True)
-    assert report.document["verdict"]["compared"] > 0
+    assert report.document["scenes"][0]["results"][0]["verdict"]["compared"] > 0
     assert len(report.frame()) == 2
 
 
@@ -51,12 +51,12 @@ def test_sensitivity_is_that_of_the_command(scenes, command):
     options = ["--of", "toe,camber", "--to", "points.tie_rod*", "--branch", "travel", "--points", "2"]
     said, code, _ = command("sensitivity", file, *options)
     report = elastocheck.sensitivity(elastocheck.read(file), ["toe", "camber"], "points.tie_rod*",
-                                     branches="travel", points=2)
+                                     branch="travel", points=2)
     assert (report.text, report.exit_code) == (said, code)
     said, _, _ = command("sensitivity", file, *options, "--json")
     document = json.loads(said)
     assert all(same(value, document[key]) for key, value in report.document.items())
-    assert len(report.frame()) == len(document["derivatives"]["rows"])
+    assert len(report.frame("derivatives")) == len(document["derivatives"]["rows"])
 
 
 def test_fit_is_that_of_the_command(scenes, command, tmp_path):
@@ -69,7 +69,7 @@ def test_fit_is_that_of_the_command(scenes, command, tmp_path):
     for given in [measured, tmp_path / "rig.csv"]:
         report = elastocheck.fit(elastocheck.read(file), given, "springs.K1_coil.rate")
         assert (report.text, report.exit_code) == (said, code)
-    rate = report.frame().set_index("number")
+    rate = report.frame("numbers").set_index("number")
     assert float(rate[["to"]].iloc[0, 0]) == pytest.approx(24e3, rel=1e-6)
     with pytest.raises(elastocheck.SheetError, match="rig.csv") as error:
         (tmp_path / "rig.csv").write_text("load_N,toe_deg\n1,x\n")
@@ -109,8 +109,18 @@ def test_a_thread_may_compare_while_another_reports_progress():
 
 
 def test_a_table_that_is_not_there_is_named():
-    with pytest.raises(elastocheck.ArgumentError, match="ways"):
+    with pytest.raises(elastocheck.ArgumentError, match="sides"):
         elastocheck.certify(elastocheck.new("pinned_bar"), points=1).frame("rows")
+
+
+def test_any_command_runs_with_its_options(command, tmp_path):
+    scene = elastocheck.new("pinned_bar").vary({"bushings.tip.rates.z": 21})
+    found = elastocheck.run("trade", scene, tolerance="1mm,1deg", output=tmp_path / "out")
+    assert found and set(found.tables) == {"trade", "accuracies"}
+    assert found.text.splitlines()[0] == scene.name
+    assert json.loads((tmp_path / "out/result.json").read_text())["scenes"] == found.document["scenes"]
+    with pytest.raises(elastocheck.ArgumentError, match="tolerance"):
+        elastocheck.run("trade", scene, tolerances="1mm")
 
 
 def test_values_without_a_number_are_nan():

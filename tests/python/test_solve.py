@@ -139,7 +139,7 @@ def test_wrong_settings_are_refused(settings, kind):
     (lambda s: s.solve(branches="upp"), "--branch.*up"),
     (lambda s: elastocheck.certify(s, "exact"), "exact"),
     (lambda s: elastocheck.compare(s, "equilibrium"), "equilibrium"),
-    (lambda s: elastocheck.compare(s, within="1"), "1"), (lambda s: elastocheck.compare(s, threads=-1), "threads"),
+    (lambda s: elastocheck.compare(s, within="1"), "1"), (lambda s: elastocheck.compare(s, threads=-1), "--jobs"),
     (lambda s: elastocheck.sensitivity(s, of="to"), "--of"), (lambda s: elastocheck.sensitivity(s, at="up:x"), "--at")])
 def test_wrong_arguments_are_refused_with_what_is_allowed(call, said):
     with pytest.raises(elastocheck.ArgumentError, match=said):

@@ -29,8 +29,8 @@ def test_openturns_has_the_exact_derivatives():
     assert function(DRAWN)[0] == users.bump_steer(DRAWN)
     differences = np.array(function.gradient(DRAWN)).ravel()
     report = elastocheck.sensitivity(elastocheck.new("double_wishbone"), "bump_steer", users.NUMBERS,
-                                     branches="travel", points=1)
-    exact = report.frame()
+                                     branch="travel", points=1)
+    exact = report.frame("derivatives")
     exact = exact[exact["parameter"].abs() < 1e-9].drop_duplicates("number").set_index("number")
     rate = [column for column in exact.columns if column.startswith("derivative")][0]
     np.testing.assert_allclose(differences, exact.loc[users.NUMBERS, rate], rtol=1e-4)

@@ -115,7 +115,7 @@ struct Tally {
             if (took > slowest) slowest = took, slowest_seed = std::stoull(seed);
             return;
         }
-        ++table[solver][verdict == "honest" ? outcome : verdict];
+        ++table[solver][verdict == "reported failure" ? outcome : verdict];
 
         if (verdict == "wrong" || verdict == "thrown")
             fail(std::stoull(seed), fmt::format("seed {}: {}: {} {}", seed, solver, verdict, why));
@@ -181,7 +181,7 @@ int main(int argc, char** argv) {
     std::uint64_t print = 0;
     std::string scene, log;
     Tally tally;
-    CLI::App app{"Random scenes by every leg and method: right, an honest outcome, or wrong"};
+    CLI::App app{"Random scenes by every leg and method: right, a reported failure, or wrong"};
     app.add_option("--seed", first, "the first");
     app.add_option("--count", count, "how many");
     app.add_option("--workers", workers, "processes")->check(CLI::Range(1, 64));

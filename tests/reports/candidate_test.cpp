@@ -444,7 +444,7 @@ TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
             " solve {{scene}} --method published --steps {{steps}} -o {{output}}'",
             strut, out),
         0);
-    const auto own = said.out.find("the candidate: ");
+    const auto own = said.out.find("the candidate, branch ");
     ASSERT_NE(own, said.out.npos) << said.out;
     expect_parts(said.out.substr(0, own), {"|Φ| at its end"});
     expect_parts(said.out.substr(own), {"order at which the largest step error"}, {"|Φ|"});

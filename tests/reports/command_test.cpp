@@ -81,8 +81,8 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
                                       (folder.path / "out").string(),
                                   0);
     EXPECT_TRUE(said.err.empty()) << said.err;  // no progress in a pipe
-    expect_parts(said.out, {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]",
-                            "at equal travel", "recursive    converged", "conclusive: "});
+    expect_parts(said.out, {"branch 'jounce': 0 to 3000 N in 20 steps", "  toe ", "at equal travel",
+                            "recursive    converged", "conclusive: "});
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (generic vehicle of Project Chrono)");
     const std::string curves = text_of(folder.path / "out" / "curves.csv");
@@ -120,11 +120,11 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
                  "branch 'lift' at equal nose_z", "  published ", "  tangent ",
                  "|Φ| at its end, eq. (31)", "whole = lever + axis + load + rest", "conclusive"}});
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
-    const auto& study = result["scenes"][0]["convergence"];
-    EXPECT_EQ(study["outputs"]["rows"].size(), 2u * 2 * 2 * 6)
+    const auto& tables = result["scenes"][0]["results"][0]["tables"];
+    EXPECT_EQ(tables["convergence"]["rows"].size(), 2u * 2 * 2 * 6)
         << "branches, methods, readings, outputs";
-    EXPECT_EQ(study["step_errors"]["rows"].size(), 2u * 2 * 2 * 6 * 5);
-    EXPECT_EQ(study["gap"]["rows"].size(), 2u * 2 * 6);
+    EXPECT_EQ(tables["step_errors"]["rows"].size(), 2u * 2 * 2 * 6 * 5);
+    EXPECT_EQ(tables["attribution"]["rows"].size(), 2u * 2 * 6);
     expect_parts(text_of(folder.path / "out" / "convergence.csv"),
                  {"lift,published,at equal load,nose_z,mm,converging,"});
     expect_parts(text_of(folder.path / "out" / "step_errors.csv"),

@@ -233,9 +233,9 @@ TEST(ReportCommand, SolvesAndDrawsAScene) {
     expect_parts(said.out, {": Every number on these pages: two independent solutions agree "
                             "to ",
                             "The cheapest method within 0.01\u00a0mm is "});
-    for (const char* part : {"model", "branches", "drawing", "convergence", "trade", "recommended",
-                             "verdict", "judgement"})
+    for (const char* part : {"model", "branches", "drawing", "results", "recommended", "verdict"})
         EXPECT_TRUE(result["scenes"][0].contains(part)) << part;
+    EXPECT_EQ(result["scenes"][0]["results"].size(), 3u) << "compare, converge, trade";
     EXPECT_EQ(result["reproduce"],
               "elastocheck report " + scene + " -o " + (folder.path / "out").string());
 }

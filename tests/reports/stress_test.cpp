@@ -5,8 +5,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "compare/result/result.hpp"
+#include "compare/stress/stress.hpp"
 #include "reports/extremes/extremes.hpp"
-#include "reports/tables/studies/stress_tables.hpp"
+#include "reports/render/render.hpp"
 #include "tests/reports/command.hpp"
 
 namespace elastocheck::reports {
@@ -18,15 +20,15 @@ TEST(Survival, OfTheCommandIsWhatItWrites) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
     const auto said = elastocheck_says("stress " + scenes + "/four_bar.yaml --json -o " + out);
-    EXPECT_EQ(said.out, text_of(out + "/stress.json"));
+    EXPECT_EQ(said.out, text_of(out + "/result.json"));
     const json document = json::parse(said.out);
-    EXPECT_EQ(said.code, document["counts"]["wrong"] == 0 ? 0 : 1) << said.err;
-    EXPECT_EQ(document["schema"], "elastocheck/stress/3");
-    const json& map = document["map"]["rows"];
+    const json& result = document["scenes"][0]["results"][0];
+    EXPECT_EQ(said.code, result["verdict"]["grade"] == "pass" ? 0 : 1) << said.err;
+    const json& map = result["tables"]["map"]["rows"];
     ASSERT_EQ(map.size(), 9u);
     EXPECT_EQ(map[0][1], "as it is");
-    EXPECT_EQ(map[0][2].get<std::string>().size(), document["solvers"].size());
-    const auto& columns = document["cells"]["columns"];
+    EXPECT_EQ(map[0][2].get<std::string>().size(), compare::solvers().size());
+    const auto& columns = result["tables"]["cells"]["columns"];
     EXPECT_EQ(columns.size(), 14u);
     EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
 }
@@ -38,14 +40,14 @@ TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {
         expect_says(arguments, 2, {.err = {says}});
 }
 
-TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrHonest) {
+TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrReportedAsFailed) {
     const auto survival = compare::stress(extremes());
     EXPECT_GT(survival.judged(), 300);
     for (const auto& cell : survival.cells)
         EXPECT_TRUE(cell.verdict != compare::CellVerdict::wrong)
             << fmt::format("{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.side,
                            cell.solver, cell.why, cell.detail);
-    if (HasFailure()) std::cout << stress_text(survival);
+    if (HasFailure()) std::cout << text(result_of(survival));
 }
 
 }  // namespace

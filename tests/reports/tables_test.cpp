@@ -6,14 +6,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "compare/studies/order_study.hpp"
-#include "compare/studies/study.hpp"
+#include "compare/studies/converge.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/page/common.hpp"
 #include "reports/render/render.hpp"
-#include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/numbers.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/support/scenes.hpp"
@@ -24,7 +22,6 @@ namespace {
 using json = nlohmann::ordered_json;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-const std::string file = "result.json";
 
 const compare::Table small{
     {{"who", "", "", true, Digits::words},
@@ -77,36 +74,38 @@ TEST(Tables, ThePageShowsTheSameColumns) {
 
 TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
     const Model model = compile(support::scene("pinned_bar"));
-    const auto orders =
-        compare::order_study(model, {.orders = {2, 8}, .tolerances = {1e-6, 1e-9}, .points = 5});
-    const auto rows = compare::order_rows(orders);
-    ASSERT_EQ(rows.size(), 2 * 4u);
-    EXPECT_EQ(std::ranges::count(csv(rows), '\n'), 1 + 2 * 4);
-    const std::string said = order_text(rows);
-    for (const auto& branch : orders) expect_parts(said, {"branch '" + branch.branch + "'"});
+    compare::ConvergenceStudies studies{
+        .orders = compare::order_study(
+            model, {.orders = {2, 8}, .tolerances = {1e-6, 1e-9}, .points = 5})};
+    const auto result = result_of(model, studies);
+    EXPECT_EQ(std::ranges::count(csv(whole_table(result, "orders")), '\n'), 1 + 2 * 4);
+    const std::string said = text(result);
+    for (const auto& branch : studies.orders)
+        expect_parts(said, {"branch '" + branch.branch + "'"});
     expect_parts(said, {"tolerance [mm]  order  outcome", "   1e-06      8  converged"});
 
-    auto failed = orders;
-    failed.front().failure = "the energy leg diverged";
-    expect_parts(order_text(compare::order_rows(failed)),
-                 {"which is none: the energy leg diverged"});
-    EXPECT_EQ(order_text({}), "");
+    studies.orders.front().failure = "the energy leg diverged";
+    expect_parts(text(result_of(model, studies)),
+                 {"no result to compare with: the energy leg diverged"});
 }
 
 TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     const Model model = compile(support::scene("bushing_pair"));
-    auto study = compare::study(model, {.steps = {20, 40, 80, 160, 320}});
-    const auto attribution = compare::attribute_gap(model);
+    compare::ConvergenceStudies studies{
+        .methods = compare::study(model, {.steps = {20, 40, 80, 160, 320}}),
+        .attribution = compare::attribute_gap(model)};
+    compare::Study& study = *studies.methods;
     const auto outputs = study_rows(study);
     const auto steps = step_rows(study);
-    const auto gaps = gap_rows(study.channels, attribution);
-    const std::string said = study_text(model, study, attribution);
+    const auto gaps = gap_rows(study.channels, studies.attribution);
+    const std::string said = text(result_of(model, studies));
     for (const char* reading : {"at equal load", "at equal nose_z"}) {
         EXPECT_EQ(distinct(outputs, &compare::StudyRow::reading),
                   distinct(gaps, &compare::GapRow::reading));
         expect_parts(said, {std::string("branch 'lift' ") + reading});
     }
-    EXPECT_EQ(study_json(study, attribution)["gap"].dump(), table_json(gaps).dump());
+    EXPECT_EQ(json_of(result_of(model, studies))["tables"]["attribution"].dump(),
+              table_json(gaps).dump());
 
     std::string beside;  // the step counts stand side by side
     for (const auto& row : steps)
@@ -130,7 +129,7 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     method.equal_abscissa.clear();
     method.outcomes[1] = Outcome::diverged;
     method.not_studied = "with 40 steps: diverged";
-    expect_parts(study_text(model, study, attribution), {"with 40 steps: diverged"});
+    expect_parts(text(result_of(model, studies)), {"with 40 steps: diverged"});
     EXPECT_EQ(step_rows(study)[1].outcome, "diverged");
 }
 
@@ -141,7 +140,8 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     const auto trade =
         compare::trade(model, {.tolerance = {0.01, 0.001}, .most_steps = 640, .rounds = 2});
     ASSERT_TRUE(trade.recommendation);
-    const std::string said = trade_text(model, trade);
+    const auto result = result_of(model, trade);
+    const std::string said = text(result);
     expect_parts(
         said,
         {"the same 10 output points",
@@ -152,14 +152,14 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(rows), '\n')),
               trade.points.size() + 1);
     EXPECT_TRUE(rows[trade.recommendation->point].recommended);
-    const auto document = json::parse(trade_json(trade).dump());
-    EXPECT_TRUE(document["tolerance"]["deg"].is_null());
-    EXPECT_EQ(document["recommendation"]["position"], trade.recommendation->point);
+    const auto document = json::parse(json_of(result).dump());
+    EXPECT_TRUE(document["tables"]["accuracies"]["rows"][0][2].is_null()) << "of angles";
+    EXPECT_EQ(document["verdict"]["compared"], trade.recommendation->confirmed_numbers);
 
     const auto none = compare::trade(model, {.tolerance = {1e-15}, .most_steps = 10, .rounds = 0});
-    expect_parts(trade_text(model, none), {"no method reaches it"});
-    EXPECT_FALSE(contains(trade_text(model, none), "ratio\n")) << "no time was taken";
-    EXPECT_TRUE(trade_json(none)["recommendation"].is_null());
+    const std::string unreached = text(result_of(model, none));
+    expect_parts(unreached, {"no method reaches it"});
+    EXPECT_FALSE(contains(unreached, "ratio\n")) << "no time was taken";
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ import os
 import shutil
 import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from elastocheck import _core
 from elastocheck._core import Scene, templates
@@ -17,8 +17,8 @@ from elastocheck._errors import (ArgumentError, Error, FileError, NotTrimmed, Sc
 
 __version__ = _core.version
 __all__ = [
-    "read", "new", "templates", "Scene", "Solution", "Branch", "Output", "Drawing", "Report",
-    "kc", "compare", "judge", "certify", "sensitivity", "fit", "study",
+    "read", "new", "templates", "Scene", "Solution", "Branch", "Output", "Drawing", "Result",
+    "kc", "run", "compare", "judge", "certify", "sensitivity", "fit", "study",
     "Error", "SceneError", "NotTrimmed", "SheetError", "FileError", "ArgumentError", "SceneWarning",
 ]
 
@@ -224,73 +224,128 @@ def kc(scene, method="equilibrium", *, branches=(), steps=0, every=1, tolerance=
 
 # ---- Analyses.
 
-class Report:
-    """What a command reports: `text` as on the terminal, `document` as with --json.
+class Result:
+    """What a command finds: `text` as on the terminal, `document` as with --json.
 
-    `verdict` is "fine", "limit broken" or "could not judge", the exit codes 0, 1 and 3. A report
-    that is not fine is false.
+    `verdict` is "fine", "limit broken" or "could not judge", the exit codes 0, 1 and 3. A result
+    that is not fine is false. `messages` are what the command writes to standard error.
     """
 
-    def __init__(self, core, table=None):
-        self._core, self._table = core, table
+    def __init__(self, exit_code, printed, text, messages):
+        import json
 
-    @property
-    def text(self):
-        return self._core.text
-
-    @property
-    def document(self):
-        return self._core.document
+        self.exit_code, self.messages = exit_code, messages
+        self.document = json.loads(printed) if printed.startswith("{") else {}
+        self.text = text if self.document else printed
 
     @property
     def verdict(self):
-        return self._core.verdict
-
-    @property
-    def exit_code(self):
-        return self._core.exit_code
+        return {0: "fine", 1: "limit broken"}.get(self.exit_code, "could not judge")
 
     def __bool__(self):
         return self.exit_code == 0
 
+    @property
+    def tables(self):
+        """The tables of the document by name: {"columns": [...], "rows": [...]}."""
+        scenes = self.document.get("scenes", [])
+        results = [result for scene in scenes for result in scene.get("results", [])]
+        parts = [result["tables"] for result in results] + [self.document]
+        return {name: table for part in parts for name, table in part.items()
+                if isinstance(table, dict) and "columns" in table}
+
     def frame(self, table=None):
-        """A table of the document as a pandas.DataFrame, columns with their units; by its name
-        where there are several."""
+        """A table as a pandas.DataFrame, columns with their units; the first, or by its name.
+        "curves" has every point of every leg, as curves.csv."""
         import pandas
 
-        name = table or self._table
-        if callable(name):
-            return name()
-        tables = self.document.get("tables", self.document)
-        found = tables.get(name) if name else None
-        if not isinstance(found, dict) or "columns" not in found:
-            known = [key for key, value in tables.items()
-                     if isinstance(value, dict) and "columns" in value]
-            raise ArgumentError(f"table {table!r}; allowed: {', '.join(known) or 'none here'}")
-        names = [column["name"] + (f" [{column['unit']}]" if column["unit"] else "")
-                 for column in found["columns"]]
-        return pandas.DataFrame(found["rows"], columns=names)
+        if table == "curves":
+            return pandas.DataFrame(_points(self.document), columns=[
+                "scene", "branch", "leg", "parameter", "parameter unit", "output", "unit", "value"])
+        tables = self.tables
+        name = table or next(iter(tables), None)
+        if name not in tables:
+            raise ArgumentError(f"table {table!r}; allowed: {', '.join(tables) or 'none here'}")
+        columns = [column["name"] + (f" [{column['unit']}]" if column["unit"] else "")
+                   for column in tables[name]["columns"]]
+        return pandas.DataFrame(tables[name]["rows"], columns=columns)
 
     def __repr__(self):
         return self.text
 
 
-def _frame_of_csv(text):
-    import io
+def _points(document):
+    for scene in document.get("scenes", []):
+        for branch in scene.get("branches", []):
+            for leg in branch.get("legs", []):
+                for channel in scene["channels"]:
+                    values = leg["curve"]["values"][channel["name"]]
+                    for parameter, value in zip(leg["curve"]["a"], values):
+                        yield (scene["name"], branch["name"], leg["leg"], parameter, branch["unit"],
+                               channel["name"], channel["unit"], value)
 
-    import pandas
-    return pandas.read_csv(io.StringIO(text), float_precision="round_trip")
+
+def run(command, *words, threads=0, progress=None, **options):
+    """Runs a command of `elastocheck` in this process: run("certify", scene, points=4).
+
+    `words` are scenes or its other words, `options` those of the command without dashes: True for
+    one without a value, a list for several values; None leaves it out. `threads`: 0 for one per
+    core. `progress(what, done)` is called from any thread, one at a time; what it raises ends the
+    command. One command runs at a time. Throws as read() does, and ArgumentError.
+    """
+    if command == "study":  # is this package
+        raise ArgumentError("study: elastocheck.study.run")
+    line = [command]
+    for word in words:
+        line.append(word.file if isinstance(word, Scene) else os.fspath(word))
+        if isinstance(word, Scene):
+            for path, value in word.settings.items():
+                line += ["--set", f"{path}={value}"]
+    if threads:
+        options["jobs"] = threads
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if value is True:
+            line.append(option)
+        elif value is not None and value is not False:
+            several = isinstance(value, Iterable) and not isinstance(value, str)
+            line += [f"{option}={one}" for one in (value if several else [value])]
+    found = Result(*_core.run(line + ["--json"], progress))
+    if found.exit_code == 2:
+        raise ArgumentError(found.messages.removeprefix("elastocheck: ").strip())
+    return found
 
 
-def compare(scene, method=None, within=None, *, steps=0, every=1, threads=0, progress=None):
+def compare(scene, method=None, within=None, **options):
     """All three legs on one scene: deviations, agreement of the references, proofs of points.
 
-    With `method` or `within` ("0.01mm,0.001deg,1%") it judges the method. frame() has every point
-    of every leg, as curves.csv. `progress(what, done)` is called from any thread, one at a time;
-    what it raises ends the comparison. `threads`: 0 for one per core.
+    With `method` or `within` ("0.01mm,0.001deg,1%") it judges the method.
     """
-    found = _core.compare(scene, method, within, steps, every, threads, progress)
-    return Report(found, lambda: _frame_of_csv(found._csv))
+    return run("compare", scene, method=method, within=within, **options)
+
+
+def certify(scene, method=None, tolerance=None, **options):
+    """Proves by interval arithmetic that computed points are equilibria; frame(): per solver."""
+    return run("certify", scene, method=method, tolerance=tolerance, **options)
+
+
+def sensitivity(scene, of=None, to=None, **options):
+    """Derivatives of outputs by numbers of the scene, by two or three legs; names or patterns."""
+    return run("sensitivity", scene, of=of, to=to, **options)
+
+
+def fit(scene, measured, vary, **options):
+    """Fits numbers of the scene to measured curves, with 95 % intervals; frame(): the numbers.
+
+    `measured`: a CSV file or a pandas.DataFrame with such columns; `vary`: numbers or patterns,
+    limits as "NAME=LOW:HIGH".
+    """
+    if not hasattr(measured, "to_csv"):
+        return run("fit", scene, measured=measured, vary=vary, **options)
+    with tempfile.TemporaryDirectory(prefix="elastocheck-") as folder:
+        file = os.path.join(folder, "measured.csv")
+        measured.to_csv(file, index=False)
+        return run("fit", scene, measured=file, vary=vary, **options)
 
 
 def judge(scene, solver, name="candidate", tolerance=None, *, steps=0, threads=0, progress=None):
@@ -301,37 +356,7 @@ def judge(scene, solver, name="candidate", tolerance=None, *, steps=0, threads=0
     and its quaternion w, x, y, z. Fewer states: it ended early. `branch` is a name; a branch with
     two sides is two calls, each from the parameter 0 on.
     """
-    return Report(_core.judge(scene, solver, name, tolerance, steps, threads, progress))
-
-
-def certify(scene, methods=(), tolerance=None, *, points=20, threads=0, progress=None):
-    """Proves by interval arithmetic that computed points are equilibria; frame(): per solver."""
-    return Report(_core.certify(scene, _listed(methods), tolerance, points, threads, progress),
-                  "sides")
-
-
-def sensitivity(scene, of=(), to=(), *, branches=(), at=(), points=4, most=5, progress=None):
-    """Derivatives of outputs by numbers of the scene, by two or three legs; frame() has all of them.
-
-    Names, or patterns with *; `at`: stations "BRANCH:VALUE" in place of `points`.
-    """
-    return Report(_core.sensitivity(scene, _listed(of), _listed(to), _listed(branches), _listed(at),
-                                    points, most, progress), "derivatives")
-
-
-def fit(scene, measured, vary, *, map="", robust=False, threads=0):
-    """Fits numbers of the scene to measured curves, with 95 % intervals; frame(): the numbers.
-
-    `measured`: a CSV file or a pandas.DataFrame with such columns; `vary`: numbers or patterns,
-    limits as "NAME=LOW:HIGH".
-    """
-    if hasattr(measured, "to_csv"):
-        with tempfile.TemporaryDirectory(prefix="elastocheck-") as folder:
-            file = os.path.join(folder, "measured.csv")
-            measured.to_csv(file, index=False)
-            return Report(_core.fit(scene, file, _listed(vary), map, robust, threads), "numbers")
-    return Report(_core.fit(scene, os.fspath(measured), _listed(vary), os.fspath(map), robust,
-                            threads), "numbers")
+    return Result(*_core.judge(scene, solver, name, tolerance, steps, threads, progress))
 
 
 # ---- Many variants.
