@@ -1,6 +1,7 @@
 #include "compare/candidate/candidate.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,6 @@ constexpr double same_load = 1e-14;  // of a branch's length: rounding of a unit
 constexpr double end_met = 1e-9;     // of a branch's length: tolerance of a point at the end
 // of a branch's length: a larger missing part counts as not given
 constexpr double part_left = 1e-6;
-
-const Curve& truth_of(const BranchComparison& branch) { return branch.run(Leg::equilibrium).curve; }
 
 // Limit of an output on any branch; infinite where the limit is a share of the output's extent on a
 // branch.
@@ -101,157 +100,140 @@ class Reference {
 
 // ---- One reading of one branch.
 
-struct Requested {  // points of the candidate on one branch
-    std::vector<std::size_t> points;
-    std::vector<double> x;     // position given by the candidate: parameter [unit] or abscissa
-    std::vector<double> load;  // load requested from the reference [SI]; NaN beyond its range
+struct PointsOnBranch {
+    std::vector<std::size_t> on_branch;  // points of the candidate
+    const Points& points;
+    const std::vector<PointColumn>& columns;
+    std::size_t defined =
+        0;  // other definitions, which the reference's rows hold after the columns
 };
 
-// Compares candidate and reference column by column. The reference's rows hold the columns, then
-// `defined` other definitions.
-CandidateReading compared(const Requested& requested, const std::vector<PointColumn>& columns,
-                          std::size_t defined, Reference& reference,
+// Compares candidate and reference column by column, at the places `x` that the candidate gives
+// (parameter [unit] or abscissa; NaN: none) and at the loads [SI] where the reference is there; NaN
+// beyond its range.
+CandidateReading compared(const PointsOnBranch& given, const std::vector<double>& x,
+                          const std::vector<double>& loads, const Reference& reference,
                           const BranchComparison& branch) {
     CandidateReading reading;
     std::vector<const std::vector<double>*> rows;
-    std::vector<std::size_t> points;
-    for (std::size_t k = 0; k < requested.points.size(); ++k) {
-        if (std::isnan(requested.x[k])) continue;  // the candidate gives no position
-        const auto* row = std::isnan(requested.load[k]) ? nullptr : reference.at(requested.load[k]);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        if (std::isnan(x[k])) continue;
+        const auto* row = reference.at(loads[k]);
         if (row == nullptr) {
             ++reading.outside;
             continue;
         }
         rows.push_back(row);
-        points.push_back(requested.points[k]);
-        reading.at.push_back(requested.x[k]);
+        reading.points.push_back(given.on_branch[k]);
+        reading.at.push_back(x[k]);
     }
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        std::vector<double> mine, truth, at, all_mine, all_truth;
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            const double value = columns[c].values[points[k]];
-            const bool given = branch.determined[columns[c].channel] && !std::isnan(value);
-            all_mine.push_back(given ? value : nan);
-            all_truth.push_back(given ? (*rows[k])[c] : nan);
-            if (!given) continue;
-            mine.push_back(value), truth.push_back((*rows[k])[c]), at.push_back(reading.at[k]);
+    for (std::size_t c = 0; c < given.columns.size(); ++c) {
+        const auto& [channel, change, values] = given.columns[c];
+        std::vector<double> mine, truth, at;
+        auto &all_mine = reading.candidate.emplace_back(rows.size(), nan),
+             &all_truth = reading.truth.emplace_back(rows.size(), nan);
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const double value = values[reading.points[k]];
+            if (!branch.determined[channel] || std::isnan(value)) continue;
+            mine.push_back(all_mine[k] = value), truth.push_back(all_truth[k] = (*rows[k])[c]);
+            at.push_back(reading.at[k]);
         }
-        Deviation deviation = deviation_of(truth, mine, at);
-        const auto whole = truth_of(branch).channel(columns[c].channel);
+        const auto whole = truth_of(branch).channel(channel);
         const auto [low, high] = std::ranges::minmax(whole);
-        deviation.range = high - low;
-        reading.columns.push_back(deviation);
-        reading.candidate.push_back(std::move(all_mine));
-        reading.truth.push_back(std::move(all_truth));
+        reading.columns.push_back(deviation_of(truth, mine, at));
+        reading.columns.back().range = high - low;
     }
-    for (std::size_t d = 0; d < defined; ++d) {
+    for (std::size_t d = 0; d < given.defined; ++d) {
         auto& values = reading.defined.emplace_back();
-        for (const auto* row : rows) values.push_back((*row)[columns.size() + d]);
+        for (const auto* row : rows) values.push_back((*row)[given.columns.size() + d]);
     }
     return reading;
 }
 
-CandidateReading at_equal_parameter(const std::vector<std::size_t>& points,
-                                    const Candidate& candidate,
-                                    const std::vector<PointColumn>& columns, std::size_t defined,
-                                    Reference& reference, const BranchComparison& branch) {
+CandidateReading not_compared(std::string why) {
     CandidateReading none;
-    if (candidate.points.a.empty()) {
-        none.not_compared = fmt::format("it gives no {}", parameter_word(symbol(branch.unit)));
-        return none;
-    }
-    Requested requested{points, {}, {}};
-    for (const std::size_t k : points) {
-        requested.x.push_back(candidate.points.a[k]);
-        requested.load.push_back(reference.placed(candidate.points.a[k] / in_unit(branch.unit)));
-    }
-    reference.visit(requested.load);
-    return compared(requested, columns, defined, reference, branch);
+    none.not_compared = std::move(why);
+    return none;
 }
 
-// Abscissa values of the candidate's points, or null.
-const std::vector<double>* abscissa_of(const Candidate& candidate,
-                                       const std::vector<PointColumn>& columns, int channel) {
-    if (channel < 0) return nullptr;
-    const auto c = static_cast<std::size_t>(channel);
-    if (candidate.points.abscissa == c) return &candidate.points.at;
-    const auto column = std::ranges::find(columns, c, &PointColumn::channel);
-    return column == columns.end() ? nullptr : &column->values;
+CandidateReading at_equal_parameter(const PointsOnBranch& given, Reference& reference,
+                                    const BranchComparison& branch) {
+    if (given.points.a.empty())
+        return not_compared(fmt::format("it gives no {}", parameter_word(symbol(branch.unit))));
+    std::vector<double> x, loads;
+    for (const std::size_t k : given.on_branch) {
+        x.push_back(given.points.a[k]);
+        loads.push_back(reference.placed(given.points.a[k] / in_unit(branch.unit)));
+    }
+    reference.visit(loads);
+    return compared(given, x, loads, reference, branch);
 }
 
-CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
-                                   const Candidate& candidate,
-                                   const std::vector<PointColumn>& columns, std::size_t defined,
-                                   const std::vector<Channel>& channels, Reference& reference,
-                                   const BranchComparison& branch) {
-    CandidateReading reading;
-    const auto* placed = abscissa_of(candidate, columns, branch.abscissa);
-    if (branch.abscissa < 0) {
-        reading.not_compared = "the scene has no position to read by";
-        return reading;
-    }
-    const auto c = static_cast<std::size_t>(branch.abscissa);
+// Loads [SI] at which the reference is at the places `x` of the abscissa, which is its last output,
+// by the secant method; NaN where it is not.
+std::vector<double> loads_at(const std::vector<double>& x, Reference& reference,
+                             const BranchComparison& branch) {
     const Curve& truth = truth_of(branch);
-    if (placed == nullptr) {
-        reading.not_compared = fmt::format("it gives no {}", channels[c].name);
-        return reading;
-    }
-    if (const Abscissa by = abscissa(channels, branch.abscissa, truth, truth);
-        !by.why_not.empty()) {
-        reading.not_compared = by.why_not;
-        return reading;
-    }
-    const auto t = truth.channel(c);
+    const auto t = truth.channel(static_cast<std::size_t>(branch.abscissa));
     const double length = std::abs(t.back() - t.front()), rounding = end_met * length;
     const double per_unit = 1 / in_unit(branch.unit);
-    // The abscissa is the last requested channel.
     const auto travel = [&](double load) {
         const auto* row = reference.at(load);
         return row == nullptr ? nan : row->back();
     };
-    Requested requested{points, {}, {}};
-    std::vector<double> slope;  // Δa/Δt [SI per unit]
-    for (const std::size_t k : points) {
-        const double at = (*placed)[k];
-        requested.x.push_back(at);
-        double load = nan, rate = nan;
-        if (at >= std::min(t.front(), t.back()) - rounding &&
-            at <= std::max(t.front(), t.back()) + rounding) {
-            std::size_t i = 1;
-            while (i + 1 < t.size() && (t[i] - at) * (t.back() - t.front()) < 0) ++i;
-            rate = (truth.a[i] - truth.a[i - 1]) / (t[i] - t[i - 1]) * per_unit;
-            load = reference.placed(per_unit * truth.a[i - 1] + (at - t[i - 1]) * rate);
-        }
-        requested.load.push_back(load), slope.push_back(rate);
+    std::vector<double> loads(x.size(), nan), slope(x.size(), nan);  // Δa/Δt [SI per unit]
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        if (!(x[k] >= std::min(t.front(), t.back()) - rounding) ||
+            !(x[k] <= std::max(t.front(), t.back()) + rounding))
+            continue;
+        std::size_t i = 1;
+        while (i + 1 < t.size() && (t[i] - x[k]) * (t.back() - t.front()) < 0) ++i;
+        slope[k] = (truth.a[i] - truth.a[i - 1]) / (t[i] - t[i - 1]) * per_unit;
+        loads[k] = reference.placed(per_unit * truth.a[i - 1] + (x[k] - t[i - 1]) * slope[k]);
     }
     constexpr int passes = 12;
-    reference.visit(requested.load);
-    for (int pass = 0; pass < passes; ++pass) {
-        std::vector<double> next(points.size(), nan);
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            const double off = requested.x[k] - travel(requested.load[k]);
-            if (!(std::abs(off) > 1e-13 * std::max(length, std::abs(requested.x[k]))))
+    reference.visit(loads);
+    bool better = true;
+    for (int pass = 0; pass < passes && better; ++pass) {
+        std::vector<double> next(x.size(), nan);
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const double off = x[k] - travel(loads[k]);
+            if (!(std::abs(off) > 1e-13 * std::max(length, std::abs(x[k]))))
                 continue;  // converged, or no load
-            const double load = reference.placed(requested.load[k] + off * slope[k]);
-            if (load != requested.load[k]) next[k] = load;
+            const double load = reference.placed(loads[k] + off * slope[k]);
+            if (load != loads[k]) next[k] = load;
         }
         reference.visit(next);
-        bool better = false;
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            const double now = travel(requested.load[k]), there = travel(next[k]);
-            if (!(std::abs(requested.x[k] - there) < std::abs(requested.x[k] - now)))
-                continue;  // no further improvement
-            slope[k] = (next[k] - requested.load[k]) / (there - now);
-            requested.load[k] = next[k];
+        better = false;
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const double now = travel(loads[k]), there = travel(next[k]);
+            if (!(std::abs(x[k] - there) < std::abs(x[k] - now))) continue;
+            slope[k] = (next[k] - loads[k]) / (there - now);
+            loads[k] = next[k];
             better = true;
         }
-        if (!better) break;
     }
     // a knot of a curve, or a branch that ends early
-    for (std::size_t k = 0; k < points.size(); ++k)
-        if (!(std::abs(travel(requested.load[k]) - requested.x[k]) <= rounding))
-            requested.load[k] = nan;
-    return compared(requested, columns, defined, reference, branch);
+    for (std::size_t k = 0; k < x.size(); ++k)
+        if (!(std::abs(travel(loads[k]) - x[k]) <= rounding)) loads[k] = nan;
+    return loads;
+}
+
+CandidateReading at_equal_abscissa(const PointsOnBranch& given,
+                                   const std::vector<Channel>& channels, Reference& reference,
+                                   const BranchComparison& branch) {
+    if (branch.abscissa < 0) return not_compared("the scene has no position to read by");
+    const auto c = static_cast<std::size_t>(branch.abscissa);
+    const auto column = std::ranges::find(given.columns, c, &PointColumn::channel);
+    if (given.points.abscissa != c && column == given.columns.end())
+        return not_compared(fmt::format("it gives no {}", channels[c].name));
+    const auto& places = given.points.abscissa == c ? given.points.at : column->values;
+    const Curve& truth = truth_of(branch);
+    if (auto by = abscissa(channels, branch.abscissa, truth, truth); !by.why_not.empty())
+        return not_compared(std::move(by.why_not));
+    std::vector<double> x;
+    for (const std::size_t k : given.on_branch) x.push_back(places[k]);
+    return compared(given, x, loads_at(x, reference, branch), reference, branch);
 }
 
 // ---- Missing parts.
@@ -333,122 +315,79 @@ void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) 
         *same = worst;
 }
 
+// ---- The judgement.
+
+// A reading in which something is compared.
+struct Compared {
+    const CandidateBranch& branch;
+    const BranchComparison& of;
+    ReadingKind kind;
+    const CandidateReading& reading;
+};
+
+std::vector<Compared> readings_of(const CandidateJudgement& judgement,
+                                  const Comparison& comparison) {
+    std::vector<Compared> list;
+    for (const auto& branch : judgement.branches)
+        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa})
+            if (const auto& reading = branch.reading(kind); !reading.columns.empty())
+                list.push_back({branch, comparison.branch(branch.branch), kind, reading});
+    return list;
+}
+
+constexpr double reference_moves_by = 1e-6;  // [mm], [deg], ...: of the reference
+constexpr double candidate_moves = 1e-9;     // of the candidate
+
 // Whether every point of the candidate is at the start of its branch although the reference moves:
 // then only the design position was compared.
-bool none_has_moved(const CandidateJudgement& judgement, const Comparison& comparison) {
-    bool moving_reference = false;
-    for (const auto& branch : judgement.branches) {
-        const Curve& truth = truth_of(comparison.branch(branch.branch));
-        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
-            const auto& reading = branch.reading(kind);
-            for (std::size_t c = 0; c < reading.columns.size(); ++c) {
-                const double begin = truth.values[truth.start][judgement.columns[c].channel];
-                for (const double v : reading.truth[c])
-                    if (std::abs(v - begin) > 1e-9) return false;
-                moving_reference = moving_reference || reading.columns[c].range > 1e-6;
-            }
+bool none_has_moved(const std::vector<Compared>& readings, const CandidateJudgement& judgement) {
+    bool reference_moves = false;
+    for (const auto& [branch, of, kind, reading] : readings)
+        for (std::size_t c = 0; c < reading.columns.size(); ++c) {
+            const Curve& truth = truth_of(of);
+            const double begin = truth.values[truth.start][judgement.columns[c].channel];
+            for (const double v : reading.truth[c])
+                if (std::abs(v - begin) > candidate_moves) return false;
+            reference_moves = reference_moves || reading.columns[c].range > reference_moves_by;
         }
-    }
-    return moving_reference;
+    return reference_moves;
+}
+
+// Whether the candidate is constant on every branch and in every column where the reference moves.
+bool nothing_moves(const std::vector<Compared>& readings) {
+    const auto extent = [](std::vector<double> values) {
+        std::erase_if(values, [](double v) { return !std::isfinite(v); });
+        if (values.empty()) return 0.;
+        const auto [low, high] = std::ranges::minmax(values);
+        return high - low;
+    };
+    bool reference_moves = false;
+    for (const auto& [branch, of, kind, reading] : readings)
+        for (std::size_t c = 0; c < reading.columns.size(); ++c) {
+            if (reading.columns[c].compared < 2) continue;
+            if (extent(reading.candidate[c]) > candidate_moves) return false;
+            reference_moves = reference_moves || extent(reading.truth[c]) > reference_moves_by;
+        }
+    return reference_moves;
 }
 
 // The outputs that no branch compares, "its 'ackermann'"; empty where one is compared.
 std::string nowhere_compared(const CandidateJudgement& judgement, const Comparison& comparison) {
-    std::string names;
+    std::vector<std::string> names;
     for (const auto& column : judgement.columns) {
         for (const auto& branch : judgement.branches)
             if (comparison.branch(branch.branch).determined[column.channel]) return {};
-        names += fmt::format("{}'{}'", names.empty() ? "its " : ", ",
-                             comparison.channels[column.channel].name);
+        names.push_back(fmt::format("'{}'", comparison.channels[column.channel].name));
     }
-    return names;
+    return names.empty() ? "" : fmt::format("its {}", fmt::join(names, ", "));
 }
 
-// Whether the candidate is constant on every branch and in every column where the reference moves.
-bool nothing_moves(const CandidateJudgement& judgement) {
-    bool moving_reference = false;
-    for (const auto& branch : judgement.branches)
-        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
-            const auto& reading = branch.reading(kind);
-            for (std::size_t c = 0; c < reading.columns.size(); ++c) {
-                if (reading.columns[c].compared < 2) continue;
-                double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-                for (std::size_t k = 0; k < reading.at.size(); ++k)
-                    for (const int who : {0, 1}) {
-                        const double v = (who == 0 ? reading.candidate : reading.truth)[c][k];
-                        if (std::isfinite(v))
-                            low[who] = std::min(low[who], v), high[who] = std::max(high[who], v);
-                    }
-                if (high[0] - low[0] > 1e-9) return false;
-                moving_reference = moving_reference || high[1] - low[1] > 1e-6;
-            }
-        }
-    return moving_reference;
-}
-
-// Concatenates all branches: at equal parameter where available, else at equal abscissa.
-Beside beside(const CandidateJudgement& judgement, const Comparison& comparison, std::size_t c) {
-    Beside b;
-    b.column = c;
-    b.channel = judgement.columns[c].channel;
-    for (const auto& branch : judgement.branches) {
-        const auto& reading =
-            branch.equal_parameter.columns.empty() ? branch.equal_abscissa : branch.equal_parameter;
-        if (reading.columns.empty()) continue;
-        const auto& of = comparison.branch(branch.branch);
-        const Curve& truth = truth_of(of);
-        for (std::size_t k = 0; k < reading.at.size(); ++k) {
-            if (!std::isfinite(reading.candidate[c][k]) || !std::isfinite(reading.truth[c][k]))
-                continue;
-            b.candidate.push_back(reading.candidate[c][k]);
-            b.reference.push_back(reading.truth[c][k]);
-            b.begin.push_back(truth.values[truth.start][b.channel]);
-            b.at.push_back(reading.at[k]);
-            b.branch.push_back(branch.branch);
-        }
-    }
-    // Reference values at the same points.
-    const auto concatenated = [&](const auto& values_of) {
-        std::vector<double> values;
-        for (const auto& branch : judgement.branches) {
-            const auto& reading = branch.equal_parameter.columns.empty() ? branch.equal_abscissa
-                                                                         : branch.equal_parameter;
-            if (reading.columns.empty()) continue;
-            for (std::size_t k = 0; k < reading.at.size(); ++k)
-                if (std::isfinite(reading.candidate[c][k]) && std::isfinite(reading.truth[c][k]))
-                    values.push_back(values_of(reading)[k]);
-        }
-        return values;
-    };
-    // Other outputs of this unit that the candidate gives too, since their reference values are
-    // available.
-    for (std::size_t d = 0; d < judgement.columns.size(); ++d) {
-        const std::size_t channel = judgement.columns[d].channel;
-        if (d == c || comparison.channels[channel].unit != comparison.channels[b.channel].unit)
-            continue;
-        b.others.push_back(
-            concatenated([d](const auto& reading) -> const auto& { return reading.truth[d]; }));
-        b.other_channels.push_back(channel);
-    }
-    const std::string& figure = comparison.channels[b.channel].name;
-    for (std::size_t d = 0; d < judgement.defined.size(); ++d) {
-        if (definitions_of(std::span(&judgement.defined[d], 1), figure).empty()) continue;
-        b.definitions.push_back(
-            concatenated([d](const auto& reading) -> const auto& { return reading.defined[d]; }));
-        b.definition_names.push_back(judgement.defined[d].name);
-    }
-    return b;
-}
-
-}  // namespace
-
-CandidateJudgement judge_candidate(const Model& model, const Comparison& comparison,
-                                   const Candidate& candidate, const Tolerance& tolerance,
-                                   bool tolerance_given) {
+// What the candidate gives and what is judged of it.
+CandidateJudgement outline_of(const Model& model, const Comparison& comparison,
+                              const Candidate& candidate, const Tolerance& tolerance) {
     CandidateJudgement result;
     result.name = candidate.name;
     result.tolerance = tolerance;
-    result.tolerance_given = tolerance_given;
     result.leftovers = candidate.leftovers;
     result.notes = candidate.notes;
     result.columns = as_they_stand(model, comparison, candidate.points.columns);
@@ -472,131 +411,216 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
                                   std::ranges::any_of(comparison.branches, [&](const auto& b) {
                                       return b.determined.size() > c && b.determined[c];
                                   }));
+    return result;
+}
 
-    const auto& places = candidate.points;
+// The candidate's points on one branch, in both readings.
+CandidateBranch read_branch(const Model& model, const Branch& branch, const BranchComparison& of,
+                            const std::vector<Channel>& channels, const Candidate& candidate,
+                            std::vector<std::size_t> points, CandidateJudgement& result) {
+    CandidateBranch given{
+        of.branch, of.unit, static_cast<int>(points.size()), nan, nan, of.abscissa, {}, {}};
+    for (const std::size_t k : points) {
+        if (candidate.points.a.empty() || std::isnan(candidate.points.a[k])) continue;
+        const double a = candidate.points.a[k];
+        given.from = std::isnan(given.from) ? a : std::min(given.from, a);
+        given.to = std::isnan(given.to) ? a : std::max(given.to, a);
+    }
+    const auto objections = disagreements(model, channels, branch, of, Of::references);
+    for (const auto& why : objections.texts()) result.reasons.push_back(of.branch + ": " + why);
+    if (!objections.empty()) {
+        given.equal_parameter.not_compared = given.equal_abscissa.not_compared =
+            "there are no references";
+        return given;
+    }
+    std::vector<Channel> outputs;
+    for (const auto& column : result.columns) outputs.push_back(channels[column.channel]);
+    outputs.insert(outputs.end(), result.defined.begin(), result.defined.end());
+    if (of.abscissa >= 0) outputs.push_back(channels[static_cast<std::size_t>(of.abscissa)]);
+    Reference reference(model, branch, of.steps, outputs);
+    const PointsOnBranch all{std::move(points), candidate.points, result.columns,
+                             result.defined.size()};
+    given.equal_parameter = at_equal_parameter(all, reference, of);
+    given.equal_abscissa = at_equal_abscissa(all, channels, reference, of);
+    add_missing_parts(branch, of, given, result, channels, result.not_given);
+    result.outside += std::max(given.equal_parameter.outside, given.equal_abscissa.outside);
+    return given;
+}
+
+void read_branches(const Model& model, const Comparison& comparison, const Candidate& candidate,
+                   CandidateJudgement& result) {
+    const Points& places = candidate.points;
     const bool by_parameter = !places.a.empty();
     const auto branches =
         branches_of(model, comparison, places.branch, by_parameter ? places.a : places.at,
                     by_parameter ? std::nullopt : places.abscissa);
-    int nowhere = 0;
-    for (const int b : branches) nowhere += b < 0;
-    if (nowhere > 0)
+    if (const auto nowhere = std::ranges::count_if(branches, [](int b) { return b < 0; });
+        nowhere > 0)
         result.notes.push_back(fmt::format("{} of its points lie on no branch", nowhere));
-
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const BranchComparison& of = comparison.branches[b];
-        CandidateBranch given{of.branch, of.unit, 0, nan, nan, of.abscissa, {}, {}};
         std::vector<std::size_t> points;
         for (std::size_t k = 0; k < branches.size(); ++k)
             if (branches[k] == static_cast<int>(b)) points.push_back(k);
-        if (points.empty()) {
+        if (points.empty())
             result.not_given.push_back(fmt::format("branch '{}'", of.branch));
-            continue;
-        }
-        given.points = static_cast<int>(points.size());
-        if (by_parameter)
-            for (const std::size_t k : points) {
-                if (std::isnan(places.a[k])) continue;
-                given.from =
-                    std::isnan(given.from) ? places.a[k] : std::min(given.from, places.a[k]);
-                given.to = std::isnan(given.to) ? places.a[k] : std::max(given.to, places.a[k]);
-            }
-        const auto objections =
-            disagreements(model, channels, model.branches[b], of, Of::references);
-        for (const auto& why : objections.texts()) result.reasons.push_back(of.branch + ": " + why);
-        if (!objections.empty()) {
-            given.equal_parameter.not_compared = given.equal_abscissa.not_compared =
-                "the references are none";
-            result.branches.push_back(std::move(given));
-            continue;
-        }
-        std::vector<Channel> outputs;
-        for (const auto& column : result.columns) outputs.push_back(channels[column.channel]);
-        outputs.insert(outputs.end(), result.defined.begin(), result.defined.end());
-        if (of.abscissa >= 0) outputs.push_back(channels[static_cast<std::size_t>(of.abscissa)]);
-        Reference reference(model, model.branches[b], of.steps, outputs);
-        given.equal_parameter = at_equal_parameter(points, candidate, result.columns,
-                                                   result.defined.size(), reference, of);
-        given.equal_abscissa = at_equal_abscissa(points, candidate, result.columns,
-                                                 result.defined.size(), channels, reference, of);
-        add_missing_parts(model.branches[b], of, given, result, channels, result.not_given);
-        result.outside += std::max(given.equal_parameter.outside, given.equal_abscissa.outside);
-        result.branches.push_back(std::move(given));
+        else
+            result.branches.push_back(read_branch(model, model.branches[b], of, comparison.channels,
+                                                  candidate, std::move(points), result));
     }
+}
 
-    bool within = true;
+// Whether every judged number of the columns is within its limit. Returns how many there are.
+int judge_columns(const std::vector<Compared>& readings, const std::vector<Channel>& channels,
+                  CandidateJudgement& result, bool& within) {
     int judged = 0;
-    for (const auto& branch : result.branches)
-        for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
-            const auto& reading = branch.reading(kind);
-            const bool by_abscissa = kind == ReadingKind::equal_abscissa;
-            if (by_abscissa && branch.abscissa >= 0 && !reading.columns.empty()) {
-                const auto t = truth_of(comparison.branch(branch.branch))
-                                   .channel(static_cast<std::size_t>(branch.abscissa));
-                const auto [low, high] = std::ranges::minmax(t);
-                if (!(high - low >= least_travel)) continue;  // range too short for a reading
-            }
-            for (std::size_t c = 0; c < reading.columns.size(); ++c) {
-                const Deviation& d = reading.columns[c];
-                const Channel& channel = channels[result.columns[c].channel];
-                result.compared += d.compared;
-                if (!result.judged[c] || d.compared == 0) continue;
-                judged += d.compared;
-                const BranchComparison& of = comparison.branch(branch.branch);
-                const double extent = of.extents[result.columns[c].channel],
-                             limit = limit_of(channel, extent, tolerance);
-                CandidateWorst worst;
-                worst.branch = branch.branch, worst.channel = channel.name,
-                worst.unit = channel.unit;
-                worst.max = d.max, worst.end = d.end, worst.range = d.range;
-                worst.kind = kind, worst.at = d.at, worst.limit = limit;
-                worst.extent = std::isinf(bound_of(channel, tolerance)) ? extent : 0;
-                keep_worst(result.worst, worst);
-                within = within && std::isfinite(d.max) && d.max <= limit;
-                if (!std::isfinite(d.max))
-                    result.reasons.push_back(fmt::format(
-                        "its {} is no number at {:.6g} {} of branch '{}'", channel.name, d.at,
-                        by_abscissa
-                            ? symbol(channels[static_cast<std::size_t>(branch.abscissa)].unit)
-                            : symbol(branch.unit),
-                        branch.branch));
-            }
+    for (const auto& [branch, of, kind, reading] : readings) {
+        const bool by_abscissa = kind == ReadingKind::equal_abscissa;
+        if (by_abscissa) {
+            const auto t = truth_of(of).channel(static_cast<std::size_t>(branch.abscissa));
+            const auto [low, high] = std::ranges::minmax(t);
+            if (!(high - low >= least_travel)) continue;  // range too short for a reading
         }
-    for (std::size_t k = 0; k < places.a.size(); ++k)
-        if (std::isinf(places.a[k])) {
-            result.reasons.emplace_back("where its points are is no number");
-            break;
+        for (std::size_t c = 0; c < reading.columns.size(); ++c) {
+            const Deviation& d = reading.columns[c];
+            const Channel& channel = channels[result.columns[c].channel];
+            result.compared += d.compared;
+            if (!result.judged[c] || d.compared == 0) continue;
+            judged += d.compared;
+            const double extent = of.extents[result.columns[c].channel];
+            CandidateWorst worst;
+            worst.branch = branch.branch, worst.channel = channel.name, worst.unit = channel.unit;
+            worst.max = d.max, worst.end = d.end, worst.range = d.range;
+            worst.kind = kind, worst.at = d.at;
+            worst.limit = limit_of(channel, extent, result.tolerance);
+            worst.extent = std::isinf(bound_of(channel, result.tolerance)) ? extent : 0;
+            keep_worst(result.worst, worst);
+            within = within && std::isfinite(d.max) && d.max <= worst.limit;
+            if (!std::isfinite(d.max))
+                result.reasons.push_back(fmt::format(
+                    "its {} is no number at {:.6g} {} of branch '{}'", channel.name, d.at,
+                    by_abscissa ? symbol(channels[static_cast<std::size_t>(branch.abscissa)].unit)
+                                : symbol(branch.unit),
+                    branch.branch));
         }
-    // constraint residual [mm]; NaN is largest
-    const auto state_error = [&](const Leftover& left) {
-        double worst = 0;
-        for (const auto& r : left.truth) worst = worse(1e3 * r.length, worst);
-        return worst;
-    };
-    for (const auto& left : result.leftovers)
-        if (const double missed = state_error(left);
-            left.why_not.empty() && !(missed <= tolerance.mm)) {
-            within = false;
-            result.hints.push_back(
-                fmt::format("its states miss the constraints of branch '{}' by {:.2g} mm",
-                            left.branch, missed));
-        }
+    }
+    return judged;
+}
 
-    std::string shared, why_shared;
+// Whether its states meet the constraints.
+void judge_states(CandidateJudgement& result, bool& within) {
+    for (const auto& left : result.leftovers) {
+        double missed = 0;  // [mm]; NaN is largest
+        for (const auto& r : left.truth) missed = worse(1e3 * r.length, missed);
+        if (!left.why_not.empty() || missed <= result.tolerance.mm) continue;
+        within = false;
+        result.hints.push_back(fmt::format(
+            "its states miss the constraints of branch '{}' by {:.2g} mm", left.branch, missed));
+    }
+}
+
+void note_shared(const Comparison& comparison, CandidateJudgement& result) {
+    std::vector<std::string> shared;
+    std::string why;
     for (const auto& column : result.columns) {
-        const Channel& channel = channels[column.channel];
+        const Channel& channel = comparison.channels[column.channel];
         if (channel.joints().empty() ||
             std::ranges::none_of(comparison.branches, [&](const BranchComparison& b) {
                 return is_undefined_somewhere(column.channel, truth_of(b));
             }))
             continue;
-        shared += (shared.empty() ? "" : ", ") + channel.name;
-        why_shared = why_undefined(channel);
+        shared.push_back(channel.name);
+        why = why_undefined(channel);
     }
     if (!shared.empty())
-        result.notes.push_back(fmt::format("not compared: {}: {}", shared, why_shared));
-    if (nothing_moves(result)) result.reasons.emplace_back("nothing moves in it");
-    if (within && none_has_moved(result, comparison)) {
+        result.notes.push_back(fmt::format("not compared: {}: {}", fmt::join(shared, ", "), why));
+}
+
+// Tries the columns that are off.
+void explain_columns(const std::vector<Compared>& readings, const Comparison& comparison,
+                     const Candidate& candidate, CandidateJudgement& result) {
+    // Of all branches: at equal parameter where available, else at equal abscissa.
+    std::vector<ReadBranch> branches;
+    for (const auto& branch : result.branches)
+        branches.push_back({&comparison.branch(branch.branch),
+                            branch.equal_parameter.columns.empty() ? &branch.equal_abscissa
+                                                                   : &branch.equal_parameter});
+    for (std::size_t c = 0; c < result.columns.size(); ++c) {
+        const double bound =
+            bound_of(comparison.channels[result.columns[c].channel], result.tolerance);
+        const bool off = std::ranges::any_of(readings, [&](const Compared& of) {
+            const Deviation& d = of.reading.columns[c];
+            return d.compared > 0 &&
+                   !(d.max <= (std::isfinite(bound) ? bound : 1e-3 * std::max(d.range, 1e-9)));
+        });
+        if (!off || (candidate.every_output && !result.judged[c])) continue;
+        Beside b = beside(comparison, result.columns, result.defined, branches, c);
+        b.tolerance = bound;
+        if (auto found = explain(b)) result.explanations.push_back(*found);
+    }
+    const auto exchanged = [&](const Explanation& one, const Explanation& other) {
+        return one.kind == Explanation::Kind::other_output && one.kind == other.kind &&
+               one.other == result.columns[other.column].channel &&
+               other.other == result.columns[one.column].channel;
+    };
+    Points standing = candidate.points;
+    standing.columns = result.columns;
+    for (auto& one : result.explanations) {
+        bool included = false;  // in the words about the column that it is exchanged with
+        for (const auto& other : result.explanations)
+            if (exchanged(one, other)) one.mutual = true, included = included || &other < &one;
+        if (!included) result.hints.push_back(describe(one, comparison, standing));
+    }
+}
+
+}  // namespace
+
+Beside beside(const Comparison& comparison, std::span<const PointColumn> columns,
+              std::span<const Channel> defined, std::span<const ReadBranch> branches,
+              std::size_t c) {
+    Beside b;
+    b.column = c;
+    b.channel = columns[c].channel;
+    const Channel& channel = comparison.channels[b.channel];
+    std::vector<std::size_t> others, definitions;
+    for (std::size_t d = 0; d < columns.size(); ++d)
+        if (d != c && comparison.channels[columns[d].channel].unit == channel.unit)
+            others.push_back(d), b.other_channels.push_back(columns[d].channel);
+    for (std::size_t d = 0; d < defined.size(); ++d)
+        if (!definitions_of(defined.subspan(d, 1), channel.name).empty())
+            definitions.push_back(d), b.definition_names.push_back(defined[d].name);
+    b.others.resize(others.size()), b.definitions.resize(definitions.size());
+    for (const auto& [branch, reading] : branches)
+        for (std::size_t k = 0; k < reading->at.size(); ++k) {
+            const double theirs = reading->candidate[c][k], ours = reading->truth[c][k];
+            if (!std::isfinite(theirs) || !std::isfinite(ours)) continue;
+            const Curve& truth = truth_of(*branch);
+            b.candidate.push_back(theirs), b.reference.push_back(ours);
+            b.begin.push_back(truth.values[truth.start][b.channel]);
+            b.at.push_back(reading->at[k]), b.branch.push_back(branch->branch);
+            for (std::size_t o = 0; o < others.size(); ++o)
+                b.others[o].push_back(reading->truth[others[o]][k]);
+            for (std::size_t d = 0; d < definitions.size(); ++d)
+                b.definitions[d].push_back(reading->defined[definitions[d]][k]);
+        }
+    return b;
+}
+
+CandidateJudgement judge_candidate(const Model& model, const Comparison& comparison,
+                                   const Candidate& candidate, const Tolerance& tolerance,
+                                   bool tolerance_given) {
+    CandidateJudgement result = outline_of(model, comparison, candidate, tolerance);
+    result.tolerance_given = tolerance_given;
+    read_branches(model, comparison, candidate, result);
+    const auto readings = readings_of(result, comparison);
+    bool within = true;
+    const int judged = judge_columns(readings, comparison.channels, result, within);
+    if (std::ranges::any_of(candidate.points.a, [](double a) { return std::isinf(a); }))
+        result.reasons.emplace_back("where its points are is no number");
+    judge_states(result, within);
+    note_shared(comparison, result);
+    if (nothing_moves(readings)) result.reasons.emplace_back("nothing moves in it");
+    if (within && none_has_moved(readings, result)) {
         const std::string names = nowhere_compared(result, comparison);
         result.reasons.push_back(
             names.empty()
@@ -612,39 +636,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
     if (candidate.complete)
         for (const auto& missing : result.not_given)
             result.reasons.push_back("it does not give " + missing);
-
-    for (std::size_t c = 0; c < result.columns.size(); ++c) {
-        const double bound = bound_of(channels[result.columns[c].channel], tolerance);
-        bool off = false;
-        for (const auto& branch : result.branches)
-            for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
-                const auto& reading = branch.reading(kind);
-                if (reading.columns.empty() || reading.columns[c].compared == 0) continue;
-                const Deviation& d = reading.columns[c];
-                off = off ||
-                      !(d.max <= (std::isfinite(bound) ? bound : 1e-3 * std::max(d.range, 1e-9)));
-            }
-        if (!off || (candidate.every_output && !result.judged[c])) continue;
-        Beside b = beside(result, comparison, c);
-        b.tolerance = bound;
-        if (auto found = explain(b)) result.explanations.push_back(*found);
-    }
-    for (auto& one : result.explanations)
-        for (const auto& other : result.explanations)
-            one.mutual = one.mutual ||
-                         (one.kind == Explanation::Kind::other_output && one.kind == other.kind &&
-                          one.other == result.columns[other.column].channel &&
-                          other.other == result.columns[one.column].channel);
-    Points standing = candidate.points;
-    standing.columns = result.columns;
-    for (const auto& one : result.explanations) {
-        const bool included =
-            std::ranges::any_of(result.explanations, [&](const Explanation& other) {
-                return &other < &one && one.mutual && other.mutual &&
-                       one.other == result.columns[other.column].channel;
-            });
-        if (!included) result.hints.push_back(describe(one, comparison, standing));
-    }
+    explain_columns(readings, comparison, candidate, result);
     if (result.reasons.empty()) result.verdict = within ? Grade::pass : Grade::fail;
     return result;
 }

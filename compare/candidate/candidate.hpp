@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,11 @@ namespace elastocheck::compare {
 
 // Channels and branches of a comparison that is not run, for a candidate that is studied alone.
 Comparison outline(const Model& model);
+
+// The curve of the equilibrium leg.
+inline const Curve& truth_of(const BranchComparison& branch) {
+    return branch.run(Leg::equilibrium).curve;
+}
 
 // ---- Diagnosis of a wrong column (candidate_faults.cpp).
 
@@ -40,6 +46,15 @@ struct Beside {
     std::vector<std::vector<double>> definitions;
     std::vector<std::string> definition_names;
 };
+// A reading of a branch.
+struct ReadBranch {
+    const BranchComparison* branch = nullptr;
+    const CandidateReading* reading = nullptr;
+};
+// Column `c` of these readings; `defined` are the figures by other definitions in the readings.
+Beside beside(const Comparison& comparison, std::span<const PointColumn> columns,
+              std::span<const Channel> defined, std::span<const ReadBranch> branches,
+              std::size_t c);
 std::optional<Explanation> explain(const Beside& beside);
 // A sign, unit or offset with which a column that explain() does not make right is much nearer, in
 // words; empty: none. measured.hpp says what is much.

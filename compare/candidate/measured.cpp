@@ -88,34 +88,6 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
     return loops;
 }
 
-// ---- Values of a leg where the points are; NaN where it does not reach.
-
-template <class ValuesOf>
-std::vector<double> values_at(const Comparison& comparison, const std::vector<Place>& places,
-                              std::optional<std::size_t> abscissa, Leg leg,
-                              const ValuesOf& values_of_branch) {
-    std::vector<double> values(places.size(), nan);
-    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
-        const Curve& curve = comparison.branches[b].run(leg).curve;
-        const std::array over{abscissa ? placed_by(curve, abscissa) : std::vector<double>{},
-                              placed_by(curve, {})};
-        const std::vector<double> of = values_of_branch(b);
-        for (std::size_t k = 0; k < places.size(); ++k) {
-            const auto& x = over[places[k].by_parameter ? 1 : 0];
-            if (places[k].branch == static_cast<int>(b) && reaches(x, places[k].x))
-                values[k] = interpolate(x, of, places[k].x, 6);
-        }
-    }
-    return values;
-}
-
-std::vector<double> channel_at(const Comparison& comparison, const std::vector<Place>& places,
-                               std::optional<std::size_t> abscissa, Leg leg, std::size_t channel) {
-    return values_at(comparison, places, abscissa, leg, [&](std::size_t b) {
-        return comparison.branches[b].run(leg).curve.channel(channel);
-    });
-}
-
 // ---- Causes.
 
 struct Given {
@@ -124,9 +96,36 @@ struct Given {
     const DefinedCurves& defined;
 };
 
-std::vector<double> truth_at(const Given& given, const std::vector<Place>& places,
-                             std::size_t channel) {
-    return channel_at(given.comparison, places, given.points.abscissa, Leg::equilibrium, channel);
+// The points of one branch beside a leg, and the other definitions by the equilibrium leg; NaN where
+// the leg does not reach.
+CandidateReading beside_leg(const Given& given, const std::vector<Place>& places, std::size_t b,
+                            Leg leg) {
+    const auto& [comparison, points, defined] = given;
+    const Curve& curve = comparison.branches[b].run(leg).curve;
+    const std::array over{
+        points.abscissa ? placed_by(curve, points.abscissa) : std::vector<double>{},
+        placed_by(curve, {})};
+    CandidateReading reading;
+    for (std::size_t k = 0; k < places.size(); ++k)
+        if (places[k].branch == static_cast<int>(b) && std::isfinite(places[k].x))
+            reading.points.push_back(k), reading.at.push_back(places[k].x);
+    const auto along = [&](const std::vector<double>& of) {
+        std::vector<double> values;
+        for (const std::size_t k : reading.points) {
+            const auto& x = over[places[k].by_parameter ? 1 : 0];
+            values.push_back(reaches(x, places[k].x) ? interpolate(x, of, places[k].x, 6) : nan);
+        }
+        return values;
+    };
+    for (const auto& column : points.columns) {
+        auto& theirs = reading.candidate.emplace_back();
+        for (const std::size_t k : reading.points) theirs.push_back(column.values[k]);
+        reading.truth.push_back(along(curve.channel(column.channel)));
+    }
+    if (leg == Leg::equilibrium && !defined.branches.empty())
+        for (std::size_t d = 0; d < defined.channels.size(); ++d)
+            reading.defined.push_back(along(defined.branches[b].channel(d)));
+    return reading;
 }
 
 // Turns the places of a branch whose columns agree better so, and says so.
@@ -138,19 +137,17 @@ void turn_places(const Given& given, std::vector<Place>& places, std::vector<std
         // squares in units of the columns' scatter
         double before = 0, by_columns = 0, by_places = 0;
         int count = 0;
-        bool by_parameter = true;
-        for (const auto& column : given.points.columns) {
-            const auto r = truth_at(given, places, column.channel),
-                       t = truth_at(given, turned, column.channel);
+        const auto as_given = beside_leg(given, places, b, Leg::equilibrium),
+                   otherwise = beside_leg(given, turned, b, Leg::equilibrium);
+        for (std::size_t c = 0; c < given.points.columns.size(); ++c) {
             double n = 0, sum = 0, squares = 0, as_is = 0, sign = 0, place = 0;
-            for (std::size_t k = 0; k < places.size(); ++k) {
-                const double v = column.values[k];
-                if (places[k].branch != static_cast<int>(b) || !std::isfinite(v + r[k] + t[k]))
-                    continue;
+            for (std::size_t k = 0; k < as_given.points.size(); ++k) {
+                const double v = as_given.candidate[c][k], r = as_given.truth[c][k],
+                             t = otherwise.truth[c][k];
+                if (!std::isfinite(v + r + t)) continue;
                 n += 1, sum += v, squares += v * v;
-                as_is += (v - r[k]) * (v - r[k]), sign += (v + r[k]) * (v + r[k]);
-                place += (v - t[k]) * (v - t[k]);
-                by_parameter = places[k].by_parameter;
+                as_is += (v - r) * (v - r), sign += (v + r) * (v + r);
+                place += (v - t) * (v - t);
             }
             const double scatter = squares - sum * sum / n;
             if (!(n >= 3) || !(scatter > 1e-12 * squares)) continue;
@@ -161,14 +158,14 @@ void turn_places(const Given& given, std::vector<Place>& places, std::vector<std
         if (!(before > much * much * count) || !(by_places < quarter * quarter * before) ||
             !(by_places < by_columns))
             continue;
+        const bool by_parameter = places[as_given.points.front()].by_parameter;
         causes.push_back(fmt::format(
             "the columns of branch '{}' are nearer with the sign of {} turned: {:.2g} % of their "
             "scatter off instead of {:.2g} %",
             given.comparison.branches[b].branch,
             by_parameter ? "the parameter" : given.comparison.channels[*given.points.abscissa].name,
             100 * std::sqrt(by_places / count), 100 * std::sqrt(before / count)));
-        for (std::size_t k = 0; k < places.size(); ++k)
-            if (places[k].branch == static_cast<int>(b)) places[k].x = turned[k].x;
+        for (const std::size_t k : as_given.points) places[k].x = turned[k].x;
     }
 }
 
@@ -176,55 +173,23 @@ std::vector<std::string> causes_of(const Given& given, std::vector<Place> places
     const auto& [comparison, points, defined] = given;
     std::vector<std::string> causes;
     turn_places(given, places, causes);
+    std::vector<CandidateReading> readings;
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b)
+        readings.push_back(beside_leg(given, places, b, Leg::equilibrium));
+    std::vector<ReadBranch> branches;
+    for (std::size_t b = 0; b < readings.size(); ++b)
+        branches.push_back({&comparison.branches[b], &readings[b]});
     for (std::size_t c = 0; c < points.columns.size(); ++c) {
-        Beside b;
-        b.column = c;
-        b.channel = points.columns[c].channel;
-        const Channel& channel = comparison.channels[b.channel];
-        const auto reference = truth_at(given, places, b.channel);
-        std::vector<std::size_t> rows;
-        double worst = 0;
-        for (std::size_t k = 0; k < places.size(); ++k) {
-            const double value = points.columns[c].values[k];
-            if (!std::isfinite(value) || !std::isfinite(reference[k])) continue;
-            const auto& branch = comparison.branches[static_cast<std::size_t>(places[k].branch)];
-            const Curve& curve = branch.run(Leg::equilibrium).curve;
-            rows.push_back(k);
-            b.candidate.push_back(value);
-            b.reference.push_back(reference[k]);
-            b.begin.push_back(curve.values[curve.start][b.channel]);
-            b.at.push_back(places[k].x);
-            b.branch.push_back(branch.branch);
-            worst = std::max(worst, std::abs(value - reference[k]));
-        }
-        if (rows.size() < 3) continue;
+        Beside b = beside(comparison, points.columns, defined.channels, branches, c);
+        if (b.candidate.size() < 3) continue;
         const auto [low, high] = std::ranges::minmax(b.candidate);
         b.tolerance = of_measured * (high - low);
-        if (!(worst > b.tolerance)) continue;
-        const auto of_rows = [&](const std::vector<double>& all) {
-            std::vector<double> values;
-            for (const std::size_t k : rows) values.push_back(all[k]);
-            return values;
-        };
-        for (const auto& other : points.columns)
-            if (other.channel != b.channel &&
-                comparison.channels[other.channel].unit == channel.unit) {
-                b.others.push_back(of_rows(truth_at(given, places, other.channel)));
-                b.other_channels.push_back(other.channel);
-            }
-        if (!defined.branches.empty())
-            for (const Channel& definition : definitions_of(defined.channels, channel.name)) {
-                const auto d =
-                    static_cast<std::size_t>(find_channel(defined.channels, definition.name));
-                b.definitions.push_back(of_rows(
-                    values_at(comparison, places, points.abscissa, Leg::equilibrium,
-                              [&](std::size_t of) { return defined.branches[of].channel(d); })));
-                b.definition_names.push_back(definition.name);
-            }
+        if (!(deviation_of(b.reference, b.candidate, b.at).max > b.tolerance)) continue;
         // a point from which on it is wrong says nothing about a measurement
         if (const auto found = explain(b); found && found->kind != Explanation::Kind::from_there_on)
             causes.push_back(describe(*found, comparison, points));
-        else if (const auto nearer = nearer_with(b, channel); !nearer.empty())
+        else if (const auto nearer = nearer_with(b, comparison.channels[b.channel]);
+                 !nearer.empty())
             causes.push_back(nearer);
     }
     return causes;
@@ -242,32 +207,25 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
     return xx > 0 ? xy / xx : nan;
 }
 
-// The row of an output and a branch; `values` per leg and point.
-MeasuredRow measured_row(const std::array<std::vector<double>, legs.size()>& values,
-                         const std::vector<Place>& places, const PointColumn& column, int branch,
+// The row of a column and a branch, beside each leg.
+MeasuredRow measured_row(const std::array<CandidateReading, legs.size()>& beside, std::size_t c,
                          std::vector<bool>& used) {
-    MeasuredRow row{.branch = {}, .channel = column.channel, .off = {}};
-    row.off.fill({nan, nan});
-    std::array<double, legs.size()> squares{};
-    std::vector<double> x, measured, truth;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        const auto finite = [&](const auto& of) { return std::isfinite(of[k]); };
-        if (places[k].branch != branch || !finite(column.values) ||
-            !std::ranges::all_of(values, finite))
-            continue;
-        ++row.compared;
-        used[k] = true;
-        x.push_back(places[k].x), measured.push_back(column.values[k]);
-        truth.push_back(values[static_cast<std::size_t>(Leg::equilibrium)][k]);
-        for (std::size_t l = 0; l < legs.size(); ++l) {
-            const double off = values[l][k] - column.values[k];
-            squares[l] += off * off;
-            if (!(std::abs(off) <= std::abs(row.off[l].signed_max))) row.off[l].signed_max = off;
-        }
+    MeasuredRow row;
+    std::vector<double> at, measured;
+    std::array<std::vector<double>, legs.size()> values;
+    for (std::size_t k = 0; k < beside[0].points.size(); ++k) {
+        const auto finite = [&](const CandidateReading& leg) {
+            return std::isfinite(leg.truth[c][k]) && std::isfinite(leg.candidate[c][k]);
+        };
+        if (!std::ranges::all_of(beside, finite)) continue;
+        used[beside[0].points[k]] = true;
+        at.push_back(beside[0].at[k]), measured.push_back(beside[0].candidate[c][k]);
+        for (std::size_t l = 0; l < legs.size(); ++l) values[l].push_back(beside[l].truth[c][k]);
     }
     for (std::size_t l = 0; l < legs.size(); ++l)
-        if (row.compared > 0) row.off[l].rms = std::sqrt(squares[l] / row.compared);
-    row.measured_gradient = slope(x, measured), row.gradient = slope(x, truth);
+        row.off[l] = deviation_of(measured, values[l], at);
+    row.measured_gradient = slope(at, measured);
+    row.gradient = slope(at, values[static_cast<std::size_t>(Leg::equilibrium)]);
     return row;
 }
 
@@ -296,7 +254,8 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
     for (auto& column : means.columns)
         for (auto& loop : take_means(column, result.places, comparison))
             result.loops.push_back(std::move(loop));
-    result.explanations = causes_of({comparison, means, defined}, result.places);
+    const Given given{comparison, means, defined};
+    result.explanations = causes_of(given, result.places);
     for (const bool by_parameter : {true, false}) {
         const auto& x = by_parameter ? measured.a : measured.at;
         if (std::ranges::none_of(x, [](double v) { return std::isfinite(v); })) continue;
@@ -304,19 +263,18 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
         for (std::size_t k = 0; k < places.size(); ++k)
             places[k].by_parameter = by_parameter, places[k].x = x[k];
         MeasuredReading reading{by_parameter, {}};
-        for (const auto& column : means.columns) {
-            std::array<std::vector<double>, legs.size()> values;
+        std::vector<std::array<CandidateReading, legs.size()>> branches(comparison.branches.size());
+        for (std::size_t b = 0; b < branches.size(); ++b)
             for (const Leg leg : legs)
-                values[static_cast<std::size_t>(leg)] =
-                    channel_at(comparison, places, measured.abscissa, leg, column.channel);
-            for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
-                auto row = measured_row(values, places, column, static_cast<int>(b), result.used);
-                if (row.compared == 0) continue;
-                row.branch = comparison.branches[b].branch;
-                result.compared += row.compared;
+                branches[b][static_cast<std::size_t>(leg)] = beside_leg(given, places, b, leg);
+        for (std::size_t c = 0; c < means.columns.size(); ++c)
+            for (std::size_t b = 0; b < branches.size(); ++b) {
+                auto row = measured_row(branches[b], c, result.used);
+                if (row.compared() == 0) continue;
+                row.branch = comparison.branches[b].branch, row.channel = means.columns[c].channel;
+                result.compared += row.compared();
                 reading.rows.push_back(std::move(row));
             }
-        }
         result.readings.push_back(std::move(reading));
     }
     return result;

@@ -9,19 +9,16 @@
 
 namespace elastocheck::compare {
 
-// Leg minus measurement. NaN where nothing was compared.
-struct MeasuredDeviation {
-    double signed_max = 0, rms = 0;
-};
 // An output of one test: the points of one branch that every leg reaches.
 struct MeasuredRow {
     std::string branch;
     std::size_t channel = 0;
-    int compared = 0;
     // slope of the straight line through these points, of the measured values and of the equilibrium
     // leg's; per unit of what places them; NaN for fewer than two places
     double measured_gradient = 0, gradient = 0;
-    std::array<MeasuredDeviation, legs.size()> off;  // in the order of `legs`
+    std::array<Deviation, legs.size()>
+        off;  // of each leg from the measurement, in the order of `legs`
+    int compared() const { return off.front().compared; }
 };
 struct MeasuredReading {
     bool by_parameter = true;  // else by Points::abscissa

@@ -36,4 +36,18 @@ std::vector<Change> changes(std::span<const Number> was, std::span<const Number>
     return found;
 }
 
+Table table_of(const std::vector<Change>& changes, const char* was, const char* is) {
+    using enum Digits;
+    const auto value = [](const std::optional<Number>& number) {
+        return number ? number->value : nan;
+    };
+    return table<Change>(
+        "numbers",
+        {{"number", words, [](const Change& c) { return (c.is ? c.is : c.was)->path; }},
+         {was, given, [=](const Change& c) { return value(c.was); }},
+         {is, given, [=](const Change& c) { return value(c.is); }},
+         {"unit", words, [](const Change& c) { return (c.is ? c.is : c.was)->unit; }}},
+        changes);
+}
+
 }  // namespace elastocheck::compare

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "compare/result/table.hpp"
 #include "elastocheck/scene.hpp"
 
 namespace elastocheck::compare {
@@ -17,5 +18,8 @@ struct Change {
 // In the order of the current scene, then the removed numbers. Numbers are identified by their
 // paths and compared by value and unit as written in the file.
 std::vector<Change> changes(std::span<const Number> was, std::span<const Number> is);
+
+// A row for each, the old value in the column `was`.
+Table table_of(const std::vector<Change>& changes, const char* was = "was", const char* is = "is");
 
 }  // namespace elastocheck::compare

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -11,6 +12,7 @@
 #include "compare/comparison/compliance.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -44,18 +46,13 @@ const GatedBranch* find(const Measurement& in, const std::string& branch) {
     return nullptr;
 }
 
-bool is_channel(Quantity q) { return q == Quantity::recursive || q == Quantity::equilibrium; }
-bool is_at_stations(Quantity q) {
-    return q == Quantity::characteristic_recursive || q == Quantity::characteristic_equilibrium;
-}
-bool is_range(Quantity q) {
-    return q == Quantity::range_equilibrium || q == Quantity::range_characteristic_equilibrium;
-}
-bool is_characteristic(Quantity q) {
-    return is_at_stations(q) || q == Quantity::range_characteristic_equilibrium;
-}
-bool is_compliance(Quantity q) {
-    return q == Quantity::compliance_recursive || q == Quantity::compliance_equilibrium;
+// Parameters of the numbers of a quantity; empty where they have none.
+std::vector<double> places_of(Quantity quantity, const std::vector<double>& a) {
+    if (kind_of(quantity).places == Places::points) return a;
+    std::vector<double> places;
+    if (kind_of(quantity).places == Places::stations)
+        for (const std::size_t k : stations(a)) places.push_back(a[k]);
+    return places;
 }
 
 bool is_deviation(Quantity q) {
@@ -69,10 +66,10 @@ double range(const Series& s) {
 }
 
 double scale(const Measurement& accepted, const Series& s) {
-    if (is_channel(s.quantity) || s.quantity == Quantity::range_equilibrium) return range(s);
-    if (is_characteristic(s.quantity) || is_compliance(s.quantity))
+    if (*kind_of(s.quantity).tolerance != 0)
         return std::abs(
             *std::ranges::max_element(s.values, {}, [](double v) { return std::abs(v); }));
+    if (kind_of(s.quantity).places != Places::elsewhere) return range(s);
     if (!is_deviation(s.quantity)) return std::abs(s.values.front());
     const Series* curve = find(accepted, s.branch, Quantity::equilibrium, s.channel);
     return curve != nullptr && !curve->values.empty() ? range(*curve) : 0;
@@ -83,13 +80,10 @@ bool all_finite(const std::vector<double>& values) {
 }
 
 const Allowance* tolerance_of(const Tolerances& tolerances, const Series& s) {
-    auto found = tolerances.find(s.channel);
-    if (found == tolerances.end() && is_characteristic(s.quantity))
-        found = tolerances.find("characteristic");
-    if (found == tolerances.end() && is_compliance(s.quantity))
-        found = tolerances.find("compliance");
-    if (found == tolerances.end()) found = tolerances.find(s.unit);
-    return found == tolerances.end() ? nullptr : &found->second;
+    for (const std::string& key : {s.channel, std::string(kind_of(s.quantity).tolerance), s.unit})
+        if (const auto found = tolerances.find(key); found != tolerances.end())
+            return &found->second;
+    return nullptr;
 }
 
 bool sane(double bound) { return std::isfinite(bound) && bound >= 0; }
@@ -134,11 +128,13 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
     if (!all_finite(is->values))
         return cannot("was measured as something that is not a finite number");
     const GatedBranch* branch = find(baseline.accepted, was.branch);
-    if (is_channel(was.quantity) && (branch == nullptr || branch->a.size() != was.values.size()))
-        return cannot("has not as many numbers as its branch has points");
-    if (is_at_stations(was.quantity) &&
-        (branch == nullptr || stations(branch->a).size() != was.values.size()))
-        return cannot("has not as many numbers as its branch has stations");
+    const std::vector<double> places =
+        branch == nullptr ? std::vector<double>{} : places_of(was.quantity, branch->a);
+    const Places of = kind_of(was.quantity).places;
+    const bool is_placed = of == Places::points || of == Places::stations;
+    if (is_placed && places.size() != was.values.size())
+        return cannot(fmt::format("has not as many numbers as its branch has {}",
+                                  of == Places::points ? "points" : "stations"));
     const Allowance* tolerance = tolerance_of(tolerances, was);
     if (!sane(tolerance))
         return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
@@ -156,46 +152,64 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
                         .is = is->values[k],
                         .tolerance = allowed,
                         .noticeable = noticeable(baseline, was)};
-        if (is_channel(was.quantity)) offence.a = branch->a[k], offence.a_unit = branch->unit;
-        if (is_at_stations(was.quantity))
-            offence.a = branch->a[stations(branch->a)[k]], offence.a_unit = branch->unit;
+        if (is_placed) offence.a = places[k], offence.a_unit = branch->unit;
         verdict.offences.push_back(offence);
     }
 }
 
-// Values of a series that a limit is on: at the design position, or all.
-std::vector<std::size_t> limited(const Limit& limit, const Series& s, const Measurement& in) {
-    std::vector<std::size_t> places;
-    const GatedBranch* branch = find(in, s.branch);
-    for (std::size_t k = 0; k < s.values.size(); ++k) {
-        const bool everywhere = is_deviation(s.quantity) || !limit.over.empty();
-        const std::size_t at =
-            is_at_stations(s.quantity) && branch != nullptr ? stations(branch->a).at(k) : k;
-        if (everywhere || (branch != nullptr && at < branch->a.size() && branch->a[at] == 0))
-            places.push_back(k);
+// Whether the limit is on this series.
+bool is_of(const Limit& limit, const Series& s) {
+    if (is_deviation(limit.of)) return s.quantity == limit.of && s.channel == limit.channel;
+    const bool kept = limit.over.empty()
+                          ? s.quantity == Quantity::equilibrium ||
+                                s.quantity == Quantity::characteristic_equilibrium
+                          : kind_of(s.quantity).places == Places::range && s.branch == limit.over;
+    return kept && (s.channel == limit.channel || s.channel.ends_with("." + limit.channel));
+}
+
+// Reason why a limit is on nothing that was measured, with the nearest names.
+std::string nothing_to_limit(const Limit& limit, const Measurement& measurement) {
+    std::vector<std::string> names;
+    if (!limit.over.empty() && find(measurement, limit.over) == nullptr) {
+        for (const auto& branch : measurement.branches) names.push_back(branch.name);
+        return fmt::format("there is no branch {}{}", reader::quote(limit.over),
+                           reader::did_you_mean(limit.over, names, "branches"));
     }
-    return places;
+    Limit any = limit;
+    for (const auto& series : measurement.series) {
+        any.channel = series.channel;
+        if (!is_of(any, series)) continue;
+        for (const std::string& name :
+             {series.channel, series.channel.substr(series.channel.find('.') + 1)})
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
+    return "nothing of that name was measured" +
+           reader::did_you_mean(limit.channel, names, "allowed");
 }
 
 void judge_limit(const Limit& limit, const Measurement& measurement, GateVerdict& verdict) {
-    const std::string title = fmt::format(
-        "limit on {}: {}{}", limit.of == Quantity::equilibrium ? "a figure" : name(limit.of),
-        limit.channel, limit.over.empty() ? "" : fmt::format(" over branch '{}'", limit.over));
+    const bool of_figure = !is_deviation(limit.of);
     const auto cannot = [&](const std::string& why) {
-        verdict.reasons.push_back(title + ": " + why);
+        verdict.reasons.push_back(fmt::format(
+            "limit on {}{}{}: {}", of_figure ? "" : fmt::format("{}: ", name(limit.of)),
+            limit.channel, limit.over.empty() ? "" : fmt::format(" over branch '{}'", limit.over),
+            why));
     };
     const bool usable =
-        is_deviation(limit.of)
-            ? sane(limit.max)
-            : limit.min <= limit.max && (std::isfinite(limit.min) || std::isfinite(limit.max));
+        of_figure ? limit.min <= limit.max && (std::isfinite(limit.min) || std::isfinite(limit.max))
+                  : sane(limit.max);
     if (!usable) return cannot("has nothing finite to compare");
     const int before = verdict.compared;
     for (const auto& s : measurement.series) {
         if (!is_of(limit, s)) continue;
-        if (!is_deviation(limit.of) && s.unit != limit.unit)
+        if (of_figure && s.unit != limit.unit)
             return cannot(fmt::format("is in {}, and {} is in {}", limit.unit, s.channel, s.unit));
         const GatedBranch* branch = find(measurement, s.branch);
-        for (const std::size_t k : limited(limit, s, measurement)) {
+        const std::vector<double> places =
+            branch == nullptr ? std::vector<double>{} : places_of(s.quantity, branch->a);
+        for (std::size_t k = 0; k < s.values.size(); ++k) {
+            const bool everywhere = !of_figure || !limit.over.empty();
+            if (!everywhere && (k >= places.size() || places[k] != 0)) continue;
             if (!std::isfinite(s.values[k])) return cannot("has nothing finite to compare");
             ++verdict.compared;
             if (s.values[k] >= limit.min && s.values[k] <= limit.max) continue;
@@ -208,12 +222,11 @@ void judge_limit(const Limit& limit, const Measurement& measurement, GateVerdict
                             .was = bound,
                             .is = s.values[k],
                             .tolerance = std::abs(bound)};
-            if (!is_deviation(limit.of) && limit.over.empty())
-                offence.a = 0, offence.a_unit = branch->unit;
+            if (!everywhere) offence.a = 0, offence.a_unit = branch->unit;
             verdict.offences.push_back(offence);
         }
     }
-    if (verdict.compared == before) cannot("nothing of that name was measured");
+    if (verdict.compared == before) cannot(nothing_to_limit(limit, measurement));
 }
 
 std::string described(const GatedBranch& branch) {
@@ -322,41 +335,8 @@ void add_counters(const std::string& branch, Quantity quantity, const LegRun& ru
 }  // namespace
 
 const char* name(ToleranceClass kind) {
-    switch (kind) {
-        case ToleranceClass::same_build: return "same-build";
-        case ToleranceClass::cross_build: return "cross-build";
-        case ToleranceClass::physical: return "physical";
-    }
-    return "";
-}
-
-const char* name(Quantity quantity) {
-    switch (quantity) {
-        case Quantity::recursive: return "recursive";
-        case Quantity::equilibrium: return "equilibrium";
-        case Quantity::range_equilibrium: return "range of equilibrium";
-        case Quantity::characteristic_recursive: return "characteristic of recursive";
-        case Quantity::characteristic_equilibrium: return "characteristic of equilibrium";
-        case Quantity::range_characteristic_equilibrium:
-            return "range of characteristic of equilibrium";
-        case Quantity::compliance_recursive: return "compliance of recursive";
-        case Quantity::compliance_equilibrium: return "compliance of equilibrium";
-        case Quantity::deviation_at_equal_parameter: return "deviation at equal parameter";
-        case Quantity::deviation_at_equal_abscissa: return "deviation at equal abscissa";
-        case Quantity::work_recursive: return "work of recursive";
-        case Quantity::work_equilibrium: return "work of equilibrium";
-        case Quantity::work_energy: return "work of energy";
-    }
-    return "";
-}
-
-const char* name(Judgement judgement) {
-    switch (judgement) {
-        case Judgement::passed: return "passed";
-        case Judgement::failed: return "FAILED";
-        case Judgement::could_not_judge: return "COULD NOT JUDGE";
-    }
-    return "";
+    constexpr std::array names{"same-build", "cross-build", "physical"};
+    return names.at(static_cast<std::size_t>(kind));
 }
 
 double Offence::share() const {
@@ -374,43 +354,32 @@ bool comes_before(const Offence& a, const Offence& b) {
     return rank(a) != rank(b) ? rank(a) < rank(b) : a.noticed() > b.noticed();
 }
 
-Judgement GateVerdict::judgement() const {
-    if (!offences.empty()) return Judgement::failed;
-    return reasons.empty() && compared > 0 ? Judgement::passed : Judgement::could_not_judge;
+Grade GateVerdict::grade() const {
+    if (!offences.empty()) return Grade::fail;
+    return reasons.empty() && compared > 0 ? Grade::pass : Grade::not_judged;
 }
 
 Tolerances default_tolerances(ToleranceClass kind) {
-    switch (kind) {
-        case ToleranceClass::same_build:  // the last digit of the file
-            return {{"mm", {2e-9, 0}},
-                    {"deg", {2e-9, 0}},
-                    {"N", {2e-9, 0}},
-                    {"N·m", {2e-9, 0}},
-                    {"%", {2e-9, 0}},
-                    {"count", {0, 0}},
-                    {"characteristic", {2e-9, 1e-12}},
-                    {"compliance", {2e-9, 1e-12}}};
-        case ToleranceClass::cross_build:  // five times the worst of tests/gate/README.md
-            return {{"mm", {5e-9, 0}},
-                    {"deg", {5e-9, 0}},
-                    {"N", {7e-8, 0}},
-                    {"N·m", {5e-9, 0}},
-                    // of a cotangent at 2 deg: 5e-9 deg changes it by 800 times as much, in percent
-                    {"%", {2e-5, 0}},
-                    {"count", {1, 0.012}},
-                    {"characteristic", {1e-8, 1e-8}},
-                    {"compliance", {1e-8, 1e-8}}};
-        case ToleranceClass::physical:
-            return {{"mm", {0.01, 1e-3}},
-                    {"deg", {0.001, 1e-3}},
-                    {"N", {1, 1e-3}},
-                    {"N·m", {0.1, 1e-3}},
-                    {"%", {0.5, 1e-3}},
-                    {"count", {2, 0.5}},
-                    {"characteristic", {1e-3, 5e-3}},
-                    {"compliance", {1e-3, 5e-3}}};
-    }
-    return {};
+    struct Usual {
+        const char* key;
+        // same-build: the last digit of the file; cross-build: five times the worst of
+        // tests/gate/README.md
+        std::array<Allowance, tolerance_classes.size()> of_class;
+    };
+    static const std::array usual{
+        Usual{"mm", {{{2e-9, 0}, {5e-9, 0}, {0.01, 1e-3}}}},
+        Usual{"deg", {{{2e-9, 0}, {5e-9, 0}, {0.001, 1e-3}}}},
+        Usual{"N", {{{2e-9, 0}, {7e-8, 0}, {1, 1e-3}}}},
+        Usual{"N·m", {{{2e-9, 0}, {5e-9, 0}, {0.1, 1e-3}}}},
+        // of a cotangent at 2 deg: 5e-9 deg changes it by 800 times as much, in percent
+        Usual{"%", {{{2e-9, 0}, {2e-5, 0}, {0.5, 1e-3}}}},
+        Usual{"count", {{{0, 0}, {1, 0.012}, {2, 0.5}}}},
+        Usual{"characteristic", {{{2e-9, 1e-12}, {1e-8, 1e-8}, {1e-3, 5e-3}}}},
+        Usual{"compliance", {{{2e-9, 1e-12}, {1e-8, 1e-8}, {1e-3, 5e-3}}}}};
+    Tolerances tolerances;
+    for (const auto& [key, of_class] : usual)
+        tolerances[key] = of_class.at(static_cast<std::size_t>(kind));
+    return tolerances;
 }
 
 std::vector<std::size_t> stations(const std::vector<double>& a) {
@@ -421,14 +390,6 @@ std::vector<std::size_t> stations(const std::vector<double>& a) {
             k == last)
             at.push_back(k);
     return at;
-}
-
-bool is_of(const Limit& limit, const Series& s) {
-    if (is_deviation(limit.of)) return s.quantity == limit.of && s.channel == limit.channel;
-    const bool kept = limit.over.empty() ? s.quantity == Quantity::equilibrium ||
-                                               s.quantity == Quantity::characteristic_equilibrium
-                                         : is_range(s.quantity) && s.branch == limit.over;
-    return kept && (s.channel == limit.channel || s.channel.ends_with("." + limit.channel));
 }
 
 Measurement measure(const Model& model, const Comparison& comparison) {

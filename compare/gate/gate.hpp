@@ -5,6 +5,7 @@
 // be compared is never a pass.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <map>
 #include <optional>
@@ -25,40 +26,50 @@ inline constexpr std::array tolerance_classes{
     ToleranceClass::same_build, ToleranceClass::cross_build, ToleranceClass::physical};
 const char* name(ToleranceClass kind);  // "same-build", ...
 
-// Quantity of a series on a branch.
+// Quantity of a series on a branch. Of a position or angle also the range over all points of the
+// equilibrium leg, of the compliance matrix one row at the start of the first branch, of a deviation
+// the largest |recursion - equilibrium leg| over all points.
 enum class Quantity {
-    recursive,          // a channel of the recursion along the branch
-    equilibrium,        // ... of the equilibrium leg
-    range_equilibrium,  // smallest and largest value of a position or angle over all its points
-    // kinematics and compliance at the stations of the branch, by the recursion
+    recursive,
+    equilibrium,
+    range_equilibrium,
     characteristic_recursive,
-    characteristic_equilibrium,        // ... by the equilibrium leg
-    range_characteristic_equilibrium,  // its smallest and largest value over all points
-    // row of the compliance matrix at the start of the first branch, by the recursion
+    characteristic_equilibrium,
+    range_characteristic_equilibrium,
     compliance_recursive,
     compliance_equilibrium,
-    // the largest |recursion - equilibrium leg| over all points, one number
     deviation_at_equal_parameter,
-    deviation_at_equal_abscissa,  // likewise
+    deviation_at_equal_abscissa,
     work_recursive,  // counters of a leg: steps, factorisations, iterations, evaluations
     work_equilibrium,
     work_energy,
 };
-inline constexpr std::array quantities{Quantity::recursive,
-                                       Quantity::equilibrium,
-                                       Quantity::range_equilibrium,
-                                       Quantity::characteristic_recursive,
-                                       Quantity::characteristic_equilibrium,
-                                       Quantity::range_characteristic_equilibrium,
-                                       Quantity::compliance_recursive,
-                                       Quantity::compliance_equilibrium,
-                                       Quantity::deviation_at_equal_parameter,
-                                       Quantity::deviation_at_equal_abscissa,
-                                       Quantity::work_recursive,
-                                       Quantity::work_equilibrium,
-                                       Quantity::work_energy};
-// "recursive", "deviation at equal parameter", "work of recursive", ...
-const char* name(Quantity quantity);
+// Where its numbers are: at the kept parameters of the branch, at the stations among them.
+enum class Places { points, stations, range, elsewhere };
+struct QuantityKind {
+    const char* name;
+    Places places = Places::elsewhere;
+    const char* tolerance = "";  // its key; "": the unit
+};
+// In the order of Quantity.
+inline constexpr std::array quantities{
+    QuantityKind{"recursive", Places::points},
+    QuantityKind{"equilibrium", Places::points},
+    QuantityKind{"range of equilibrium", Places::range},
+    QuantityKind{"characteristic of recursive", Places::stations, "characteristic"},
+    QuantityKind{"characteristic of equilibrium", Places::stations, "characteristic"},
+    QuantityKind{"range of characteristic of equilibrium", Places::range, "characteristic"},
+    QuantityKind{"compliance of recursive", Places::elsewhere, "compliance"},
+    QuantityKind{"compliance of equilibrium", Places::elsewhere, "compliance"},
+    QuantityKind{"deviation at equal parameter"},
+    QuantityKind{"deviation at equal abscissa"},
+    QuantityKind{"work of recursive"},
+    QuantityKind{"work of equilibrium"},
+    QuantityKind{"work of energy"}};
+inline const QuantityKind& kind_of(Quantity quantity) {
+    return quantities.at(static_cast<std::size_t>(quantity));
+}
+inline const char* name(Quantity quantity) { return kind_of(quantity).name; }
 
 struct Series {
     std::string branch;
@@ -119,9 +130,6 @@ struct Limit {
     std::string unit = {};                                  // unit of the bounds
     std::string over = {};  // a branch, at all of its points; empty: at the design position
 };
-// Whether the limit is on this series.
-bool is_of(const Limit& limit, const Series& series);
-
 struct Baseline {
     Measurement accepted;
     std::map<ToleranceClass, Tolerances> tolerances;
@@ -154,9 +162,6 @@ struct Offence {
 // round-off tolerances and still be irrelevant.
 bool comes_before(const Offence& a, const Offence& b);
 
-enum class Judgement { passed, failed, could_not_judge };
-const char* name(Judgement judgement);  // "passed", "FAILED", "COULD NOT JUDGE"
-
 struct GateVerdict {
     ToleranceClass kind = ToleranceClass::same_build;
     int compared = 0;                  // numbers compared
@@ -164,7 +169,7 @@ struct GateVerdict {
     std::vector<std::string> reasons;  // reasons why all or part of it could not be judged
 
     // An exceeded limit fails whatever else could not be judged; nothing compared is not a pass.
-    Judgement judgement() const;
+    Grade grade() const;
 };
 
 GateVerdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind);

@@ -94,7 +94,8 @@ struct CandidateReading {
     int outside = 0;           // points that the reference does not reach
     // candidate minus reference, per Points::columns; `compared` is 0 for a column without numbers
     std::vector<Deviation> columns;
-    std::vector<double> at;                             // per compared point: parameter or travel
+    std::vector<std::size_t> points;  // positions in the candidate's points ...
+    std::vector<double> at;           // ... of those compared: parameter or travel
     std::vector<std::vector<double>> candidate, truth;  // [column][point]; NaN without a value
     // [definition][point]: CandidateJudgement::defined of the reference
     std::vector<std::vector<double>> defined;

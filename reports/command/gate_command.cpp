@@ -13,7 +13,6 @@
 #include "compare/jobs/jobs.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
@@ -164,33 +163,6 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
     }
 }
 
-// Reason why a limit is on nothing that was measured, with the nearest names.
-std::string what_is_there(const compare::Limit& limit, const compare::Measurement& measurement) {
-    const bool figure = limit.of == compare::Quantity::equilibrium;
-    const auto is_branch = [&](const compare::GatedBranch& branch) {
-        return limit.over.empty() || branch.name == limit.over;
-    };
-    std::vector<std::string> names;
-    if (std::ranges::none_of(measurement.branches, is_branch)) {
-        for (const auto& branch : measurement.branches) names.push_back(branch.name);
-        return fmt::format("limit on {}: there is no branch {}{}", limit.channel,
-                           reader::quote(limit.over),
-                           reader::did_you_mean(limit.over, names, "branches"));
-    }
-    compare::Limit any = limit;
-    for (const auto& series : measurement.series) {
-        any.channel = series.channel;
-        if (!is_of(any, series)) continue;
-        for (const std::string& name :
-             {series.channel, series.channel.substr(series.channel.find('.') + 1)})
-            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-    }
-    return fmt::format(
-        "limit on {}: nothing of that name was measured{}",
-        figure ? limit.channel : fmt::format("{}: {}", name(limit.of), limit.channel),
-        reader::did_you_mean(limit.channel, names, "allowed"));
-}
-
 void judge(const BaselineFile& was, const BaselineFile& is, const std::string& forced,
            GatedScene& scene) {
     const BuildDistance apart = distance(was.provenance, is.provenance);
@@ -198,21 +170,8 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     scene.differs = apart.differs;
     for (const auto wanted : compare::tolerance_classes)
         if (forced == name(wanted)) kind = wanted, scene.differs = "--class";
-    compare::Baseline baseline = was.baseline;
-    auto& limits = baseline.limits;
-    const auto misnamed =
-        std::partition(limits.begin(), limits.end(), [&](const compare::Limit& limit) {
-            return std::ranges::any_of(is.baseline.accepted.series,
-                                       [&](const auto& series) { return is_of(limit, series); });
-        });
-    std::vector<std::string> unknown;
-    std::transform(
-        misnamed, limits.end(), std::back_inserter(unknown),
-        [&](const compare::Limit& limit) { return what_is_there(limit, is.baseline.accepted); });
-    limits.erase(misnamed, limits.end());
-    scene.verdict = compare::judge(baseline, is.baseline.accepted, kind);
-    scene.widened = compare::widened(baseline, kind);
-    std::ranges::copy(unknown, std::back_inserter(scene.verdict.reasons));
+    scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
+    scene.widened = compare::widened(was.baseline, kind);
     scene.changed = compare::changes(was.numbers, is.numbers);
     if (was.input_hash == is.input_hash) return;
     scene.notes.push_back(

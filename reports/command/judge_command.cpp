@@ -11,6 +11,7 @@
 #include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
 
 namespace elastocheck::reports {
@@ -51,15 +52,14 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
     int compared = 0;
     for (const auto& output : outputs) {
         auto judgement = judged(output, request.candidate, loaded, comparison, tolerance, given);
-        std::string verdict = sentence(judgement, comparison);
-        delivery.print_text(candidate_text(judgement, comparison));
-        delivery.print_text(verdict + "\n");
+        const compare::Result result = result_of(judgement, comparison);
+        delivery.print_text(text(result));
         compared += judgement.compared;
         for (const auto& reason : judgement.reasons)
             reasons.push_back(judgement.name + ": " + reason);
         if (judgement.verdict == compare::Grade::fail) code = limit_broken;
         if (judgement.verdict == compare::Grade::not_judged && code == fine) code = could_not_judge;
-        candidates.push_back({std::move(judgement), std::move(verdict)});
+        candidates.push_back({std::move(judgement), result.verdict.sentence});
     }
     if (delivery.wants_document()) {
         std::string curves = curves_csv({{loaded.scene.name, &comparison}});

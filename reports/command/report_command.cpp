@@ -35,6 +35,7 @@
 #include "reports/files/terminal.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/text/words.hpp"
@@ -206,7 +207,7 @@ void add_candidates(SceneAnalyses& scene, const LoadedScene& loaded, const std::
     for (const auto& output : outputs_of(request.candidate, file, {steps_of(scene.model)})) {
         auto judgement = judged(output, request.candidate, loaded, scene.comparison, tolerance,
                                 request.has_tolerance());
-        std::string verdict = sentence(judgement, scene.comparison);
+        std::string verdict = result_of(judgement, scene.comparison).verdict.sentence;
         scene.candidates.push_back({std::move(judgement), std::move(verdict)});
     }
 }

@@ -10,30 +10,10 @@
 
 #include "compare/candidate/candidate.hpp"
 #include "elastocheck/scene.hpp"
-#include "reports/document/rig.hpp"
+#include "reports/document/headings.hpp"
 #include "reports/files/csv_table.hpp"
 
 namespace elastocheck::reports {
-
-// Mapping from the file's column and branch names to those of the scene.
-struct ColumnMap {
-    struct Entry {
-        std::string theirs{};
-        std::string output{};  // an output of the scene, "parameter" or "branch"
-        std::string unit{};    // empty: the output's own
-        double sign = 1,
-               // output = sign · number · unit + offset, the offset in the output's own unit
-            offset = 0;
-        bool change = false;  // relative to the design position
-        int line = 0;
-    };
-    std::vector<Entry> columns;
-    // names in the file and in the scene
-    std::vector<std::pair<std::string, std::string>> branches;
-    std::string file;  // empty: there is none
-};
-// Throws SceneError "file:line: field: ...".
-ColumnMap read_column_map(std::string_view yaml, const std::string& file);
 
 // A table of outputs over load or travel, from a solver or a measurement.
 struct PointTable {
@@ -42,12 +22,11 @@ struct PointTable {
     std::vector<std::string> left_out;    // columns and rows that are not compared
     std::vector<int> lines;               // of the points
 };
-// Headings and names of tests are the map's, this program's or a rig's (rig.hpp). Of a candidate:
+// Headings and names of tests are the map's, this program's or a rig's (headings.hpp). Of a candidate:
 // `also_known` are channels that it may give and that are not compared; an unknown column is an error
 // unless there is a map. Of a measurement (null): every unknown column is left out, and a cell that is
 // not a finite number is an error. Throws SheetError "file:line: ...".
-PointTable read_points(std::string_view csv, const std::string& file, const Model& model,
-                       const compare::Comparison& comparison, const ColumnMap& map,
+PointTable read_points(std::string_view csv, const std::string& file, const Names& names,
                        const std::vector<compare::Channel>* also_known);
 // Keeps the points for which it returns an empty text; the others are left out for that reason, in
 // which they are counted: "3 rows beyond the range of branch 'travel' (lines 5, 6, 9)".
@@ -60,8 +39,5 @@ bool is_travel(const compare::Channel& channel);
 compare::Candidate read_candidate(std::string_view content, const std::string& file,
                                   std::string name, const Scene& scene, const Model& model,
                                   const compare::Comparison& comparison, const ColumnMap& map = {});
-
-// The states of a path in that format, one line per state; `load` in SI.
-std::string state_line(const Model& model, const std::string& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::reports

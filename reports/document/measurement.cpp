@@ -59,7 +59,7 @@ json rows_json(const Measured& measured, const compare::MeasuredReading& reading
         json row = {{"branch", of.branch},
                     {"channel", channel.name},
                     {"unit", symbol(channel.unit)},
-                    {"compared", of.compared},
+                    {"compared", of.compared()},
                     {"gradient",
                      {{"unit", unit},
                       {"measured", factor * of.measured_gradient},
@@ -89,18 +89,16 @@ std::string why_not(const compare::Place& place, const compare::Points& measured
 
 Measurement read_measurement(std::string_view csv, const std::string& file, const Model& model,
                              const ColumnMap& map, const std::vector<std::string>& only) {
-    compare::Comparison all = compare::outline(model);
-    std::vector<std::string> branches;
-    for (const auto& branch : all.branches) branches.push_back(branch.branch);
+    std::vector<compare::Channel> channels = compare::outline(model).channels;
+    const Names names = names_of(model, channels, map);
+    const auto branches = names.branches();
     for (const auto& [theirs, ours] : map.branches)
         if (std::ranges::find(branches, ours) == branches.end())
-            fail_at(file, 0,
-                    fmt::format("'{}={}': the scene has no branch '{}'{}", theirs, ours, ours,
-                                reader::did_you_mean(ours, branches, "allowed")));
+            fail_at(file, 0, fmt::format("'{}={}': {}", theirs, ours, no_branch(ours, branches)));
     Measurement measurement{.file = file,
                             .hash = input_hash(csv),
-                            .table = read_points(csv, file, model, all, map, nullptr),
-                            .channels = std::move(all.channels)};
+                            .table = read_points(csv, file, names, nullptr),
+                            .channels = channels};
     PointTable& table = measurement.table;
     if (!only.empty() && !table.points.branch.empty())
         keep_rows(table, [&](std::size_t k) {

@@ -32,7 +32,7 @@ struct Measurement {
 //   OUTPUT_UNIT                    toe_deg, camber_deg, wheel_centre_y_mm, ...: absolute values
 //   OUTPUT_change_UNIT             ...: relative to the design position
 //   branch                         its branch; needed only where several branches have the same parameter
-// or as a rig names them (rig.hpp), or as the map says. Unknown columns, and the points of branches
+// or as a rig names them (headings.hpp), or as the map says. Unknown columns, and the points of branches
 // that are not among `only` (empty: all), are left out and listed. Throws MeasurementError.
 Measurement read_measurement(std::string_view csv, const std::string& file, const Model& model,
                              const ColumnMap& map = {}, const std::vector<std::string>& only = {});

@@ -29,6 +29,15 @@ double number_in(std::string_view cell, const std::string& file, int line,
     return value;
 }
 
+double number_or_none(std::string_view cell, const std::string& file, int line,
+                      const std::string& column) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    if (error == std::errc{} && end == cell.data() + cell.size() && !std::isfinite(value))
+        return std::numeric_limits<double>::infinity();
+    return number_in(cell, file, line, column);
+}
+
 void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
                 const std::function<void(const Cells&, int)>& head,
                 const std::function<void(const Cells&, int)>& row) {

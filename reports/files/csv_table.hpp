@@ -27,5 +27,8 @@ void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
 // Number in a cell, with a decimal point; NaN for an empty cell. Throws SheetError.
 double number_in(std::string_view cell, const std::string& file, int line,
                  const std::string& column);
+// Likewise; infinite for a cell such as nan or inf.
+double number_or_none(std::string_view cell, const std::string& file, int line,
+                      const std::string& column);
 
 }  // namespace elastocheck::reports

@@ -25,13 +25,10 @@ bool is_known(const std::string& unit) {
     return unit == "count" || unit == compare::per_metre || compare::find_unit(unit);
 }
 
-// The element of `kinds` with this name.
-template <class Kinds>
-auto named(const JsonCursor& field, const Kinds& kinds) {
-    const std::string word = field.text();
-    for (const auto kind : kinds)
-        if (word == name(kind)) return kind;
-    field.fail(fmt::format("'{}' is not known", word));
+Quantity quantity_of(const std::string& name, const JsonCursor& place) {
+    const auto found = std::ranges::find(compare::quantities, name, &compare::QuantityKind::name);
+    if (found == compare::quantities.end()) place.fail(fmt::format("'{}' is not known", name));
+    return static_cast<Quantity>(found - compare::quantities.begin());
 }
 
 Provenance provenance_of(const JsonCursor& in) {
@@ -71,11 +68,11 @@ std::map<ToleranceClass, compare::Tolerances> tolerances_of(const JsonCursor& in
 compare::Limit limit_of(const JsonCursor& in) {
     if (!in.find("figure")) {
         in.only_keys({"of", "channel", "max"});
-        constexpr std::array deviations{Quantity::deviation_at_equal_parameter,
-                                        Quantity::deviation_at_equal_abscissa};
-        return {.of = named(in["of"], deviations),
-                .channel = in["channel"].text(),
-                .max = in["max"].number()};
+        const Quantity of = quantity_of(in["of"].text(), in["of"]);
+        if (of != Quantity::deviation_at_equal_parameter &&
+            of != Quantity::deviation_at_equal_abscissa)
+            in["of"].fail(fmt::format("'{}' is not a deviation", name(of)));
+        return {.of = of, .channel = in["channel"].text(), .max = in["max"].number()};
     }
     compare::Limit limit{
         .of = Quantity::equilibrium, .channel = in["figure"].text(), .unit = in["unit"].text()};
@@ -123,27 +120,6 @@ std::pair<std::string, std::string> channel_and_unit(const std::string& key,
     return {key.substr(0, at), unit};
 }
 
-// Numbers of a series that depends on the branch: at its kept points, its stations; else 0.
-std::size_t size_of(Quantity quantity, const std::vector<double>& a) {
-    switch (quantity) {
-        case Quantity::recursive:
-        case Quantity::equilibrium: return a.size();
-        case Quantity::characteristic_recursive:
-        case Quantity::characteristic_equilibrium: return compare::stations(a).size();
-        case Quantity::range_equilibrium:
-        case Quantity::range_characteristic_equilibrium: return 2;
-        default: return 0;
-    }
-}
-
-// A number alone stands for that number everywhere.
-json values_json(const compare::Series& s, const std::vector<double>& a) {
-    const bool all_alike = s.values.size() == size_of(s.quantity, a) && !s.values.empty() &&
-                           std::ranges::count(s.values, s.values.front()) ==
-                               static_cast<std::ptrdiff_t>(s.values.size());
-    return all_alike ? json(s.values.front()) : json(s.values);
-}
-
 // ---- The figures to review.
 
 // To the digits that an engineer notices.
@@ -184,19 +160,6 @@ std::string figure_key(const FigureLine& line) {
                        line.unit);
 }
 
-// The channels of a name made by figure_key.
-std::vector<std::string> channels_of(const std::string& name) {
-    const auto colon = name.find(": ");
-    if (colon == name.npos) return {name};
-    std::vector<std::string> channels;
-    for (std::size_t from = 0; from < colon;) {
-        const auto to = std::min(name.find(", ", from), colon);
-        channels.push_back(name.substr(from, to - from) + "." + name.substr(colon + 2));
-        from = to + 2;
-    }
-    return channels;
-}
-
 json figures_json(const compare::Measurement& measurement) {
     json all = json::object();
     for (const auto& branch : measurement.branches) {
@@ -230,25 +193,6 @@ json figures_json(const compare::Measurement& measurement) {
     return all;
 }
 
-// Marks the series that the file shows.
-void mark_main(const JsonCursor& figures, compare::Measurement& measurement) {
-    for (const auto& [branch, of_branch] : figures.entries()) {
-        of_branch.only_keys({"at", "unit", "figures"});
-        for (const auto& [key, field] : of_branch["figures"].entries()) {
-            const auto [name, unit] = channel_and_unit(key, field);
-            for (const auto& channel : channels_of(name)) {
-                bool found = false;
-                for (auto& s : measurement.series)
-                    if (s.branch == branch && s.channel == channel && s.unit == unit &&
-                        (s.quantity == Quantity::equilibrium ||
-                         s.quantity == Quantity::characteristic_equilibrium))
-                        s.main = found = true;
-                if (!found) field.fail("is not among the curves");
-            }
-        }
-    }
-}
-
 // ---- Text.
 
 // "KEY": [\n  one,\n  two\n ]
@@ -273,10 +217,13 @@ std::string curves_text(const BaselineFile& file) {
     const compare::Measurement& m = file.baseline.accepted;
     json branches = json::object();
     for (const auto& branch : m.branches) {
-        json& of_branch = branches[branch.name] = {{"unit", branch.unit}, {"parameter", branch.a}};
-        for (const auto& s : m.series)
-            if (s.branch == branch.name)
-                of_branch[name(s.quantity)][heading(s)] = values_json(s, branch.a);
+        json& of_branch = branches[branch.name] = {
+            {"unit", branch.unit}, {"parameter", branch.a}, {"main", json::array()}};
+        for (const auto& s : m.series) {
+            if (s.branch != branch.name) continue;
+            of_branch[name(s.quantity)][heading(s)] = s.values;
+            if (s.main) of_branch["main"].push_back(s.channel);
+        }
     }
     std::vector<json> numbers;
     for (const auto& n : file.numbers) numbers.push_back(json::array({n.path, n.value, n.unit}));
@@ -299,20 +246,16 @@ void parse_curves(const JsonCursor& top, BaselineFile& file) {
     compare::Measurement& m = file.baseline.accepted;
     for (const auto& [branch, of_branch] : top["branches"].entries()) {
         m.branches.push_back({branch, of_branch["unit"].text(), of_branch["parameter"].numbers()});
-        const auto& a = m.branches.back().a;
+        const auto main = of_branch["main"].texts();
         for (const auto& [key, list] : of_branch.entries()) {
-            if (key == "unit" || key == "parameter") continue;
-            const auto quantity =
-                std::ranges::find(compare::quantities, key, [](Quantity q) { return name(q); });
-            if (quantity == compare::quantities.end())
-                of_branch.fail(fmt::format("'{}' is not known", key));
+            if (key == "unit" || key == "parameter" || key == "main") continue;
+            const Quantity quantity = quantity_of(key, of_branch);
+            const bool is_figure = quantity == Quantity::equilibrium ||
+                                   quantity == Quantity::characteristic_equilibrium;
             for (const auto& [title, values] : list.entries()) {
                 const auto [channel, unit] = channel_and_unit(title, values);
-                const bool alike = !values.value->is_array();
-                m.series.push_back(
-                    {branch, *quantity, channel, unit,
-                     alike ? std::vector<double>(size_of(*quantity, a), values.number())
-                           : values.numbers()});
+                m.series.push_back({branch, quantity, channel, unit, values.numbers(),
+                                    is_figure && std::ranges::find(main, channel) != main.end()});
             }
         }
     }
@@ -338,7 +281,6 @@ BaselineFile parse_review(const JsonCursor& top, const JsonCursor& curves) {
     file.baseline.tolerances = tolerances_of(top["tolerances"]);
     for (const auto& limit : top["limits"].items()) file.baseline.limits.push_back(limit_of(limit));
     parse_curves(curves, file);
-    mark_main(top["figures"], file.baseline.accepted);
     return file;
 }
 

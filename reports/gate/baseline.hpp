@@ -3,8 +3,8 @@
 //
 // baselines/SCENE.json is what a person reviews: reason, tolerances, limits, and the main figures,
 // one line each, at the stations of the branches, to the digits that an engineer notices.
-// baselines/curves/SCENE.json holds every number that is compared, to nine decimals, and the
-// numbers of the scene. The first names the hash of the second.
+// baselines/curves/SCENE.json holds every number that is compared, to nine decimals, which of them
+// are main figures, and the numbers of the scene. The first names the hash of the second.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace elastocheck::reports {
 
 // Incremented when a field changes its meaning or is removed.
 inline constexpr const char* baseline_schema = "elastocheck/baseline/4";
-inline constexpr const char* baseline_curves_schema = "elastocheck/baseline-curves/3";
+inline constexpr const char* baseline_curves_schema = "elastocheck/baseline-curves/4";
 inline constexpr FileKind baseline_curves_file{"curves of a baseline",
                                                R"({"schema": "elastocheck/baseline-curves/)"};
 

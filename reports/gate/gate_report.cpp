@@ -1,18 +1,21 @@
 #include "reports/gate/gate_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <span>
 
 #include "reports/document/document.hpp"
-#include "reports/files/templates.hpp"
+#include "reports/render/render.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-using compare::Judgement;
+using compare::Grade;
 using compare::Offence;
 using json = nlohmann::ordered_json;
 
@@ -27,7 +30,7 @@ struct Worst {
     std::size_t numbers = 1;  // number of values of this channel out of tolerance
 };
 
-// Keeps the order of comes_before.
+// In the order of comes_before, of each scene and over all.
 std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
                                          const std::vector<const Offence*>& offences) {
     std::vector<Worst> all;
@@ -41,14 +44,12 @@ std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
     }
     return all;
 }
-
-// Over all scenes, in the order of comes_before.
-std::vector<Worst> worst_of_each_channel(const std::vector<const GatedScene*>& scenes) {
+std::vector<Worst> worst_of_each_channel(const std::vector<GatedScene>& scenes) {
     std::vector<Worst> all;
-    for (const auto* scene : scenes) {
+    for (const auto& scene : scenes) {
         std::vector<const Offence*> offences;
-        for (const auto& offence : scene->verdict.offences) offences.push_back(&offence);
-        std::ranges::copy(worst_of_each_channel(scene, offences), std::back_inserter(all));
+        for (const auto& offence : scene.verdict.offences) offences.push_back(&offence);
+        std::ranges::copy(worst_of_each_channel(&scene, offences), std::back_inserter(all));
     }
     std::ranges::stable_sort(
         all, [](const Worst& a, const Worst& b) { return comes_before(*a.offence, *b.offence); });
@@ -60,34 +61,57 @@ std::string describe_worst(const Worst& worst) {
            (worst.numbers > 1 ? fmt::format("; {} numbers of it in all", worst.numbers) : "");
 }
 
-std::vector<const GatedScene*> pointers(const std::vector<GatedScene>& scenes) {
-    std::vector<const GatedScene*> all;
-    all.reserve(scenes.size());
-    for (const auto& scene : scenes) all.push_back(&scene);
+std::vector<std::string> described(const std::vector<compare::Change>& changes) {
+    std::vector<std::string> all;
+    for (const auto& change : changes) all.push_back(describe(change));
     return all;
 }
 
-std::string where(const Offence& o) { return o.a ? fmt::format("{:g} {}", *o.a, o.a_unit) : ""; }
 std::string what(const Offence& o) {
     return o.of_limit ? fmt::format("limit on {}", name(o.quantity)) : name(o.quantity);
 }
 
-// Ratio to a noticeable change; "limit" for an absolute limit.
-std::string times_noticeable(const Offence& o) {
-    return o.of_limit ? "limit" : fmt::format("{:.3g}", o.noticed());
+// "was" is the accepted number, or the limit.
+compare::Table offences_table(const std::vector<Worst>& worst, bool with_scene) {
+    using enum compare::Digits;
+    using compare::nan;
+    std::vector<compare::ColumnOf<Worst>> columns{
+        {"branch", words, [](const Worst& w) { return w.offence->branch; }},
+        {"what", words, [](const Worst& w) { return what(*w.offence); }},
+        {"channel", words, [](const Worst& w) { return w.offence->channel; }},
+        {"unit", words, [](const Worst& w) { return w.offence->unit; }},
+        {"at", given, [](const Worst& w) { return w.offence->a.value_or(nan); }},
+        {"unit of at", words, [](const Worst& w) { return w.offence->a_unit; }, "", "", " "},
+        {"accepted", given, [](const Worst& w) { return w.offence->was; }, "of a limit: its bound"},
+        {"measured", given, [](const Worst& w) { return w.offence->is; }},
+        {"difference", three, [](const Worst& w) { return w.offence->difference(); }},
+        {"tolerance", hidden, [](const Worst& w) { return w.offence->tolerance; }},
+        {"noticeable", three,
+         [](const Worst& w) { return w.offence->of_limit ? nan : w.offence->noticed(); },
+         "ratio to the smallest change that an engineer notices", "", "times noticeable"},
+        {"tolerances", three, [](const Worst& w) { return w.offence->share(); },
+         "ratio to the tolerance; of a limit 1 + excess / |limit|", "", "times the tolerance"},
+        {"numbers", whole, [](const Worst& w) { return w.numbers; }, "of the channel out of it"}};
+    if (with_scene)
+        columns.insert(columns.begin(),
+                       {"scene", words, [](const Worst& w) { return w.scene->file; }});
+    return compare::table("offences", columns, worst);
+}
+
+// Keeps `most` of them. "\n... and 3 more channels", or nothing.
+template <class List>
+std::string cut(List& list, std::size_t most, const char* of) {
+    if (list.size() <= most) return "";
+    const std::size_t left = list.size() - most;
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(most), list.end());
+    return fmt::format("... and {} more{}", left, of);
 }
 
 std::string verdict_of(const std::vector<GatedScene>& scenes) {
-    switch (exit_code(scenes)) {
-        case 0: return name(Judgement::passed);
-        case 1: return name(Judgement::failed);
-        case 2: return "BAD INPUT";
-        default: return name(Judgement::could_not_judge);
-    }
+    constexpr std::array words{"passed", "FAILED", "BAD INPUT", "COULD NOT JUDGE"};
+    return words.at(static_cast<std::size_t>(exit_code(scenes)));
 }
-std::string verdict_of(const GatedScene& scene) {
-    return scene.bad_input ? "BAD INPUT" : name(scene.verdict.judgement());
-}
+std::string verdict_of(const GatedScene& scene) { return verdict_of(std::vector{scene}); }
 
 std::string class_of(const GatedScene& scene) {
     return scene.differs.empty() ? name(scene.verdict.kind)
@@ -107,25 +131,6 @@ std::string headline(const GatedScene& scene) {
         line += fmt::format(", with tolerances wider than those of the class: {}",
                             fmt::join(scene.widened, ", "));
     return line;
-}
-
-// One cell of a Markdown table, truncated and escaped.
-std::string cell(std::string_view text) {
-    if (std::string safe = for_markdown(text); safe.size() <= cell_length) return safe;
-    // each character may take a backslash
-    std::size_t end = std::min(text.size(), cell_length / 2);
-    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) ++end;
-    return for_markdown(text.substr(0, end)) + "...";
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-    std::string all;
-    for (const auto& part : parts) all += (all.empty() ? "" : "; ") + part;
-    return all;
-}
-
-json count_beyond(std::size_t all, std::size_t shown) {
-    return all > shown ? json(std::to_string(all - shown)) : json(false);
 }
 
 // ---- JUnit: one test for whether the scene could be judged, and one per branch for its result.
@@ -163,13 +168,11 @@ std::string beginning(std::string_view text, std::size_t most) {
 constexpr std::size_t line_length = 300;
 
 // Up to `most` truncated lines, and the number of the others.
-std::string lines(const std::vector<std::string>& all, std::size_t most) {
+std::string lines(std::vector<std::string> all, std::size_t most) {
+    const std::string more = cut(all, most, ": elastocheck gate --json");
     std::string text;
-    for (std::size_t k = 0; k < std::min(most, all.size()); ++k)
-        text += beginning(all[k], line_length) + "\n";
-    if (all.size() > most)
-        text += fmt::format("... and {} more: elastocheck gate --json\n", all.size() - most);
-    return text;
+    for (const auto& one : all) text += beginning(one, line_length) + "\n";
+    return more.empty() ? text : text + more + "\n";
 }
 
 // An XML attribute ` name="value"`.
@@ -183,8 +186,8 @@ std::string message(const char* kind, std::string_view summary, const std::strin
 }
 
 std::string testcase(const Test& test, std::size_t most_lines) {
-    std::vector<std::string> all;
-    for (const auto& change : test.scene->changed) all.push_back("changed: " + describe(change));
+    std::vector<std::string> all = described(test.scene->changed);
+    for (auto& change : all) change = "changed: " + change;
     const std::string changed = all.empty() ? "" : lines(all, most_lines);
     const std::vector<std::string>& reasons = test.scene->verdict.reasons;
     std::string messages;
@@ -203,41 +206,36 @@ std::string testcase(const Test& test, std::size_t most_lines) {
                        messages);
 }
 
-// The first `most` tests, with up to `most_lines` numbers each.
-std::string junit_of(const std::vector<Test>& tests, std::size_t most, std::size_t most_lines) {
+// The tests with up to `most_lines` numbers each; the others are counted.
+std::string junit_of(std::span<const Test> tests, std::span<const Test> left,
+                     std::size_t most_lines) {
     struct Suite {
-        const GatedScene* scene;
         int tests = 0, failures = 0, errors = 0;
         std::string cases{};
     };
-    std::vector<Suite> suites;
-    for (std::size_t k = 0; k < std::min(most, tests.size()); ++k) {
-        const Test& test = tests[k];
-        auto suite = std::ranges::find(suites, test.scene, &Suite::scene);
-        if (suite == suites.end()) suite = suites.insert(suite, {test.scene});
-        suite->cases += testcase(test, most_lines);
-        ++suite->tests;
-        suite->failures += !test.failed.empty();
-        suite->errors += test.error;
+    std::map<const GatedScene*, Suite> suites;  // in the order of the scenes
+    for (const Test& test : tests) {
+        Suite& suite = suites[test.scene];
+        suite.cases += testcase(test, most_lines);
+        ++suite.tests;
+        suite.failures += !test.failed.empty();
+        suite.errors += test.error;
     }
     std::string xml =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<testsuites name=\"elastocheck gate\">\n";
-    for (const auto& suite : suites)
+    for (const auto& [scene, suite] : suites)
         xml += fmt::format(
             " <testsuite{} tests=\"{}\" failures=\"{}\" errors=\"{}\">\n{} </testsuite>\n",
-            attribute("name", suite.scene->file), suite.tests, suite.failures, suite.errors,
-            suite.cases);
-    if (tests.size() > most) {
-        const auto left =
-            std::ranges::count_if(tests.begin() + static_cast<std::ptrdiff_t>(most), tests.end(),
-                                  [](const Test& t) { return !t.passed(); });
+            attribute("name", scene->file), suite.tests, suite.failures, suite.errors, suite.cases);
+    if (!left.empty())
         xml += fmt::format(
             " <testsuite name=\"left out\" tests=\"0\">\n  <system-out>{} more tests, {} of them "
             "failed, are left out to keep this file small; elastocheck gate --json has them "
             "all</system-out>\n </testsuite>\n",
-            tests.size() - most, left);
-    }
+            left.size(),
+            left.size() - static_cast<std::size_t>(std::ranges::count_if(
+                              left, [](const Test& t) { return t.passed(); })));
     return xml + "</testsuites>\n";
 }
 
@@ -251,10 +249,9 @@ std::string annotation(const GatedScene& scene, const std::string& title, const 
 int exit_code(const std::vector<GatedScene>& scenes) {
     bool failed = false, bad = false, unjudged = scenes.empty();
     for (const auto& scene : scenes) {
-        const Judgement judgement = scene.verdict.judgement();
-        failed = failed || judgement == Judgement::failed;
+        failed = failed || scene.verdict.grade() == Grade::fail;
         bad = bad || scene.bad_input;
-        unjudged = unjudged || judgement == Judgement::could_not_judge;
+        unjudged = unjudged || scene.verdict.grade() == Grade::not_judged;
     }
     return failed ? 1 : bad ? 2 : unjudged ? 3 : 0;
 }
@@ -284,31 +281,18 @@ std::string describe(const compare::Change& change) {
 }
 
 std::string gate_table(const GatedScene& scene) {
-    const auto& verdict = scene.verdict;
     std::string out = headline(scene) + "\n";
-    for (std::size_t k = 0; k < std::min(scene.changed.size(), rows_in_table); ++k)
-        out += fmt::format("  changed: {}\n", describe(scene.changed[k]));
-    if (scene.changed.size() > rows_in_table)
-        out += fmt::format("  ... and {} more numbers of the scene\n",
-                           scene.changed.size() - rows_in_table);
-    const auto worst = worst_of_each_channel({&scene});
-    if (!worst.empty())
-        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>10} {:>8}\n",
-                           "branch", "what", "channel", "at", "accepted", "measured", "difference",
-                           "noticeable", "tolerances", "numbers");
-    for (std::size_t k = 0; k < std::min(worst.size(), rows_in_table); ++k) {
-        const Offence& o = *worst[k].offence;
-        out += fmt::format(
-            "  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10} {:>10.3g} {:>8}\n",
-            o.branch, what(o), fmt::format("{} [{}]", o.channel, o.unit), where(o), o.was, o.is,
-            o.difference(), times_noticeable(o), o.share(), worst[k].numbers);
-    }
-    if (worst.size() > rows_in_table)
-        out += fmt::format("  ... and {} more channels\n", worst.size() - rows_in_table);
-    for (std::size_t k = 0; k < std::min(verdict.reasons.size(), rows_in_table); ++k)
-        out += fmt::format("  could not judge: {}\n", verdict.reasons[k]);
-    if (verdict.reasons.size() > rows_in_table)
-        out += fmt::format("  ... and {} more reasons\n", verdict.reasons.size() - rows_in_table);
+    const auto list = [&](const char* title, std::vector<std::string> all, const char* of) {
+        const std::string more = cut(all, rows_in_table, of);
+        for (const auto& one : all) out += fmt::format("  {}: {}\n", title, one);
+        if (!more.empty()) out += "  " + more + "\n";
+    };
+    list("changed", described(scene.changed), " numbers of the scene");
+    auto worst = worst_of_each_channel({scene});
+    const std::string more = cut(worst, rows_in_table, " channels");
+    if (!worst.empty()) out += text(offences_table(worst, false));
+    if (!more.empty()) out += "  " + more + "\n";
+    list("could not judge", scene.verdict.reasons, " reasons");
     for (const auto& note : scene.notes) out += fmt::format("  note: {}\n", note);
     return out;
 }
@@ -317,7 +301,7 @@ std::string gate_conclusion(const std::vector<GatedScene>& scenes) {
     std::size_t failed = 0, unjudged = 0, offences = 0;
     int compared = 0;
     for (const auto& scene : scenes) {
-        failed += scene.verdict.judgement() == Judgement::failed;
+        failed += scene.verdict.grade() == Grade::fail;
         unjudged += !scene.verdict.reasons.empty();
         offences += scene.verdict.offences.size();
         compared += scene.verdict.compared;
@@ -328,28 +312,11 @@ std::string gate_conclusion(const std::vector<GatedScene>& scenes) {
 }
 
 json gate_document(const std::vector<GatedScene>& scenes, const Provenance& provenance) {
-    const auto number = [](const std::optional<Number>& n) {
-        return n ? json{{"value", n->value}, {"unit", n->unit}} : json(nullptr);
-    };
     json list = json::array();
     int compared = 0;
     for (const auto& scene : scenes) {
-        json changed = json::array(), offences = json::array();
-        for (const auto& change : scene.changed)
-            changed.push_back({{"path", (change.is ? change.is : change.was)->path},
-                               {"was", number(change.was)},
-                               {"is", number(change.is)}});
-        for (const auto& o : scene.verdict.offences) {
-            json one = {{"branch", o.branch},
-                        {"of", name(o.quantity)},
-                        {"channel", o.channel},
-                        {"unit", o.unit}};
-            if (o.a) one["at"] = {{"value", *o.a}, {"unit", o.a_unit}};
-            one["measured"] = o.is;
-            one[o.of_limit ? "limit" : "accepted"] = o.was;
-            if (!o.of_limit) one["tolerance"] = o.tolerance, one["noticeable"] = o.noticeable;
-            offences.push_back(std::move(one));
-        }
+        std::vector<Worst> offences;
+        for (const auto& offence : scene.verdict.offences) offences.push_back({&scene, &offence});
         compared += scene.verdict.compared;
         list.push_back({{"scene", scene.file},
                         {"baseline", scene.baseline_file},
@@ -359,8 +326,8 @@ json gate_document(const std::vector<GatedScene>& scenes, const Provenance& prov
                         {"widened", scene.widened},
                         {"last_acceptance", scene.reason},
                         {"compared", scene.verdict.compared},
-                        {"changed", changed},
-                        {"offences", offences},
+                        {"changed", table_json(compare::table_of(scene.changed))},
+                        {"offences", table_json(offences_table(offences, false))},
                         {"could_not_judge", scene.verdict.reasons},
                         {"notes", scene.notes}});
     }
@@ -371,74 +338,64 @@ json gate_document(const std::vector<GatedScene>& scenes, const Provenance& prov
 
 std::string junit(const std::vector<GatedScene>& scenes) {
     std::vector<Test> tests;
-    for (const auto& scene : scenes)
-        for (auto& test : tests_of(scene)) tests.push_back(std::move(test));
+    for (const auto& scene : scenes) std::ranges::move(tests_of(scene), std::back_inserter(tests));
     for (const std::size_t most_lines : {50, 10, 3, 1})
-        if (std::string xml = junit_of(tests, tests.size(), most_lines); xml.size() < most_junit)
+        if (std::string xml = junit_of(tests, {}, most_lines); xml.size() < most_junit) return xml;
+    std::ranges::stable_partition(tests, [](const Test& test) { return !test.passed(); });
+    const std::span all(tests);
+    for (std::size_t most = tests.size();; most /= 2)
+        if (std::string xml = junit_of(all.first(most), all.subspan(most), 1);
+            xml.size() < most_junit)
             return xml;
-    std::stable_partition(tests.begin(), tests.end(),
-                          [](const Test& test) { return !test.passed(); });
-    std::size_t most = tests.size();
-    for (;; most /= 2)
-        if (std::string xml = junit_of(tests, most, 1); xml.size() < most_junit) return xml;
 }
 
 std::string step_summary(const std::vector<GatedScene>& scenes) {
-    json offences = json::array(), reasons = json::array(), rows = json::array();
-    const auto all = worst_of_each_channel(pointers(scenes));
-    for (std::size_t k = 0; k < std::min(all.size(), rows_in_summary); ++k) {
-        const Offence& o = *all[k].offence;
-        offences.push_back({{"scene", cell(all[k].scene->file)},
-                            {"branch", cell(o.branch)},
-                            {"what", cell(what(o))},
-                            {"channel", cell(fmt::format("{} [{}]", o.channel, o.unit))},
-                            {"at", where(o)},
-                            {"was", fmt::format("{:.10g}", o.was)},
-                            {"is", fmt::format("{:.10g}", o.is)},
-                            {"difference", fmt::format("{:+.3g}", o.difference())},
-                            {"noticed", times_noticeable(o)},
-                            {"share", fmt::format("{:.3g}", o.share())},
-                            {"numbers", all[k].numbers}});
-    }
-    json changes = json::array();
-    std::size_t changes_in_all = 0, reasons_in_all = 0;
-    for (const auto& scene : scenes)
-        for (const auto& change : scene.changed)
-            if (++changes_in_all <= rows_in_summary)
-                changes.push_back({{"scene", cell(scene.file)}, {"what", cell(describe(change))}});
-    for (const auto& scene : scenes)
-        for (const auto& why : scene.verdict.reasons) {
-            if (++reasons_in_all > rows_in_summary) continue;
-            reasons.push_back({{"scene", cell(scene.file)}, {"why", cell(why)}});
-        }
-    for (std::size_t k = 0; k < std::min(scenes.size(), scenes_in_summary); ++k)
-        rows.push_back({{"scene", cell(scenes[k].file)},
-                        {"verdict", verdict_of(scenes[k])},
-                        {"compared", scenes[k].verdict.compared},
-                        {"class", cell(class_of(scenes[k]))},
-                        {"reason", cell(scenes[k].reason)},
-                        {"notes", cell(joined(scenes[k].notes))}});
-    return render("markdown/gate_summary",
-                  {{"verdict", verdict_of(scenes)},
-                   {"conclusion", gate_conclusion(scenes)},
-                   {"has_offences", !all.empty()},
-                   {"offences", offences},
-                   {"more_offences", count_beyond(all.size(), rows_in_summary)},
-                   {"has_changes", changes_in_all > 0},
-                   {"changes", changes},
-                   {"more_changes", count_beyond(changes_in_all, rows_in_summary)},
-                   {"has_reasons", reasons_in_all > 0},
-                   {"reasons", reasons},
-                   {"more_reasons", count_beyond(reasons_in_all, rows_in_summary)},
-                   {"scenes", rows},
-                   {"more_scenes", count_beyond(scenes.size(), scenes_in_summary)}},
-                  Escape::nothing);
+    std::string page =
+        fmt::format("# elastocheck gate: {}\n\n{}\n", verdict_of(scenes), gate_conclusion(scenes));
+    const auto add = [&](const std::string& part, const std::string& more) {
+        if (!part.empty()) page += "\n" + part;
+        if (!more.empty()) page += "\n" + more + ".\n";
+    };
+    auto worst = worst_of_each_channel(scenes);
+    const std::string more_worst = cut(worst, rows_in_summary, " channels");
+    add(worst.empty() ? "" : markdown(offences_table(worst, true), cell_length), more_worst);
+    const auto list = [&](const char* title, const auto& of_scene, const char* of) {
+        std::vector<std::string> all;
+        for (const auto& scene : scenes)
+            for (const auto& one : of_scene(scene))
+                all.push_back(fmt::format("- {}: {}\n", markdown(scene.file, cell_length),
+                                          markdown(one, cell_length)));
+        const std::string more = cut(all, rows_in_summary, of);
+        add(all.empty() ? "" : fmt::format("{}:\n\n{}", title, fmt::join(all, "")), more);
+    };
+    list(
+        "Changed in the scene", [](const GatedScene& s) { return described(s.changed); },
+        " numbers of scenes");
+    list(
+        "Could not be judged", [](const GatedScene& s) { return s.verdict.reasons; }, "");
+    const std::size_t shown = std::min(scenes.size(), scenes_in_summary);
+    using enum compare::Digits;
+    using Gated = GatedScene;
+    const compare::Table table = compare::table<Gated>(
+        "scenes",
+        {{"scene", words, [](const Gated& s) { return s.file; }},
+         {"verdict", words, [](const Gated& s) { return verdict_of(s); }},
+         {"numbers compared", whole, [](const Gated& s) { return s.verdict.compared; }},
+         {"tolerance class", words, [](const Gated& s) { return class_of(s); }},
+         {"last acceptance", words, [](const Gated& s) { return s.reason; }},
+         {"notes", words,
+          [](const Gated& s) { return fmt::format("{}", fmt::join(s.notes, "; ")); }}},
+        std::span(scenes).first(shown));
+    page += "\n<details><summary>All scenes</summary>\n";
+    add(markdown(table, cell_length),
+        shown < scenes.size() ? fmt::format("... and {} more", scenes.size() - shown) : "");
+    return page + "\n</details>\n";
 }
 
 std::string annotations(const std::vector<GatedScene>& scenes) {
     std::string out;
     std::size_t count = 0;
-    for (const auto& worst : worst_of_each_channel(pointers(scenes))) {
+    for (const auto& worst : worst_of_each_channel(scenes)) {
         const auto& changed = worst.scene->changed;
         if (++count <= annotations_in_all)
             out += annotation(

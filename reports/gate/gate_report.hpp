@@ -37,7 +37,7 @@ std::string describe(const compare::Offence& offence);
 std::string describe(const compare::Change& change);
 
 // Complete results for programs: {schema, provenance, verdict, exit_code, compared, scenes}.
-inline constexpr const char* gate_schema = "elastocheck/gate/1";
+inline constexpr const char* gate_schema = "elastocheck/gate/2";
 nlohmann::ordered_json gate_document(const std::vector<GatedScene>& scenes,
                                      const Provenance& provenance);
 

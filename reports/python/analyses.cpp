@@ -21,6 +21,7 @@
 #include "reports/files/terminal.hpp"
 #include "reports/python/convert.hpp"
 #include "reports/python/scene.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
 
 namespace elastocheck::python {
@@ -114,10 +115,11 @@ Output judge(const std::shared_ptr<SceneOfFile>& scene, const py::function& solv
     const auto judgement = compare::judge_candidate(
         model, comparison, compare::candidate_of(model, comparison, name, as_leg), within,
         tolerance.has_value());
-    const std::string verdict = reports::sentence(judgement, comparison);
+    const compare::Result result = reports::result_of(judgement, comparison);
     return {.exit_code = reports::exit_code_of(judgement.verdict),
-            .printed = reports::candidate_json(judgement, comparison, verdict).dump(),
-            .text = reports::candidate_text(judgement, comparison) + verdict + "\n"};
+            .printed =
+                reports::candidate_json(judgement, comparison, result.verdict.sentence).dump(),
+            .text = reports::text(result)};
 }
 
 py::tuple as_tuple(const Output& output) {

@@ -1,5 +1,5 @@
 // The formats of a result (compare/result/result.hpp) and of its tables, and nothing else knows them:
-// text.cpp for a terminal, csv.cpp, json.cpp. A missing number is a dash, an empty cell, null.
+// text.cpp for a terminal, csv.cpp, json.cpp, markdown.cpp. A missing number is a dash, an empty cell, null.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -30,6 +30,11 @@ struct ShownColumn {
 // The columns with digits that are not empty, in the order for readers. `written` formats a number.
 std::vector<ShownColumn> shown_columns(const compare::Table& table,
                                        std::string (*written)(double, Digits));
+std::vector<ShownColumn> shown_columns(const compare::Table& table);  // as on a terminal
+
+// Markdown; a text or cell of more than `longest` bytes is cut.
+std::string markdown(std::string_view text, std::size_t longest);
+std::string markdown(const compare::Table& table, std::size_t longest);
 
 // For a terminal: what to know before, each table with its caption and its notes, notes, the verdict's
 // sentence. A part without content leaves no line.

@@ -83,6 +83,8 @@ std::vector<ShownColumn> shown_columns(const Table& table, std::string (*written
     return shown;
 }
 
+std::vector<ShownColumn> shown_columns(const Table& table) { return shown_columns(table, written); }
+
 namespace {
 
 // Lengths in mm, as everywhere on a terminal; tables of studies have tolerances and |Φ| in m.

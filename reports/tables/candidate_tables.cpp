@@ -4,22 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "compare/outputs/readings.hpp"
-#include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/render/render.hpp"
 #include "reports/text/numbers.hpp"
 #include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
+using compare::CandidateBranch;
 using compare::CandidateJudgement;
 using compare::CandidateReading;
 using compare::CandidateWorst;
+using compare::ColumnOf;
+using compare::Deviation;
+using compare::Digits;
 using compare::Grade;
+using compare::nan;
+using compare::ReadingKind;
 using compare::Unit;
 
 std::string tolerance_of(const CandidateJudgement& j) {
@@ -55,34 +58,139 @@ std::string joined(const std::vector<std::string>& list, std::size_t most) {
     return text;
 }
 
-void leftover_line(const compare::Leftover& left, std::string& text) {
-    if (left.truth.empty()) {
-        text += fmt::format("  its states are not judged: {}\n", left.why_not);
-        return;
-    }
-    const auto line = [&](const char* who, const std::vector<Residuals>& of) {
-        double force = 0, moment = 0, length = 0, direction = 0, at = left.a.front();
-        for (std::size_t k = 0; k < of.size(); ++k) {
-            if (compare::worse(of[k].force, force) != force) at = left.a[k];
-            force = compare::worse(of[k].force, force),
-            moment = compare::worse(of[k].moment, moment);
-            length = compare::worse(of[k].length, length),
-            direction = compare::worse(of[k].direction, direction);
-        }
-        const auto number = [](double x) {
-            return std::isnan(x) ? std::string("-") : fmt::format("{:.1e}", x);
-        };
-        text += fmt::format(
-            "  its states in the {} leg's equations: force {} N{}, moment {} N·m, constraints {} "
-            "mm, {}\n",
-            who, number(force),
-            std::isnan(force) ? "" : fmt::format(" (at {:.6g} {})", at, symbol(left.unit)),
-            number(moment), number(1e3 * length), number(direction));
+// ---- Tables.
+
+// A column of the candidate on one branch.
+struct Row {
+    const CandidateBranch* branch = nullptr;
+    const compare::Channel* channel = nullptr;
+    bool judged = false;
+    Deviation parameter, abscissa;  // `compared` is 0 where nothing was
+};
+
+std::vector<Row> rows_of(const CandidateBranch& branch, const CandidateJudgement& j,
+                         const compare::Comparison& comparison) {
+    const auto deviation = [](const CandidateReading& reading, std::size_t c) {
+        return reading.columns.empty() ? Deviation{} : reading.columns[c];
     };
-    line("equilibrium", left.truth);
-    line(name(left.second), left.by_second);
+    std::vector<Row> rows;
+    for (std::size_t c = 0; c < j.columns.size(); ++c) {
+        const Row row{&branch, &comparison.channels[j.columns[c].channel], j.judged[c],
+                      deviation(branch.equal_parameter, c), deviation(branch.equal_abscissa, c)};
+        if (row.parameter.compared + row.abscissa.compared > 0) rows.push_back(row);
+    }
+    return rows;
+}
+
+// Columns of one reading; `at` is the unit of its places.
+void add_reading(std::vector<ColumnOf<Row>>& columns, const std::string& kind,
+                 const std::string& reading, const std::string& at, Deviation Row::*of) {
+    const auto add = [&](const char* name, Digits digits, double Deviation::*field,
+                         const char* description, const std::string& heading) {
+        columns.push_back({fmt::format("{} {}", name, kind), digits,
+                           [=](const Row& r) { return (r.*of).compared > 0 ? r.*of.*field : nan; },
+                           description, "", heading});
+    };
+    add("deviation", Digits::three, &Deviation::signed_max,
+        "candidate less reference where it is largest, in the unit of the output", reading);
+    add("place", Digits::given, &Deviation::at, "where it is largest: parameter or abscissa",
+        fmt::format("at {}", at));
+    add("rms", Digits::hidden, &Deviation::rms, "root mean square over the points", "");
+    add("end", Digits::hidden, &Deviation::end, "at the last point", "");
+    columns.push_back({fmt::format("share {}", kind), Digits::percent,
+                       [=](const Row& r) {
+                           const Deviation& d = r.*of;
+                           return d.compared > 0 && d.range > 0 ? d.max / d.range : nan;
+                       },
+                       "of the range of the output on the branch", "", "share"});
+    columns.push_back({fmt::format("numbers {}", kind), Digits::hidden,
+                       [=](const Row& r) { return (r.*of).compared; }, "compared"});
+}
+
+compare::Table deviations(const CandidateBranch& branch, const CandidateJudgement& j,
+                          const compare::Comparison& comparison) {
+    const compare::Channel* by =
+        branch.abscissa < 0 ? nullptr
+                            : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
+    const std::string load = compare::parameter_reading(symbol(branch.unit)),
+                      travel = compare::abscissa_reading(by == nullptr ? "" : by->name);
+    std::vector<ColumnOf<Row>> columns{
+        {"branch", Digits::hidden, [](const Row& r) { return r.branch->branch; }},
+        {"output", Digits::words, [](const Row& r) { return r.channel->name; }},
+        {"unit", Digits::words, [](const Row& r) { return symbol(r.channel->unit); }},
+        {"judged", Digits::words, [](const Row& r) { return r.judged ? "" : "no"; },
+         "no: not a main output, or no tolerance in its unit"},
+        {"range", Digits::three,
+         [](const Row& r) { return std::max(r.parameter.range, r.abscissa.range); },
+         "of the reference on the branch"}};
+    add_reading(columns, "at equal parameter", load, symbol(branch.unit), &Row::parameter);
+    add_reading(columns, "at equal abscissa", travel, by == nullptr ? "" : symbol(by->unit),
+                &Row::abscissa);
+    compare::Table table = compare::table("deviations", columns, rows_of(branch, j, comparison));
+    table.caption = fmt::format("branch '{}': {} points", branch.branch, branch.points);
+    if (!std::isnan(branch.from))
+        table.caption += fmt::format(" from {:.6g} to {:.6g} {}", branch.from + 0.0,
+                                     branch.to + 0.0, symbol(branch.unit));
+    for (const auto& [reading, how] :
+         {std::pair{&branch.equal_parameter, &load}, {&branch.equal_abscissa, &travel}}) {
+        if (!reading->not_compared.empty())
+            table.notes.push_back(fmt::format("{}: not compared, {}", *how, reading->not_compared));
+        if (reading->outside > 0)
+            table.notes.push_back(fmt::format("{}: {} {} outside the range of the reference", *how,
+                                              reading->outside,
+                                              reading->outside == 1 ? "point lies" : "points lie"));
+    }
+    return table;
+}
+
+// Residuals of a state of the candidate in the equations of one leg.
+struct Left {
+    const compare::Leftover* of = nullptr;
+    const char* leg = "";
+    double a = 0;
+    Residuals residuals;
+};
+
+std::vector<ColumnOf<Left>> columns_of_states(bool of_all) {
+    const Digits digits = of_all ? Digits::hidden : Digits::size;
+    return {
+        {"branch", Digits::hidden, [](const Left& l) { return l.of->branch; }},
+        {"equations of", of_all ? Digits::hidden : Digits::words,
+         [](const Left& l) { return l.leg; }},
+        {"parameter", of_all ? Digits::hidden : Digits::given, [](const Left& l) { return l.a; },
+         "of the state; of the largest force", "", "at"},
+        {"force", digits, [](const Left& l) { return l.residuals.force; }, "", "N"},
+        {"moment", digits, [](const Left& l) { return l.residuals.moment; }, "", "N·m"},
+        {"constraint", digits, [](const Left& l) { return 1e3 * l.residuals.length; }, "", "mm"},
+        {"direction", digits, [](const Left& l) { return l.residuals.direction; }}};
+}
+
+// The largest residuals of the states on a branch, and those of every state.
+void add_states(const compare::Leftover& left, compare::Result& result) {
+    std::vector<Left> all, largest;
+    for (const auto& [leg, list] :
+         {std::pair{"equilibrium", &left.truth}, {compare::name(left.second), &left.by_second}}) {
+        Left worst{&left, leg, nan, {}};
+        for (std::size_t k = 0; k < list->size(); ++k) {
+            const Residuals& r = (*list)[k];
+            all.push_back({&left, leg, left.a[k], r});
+            if (std::isnan(worst.a) ||
+                compare::worse(r.force, worst.residuals.force) != worst.residuals.force)
+                worst.a = left.a[k];
+            for (double Residuals::*field :
+                 {&Residuals::force, &Residuals::moment, &Residuals::length, &Residuals::direction})
+                worst.residuals.*field = compare::worse(r.*field, worst.residuals.*field);
+        }
+        if (!list->empty()) largest.push_back(worst);
+    }
+    compare::Table table = compare::table("states", columns_of_states(false), largest);
+    table.caption = fmt::format("branch '{}': its {} states in the equations of the legs",
+                                left.branch, left.a.size());
     if (!left.why_not.empty())
-        text += fmt::format("  some of its states are not judged: {}\n", left.why_not);
+        table.notes.push_back(fmt::format("{} of its states are not judged: {}",
+                                          left.truth.empty() ? "all" : "some", left.why_not));
+    result.tables.push_back(std::move(table));
+    result.tables.push_back(compare::table("residuals", columns_of_states(true), all));
 }
 
 // Largest imbalance of the states in the equilibrium leg [N], [N·m]; 0 without states; NaN is
@@ -151,74 +259,24 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
     return {};
 }
 
-std::string candidate_text(const CandidateJudgement& j, const compare::Comparison& comparison) {
-    std::string text = fmt::format(
-        "candidate '{}', compared with the equilibrium leg at its own points\n", j.name);
-    const auto out = std::back_inserter(text);
+compare::Result result_of(const CandidateJudgement& j, const compare::Comparison& comparison) {
+    compare::Result result{.analysis = "judge"};
+    result.verdict = {j.verdict, sentence(j, comparison), j.reasons, j.compared};
+    result.about = {
+        fmt::format("candidate '{}', compared with the equilibrium leg at its own points; largest "
+                    "deviations in "
+                    "the units of the outputs",
+                    j.name)};
     for (const auto& branch : j.branches) {
-        fmt::format_to(out, "\nbranch '{}': {} points", branch.branch, branch.points);
-        if (!std::isnan(branch.from))
-            fmt::format_to(out, " from {:.6g} to {:.6g} {}", branch.from + 0.0, branch.to + 0.0,
-                           symbol(branch.unit));
-        fmt::format_to(out, "\n\n");
-        const compare::Channel* by =
-            branch.abscissa < 0 ? nullptr
-                                : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
-        const CandidateReading &load = branch.equal_parameter, &travel = branch.equal_abscissa;
-        const std::string by_load = compare::parameter_reading(symbol(branch.unit)),
-                          by_travel = compare::abscissa_reading(by == nullptr ? "" : by->name);
-        if (!load.columns.empty() || !travel.columns.empty()) {
-            fmt::format_to(out, "  {:<30}{:>11}   {:<36}   {}\n", "the candidate's", "", by_load,
-                           by_travel);
-            fmt::format_to(
-                out, "  {:<30}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}\n", "deviation",
-                "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share", "max",
-                fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share");
-            int hidden = 0;
-            for (std::size_t c = 0; c < j.columns.size(); ++c) {
-                const auto& channel = comparison.channels[j.columns[c].channel];
-                const auto cells = [&](const CandidateReading& reading) {
-                    if (reading.columns.empty() || reading.columns[c].compared == 0)
-                        return fmt::format("{:>9}{:27}", "-", "");
-                    return deviation_cells(reading.columns[c]);
-                };
-                const auto& some = load.columns.empty() ? travel : load;
-                if (some.columns[c].compared == 0 &&
-                    (travel.columns.empty() || travel.columns[c].compared == 0))
-                    continue;
-                const bool small = some.columns[c].max < 1e-6;
-                if (!j.judged[c] && !channel.main && small) {
-                    ++hidden;
-                    continue;
-                }
-                fmt::format_to(out, "  {:<30}{:>11.5g}   {}   {}\n",
-                               fmt::format("{} [{}]{}", channel.name, symbol(channel.unit),
-                                           j.judged[c] ? "" : " *"),
-                               some.columns[c].range, cells(load), cells(travel));
-            }
-            text = text.substr(0, text.find_last_not_of(" \n") + 1) + "\n";
-            if (std::ranges::find(j.judged, false) != j.judged.end())
-                fmt::format_to(
-                    out, "  * not judged: no main output, or no tolerance in its unit{}\n",
-                    hidden > 0 ? fmt::format("; {} more have errors below 1e-6", hidden) : "");
-        }
-        for (const auto& [reading, how] : {std::pair{&load, &by_load}, {&travel, &by_travel}}) {
-            if (!reading->not_compared.empty())
-                fmt::format_to(out, "  {}: not compared, {}\n", *how, reading->not_compared);
-            if (reading->outside > 0)
-                fmt::format_to(out, "  {}: {} points lie outside the range of the reference\n",
-                               *how, reading->outside);
-        }
+        result.tables.push_back(deviations(branch, j, comparison));
         for (const auto& left : j.leftovers)
-            if (left.branch == branch.branch) leftover_line(left, text);
+            if (left.branch == branch.branch) add_states(left, result);
     }
-    fmt::format_to(out, "\n");
-    for (const auto& missing : j.not_given) fmt::format_to(out, "  not given: {}\n", missing);
-    for (const auto& note : j.notes) fmt::format_to(out, "  note: {}\n", note);
-    for (const auto& hint : j.hints) fmt::format_to(out, "  {}\n", hint);
-    for (const auto& reason : j.reasons) fmt::format_to(out, "  could not judge: {}\n", reason);
-    fmt::format_to(out, "{} numbers compared.\n\n", j.compared);
-    return text;
+    for (const auto& missing : j.not_given) result.notes.push_back("not given: " + missing);
+    for (const auto& note : j.notes) result.notes.push_back("note: " + note);
+    result.notes.insert(result.notes.end(), j.hints.begin(), j.hints.end());
+    result.notes.push_back(fmt::format("{} numbers compared", j.compared));
+    return result;
 }
 
 }  // namespace elastocheck::reports

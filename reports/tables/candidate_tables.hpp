@@ -1,16 +1,12 @@
-// Judgement of a candidate as terminal text, and the sentence shared by all outputs.
+// Judgement of a candidate as a result for readers.
 #pragma once
 
-#include <string>
-
 #include "compare/candidate/candidate.hpp"
+#include "compare/result/result.hpp"
 
 namespace elastocheck::reports {
 
-std::string sentence(const compare::CandidateJudgement& judgement,
-                     const compare::Comparison& comparison);
-
-std::string candidate_text(const compare::CandidateJudgement& judgement,
-                           const compare::Comparison& comparison);
+compare::Result result_of(const compare::CandidateJudgement& judgement,
+                          const compare::Comparison& comparison);
 
 }  // namespace elastocheck::reports

@@ -25,7 +25,7 @@ struct Scale {
     double rate;  // [N/m] or [N·m/rad] per unit
     const char* rate_name;
 };
-constexpr Scale lengths{1e-3, "mm", 1e3, "N/mm"}, angles{degree, "deg", 1 / degree, "N·m/deg"};
+constexpr Scale lengths{1e-3, "mm", 1e3, "N/mm"}, angular{degree, "deg", 1 / degree, "N·m/deg"};
 
 std::string rate_words(double k, const Scale& s) {
     return fmt::format("{:.4g} {}", k / s.rate, s.rate_name);
@@ -162,7 +162,7 @@ std::string bushing_words(const Written& written, const Elastic& elastic, const 
                            law_words(pushed, 2, lengths));
     }
     if (axes.all == std::vector<std::size_t>{5})
-        return "torsion spring, " + law_words(law, 5, angles);
+        return "torsion spring, " + law_words(law, 5, angular);
     std::string text = is_beam(elastic) ? "beam" : "bushing";
     if (!is_beam(elastic)) {
         const auto as_written = written.find(elastic.name);
@@ -170,7 +170,7 @@ std::string bushing_words(const Written& written, const Elastic& elastic, const 
                                                               : *member<Formulation>(elastic.kind));
     }
     for (const std::size_t k : axes.curves)
-        text += fmt::format(", {}: {}", components[k], law_words(law, k, k < 3 ? lengths : angles));
+        text += fmt::format(", {}: {}", components[k], law_words(law, k, k < 3 ? lengths : angular));
     bool elsewhere = false;
     each_member(elastic.kind,
                 [&](Deformation<const Vector6> e) { elsewhere = !e.value.isZero(0); });

@@ -431,7 +431,7 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
     for (const auto kind : tolerance_classes) baseline.tolerances[kind] = default_tolerances(kind);
     const auto verdict = judge(baseline, baseline.accepted, ToleranceClass::same_build);
     EXPECT_GT(verdict.compared, 0);
-    EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge);
+    EXPECT_EQ(verdict.grade(), Grade::not_judged);
 }
 
 TEST(Judgement, ABranchOnWhichNoOutputMovesIsAResultOfZeros) {

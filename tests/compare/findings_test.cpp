@@ -182,7 +182,7 @@ TEST(Measured, PointsAreReadOnTheirBranchByParameterAndByTravel) {
                 ASSERT_EQ(found.readings.size(), 1u);
                 EXPECT_EQ(found.readings[0].by_parameter, !by_travel);
                 const MeasuredRow& row = found.readings[0].rows[0];
-                EXPECT_EQ(row.compared, 3);
+                EXPECT_EQ(row.compared(), 3);
                 EXPECT_NEAR(row.off[1].signed_max, 0.25, 1e-6);
                 EXPECT_NEAR(row.off[1].rms, 0.25, 1e-6);
                 EXPECT_EQ(row.branch, compared().branches[branch].branch);

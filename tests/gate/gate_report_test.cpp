@@ -94,7 +94,7 @@ TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
     const std::string table = gate_table(failed());
     expect_parts(table,
                  {"scenes/bad.yaml: FAILED: 2 of 7 numbers out of tolerance, same-build",
-                  "+2.5          5         10        2\n"},
+                  "2.5                 5                   10        2\n"},
                  {"1.5"});  // of the same channel and not the worst
     expect_parts(gate_conclusion({failed(), passed()}),
                  {"FAILED: 2 of 14 numbers out of tolerance, in 1 of 2 scenes"});
@@ -112,6 +112,10 @@ TEST(GateReport, JUnitTellsFailuresFromErrorsAndKeepsTheStoryInTheText) {
           "<error message=\"there is no baseline\">", "&lt;nothing&gt;"})
         EXPECT_TRUE(contains(xml, part)) << part << " in\n" << xml;
     EXPECT_EQ(count(xml, "<testcase"), 5u);
+    GatedScene odd = unjudged();
+    for (int c = 1; c < 128; ++c) odd.verdict.reasons[0] += static_cast<char>(c);
+    odd.file += "<&\"'>]]>";
+    EXPECT_TRUE(well_formed(junit({failed(), odd})));
 }
 
 TEST(GateReport, TheFieldsOfTheSceneThatChangedAreNamedEverywhere) {
@@ -194,17 +198,6 @@ TEST(GateReport, JUnitStaysSmallWhateverFailsAndSaysWhatIsLeftOut) {
     expect_parts(xml, {}, {"more"});
 }
 
-TEST(GateReport, JUnitIsWellFormedWhateverTheTextsHold) {
-    if (support::says("xmllint --version").code != 0) GTEST_SKIP() << "xmllint is not installed";
-    GatedScene odd = unjudged();
-    for (int c = 1; c < 128; ++c) odd.verdict.reasons[0] += static_cast<char>(c);
-    odd.file += "<&\"'>]]>";
-    const support::Folder folder;
-    const auto said =
-        support::says("xmllint --noout " + folder.write("j.xml", junit({failed(), odd})));
-    EXPECT_EQ(said.code, 0) << said.err;
-}
-
 TEST(GateReport, TheSummarySaysTheVerdictFirstAndFoldsTheRest) {
     const std::string page = step_summary({passed(), failed(), unjudged()});
     EXPECT_TRUE(page.starts_with(
@@ -212,8 +205,8 @@ TEST(GateReport, TheSummarySaysTheVerdictFirstAndFoldsTheRest) {
         << page;
     EXPECT_LT(
         page.find(
-            "| scenes/bad.yaml | jounce | recursive | toe \\[deg\\] | 3000 N | 1 | 3.5 | +2.5 | "
-            "5 | 10 | 2 |"),
+            "| scenes/bad.yaml | jounce | recursive | toe | deg | 3000 | N | 1 | 3.5 | 2.5 | 5 | "
+            "10 | 2 |"),
         page.find("<details>"))
         << page;
     EXPECT_GT(page.find("| scenes/good.yaml | passed | 7 |"), page.find("<details>")) << page;

@@ -15,6 +15,7 @@
 #include "models/reader/document/yaml.hpp"
 #include "recursive/soft_motion.hpp"
 #include "reports/document/document.hpp"
+#include "reports/document/headings.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 
@@ -234,9 +235,7 @@ const Branch& branch_named(const Model& model, const std::string& name, const ch
         if (branch.name == name) return branch;
         names.push_back(branch.name);
     }
-    throw std::invalid_argument(fmt::format("{}: the scene has no branch {}{}", option,
-                                            reader::quote(name),
-                                            reader::did_you_mean(name, names, "branches")));
+    throw std::invalid_argument(fmt::format("{}: {}", option, no_branch(name, names)));
 }
 
 }  // namespace elastocheck::reports
