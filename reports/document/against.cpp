@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/comparison/points.hpp"
 #include "compare/deviation/deviation.hpp"
 #include "compare/gate/gate.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "reports/document/scene_analyses.hpp"
 #include "reports/text/words.hpp"
@@ -21,11 +21,6 @@ using compare::Channel;
 using compare::nan;
 using json = nlohmann::ordered_json;
 using Line = Against::Line;
-
-bool is_swing_arm(const Channel& channel) {
-    const auto* rate = std::get_if<compare::Characteristic>(&channel.reads);
-    return rate != nullptr && compare::is_swing_arm(*rate);
-}
 
 // Pre: the scene has the channel.
 Line line_of(const SceneAnalyses& scene, const BranchComparison& branch, const Channel& channel) {

@@ -21,11 +21,11 @@ std::string output_of(const Wheel& wheel, std::string_view quantity) {
     return fmt::format("{}{}{}", wheel.name, wheel.name.empty() ? "" : ".", quantity);
 }
 
-double SolvedBranch::from() const { return parameter_in(result->unit, requested->from); }
-double SolvedBranch::to() const { return parameter_in(result->unit, requested->to); }
+double ComparedBranch::from() const { return parameter_in(result->unit, requested->from); }
+double ComparedBranch::to() const { return parameter_in(result->unit, requested->to); }
 
-std::vector<SolvedBranch> branches_of(const SceneAnalyses& scene) {
-    std::vector<SolvedBranch> branches;
+std::vector<ComparedBranch> branches_of(const SceneAnalyses& scene) {
+    std::vector<ComparedBranch> branches;
     for (std::size_t b = 0; b < scene.comparison.branches.size(); ++b)
         branches.push_back({&scene.model.branches[b], &scene.comparison.branches[b]});
     return branches;
@@ -38,7 +38,7 @@ std::vector<double> values_of(const compare::Curve& curve, std::size_t channel) 
 }
 
 bool Sweep::has(std::string_view branch) const {
-    return std::ranges::find(branches, branch, &SolvedBranch::name) != branches.end();
+    return std::ranges::find(branches, branch, &ComparedBranch::name) != branches.end();
 }
 
 std::string Sweep::at_equal_parameter() const { return compare::parameter_reading(unit); }
@@ -69,7 +69,7 @@ std::string parameter_word(const Model& model, const Sweep& sweep) {
 
 }  // namespace
 
-Sweep sweep_of(const SceneAnalyses& scene, const SolvedBranch& branch) {
+Sweep sweep_of(const SceneAnalyses& scene, const ComparedBranch& branch) {
     const int c = branch.result->abscissa;
     Sweep sweep{
         .name = branch.name(),
@@ -86,7 +86,7 @@ namespace {
 
 // Whether every leg's curve has the abscissa of the branch and it is useful: with a travel below a
 // millimetre the branch does not lift the wheel.
-bool over_abscissa(const SceneAnalyses& scene, const SolvedBranch& branch) {
+bool over_abscissa(const SceneAnalyses& scene, const ComparedBranch& branch) {
     const auto c = static_cast<std::size_t>(branch.result->abscissa);
     if (branch.result->abscissa < 0) return false;
     if (scene.comparison.channels[c].name.ends_with("travel")) {
@@ -100,7 +100,7 @@ bool over_abscissa(const SceneAnalyses& scene, const SolvedBranch& branch) {
 }
 
 // Whether both start at zero and go opposite ways.
-bool are_sides(const Model& model, const SolvedBranch& a, const SolvedBranch& b) {
+bool are_sides(const Model& model, const ComparedBranch& a, const ComparedBranch& b) {
     const auto same = [&](bool moved) {
         return drivers_of(model, *a.requested, moved) == drivers_of(model, *b.requested, moved);
     };

@@ -19,7 +19,7 @@ std::string heading(const compare::Channel& channel);  // "wheel centre y [mm]"
 std::string output_of(const Wheel& wheel, std::string_view quantity);
 
 // A branch as requested and as solved.
-struct SolvedBranch {
+struct ComparedBranch {
     const Branch* requested;
     const compare::BranchComparison* result;
 
@@ -29,7 +29,7 @@ struct SolvedBranch {
     double to() const;
     const compare::Curve& truth() const { return result->run(compare::Leg::equilibrium).curve; }
 };
-std::vector<SolvedBranch> branches_of(const SceneAnalyses& scene);
+std::vector<ComparedBranch> branches_of(const SceneAnalyses& scene);
 
 // Values of a channel along a curve; NaN where it is undefined.
 std::vector<double> values_of(const compare::Curve& curve, std::size_t channel);
@@ -40,7 +40,7 @@ struct Sweep {
     std::string unit;       // of the parameter, "N"
     std::string parameter;  // "load [N]", "rack [mm]"
     std::string abscissa;   // other abscissa, "travel [mm]"; empty if unusable
-    std::vector<SolvedBranch> branches;
+    std::vector<ComparedBranch> branches;
     std::string kind = "other";  // what it moves: "heave", "roll", "steering", ... (README.md)
 
     bool has(std::string_view branch) const;  // by its name
@@ -50,7 +50,7 @@ struct Sweep {
 };
 std::vector<Sweep> sweeps_of(const SceneAnalyses& scene);
 // of one branch; includes its abscissa even if that is not monotonic
-Sweep sweep_of(const SceneAnalyses& scene, const SolvedBranch& branch);
+Sweep sweep_of(const SceneAnalyses& scene, const ComparedBranch& branch);
 
 // Leading sweep of the page: heave of all wheels, else the first travel, else the first.
 std::optional<Sweep> leading_sweep(const SceneAnalyses& scene);

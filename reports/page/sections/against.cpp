@@ -99,7 +99,7 @@ FigureGroup figures(const SceneAnalyses& scene, const Against& against) {
                       .table = curves_table(against)};
     const auto branches = branches_of(scene);
     for (const auto& branch : against.branches) {
-        const auto same = std::ranges::find(branches, branch.name, &SolvedBranch::name);
+        const auto same = std::ranges::find(branches, branch.name, &ComparedBranch::name);
         for (const auto& c : branch.curves) {
             const bool first = &branch == &against.branches.front();
             if (!(c.noticed > 1) || (!first && c.unit != "deg") || !is_visible(c)) continue;

@@ -221,7 +221,7 @@ std::vector<std::size_t> shown_channels(const std::vector<compare::Channel>& cha
     return rows;
 }
 
-Table deviations(const SceneAnalyses& scene, const SolvedBranch& branch) {
+Table deviations(const SceneAnalyses& scene, const ComparedBranch& branch) {
     const Sweep alone = sweep_of(scene, branch);
     Table table{.caption = fmt::format(
                     "Deviation of the published recursion from the full solution, branch {}",

@@ -49,7 +49,7 @@ Table deviations(const SceneAnalyses& scene, const compare::MeasuredReading& rea
         const auto [unit, factor] = gradient_unit(*scene.measured, reading, row, scene.comparison);
         std::vector<std::string> cells{row.branch,
                                        named(scene.comparison.channels[row.channel]),
-                                       whole_number(row.compared),
+                                       whole_number(row.compared()),
                                        signed_number(factor * row.measured_gradient),
                                        signed_number(factor * row.gradient),
                                        unit};
