@@ -79,7 +79,7 @@ class Variants {
     // Rows of `values` [n × numbers], each with its figures; `values` outlives the call.
     std::vector<VariantFigures> solve(const double* values, std::size_t n, compare::Leg leg,
                                       int threads) const {
-        constexpr std::size_t at_once = 64;
+        constexpr std::size_t at_once = 256;
         std::vector<VariantFigures> all(n);
         std::atomic<std::size_t> next = 0;
         const auto work = [&] {
@@ -131,13 +131,10 @@ class Variants {
             models.push_back(std::move(*model));
             rows.push_back(k);
         }
-        if (leg != compare::Leg::series) {
-            for (std::size_t m = 0; m < models.size(); ++m)
-                all[rows[m]] = solver_.solve_alone(models[m], leg);
-            return;
-        }
-        auto solved = solver_.solve(models);
-        for (std::size_t m = 0; m < models.size(); ++m) all[rows[m]] = std::move(solved[m]);
+        const bool together = leg == compare::Leg::series;
+        auto solved = together ? solver_.solve(models) : std::vector<VariantFigures>();
+        for (std::size_t m = 0; m < models.size(); ++m)
+            all[rows[m]] = together ? std::move(solved[m]) : solver_.solve_alone(models[m], leg);
     }
 
     SharedScene scene_;
@@ -156,15 +153,11 @@ compare::Leg leg_named(const std::string& method) {
         fmt::format("method '{}'; allowed: series, equilibrium, energy", method));
 }
 
-// [n × figures], and of each variant its outcome, the leg that its figures are by, and its reason.
-py::tuple solve_variants(const Variants& variants, const py::object& values,
-                         const std::string& method, int threads) {
-    const auto array =
-        py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(values);
-    if (!array) {
-        PyErr_Clear();
-        throw py::type_error("numbers are an array [variants, numbers]");
-    }
+// Figures [n × figures] by numbers [n × numbers]; of each variant its outcome, the leg that its figures
+// are by, its reason.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+py::tuple solve_variants(const Variants& variants, const Numbers& array, const std::string& method,
+                         int threads) {
     if (array.ndim() != 2 || array.shape(1) != static_cast<py::ssize_t>(variants.numbers()))
         throw py::value_error(
             fmt::format("numbers are an array [variants, {}]", variants.numbers()));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
@@ -169,7 +170,9 @@ TEST(Abscissa, SaysWhichChannelTurnsBackWhereOrDoesNotMove) {
 
 TEST(Abscissa, IsTravelWhereThereIsAWheelElseWhatMovesFarthest) {
     const Curve a = made(0.5, [](double x) { return -3 * x; });
-    EXPECT_EQ(default_abscissa(outputs, a), 0);
+    std::vector<Channel> of_wheel = outputs;
+    of_wheel[0].reads = Catalogued{find_entry(figure::travel)};
+    EXPECT_EQ(default_abscissa(of_wheel, a), 0);
     const std::vector<Channel> probes{{.name = "x", .reads = Coordinate{}},
                                       {.name = "y", .reads = Coordinate{}}};
     EXPECT_EQ(default_abscissa(probes, a), 1);

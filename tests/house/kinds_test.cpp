@@ -42,8 +42,8 @@ const std::set<std::string> implement_a_kind{
     "reference/equilibrium/residuals.cpp",                  // the opposite angle
     "reference/equilibrium/solve.cpp",                      // lengths above zero
     "reference/equilibrium/statement/system.cpp",           // angles of bushings and joints
-    "compare/comparison/compliance.cpp",                    // jacks and tyres
     "compare/comparison/elements.cpp",                      // axial force of links
+    "compare/outputs/wheel_load.cpp",                       // jacks
     "compare/proofs/multiple_equilibria.cpp",               // axes that point the other way
     "compare/studies/findings.cpp",                         // tyres, lifting forces and jacks
     "compare/studies/formulations.cpp",                     // formulations of bushings

@@ -372,7 +372,8 @@ TEST(FitCommand, NamesWhatTheDataDoNotDetermineWithExitCodeThree) {
                 {.out = {"not determined",
                          "The data do not determine these changes; what was not measured tells "
                          "them apart:",
-                         "springs.first.rate +0.3 N/mm, springs.second.rate -0.3 N/mm"}});
+                         "springs.first.rate +0.3 N/mm, springs.second.rate -0.3 N/mm",
+                         "guide.moment_y"}});
     expect_says("fit " + springs + " --measured " + csv + " --vary 'springs.*.rtae'", 2,
                 {.err = {"--vary: the scene has no number"}});
 }

@@ -64,7 +64,10 @@ struct Subject {
                (drawn().pose(wheel().body).p.conjugate() * (side() * Vector3d::UnitY()));
     }
     // Horizontal unit vectors across the wheel, outboard, and along it, forward.
-    Vector3d across() const { return Vector3d(spin().x(), spin().y(), 0).normalized(); }
+    Vector3d across() const {
+        const Vector3d e = spin();
+        return Vector3d(e.x(), e.y(), 0).normalized();
+    }
     Vector3d along() const { return side() * across().cross(Vector3d::UnitZ()); }
     // Where a circle of the drawn radius in the wheel's plane is lowest.
     Vector3d lowest() const {
@@ -80,14 +83,24 @@ struct Subject {
         return placed(upper).at - placed(lower).at;
     }
     Vector3d axis_from(const Vector3d& at) const {
-        const Vector3d lower = placed(wheel().steering_axis->lower).at, u = axis();
+        const Vector3d lower = placed(wheel().steering_axis->lower).at,
+                       u = placed(wheel().steering_axis->upper).at - lower;
         return lower + u * ((at.z() - lower.z()) / u.z()) - at;
     }
 
-    double toe() const { return std::atan2(spin().x(), side() * spin().y()); }
+    double toe() const {
+        const Vector3d e = spin();
+        return std::atan2(e.x(), side() * e.y());
+    }
     double camber() const { return -std::asin(spin().z()); }
-    double caster() const { return std::atan(-axis().x() / axis().z()); }
-    double kingpin() const { return std::atan(-side() * axis().y() / axis().z()); }
+    double caster() const {
+        const Vector3d u = axis();
+        return std::atan(-u.x() / u.z());
+    }
+    double kingpin() const {
+        const Vector3d u = axis();
+        return std::atan(-side() * u.y() / u.z());
+    }
 
     // ---- Rates along a motion.
     double toe(const Motions& motions) const {

@@ -150,6 +150,8 @@ VectorXd extents_of(const Scene& scene, const std::vector<Figure>& figures, cons
     });
 }
 
+constexpr double least_share = 1e-9;  // of an extent: what moves by less moves by rounding
+
 // What to measure so that each undetermined combination is determined.
 void propose(compare::FittedScene& fit, const Model& model, const MeasuredFigures& data,
              int threads) {
@@ -167,7 +169,7 @@ void propose(compare::FittedScene& fit, const Model& model, const MeasuredFigure
             if (fit.proposed[k].by.figure < 0)
                 if (const auto by =
                         compare::proposal(by_steps, extents, open.col(static_cast<Index>(k)));
-                    by.figure >= 0)
+                    by.share > least_share)
                     fit.proposed[k] = {figures[static_cast<std::size_t>(by.figure)], by};
     }
 }

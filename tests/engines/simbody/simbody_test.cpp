@@ -321,9 +321,6 @@ TEST(SimbodyCandidate, AFitToItsCurvesFindsWhatWasChanged) {
     compare::Measured measured{
         .value = {},
         .column = {},
-        .start = start,
-        .low = Eigen::VectorXd::Constant(2, -std::numeric_limits<double>::infinity()),
-        .high = Eigen::VectorXd::Constant(2, std::numeric_limits<double>::infinity()),
         .step = Eigen::Vector2d(compare::step_of(numbers[0]), compare::step_of(numbers[1]))};
     std::vector<double> values;
     std::istringstream lines(text_of(states));
@@ -347,15 +344,16 @@ TEST(SimbodyCandidate, AFitToItsCurvesFindsWhatWasChanged) {
     }
     measured.value =
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-    const auto found =
-        compare::fit(compare::solved_figures(
-                         [&](const Eigen::VectorXd& p) { return read_scene(file, settings(p)); },
-                         numbers, figures),
-                     measured);
+    const double any = std::numeric_limits<double>::infinity();
+    const compare::Varied varied{
+        {start, Eigen::VectorXd::Constant(2, -any), Eigen::VectorXd::Constant(2, any)},
+        numbers,
+        [&](const Eigen::VectorXd& p) { return read_scene(file, settings(p)); }};
+    const auto found = compare::fit(compare::solved_figures(varied, figures), measured, varied);
     EXPECT_TRUE(found.converged);
     EXPECT_NEAR(found.p[0], truth[0], 1e-6);
     EXPECT_NEAR(found.p[1], truth[1], 1e-3 * 1000);
-    for (const double noise : found.noise) EXPECT_LE(noise, known);
+    for (const auto& column : found.columns) EXPECT_LE(column.noise, known);
     fmt::print("a fit to the candidate's curves: {:.1e} mm, {:.1e} % of the rate from the truth\n",
                1e3 * std::abs(found.p[0] - truth[0]), 100 * std::abs(found.p[1] / truth[1] - 1));
 }
