@@ -164,21 +164,20 @@ double relaxed_by(const OptimisedScene& scene, const Bound& one) {
 Table prices_table(const OptimisedScene& scene) {
     const auto& active = scene.optimum.active;
     const auto relaxed = [&](Index k) { return relaxed_by(scene, item(active, k)); };
-    Table prices =
-        rows_of("prices", std::ssize(active),
-                {{"bound", words, [&](Index k) { return bound_text(scene, item(active, k)); }},
-                 {"relaxed by", given, relaxed},
-                 {"gain", scene.minimised ? three : percent,
-                  [&](Index k) { return relaxed(k) * item(active, k).price; },
-                  "decrease of the cost, to first order"}});
+    Table prices = rows_of(
+        "prices", std::ssize(active),
+        {{"bound", words, [&](Index k) { return bound_text(scene, item(active, k)); }},
+         {"relaxed by", given, relaxed},
+         {"gain", three,
+          [&](Index k) { return (scene.minimised ? 1 : 100) * relaxed(k) * item(active, k).price; },
+          "decrease of the figure, or of the change in % of the ranges, to first order"}});
     prices.caption =
         active.empty() ? "No bound holds the result back."
         : scene.minimised
             ? fmt::format("Bounds that hold the result back. Relaxing one lowers {} at {} [{}] by:",
                           scene.minimised->name, scene.minimised->place, scene.minimised->unit)
-            : "Bounds that hold the result back. Relaxing one reduces the change, as a share of "
-              "the "
-              "ranges, by:";
+            : "Bounds that hold the result back. Relaxing one reduces the change [% of the ranges] "
+              "by:";
     return prices;
 }
 

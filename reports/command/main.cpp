@@ -13,10 +13,10 @@
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/program/exit_code.hpp"
 #include "reports/command/program/parse.hpp"
-#include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/subprocess.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/given/measurement.hpp"
 #include "reports/json/json_cursor.hpp"
 
 int main(int argc, char** argv) {

@@ -20,9 +20,9 @@
 #include "reports/command/options/solving.hpp"
 #include "reports/command/program/command.hpp"
 #include "reports/document/document.hpp"
-#include "reports/document/state_file.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/given/state_file.hpp"
 #include "reports/tables/csv.hpp"
 
 namespace elastocheck::reports {

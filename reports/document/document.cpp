@@ -16,7 +16,7 @@
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/drawing.hpp"
-#include "reports/document/wheels.hpp"
+#include "reports/given/wheels.hpp"
 #include "reports/render/render.hpp"
 #include "reports/tables/elements.hpp"
 #include "reports/tables/judgement.hpp"

@@ -17,7 +17,7 @@
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/against.hpp"
 #include "reports/document/drawing.hpp"
-#include "reports/document/measurement.hpp"
+#include "reports/given/measurement.hpp"
 
 namespace elastocheck::reports {
 

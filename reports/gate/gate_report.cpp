@@ -44,7 +44,7 @@ std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
     }
     return all;
 }
-std::vector<Worst> worst_of_each_channel(const std::vector<GatedScene>& scenes) {
+std::vector<Worst> worst_of_each_channel(std::span<const GatedScene> scenes) {
     std::vector<Worst> all;
     for (const auto& scene : scenes) {
         std::vector<const Offence*> offences;
@@ -288,7 +288,7 @@ std::string gate_table(const GatedScene& scene) {
         if (!more.empty()) out += "  " + more + "\n";
     };
     list("changed", described(scene.changed), " numbers of the scene");
-    auto worst = worst_of_each_channel({scene});
+    auto worst = worst_of_each_channel(std::span(&scene, 1));
     const std::string more = cut(worst, rows_in_table, " channels");
     if (!worst.empty()) out += text(offences_table(worst, false));
     if (!more.empty()) out += "  " + more + "\n";

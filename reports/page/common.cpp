@@ -8,7 +8,7 @@
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "reports/document/document.hpp"
-#include "reports/document/wheels.hpp"
+#include "reports/given/wheels.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {

@@ -8,8 +8,8 @@
 
 #include "elastocheck/read_scene.hpp"
 #include "reports/command/options/load_scene.hpp"
-#include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
+#include "reports/given/measurement.hpp"
 #include "reports/json/json_cursor.hpp"
 
 namespace elastocheck::python {

@@ -1,4 +1,4 @@
-#include "reports/document/measurement.hpp"
+#include "reports/given/measurement.hpp"
 
 #include "compare/candidate/candidate.hpp"
 #include "elastocheck/compile.hpp"

@@ -134,11 +134,11 @@ TEST(GateCommand, AFigureIsLimitedAtTheDesignPositionAndOverABranchAndMisspeltNa
     EXPECT_EQ(said.code, 0) << said.out << said.err;
     said = judged(R"({"figure": "bump_steer", "unit": "deg/m", "min": -2, "max": 2})");
     EXPECT_EQ(said.code, 1) << said.out << said.err;
-    expect_parts(said.out, {"left.bump_steer [deg/m]", "right.bump_steer [deg/m]"});
+    expect_parts(said.out, {"left.bump_steer ", "right.bump_steer "});
     said = judged(
         R"({"figure": "left.bump_steer", "unit": "deg/m", "min": -3, "max": 3, "over": "parallel"})");
     EXPECT_EQ(said.code, 1) << said.out << said.err;
-    expect_parts(said.out, {}, {"right.bump_steer [deg/m]"});
+    expect_parts(said.out, {}, {"right.bump_steer "});
     said = judged(R"({"figure": "bump_ster", "unit": "deg/m", "max": 2},
         {"figure": "toe", "unit": "deg", "max": 2, "over": "paralel"})");
     EXPECT_EQ(said.code, 3);

@@ -75,10 +75,11 @@ TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
          {Edge{Quantity::recursive, "toe", 1, 1, 0.125},  // atol
           Edge{Quantity::recursive, "travel", 0, 0, 8},   // rtol × range 32
           Edge{deviation, "toe", 0, 0.5, 0.125},
-          Edge{deviation, "toe", 0, 0.5, 0.5,
-               with("deg", {0, 0.25})},  // × range 2 of the reference
-          Edge{Quantity::recursive, "toe", 1, 1, 0.5, with("toe", {0.5, 0})},
-          Edge{Quantity::recursive, "toe", 1, 1, 1, with("deg", {1, 0}), ToleranceClass::physical},
+          Edge{deviation, "toe", 0, 0.5, 0.0625,
+               with("deg", {0, 0.03125})},  // × range 2 of the reference
+          Edge{Quantity::recursive, "toe", 1, 1, 0.25, with("toe", {0.25, 0})},
+          Edge{Quantity::recursive, "toe", 1, 1, 0.375, with("deg", {0.375, 0}),
+               ToleranceClass::physical},
           Edge{Quantity::work_recursive, "steps", 0, 100, 12.5}})  // rtol × 100
         for (const double sign : {1.0, -1.0}) {
             Baseline b = baseline();

@@ -14,7 +14,8 @@ namespace {
 
 // Definitions of outputs have one source: README, inspect and result.json agree.
 TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
-    const std::string readme = text_of(scenes + "/../../reports/README.md");
+    const std::string readme = text_of(scenes + "/../../reports/README.md") +
+                               text_of(scenes + "/../../compare/outputs/catalogue/README.md");
     int rows = 0;
     for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
         if (entry.path().extension() != ".yaml") continue;
@@ -37,7 +38,7 @@ TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
             means = std::regex_replace(means, std::regex("ground axis [xyz](, positive [a-z ]+)?"),
                                        "ground axis");
             EXPECT_TRUE(contains(readme, means))
-                << "reports/README.md does not say: " << means << "\nof " << row;
+                << "neither README says: " << means << "\nof " << row;
         }
     }
     EXPECT_GT(rows, 50);

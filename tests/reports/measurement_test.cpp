@@ -1,5 +1,5 @@
 // Measured curves: reading, rejection, comparison.
-#include "reports/document/measurement.hpp"
+#include "reports/given/measurement.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

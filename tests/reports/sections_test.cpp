@@ -9,8 +9,8 @@
 #include <regex>
 #include <set>
 
-#include "reports/document/wheels.hpp"
 #include "reports/files/templates.hpp"
+#include "reports/given/wheels.hpp"
 #include "reports/page/common.hpp"
 #include "reports/text/numbers.hpp"
 #include "tests/reports/command.hpp"

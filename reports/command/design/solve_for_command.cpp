@@ -22,10 +22,9 @@ struct SolveForRequest : DesignRequest {
 void add_wish(compare::SolvedFor& solved, const std::string& word, const Model& model) {
     const auto equals = word.rfind('=');
     if (equals == word.npos || equals == 0)
-        throw std::invalid_argument(fmt::format(
-            "'{}'; allowed: OUTPUT=VALUE or OUTPUT@BRANCH:PARAMETER=VALUE, such as bump_steer=0 or "
-            "toe@jounce:3000=-0.1",
-            word));
+        throw std::invalid_argument(
+            "allowed: OUTPUT=VALUE or OUTPUT@BRANCH:PARAMETER=VALUE, such as bump_steer=0 or "
+            "toe@jounce:3000=-0.1");
     solved.wanted.push_back(parse_figure(word.substr(0, equals), model));
     solved.target.conservativeResize(std::ssize(solved.wanted));
     solved.target[std::ssize(solved.wanted) - 1] =
@@ -49,7 +48,7 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
     for (const auto& word : request.want) try {
             add_wish(solved, word, loaded.model);
         } catch (const std::invalid_argument& error) {
-            throw std::invalid_argument(fmt::format("--want: {}", error.what()));
+            throw std::invalid_argument(fmt::format("--want '{}': {}", word, error.what()));
         }
     const compare::Figures figures =
         compare::solved_figures(varied, solved.wanted, threads_of(request.running));

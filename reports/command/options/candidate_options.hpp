@@ -8,7 +8,7 @@
 
 #include "compare/candidate/candidate.hpp"
 #include "reports/command/options/load_scene.hpp"
-#include "reports/document/candidate_file.hpp"
+#include "reports/given/candidate_file.hpp"
 
 namespace elastocheck::reports {
 

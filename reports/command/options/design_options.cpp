@@ -49,8 +49,8 @@ Number number_of_path(const std::string& joined, const Scene& scene) {
         if (number.path.empty()) number = *one;
         if (one->value != number.value || one->unit != number.unit)
             throw std::invalid_argument(
-                fmt::format("'{}': {} and {} are not the same, so that they cannot change together",
-                            joined, number.path, path));
+                fmt::format("{} and {} are not the same, so that they cannot change together",
+                            number.path, path));
     }
     number.path = joined;
     return number;
@@ -88,13 +88,13 @@ Varied parse_varied(const std::vector<std::string>& words, const Scene& scene) {
                 continue;
             }
             if (colon == word.npos)
-                throw std::invalid_argument(fmt::format(
-                    "'{}'; allowed: NAME=LOW:HIGH, such as points.tie_rod_inner.z=260:340", word));
+                throw std::invalid_argument(
+                    "allowed: NAME=LOW:HIGH, such as points.tie_rod_inner.z=260:340");
             add_numbers(varied, scene, word.substr(0, equals),
                         parse_number(std::string_view(word).substr(equals + 1, colon - equals - 1)),
                         parse_number(std::string_view(word).substr(colon + 1)));
         } catch (const std::invalid_argument& error) {
-            throw std::invalid_argument(fmt::format("--vary: {}", error.what()));
+            throw std::invalid_argument(fmt::format("--vary '{}': {}", word, error.what()));
         }
     return varied;
 }

@@ -11,8 +11,8 @@
 #include "compare/comparison/points.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
+#include "reports/given/measurement.hpp"
 
 namespace elastocheck::reports {
 namespace {

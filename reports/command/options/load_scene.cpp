@@ -15,9 +15,9 @@
 #include "models/reader/document/yaml.hpp"
 #include "recursive/soft_motion.hpp"
 #include "reports/document/document.hpp"
-#include "reports/document/headings.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/given/headings.hpp"
 
 namespace elastocheck::reports {
 

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "compare/outputs/catalogue/catalogue.hpp"
-#include "reports/document/wheels.hpp"
+#include "reports/given/wheels.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/candidate.hpp"
@@ -472,8 +472,7 @@ std::optional<Section> kinematics_section(const SceneAnalyses& scene) {
         add_figures(section, scene,
                     {slug(c.sweep.name), c.sweep.parameter, false, {c}, family.quantities});
     std::vector<Quantity> quantities{{std::string(compare::figure::travel), "", ""}};
-    quantities.insert(quantities.end(), family.quantities.begin(),
-                      family.quantities.begin() + 6);
+    quantities.insert(quantities.end(), family.quantities.begin(), family.quantities.begin() + 6);
     std::vector<std::string> shown;
     for (const auto& c : cases) {
         if (std::ranges::find(shown, c.sweep.kind) != shown.end()) continue;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "compare/outputs/catalogue/catalogue.hpp"
-#include "reports/document/wheels.hpp"
+#include "reports/given/wheels.hpp"
 #include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"

@@ -1,4 +1,4 @@
-#include "reports/document/wheels.hpp"
+#include "reports/given/wheels.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "reports/document/headings.hpp"
+#include "reports/given/headings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,8 +10,8 @@
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "reports/document/wheels.hpp"
 #include "reports/files/csv_table.hpp"
+#include "reports/given/wheels.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {

@@ -10,8 +10,8 @@
 
 #include "compare/candidate/candidate.hpp"
 #include "elastocheck/scene.hpp"
-#include "reports/document/headings.hpp"
 #include "reports/files/csv_table.hpp"
+#include "reports/given/headings.hpp"
 
 namespace elastocheck::reports {
 

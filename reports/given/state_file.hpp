@@ -8,7 +8,7 @@
 
 #include "elastocheck/candidate.hpp"
 #include "elastocheck/scene.hpp"
-#include "reports/document/headings.hpp"
+#include "reports/given/headings.hpp"
 
 namespace elastocheck::reports {
 

@@ -10,8 +10,8 @@
 #include "compare/candidate/measured.hpp"
 #include "elastocheck/compare.hpp"
 #include "elastocheck/model.hpp"
-#include "reports/document/candidate_file.hpp"
 #include "reports/files/csv_table.hpp"
+#include "reports/given/candidate_file.hpp"
 
 namespace elastocheck::reports {
 

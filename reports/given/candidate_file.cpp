@@ -1,4 +1,4 @@
-#include "reports/document/candidate_file.hpp"
+#include "reports/given/candidate_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,8 +14,8 @@
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "reports/document/state_file.hpp"
 #include "reports/files/limits.hpp"
+#include "reports/given/state_file.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -1,4 +1,4 @@
-#include "reports/document/state_file.hpp"
+#include "reports/given/state_file.hpp"
 
 #include <fmt/format.h>
 
