@@ -90,16 +90,17 @@ bool lists(std::string_view list, std::string_view words) {
     return fmt::format("|{}|", list).find(fmt::format("|{}|", words)) != std::string::npos;
 }
 
-struct Test {
+struct RigTest {
     std::string_view words;
     std::array<std::string_view, 2> moves;  // load cases that it may be
 };
-constexpr std::array tests{Test{"bounce|ride|heave|bump", {"heave", "travel"}},
-                           Test{"roll", {"roll", ""}},
-                           Test{"steer|steering", {"steering", ""}},
-                           Test{"aligning", {"moment", ""}},
-                           Test{"braking|brake|traction|driving", {"longitudinal force", ""}},
-                           Test{"lateral", {"lateral force", ""}}};
+constexpr std::array rig_tests{
+    RigTest{"bounce|ride|heave|bump", {"heave", "travel"}},
+    RigTest{"roll", {"roll", ""}},
+    RigTest{"steer|steering", {"steering", ""}},
+    RigTest{"aligning", {"moment", ""}},
+    RigTest{"braking|brake|traction|driving", {"longitudinal force", ""}},
+    RigTest{"lateral", {"lateral force", ""}}};
 
 // Words of a heading that means a column other than an output, and which; the side is taken out
 // before. Those of outputs are in the catalogue.
@@ -107,7 +108,7 @@ struct RigHeading {
     std::string_view column, words;
     std::string_view moves = {};  // of a parameter
 };
-constexpr std::array headings{
+constexpr std::array rig_headings{
     RigHeading{"parameter", "lateral force", "lateral force"},
     RigHeading{"parameter", "longitudinal force|braking force|traction force",
                "longitudinal force"},
@@ -176,9 +177,9 @@ std::optional<std::pair<Heading, std::string>> heading_of_rig(const Heading& hea
     });
     const std::string joined = fmt::format("{}", fmt::join(words, " "));
     const auto known = std::ranges::find_if(
-        headings, [&](const RigHeading& rig) { return lists(rig.words, joined); });
+        rig_headings, [&](const RigHeading& rig) { return lists(rig.words, joined); });
     const compare::Entry* entry = compare::find_by_heading(joined);
-    if (known == headings.end() && entry == nullptr) return std::nullopt;
+    if (known == rig_headings.end() && entry == nullptr) return std::nullopt;
     std::string name(entry != nullptr ? std::string_view(entry->name) : known->column);
     std::string_view moves = entry != nullptr ? "" : known->moves;
     if (moves == "heave" && std::ranges::none_of(names.tests, [&](const TestBranch& test) {
@@ -306,11 +307,11 @@ std::string left_out_heading(const std::string& heading, const Names& names) {
 std::vector<std::string> branches_of_test(std::string_view test,
                                           const std::vector<TestBranch>& branches) {
     const auto words = words_of(test);
-    const auto known = std::ranges::find_if(tests, [&](const Test& test_of_rig) {
+    const auto known = std::ranges::find_if(rig_tests, [&](const RigTest& test_of_rig) {
         return std::ranges::any_of(
             words, [&](const std::string& word) { return lists(test_of_rig.words, word); });
     });
-    if (known == tests.end()) return {};
+    if (known == rig_tests.end()) return {};
     std::vector<std::string> found;
     for (const auto& moves : known->moves)
         if (found.empty() && !moves.empty())

@@ -89,4 +89,10 @@ std::vector<double> JsonCursor::numbers() const {
     return all;
 }
 
+std::vector<std::string> JsonCursor::texts() const {
+    std::vector<std::string> all;
+    for (const auto& item : items()) all.push_back(item.text());
+    return all;
+}
+
 }  // namespace elastocheck::reports

@@ -37,6 +37,7 @@ struct JsonCursor {
     std::string text() const;   // one line without control characters (escape.hpp: flaw)
     std::string lines() const;  // the same with line ends
     std::vector<double> numbers() const;
+    std::vector<std::string> texts() const;
 };
 
 }  // namespace elastocheck::reports

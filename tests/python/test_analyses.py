@@ -33,7 +33,8 @@ def test_compare_is_that_of_the_command(scenes, command, tmp_path):
     assert report.document["scenes"][0]["results"][0]["verdict"]["grade"] == "fail"
     command("compare", file, "-o", tmp_path / "out", "--method", "published", "--within", "0.01mm,0.001deg")
     curves = pandas.read_csv(tmp_path / "out/curves.csv", float_precision="round_trip")
-    pandas.testing.assert_frame_equal(report.frame("curves"), curves, check_exact=True)
+    curves["unit"] = curves["unit"].str.removeprefix("'")  # "-": no formula of a spreadsheet
+    pandas.testing.assert_frame_equal(report.frame("curves"), curves, check_exact=True, check_dtype=False)
 
 
 @pytest.mark.parametrize("method", ["series", "equilibrium"])
@@ -55,7 +56,7 @@ def test_sensitivity_is_that_of_the_command(scenes, command):
     assert (report.text, report.exit_code) == (said, code)
     said, _, _ = command("sensitivity", file, *options, "--json")
     document = json.loads(said)
-    assert all(same(value, document[key]) for key, value in report.document.items())
+    assert all(same(value, document[key]) for key, value in report.document.items() if key != "reproduce")
     assert len(report.frame("derivatives")) == len(document["derivatives"]["rows"])
 
 
