@@ -170,7 +170,8 @@ std::string bushing_words(const Written& written, const Elastic& elastic, const 
                                                               : *member<Formulation>(elastic.kind));
     }
     for (const std::size_t k : axes.curves)
-        text += fmt::format(", {}: {}", components[k], law_words(law, k, k < 3 ? lengths : angular));
+        text +=
+            fmt::format(", {}: {}", components[k], law_words(law, k, k < 3 ? lengths : angular));
     bool elsewhere = false;
     each_member(elastic.kind,
                 [&](Deformation<const Vector6> e) { elsewhere = !e.value.isZero(0); });

@@ -9,10 +9,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/design/least_squares.hpp"
 #include "compare/design/optimise.hpp"
 #include "compare/design/tolerances.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"

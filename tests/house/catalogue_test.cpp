@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::set<std::string>> other_meanings{
     {"travel",  // a load case, or what a branch drives
      {"reports/command/import_command.cpp", "reports/given/headings.cpp",
-      "reports/document/wheels.cpp", "reports/page/common.cpp", "reports/page/common.hpp",
+      "reports/given/wheels.cpp", "reports/page/common.cpp", "reports/page/common.hpp",
       "reports/page/sections/inputs/suspension.cpp", "reports/page/sections/kinematics.cpp"}},
     {"compression", {"compare/comparison/trim.cpp"}},  // of a spring, in a message
     {"wheel_rate",                                     // a field of a judgement

@@ -216,7 +216,8 @@ def test_stubs_say_what_there_is():
                     if isinstance(member, ast.FunctionDef):
                         assert hasattr(there, member.name), f"{stub}: {name}.{member.name}"
             elif module is elastocheck:
-                arguments = [a.arg for a in node.args.args + node.args.kwonlyargs]
+                every = node.args.args + ([node.args.vararg] if node.args.vararg else []) + node.args.kwonlyargs
+                arguments = [a.arg for a in every]
                 signature = [n for n, p in inspect.signature(there).parameters.items()]
                 if node.args.kwarg:
                     arguments.append(node.args.kwarg.arg)

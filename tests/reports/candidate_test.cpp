@@ -42,8 +42,7 @@ TEST(CandidateCommand, WhatAReferenceWritesPassesAsCurvesAndAsStates) {
     for (const auto& file : {curves, states}) {
         const Said said = expect_said(judge("--steps 10 --candidate " + file), 0,
                                       {.out = {"Pass: the candidate "}});
-        EXPECT_EQ(contains(said.out, " states in the equations of the legs"),
-                  file == states)
+        EXPECT_EQ(contains(said.out, " states in the equations of the legs"), file == states)
             << said.out;
     }
     // With forces, from the curves and from the states.

@@ -372,12 +372,12 @@ TEST(FitCommand, NamesWhatTheDataDoNotDetermineWithExitCodeThree) {
     const Folder folder;
     const std::string csv = (folder.path / "rig.csv").string();
     expect_says("solve " + springs + " --steps 4 --channels centre_z -o " + csv, 0);
-    expect_says("fit " + springs + " --measured " + csv + " --vary 'springs.*.rate'", 3,
-                {.out = {"not determined",
-                         "The data do not determine these changes; what was not measured tells "
-                         "them apart:",
-                         "springs.first.rate +0.3 N/mm, springs.second.rate -0.3 N/mm",
-                         "guide.moment_y"}});
+    expect_says(
+        "fit " + springs + " --measured " + csv + " --vary 'springs.*.rate'", 3,
+        {.out = {"not determined",
+                 "The data do not determine these changes; what was not measured tells "
+                 "them apart:",
+                 "springs.first.rate +0.3 N/mm, springs.second.rate -0.3 N/mm", "guide.moment_y"}});
     expect_says("fit " + springs + " --measured " + csv + " --vary 'springs.*.rtae'", 2,
                 {.err = {"--vary 'springs.*.rtae': the scene has no number"}});
 }

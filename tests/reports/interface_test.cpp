@@ -115,21 +115,26 @@ TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
     ASSERT_EQ(elastocheck_says("gate " + own + " --accept --reason first").code, 0);
     const Said text = elastocheck_says("gate " + own + " --set bushings.mount.rates.x=3e5");
     const json said = document("gate " + own + " --set bushings.mount.rates.x=3e5", 1);
-    EXPECT_EQ(said["schema"], "elastocheck/gate/1");
+    EXPECT_EQ(said["schema"], "elastocheck/gate/2");
     EXPECT_EQ(said["verdict"], "FAILED");
     EXPECT_EQ(said["exit_code"], 1);
     const json& judged = said["scenes"][0];
-    expect_parts(text.out, {std::to_string(judged["offences"].size()) + " of " +
+    expect_parts(text.out, {std::to_string(judged["offences"]["rows"].size()) + " of " +
                             std::to_string(judged["compared"].get<int>()) + " numbers"});
-    EXPECT_EQ(
-        judged["changed"],
-        json::parse(R"([{"path": "bushings.mount.rates.x", "was": {"value": 2e5, "unit": "N/m"},
-                                                  "is": {"value": 3e5, "unit": "N/m"}}])"));
-    const json& first = judged["offences"][0];
-    EXPECT_EQ(first["channel"], "centre_x");
-    EXPECT_EQ(first["at"]["unit"], "N");
-    EXPECT_GT(std::abs(first["measured"].get<double>() - first["accepted"].get<double>()),
-              first["noticeable"]);
+    EXPECT_EQ(judged["changed"]["rows"],
+              json::parse(R"([["bushings.mount.rates.x", 2e5, 3e5, "N/m"]])"));
+    const auto cell = [&](const char* name) {
+        const json& columns = judged["offences"]["columns"];
+        const auto column =
+            std::ranges::find(columns, name, [](const json& c) { return c["name"]; });
+        EXPECT_NE(column, columns.end()) << name;
+        return judged["offences"]["rows"][0][static_cast<std::size_t>(column - columns.begin())];
+    };
+    EXPECT_EQ(cell("channel"), "centre_x");
+    EXPECT_EQ(cell("unit of at"), "N");
+    EXPECT_EQ(cell("difference").get<double>(),
+              cell("measured").get<double>() - cell("accepted").get<double>());
+    EXPECT_GT(cell("noticeable").get<double>(), 1);  // times what is noticed
     expect_says("gate " + own + " --accept --reason x --json", 2);
     // Its annotations are not part of the document.
     const Said hub = support::says("env -u CI GITHUB_ACTIONS=true " ELASTOCHECK_COMMAND " gate " +

@@ -6,8 +6,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/design/results.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compare/sensitivity/sensitivity.hpp"
 #include "compare/result/table.hpp"
+#include "compare/sensitivity/sensitivity.hpp"
 
 namespace elastocheck::reports {
 
