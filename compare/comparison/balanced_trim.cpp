@@ -155,5 +155,8 @@ Trimmed trim(const Scene& scene) { return trim_by(scene, Leg::equilibrium, true,
 Trimmed trim_by_series(const Scene& scene, TrimStart* start) {
     return trim_by(scene, Leg::series, false, start);
 }
+Trimmed trim_not_confirmed(const Scene& scene, TrimStart* start) {
+    return trim_by(scene, Leg::equilibrium, false, start);
+}
 
 }  // namespace elastocheck::compare

@@ -33,4 +33,7 @@ struct TrimStart {
 // replaces it.
 Trimmed trim_by_series(const Scene& scene, TrimStart* start = nullptr);
 
+// The same by the equilibrium leg.
+Trimmed trim_not_confirmed(const Scene& scene, TrimStart* start);
+
 }  // namespace elastocheck::compare

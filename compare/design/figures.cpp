@@ -27,12 +27,17 @@ FigureValues of_trimmed(const Trimmed& trimmed, std::span<const Figure> figures,
     return evaluate(compile(trimmed.scene), figures, leg);
 }
 
-// By the equilibrium leg; a trim by the series from that of a similar scene, not confirmed. Without values
-// where the scene does not exist: a negative rate, points that meet.
+// By the equilibrium leg; a trim by the series from that of a similar scene, or else, where the start
+// settles past a limit point, by the equilibrium leg, neither confirmed. Without values where the scene
+// does not exist: a negative rate, points that meet.
 FigureValues values_at(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
                        TrimStart start = {}) {
     try {
-        return of_trimmed(trim_by_series(varied.scene(p), &start), figures, Leg::equilibrium);
+        const Scene scene = varied.scene(p);
+        Trimmed trimmed = trim_by_series(scene, &start);
+        if (trimmed.record && !trimmed.record->reached())
+            trimmed = trim_not_confirmed(scene, &start);
+        return of_trimmed(trimmed, figures, Leg::equilibrium);
     } catch (const std::runtime_error& error) {
         return {VectorXd::Constant(std::ssize(figures), nan), error.what()};
     }

@@ -12,6 +12,7 @@ using Eigen::VectorXd;
 
 // of |r|² and of the scaled x
 constexpr double least_decrease = 1e-14, least_change = 1e-10;
+constexpr double beside = 1e-6;  // |Δx| to a point without residuals at which a search ends
 
 // -1, 1: x is at this bound, beyond which the sum of squares decreases.
 int held(const Box& box, const VectorXd& x, Index i, double descent) {
@@ -25,12 +26,14 @@ struct Stacked {
     double weight;       // w
     Index rows;          // of the stack
     VectorXd last = {};  // of the last call
+    VectorXd none = {};  // last point without residuals
 
     int values() const { return static_cast<int>(rows); }
     int operator()(const VectorXd& x, VectorXd& stacked) {
         const VectorXd at = within(problem.box, x);
         stacked << problem.residual(at), weight * (at - problem.about);
         last = stacked;
+        if (!stacked.allFinite()) none = at;
         return 0;
     }
     int df(const VectorXd& x, MatrixXd& J) {
@@ -62,12 +65,16 @@ Minimum minimise(const LeastSquares& problem, VectorXd start) {
     Eigen::LevenbergMarquardt<Stacked> method(stacked);
     method.parameters.ftol = least_decrease, method.parameters.xtol = least_change;
     auto status = method.minimizeInit(found.x);
+    bool ends = false;  // where the residuals do
     do {
         status = method.minimizeOneStep(found.x);
         found.x = within(problem.box, found.x);
-    } while (status == Status::Running && !method.fvec.head(found.residual.size()).isZero(0));
+        ends = stacked.none.size() > 0 && (found.x - stacked.none).norm() <= beside;
+    } while (!ends && status == Status::Running &&
+             !method.fvec.head(found.residual.size()).isZero(0));
     found.residual = method.fvec.head(found.residual.size());
-    found.converged = status != Status::TooManyFunctionEvaluation && status != Status::UserAsked;
+    found.converged =
+        !ends && status != Status::TooManyFunctionEvaluation && status != Status::UserAsked;
     return found;
 }
 

@@ -4,7 +4,8 @@
 //
 // w is `pull` times the largest column norm of ∂r/∂x at the start; it keeps numbers that r does not
 // determine where they are. A number at a bound beyond which the sum would decrease has no column in
-// the Jacobian: the steps are those of the others.
+// the Jacobian: the steps are those of the others. A search that ends beside a point without residuals
+// has not converged.
 #pragma once
 
 #include <Eigen/Core>

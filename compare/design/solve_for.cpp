@@ -20,14 +20,25 @@ SearchStart start_of(const Figures& figures, const SearchRange& range) {
 
 Solution solve_for(const Figures& figures, const Bands& bands, const SearchRange& range,
                    const VectorXd& p) {
+    // those of the last point, with which every minimum begins
+    VectorXd valued, f, rated;
+    MatrixXd rate;
+    const auto value_at = [&](const VectorXd& x) -> const VectorXd& {
+        if (x.size() != valued.size() || x != valued) f = figures.value(range.at(x)), valued = x;
+        return f;
+    };
+    const auto rate_at = [&](const VectorXd& x) -> const MatrixXd& {
+        if (x.size() != rated.size() || x != rated) rate = figures.gradient(range.at(x)), rated = x;
+        return rate;
+    };
     LeastSquares problem{
         [&](const VectorXd& x) -> VectorXd {
-            const VectorXd f = figures.value(range.at(x));
+            value_at(x);
             return (f - f.cwiseMax(bands.low).cwiseMin(bands.high)).cwiseQuotient(bands.scale);
         },
         [&](const VectorXd& x) -> MatrixXd {
-            const VectorXd f = figures.value(range.at(x));
-            MatrixXd J = bands.scale.cwiseInverse().asDiagonal() * figures.gradient(range.at(x)) *
+            value_at(x);
+            MatrixXd J = bands.scale.cwiseInverse().asDiagonal() * rate_at(x) *
                          (range.high - range.low).asDiagonal();
             for (Index j = 0; j < J.rows(); ++j)
                 if (f[j] > bands.low[j] && f[j] < bands.high[j]) J.row(j).setZero();

@@ -174,6 +174,15 @@ TEST(SolveFor, KnowsWhereNothingMovesOrThereIsNoValue) {
     EXPECT_FALSE(start_of(none, range).complete());
 }
 
+// p, which exists above 0.3, is wished to be 0: a point beside the end of the values is no nearest one.
+TEST(SolveFor, ASearchThatEndsBesidePointsWithoutValuesHasNotConverged) {
+    const Figures ends =
+        closed([](const VectorXd& p) { return list_of({p[0] > 0.3 ? p[0] : std::nan("")}); }, 1);
+    const Solved found = solved(ends, list_of({0}), {list_of({0.8}), list_of({-1}), list_of({1})});
+    EXPECT_FALSE(found.met);
+    EXPECT_FALSE(found.solution.converged);
+}
+
 // ---- Figures of scenes.
 
 // Two upright springs: z = 400 + F / (k_1 + k_2) mm.
