@@ -280,7 +280,9 @@ Result result_of(const SolvedFor& solved) {
     set_confirmation(result, solved.by, met ? Grade::pass : Grade::fail);
     result.verdict.sentence = met ? "All wishes are met; of all such numbers within the limits, "
                                     "these change least, as shares of their ranges."
-                                  : "The wishes cannot be met; these numbers come nearest.";
+                              : found.converged
+                                  ? "The wishes cannot be met; these numbers come nearest."
+                                  : "The wishes are not met, and the search has not converged.";
     result.verdict.compared = static_cast<int>(solved.target.size());
     return result;
 }

@@ -26,14 +26,6 @@ nlohmann::ordered_json document_head(const char* schema, const std::string& comm
         {"schema", schema}, {"reproduce", command}, {"provenance", provenance_json(provenance())}};
 }
 
-void print_result(const Delivery& delivery, const char* schema,
-                  const nlohmann::ordered_json& result) {
-    if (!delivery.as_json) return;
-    auto document = document_head(schema, delivery.command);
-    document.update(result);
-    print_document(document);
-}
-
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files) {
     write_folder(delivery.folder, files);
     std::string written;

@@ -46,9 +46,6 @@ void print_document(const nlohmann::ordered_json& document);
 
 // {schema, reproduce, provenance}: the head of a document other than result.json.
 nlohmann::ordered_json document_head(const char* schema, const std::string& command);
-// With --json, that and the result as one document.
-void print_result(const Delivery& delivery, const char* schema,
-                  const nlohmann::ordered_json& result);
 
 // Writes the files to the folder in one step, and names them on the terminal.
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files);
