@@ -23,6 +23,7 @@ struct FileKind {
 inline constexpr FileKind curves_file{"curves", "branch,leg,parameter,unit,"};
 inline constexpr FileKind rates_file{"rates", "branch,parameter,parameter unit,"};
 inline constexpr FileKind gradients_file{"derivatives", "branch,parameter,unit,output,number,"};
+inline constexpr FileKind loads_file{"loads", "case,imbalance,disagreement,"};
 inline constexpr FileKind states_file{"states", R"({"branch":)"};
 inline constexpr FileKind baseline_file{"baseline", R"({"schema": "elastocheck/baseline/)"};
 inline constexpr FileKind junit_file{

@@ -119,12 +119,9 @@ constexpr std::array rig_headings{
 
 // ---- Headings.
 
-struct Heading {
-    std::string name, unit;
-};
+}  // namespace
 
-// The unit is in brackets, or after the last _.
-Heading split(std::string_view text) {
+Heading split_heading(std::string_view text) {
     for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}})
         if (const auto at = text.find(open); at != text.npos)
             if (const auto end = text.find(close, at); end != text.npos) {
@@ -138,6 +135,8 @@ Heading split(std::string_view text) {
     if (!is_written(unit) && !compare::find_unit(unit)) return {std::string(text), ""};
     return {std::string(text.substr(0, last)), std::string(unit)};
 }
+
+namespace {
 
 // Whether it is a parameter or an output, in the words of this program.
 bool is_parameter(const Heading& heading, Meaning& meaning) {
@@ -270,7 +269,7 @@ Meaning meaning_of(const std::string& heading, const Names& names) {
          {std::pair{"branch", Kind::branch}, {"leg", Kind::leg}, {"unit", Kind::parameter_unit}})
         if (heading == word) return {.kind = kind, .name = heading};
     Meaning meaning{.name = heading};
-    Heading ours = split(heading);
+    Heading ours = split_heading(heading);
     if (is_parameter(ours, meaning) || is_output(ours, names.channels, meaning)) return meaning;
     // the wheel of a scene with one is the left one
     if (ours.name.starts_with("left.") &&

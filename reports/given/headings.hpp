@@ -40,6 +40,12 @@ struct TestBranch {
     compare::Unit unit = compare::Unit::newton;
 };
 
+// A heading and its unit, which is in brackets or after the last _: "toe [deg]", "toe_deg".
+struct Heading {
+    std::string name, unit;
+};
+Heading split_heading(std::string_view text);
+
 // The scene in whose names a file is read.
 struct Names {
     const std::vector<compare::Channel>& channels;

@@ -108,6 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Line, Claims, testing::ValuesIn(claims_in("line.claims"
 INSTANTIATE_TEST_SUITE_P(Inspect, Claims, testing::ValuesIn(claims_in("inspect.claims")), name_of);
 INSTANTIATE_TEST_SUITE_P(Mistakes, Claims, testing::ValuesIn(claims_in("mistakes.claims")),
                          name_of);
+INSTANTIATE_TEST_SUITE_P(Loads, Claims, testing::ValuesIn(claims_in("loads.claims")), name_of);
 INSTANTIATE_TEST_SUITE_P(Solve, Claims, testing::ValuesIn(claims_in("solve.claims")), name_of);
 INSTANTIATE_TEST_SUITE_P(Compare, Claims, testing::ValuesIn(claims_in("compare.claims")), name_of);
 
