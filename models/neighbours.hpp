@@ -1,5 +1,5 @@
 // States of neighbouring models: how every leg takes part in derivatives by
-// differences (compare/sensitivity/README.md).
+// differences (compare/sensitivity/sensitivity.hpp).
 //
 // A model m(t) changes with a number p + t of its scene; m(0) has the state x. With the leg's own
 // residual G at the fixed x, a stencil t_k with weights w_k, and the leg's own J at (m(0), x),

@@ -1,7 +1,7 @@
 // Compiled model: the input of all legs.
 //
 // Compilation does two things: it removes or condenses parts that cannot influence a requested
-// output (reduce/passes.hpp), and lowers joints to basic constraints (lowering.hpp).
+// output (models/compile/passes.hpp), and lowers joints to basic constraints (lowering.hpp).
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// A scene: the user's input, from one YAML file (scene_file.hpp) or built in code.
+// A scene: the user's input, from one YAML file (read_scene.hpp) or built in code.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // Size limits of external input. Output of this program is smaller, by the limits of its runs
-// (command/limits.hpp).
+// (reports/command/options/limits.hpp).
 #pragma once
 
 #include <cstddef>

@@ -109,7 +109,7 @@ const Arm with_curve{
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 TEST(Knots, StopsAreHitInOneStepOfFirstOrderAndLeaveTheRungsTheirOwnBehind) {
-    // Without a knot each method has the order in the table of method.hpp ...
+    // Without a knot each method has the order in the table of recursive_method.hpp ...
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
         const Errors coarse = errors_near(none, method, 200), fine = errors_near(none, method, 400);

@@ -143,8 +143,8 @@ std::string axis_words(int axis);
 // ---- The parts of the catalogue, in its order.
 void add_angles(std::vector<Entry>& all);            // angles.cpp
 void add_rates(std::vector<Entry>& all);             // rates.cpp
-void add_angles_otherwise(std::vector<Entry>& all);  // other_angles.cpp
-void add_rates_otherwise(std::vector<Entry>& all);   // other_rates.cpp
+void add_angles_otherwise(std::vector<Entry>& all);  // angles.cpp
+void add_rates_otherwise(std::vector<Entry>& all);   // rates.cpp
 // force_tests.cpp; alone: of one wheel of an axle
 void add_force_tests(std::vector<Entry>& all, bool alone);
 

@@ -487,7 +487,7 @@ Contact contact_of(const Curve& law) {
     const double inward = contact.is_bump ? -1 : 1;
     std::vector<double> knots = law.knots;
     if (contact.is_bump) std::ranges::reverse(knots);
-    // the first knot of an open side lies beyond any motion (reader/curves.cpp)
+    // the first knot of an open side lies beyond any motion (models/reader/tables/curves.cpp)
     if (!law.known_outside) knots.erase(knots.begin());
     contact.touches = knots.front();
     for (const double x : knots)
