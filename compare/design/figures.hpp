@@ -63,7 +63,7 @@ struct Varied : SearchRange {
     std::function<Scene(const Eigen::VectorXd& p)> scene = {};
 };
 
-// The algorithms of this room know a scene by its figures at points p alone.
+// The algorithms of this folder know a scene by its figures at points p alone.
 struct Figures {
     // of each point: in the units of the outputs; NaN where there is none
     std::function<std::vector<Eigen::VectorXd>(const std::vector<Eigen::VectorXd>& p)> values;
