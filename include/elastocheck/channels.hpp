@@ -32,6 +32,7 @@ enum class Unit {
     deg_per_kN,
     deg_per_100Nm,
     percent,
+    newton_metre_per_deg,
 };
 const char* symbol(Unit unit);  // "mm", ..., "-", "deg/kN"
 double in_unit(Unit unit);      // factor from SI (m, rad, N, N·m, 1) to this unit

@@ -75,6 +75,99 @@ TEST(Definitions, OfTheSteeringAxisAreThoseOfALineByHand) {
     EXPECT_NEAR(at("scrub_radius@distance"), std::hypot(70, 50), 1e-9);
 }
 
+Curve curve_of(const Model& model, const Branch& branch, const std::vector<Channel>& channels) {
+    return walk(model, channels, branch, sides_of(model, branch, 4),
+                {.leg = Leg::equilibrium, .every = 1})
+        .curve;
+}
+
+// Arms that swing about lateral axes move the carrier in the side view alone: there the instant centre
+// of the drawing is the one of the motion.
+TEST(Definitions, SideViewPlanesGiveTheAntiDiveOfArmsOnLateralAxes) {
+    const char* text = R"(
+elastocheck: 1
+name: trailing links
+units: {length: m, angle: rad, force: N}
+points:
+  upper: [0.02, 0.7, 0.15]
+  lower: [-0.01, 0.7, -0.12]
+  upper_in: [-0.4, 0.6, 0.2]
+  upper_out: [-0.4, 0.8, 0.2]
+  lower_in: [-0.5, 0.6, -0.05]
+  lower_out: [-0.5, 0.8, -0.05]
+  centre: [0, 0.75, 0]
+  patch: [0, 0.75, -0.3]
+bodies: {a: {origin: upper}, b: {origin: lower}, carrier: {origin: centre}}
+joints:
+  ua: {type: revolute, bodies: [a, ground], at: upper_in, axis: y}
+  lb: {type: revolute, bodies: [b, ground], at: lower_in, axis: y}
+  u: {type: spherical, bodies: [a, carrier], at: upper}
+  l: {type: spherical, bodies: [b, carrier], at: lower}
+  straight: {type: perpendicular, bodies: [carrier, ground], axis_i: y, axis_j: x}
+springs: {coil: {bodies: [b, ground], from: lower, to: upper_in, rate: 3e4}}
+branches: {travel: {drive: travel, from: -0.02, to: 0.02, steps: 4}}
+wheel: {body: carrier, centre: centre, contact_patch: patch, spin_axis: y, side: left}
+vehicle: {wheelbase: 2.6, cg_height: 0.5, axle: AXLE, brake_share: 0.7, drive_share: 1}
+)";
+    for (const auto& [axle, figure] : {std::pair{"front", "anti_dive"}, {"rear", "anti_squat"}}) {
+        std::string scene = text;
+        scene.replace(scene.find("AXLE"), 4, axle);
+        const Model model = compile(parse_scene(scene, "links.yaml"));
+        auto both = characteristics(model);
+        std::ranges::move(definition_channels(model), std::back_inserter(both));
+        std::erase_if(both, [&](const Channel& c) {
+            return c.name != figure && c.name != std::string(figure) + "@planes";
+        });
+        ASSERT_EQ(both.size(), 2u) << figure;
+        const Curve curve = curve_of(model, model.branches.front(), both);
+        for (const auto& values : curve.values) {
+            EXPECT_GT(std::abs(values[0]), 1) << figure;
+            EXPECT_NEAR(values[0], values[1], 1e-7) << figure;
+        }
+    }
+}
+
+// With one rate k of both wheels in roll a couple of forces F on the track t turns the axle by
+// φ = 2 F / (k t):  F t / φ = k t² / 2. The roll centre of the mirrored state is the mirrored one.
+TEST(Definitions, OfAnAxleInRollAgreeWithItsWheelRatesAndItsMirrorImage) {
+    const Model model = compile(trim(support::scene("front_axle")).scene);
+    const auto roll = std::ranges::find(model.branches, "roll", &Branch::name);
+    ASSERT_NE(roll, model.branches.end());
+    auto channels = characteristics(model);
+    const auto all = compare::channels(model);
+    channels.push_back(all[static_cast<std::size_t>(find_channel(all, "track"))]);
+    const Curve curve = curve_of(model, *roll, channels);
+    const auto value = [&](std::size_t point, const char* name) {
+        return curve.values[point][static_cast<std::size_t>(find_channel(channels, name))];
+    };
+    const std::size_t last = curve.values.size() - 1;
+    const double t = 1e-3 * value(curve.start, "track"),
+                 k = 1e3 * value(curve.start, "left.wheel_rate_in_roll");
+    EXPECT_NEAR(value(curve.start, "roll_stiffness"), k * t * t / 2 / degrees, 1e-6);
+    EXPECT_NEAR(value(curve.start, "roll_centre_lateral"), 0, 1e-6);
+    EXPECT_GT(std::abs(value(0, "roll_centre_lateral")), 1);
+    EXPECT_NEAR(value(0, "roll_centre_lateral"), -value(last, "roll_centre_lateral"), 1e-5);
+    EXPECT_NEAR(value(0, "roll_centre_height"), value(last, "roll_centre_height"), 1e-5);
+}
+
+TEST(Definitions, TurningCircleIsTwiceTheWheelbaseOverTheSineOfTheOuterAngle) {
+    const Model model = compile(trim(support::scene("front_axle")).scene);
+    const auto steering = std::ranges::find(model.branches, "steering", &Branch::name);
+    ASSERT_NE(steering, model.branches.end());
+    const auto all = channels(model);
+    const Curve curve = curve_of(model, *steering, all);
+    const auto value = [&](std::size_t point, const char* name) {
+        return curve.values[point][static_cast<std::size_t>(find_channel(all, name))];
+    };
+    for (const std::size_t end : {std::size_t{0}, curve.values.size() - 1}) {
+        const double outer =
+            std::min(std::abs(value(end, "left.toe")), std::abs(value(end, "right.toe")));
+        EXPECT_NEAR(value(end, "turning_circle"),
+                    2e3 * model.vehicle->wheelbase / std::sin(outer / degrees), 1e-6);
+    }
+    EXPECT_EQ(value(curve.start, "turning_circle"), undefined);
+}
+
 // Steered by 20 deg about the vertical: the wheel's plane turns with the axis, so that the angles
 // seen across and along the wheel stay, while those seen along the ground axes change.
 TEST(Definitions, SeenInTheWheelsPlaneDoNotChangeBySteeringAboutTheVertical) {
@@ -588,6 +681,8 @@ TEST(Definitions, InAColumnAreRecognisedWithSignUnitAndOffset) {
         "roll_camber@road", "ackermann@error", "ackermann@outer", "ackermann@inner",
         // over a patch that stays below the wheel centre the figure itself
         "side_view_swing_arm@patch",
+        // no built-in scene has a driven rear axle of two wishbones
+        "anti_squat@planes",
         // of every axle the figure itself
         "braking_force_steer@both", "braking_force_camber@both", "traction_force_steer@both",
         "longitudinal_stiffness@both", "longitudinal_stiffness_at_centre@both"};

@@ -86,6 +86,15 @@ double of_steered(const Subject& x, double (*formula)(const Steered&)) {
     return formula(s);
 }
 
+// The outer wheel rolls about the point where the perpendicular of its plane meets the line of the
+// other axle: its patch runs on a circle of the diameter 2 l / sin δ_o.
+double turning_circle(const Subject& x) {
+    const auto at = steer_angles(x);
+    if (!at) return undefined;
+    const double outer = std::min(std::abs(at->left), std::abs(at->right));
+    return 2 * x.model.vehicle->wheelbase / std::sin(outer);
+}
+
 // Lines from the patches to the instant centres of the planes of the wishbones, in the transverse plane
 // of the drawn wheel centre; for one wheel, with the middle of the vehicle.
 double roll_centre_by_planes(const Subject& of) {
@@ -277,6 +286,15 @@ const Entry of_patch[] = {
            .quotient = true,
            .live = 15,
            .drawn = {{Over::steering, 3, "Ackermann", "100 %: no tyre slips at low speed"}}}),
+    Entry(
+        Owner::front_axle, "turning_circle", Unit::mm,
+        "diameter of the circle on which the patch of the wheel with the smaller steer angle runs "
+        "about a point on the line of the other axle: twice the wheelbase over the sine of that "
+        "angle; undefined unless both are turned in the same direction by 2 deg or more",
+        "", turning_circle,
+        {.elsewhere = "turning circle (track circle); between kerbs half a tyre's width more on "
+                      "each side",
+         .quotient = true}),
     Entry(Owner::spring, "compression", Unit::mm,
           "design length less length of spring '{}', positive in compression", "",
           [](const Subject& x) {

@@ -238,7 +238,9 @@ std::vector<DefinitionSet> definition_sets() {
          "SAE J670e:1976: offsets in side and front elevation, arms to the centre of tire "
          "contact, the roll center by forces",
          {}},
-        {"planes", "drawings in front view: the roll centre by the planes of the wishbones", {}}};
+        {"planes",
+         "drawings in front and side view: instant centres by the planes of the wishbones",
+         {}}};
     for (DefinitionSet& set : sets)
         for (const Entry* entry : definitions())
             if (entry->is.set == set.name) set.members.push_back(entry->name);

@@ -86,7 +86,7 @@ struct UnitEntry {
     double per_si;
 };
 constexpr double deg = 180 / std::numbers::pi;
-constexpr std::array<UnitEntry, static_cast<std::size_t>(Unit::percent) + 1> units{
+constexpr std::array<UnitEntry, static_cast<std::size_t>(Unit::newton_metre_per_deg) + 1> units{
     {{"mm", 1e3},
      {"deg", deg},
      {"N", 1},
@@ -100,7 +100,8 @@ constexpr std::array<UnitEntry, static_cast<std::size_t>(Unit::percent) + 1> uni
      {"N/mm", 1e-3},
      {"deg/kN", 1e3 * deg},
      {"deg/(100 N·m)", 100 * deg},
-     {"%", 100}}};
+     {"%", 100},
+     {"N·m/deg", 1 / deg}}};
 
 // ---- The list
 

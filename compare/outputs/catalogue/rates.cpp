@@ -2,11 +2,11 @@
 // is an exact rate by the tangent of the leg that found the state, never a difference of two points, and
 // has the same value for a wheel and for its mirror image.
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
-#include "compare/outputs/catalogue/subject.hpp"
+#include "compare/outputs/catalogue/motions.hpp"
+#include "compare/outputs/catalogue/wishbones.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::compare {
@@ -18,11 +18,7 @@ constexpr auto never = "";
 constexpr auto no_vertical = "the wheel does not rise";
 constexpr auto does_not_steer = "the steering does not turn the wheel about an upright axis here";
 constexpr auto not_steered = "the steering is not driven or held on this branch";
-constexpr auto does_not_roll = "its wheels move only together: the axle does not roll";
 constexpr auto unresisted = "the travel of the wheel is unresisted";
-constexpr auto no_roll_centre = "no finite roll centre";
-constexpr auto no_rate =
-    "the travel of the wheel is unresisted or blocked, or an element is at a kink of its law";
 constexpr auto endless_in_front =
     "the carrier does not rotate as seen from the front: the arm is infinite";
 constexpr auto endless_from_side =
@@ -32,127 +28,7 @@ constexpr auto milliken =
     "Milliken and Milliken, *Race Car Vehicle Dynamics*, ch. 17; needs `vehicle` in the scene";
 constexpr auto instant_axis = "virtual steering axis of multi-link suspensions";
 
-// ---- Motions of the wheels.
-
-using Causes = std::vector<std::array<Motions, causes>>;
-
-Motions sum(const std::vector<std::pair<double, const Motions*>>& weighted) {
-    Motions total(weighted.front().second->size());
-    for (const auto& [weight, motions] : weighted)
-        for (std::size_t b = 0; b < total.size(); ++b) {
-            total[b].dr += weight * (*motions)[b].dr;
-            total[b].dpi += weight * (*motions)[b].dpi;
-        }
-    return total;
-}
-// A unit cause on this wheel, and `other` times as much on the others.
-Motions of_axle(const Causes& by, const Subject& x, int cause, double other) {
-    std::vector<std::pair<double, const Motions*>> weighted;
-    for (std::size_t w = 0; w < by.size(); ++w)
-        weighted.emplace_back(w == x.k ? 1 : other, &by[w][static_cast<std::size_t>(cause)]);
-    return sum(weighted);
-}
-const Motions& held(const Subject& x, int cause) {
-    return x.response->held[x.k][static_cast<std::size_t>(cause)];
-}
-// The wheel loads stay: jacks and tyres give no more force. Null where the wheel moves freely.
-const Motions* unheld(const Subject& x, int cause) {
-    return x.response->free.empty() ? nullptr
-                                    : &x.response->free[x.k][static_cast<std::size_t>(cause)];
-}
-double nothing(const Subject& x) { return x.response->nothing_resists ? undefined : nan; }
-
-// Heave: all wheels raised by 1 m; with tied wheels, their common motion scaled so that this wheel
-// rises by 1 m. Roll: the wheels of an axle in opposition, the left up; not for tied wheels.
-Motions raised(const Subject& x) {
-    const auto& travel = x.response->travel;
-    const double whole = x.response->tied ? 1 / x.moved_by(travel.front(), x.centre()).z() : 1;
-    std::vector<std::pair<double, const Motions*>> weighted;
-    for (const Motions& motions : travel) weighted.emplace_back(whole, &motions);
-    return sum(weighted);
-}
-Motions rolled(const Subject& x) {
-    std::vector<std::pair<double, const Motions*>> weighted;
-    for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
-        weighted.emplace_back(x.of(w).side(), &x.response->travel[w]);
-    return sum(weighted);
-}
-// Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by half
-// the track, the other one goes down by as much.
-Motions rolled_towards(const Subject& x) {
-    Motions roll = rolled(x);
-    const double half = std::abs(x.of(0).patch().at.y() - x.of(1).patch().at.y()) / 2 * x.side();
-    for (auto& motion : roll) motion.dr *= half, motion.dpi *= half;
-    return roll;
-}
-double in_roll(const Subject& x, double (Subject::*angle)(const Motions&) const) {
-    return x.response->tied ? undefined : (x.*angle)(rolled_towards(x));
-}
-
 // ---- Centres and axes.
-
-// The solution of A P = b, of coincident lines the nearest; none of parallel ones.
-std::optional<Vector2d> crossing(const Eigen::Matrix2d& A, const Vector2d& b, double track) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> lines;
-    lines.setThreshold(1e-9);
-    lines.compute(A);
-    const Vector2d P = lines.solve(b);
-    if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= nowhere)) return std::nullopt;
-    return P;
-}
-// Instant centre in front view: the patch of a wheel moves perpendicularly to the line through its
-// instant centre. The roll centre lies on that line: for an axle in roll at the intersection of both
-// lines; for one wheel at the middle of the vehicle, y = 0.
-//
-//   (P - c) · (dy, dz) = 0      h = P_z - c_z
-//
-// Two coincident lines (arms that guide the wheels vertically) meet halfway between the wheels.
-//
-// `point`: of each wheel, the patch; its motion and its place are those of the line.
-double roll_centre(const Subject& x, Placed (Subject::*point)() const) {
-    const auto seen = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
-    if (!is_axle(x.model)) {
-        const Placed of = (x.*point)();
-        const Vector3d d = x.moved_by(x.response->travel[0], of);
-        return ratio(of.at.y() * d.y(), d.z(), nowhere) + of.at.z() - x.patch().at.z();
-    }
-    if (x.response->tied) return undefined;
-    const Motions roll = rolled(x);
-    Eigen::Matrix2d A;
-    Vector2d c[2], b;
-    double above = 0;  // the road
-    for (std::size_t w = 0; w < 2; ++w) {
-        const Placed of = (x.of(w).*point)();
-        c[w] = seen(of.at);
-        above += (of.at.z() - x.of(w).patch().at.z()) / 2;
-        A.row(static_cast<Eigen::Index>(w)) = seen(x.moved_by(roll, of)).normalized().transpose();
-    }
-    const Vector2d middle = (c[0] + c[1]) / 2;
-    for (int w = 0; w < 2; ++w) b[w] = A.row(w).dot(c[w] - middle);
-    const auto P = crossing(A, b, std::abs(c[0].x() - c[1].x()));
-    return P ? P->y() + above : undefined;
-}
-// Lateral forces on all patches in one direction, with vertical ones that keep the wheel centres at
-// their height (of an axle: from rolling); the roll centre is where the resultant acts. With C the
-// rise of the centres, of an axle that of the left less that of the right one:
-//
-//   f_z = -f_y C_y / C_z      h = -(t/2) f_z / f_y      t/2 = y of the patch of one wheel
-double roll_centre_by_forces(const Subject& x) {
-    const Causes& free = x.response->free;
-    if (free.empty()) return nothing(x);
-    const auto rise = [](const Subject& wheel, const Motions& motions) {
-        return wheel.moved_by(motions, wheel.centre()).z();
-    };
-    if (!is_axle(x.model))
-        return ratio(x.patch().at.y() * rise(x, free[0][at_patch + 1]),
-                     rise(x, free[0][at_patch + 2]), nowhere);
-    if (x.response->tied) return undefined;
-    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
-    const auto roll = [&](const Motions& by) { return rise(left, by) - rise(right, by); };
-    return ratio((left.patch().at.y() - right.patch().at.y()) / 2 *
-                     roll(of_axle(free, left, at_patch + 1, 1)),
-                 roll(of_axle(free, left, at_patch + 2, -1)), nowhere);
-}
 
 // Instant centre of the carrier in side and front view, from the wheel centre, with velocity v and
 // rate ω:
@@ -207,12 +83,6 @@ double steer_gradient(const Subject& x) {
 
 // ---- Stiffness and rates.
 
-// Vertical force on this wheel, and `other` times as much on the other one, over the rise of a point;
-// the wheels free.
-double vertical_rate(const Subject& x, int force, const Placed& at, double other = 1) {
-    if (x.response->free.empty()) return nothing(x);
-    return ratio(1, x.moved_by(of_axle(x.response->free, x, force, other), at).z(), rigid);
-}
 double wheel_rate(const Subject& x) { return vertical_rate(x, at_patch + 2, x.centre()); }
 double ride_rate(const Subject& x) {
     const double k_w = wheel_rate(x), k_t = x.wheel().tyre_rate;
@@ -226,6 +96,26 @@ double anti(const Subject& x, const Placed& at, double share, double sign) {
     const Vector3d d = x.moved_by(raised(x.of(0)), at);
     const Vehicle& vehicle = *x.model.vehicle;
     return sign * share * ratio(d.x(), d.z(), nowhere) * vehicle.wheelbase / vehicle.cg_height;
+}
+// The same with the instant centre of the side view as drawn by hand: the planes of the two wishbones
+// meet the longitudinal plane through the wheel centre in two lines, and these in (x, z).
+double anti_by_planes(const Subject& x, const Vector3d& at, double share, double sign) {
+    const auto planes = wishbone_planes(x);
+    if (planes.size() != 2) return undefined;
+    const double y = x.centre().at.y();
+    Eigen::Matrix2d A;
+    Vector2d b;
+    for (int k = 0; k < 2; ++k) {
+        const Vector3d& n = planes[static_cast<std::size_t>(k)].normal;
+        A.row(k) << n.x(), n.z();
+        b[k] = planes[static_cast<std::size_t>(k)].offset - n.y() * y;
+    }
+    // (x, z) = N / determinant; of parallel lines at infinity, in their direction
+    const double determinant = A.determinant(),
+                 rise = A(0, 0) * b[1] - A(1, 0) * b[0] - determinant * at.z(),
+                 run = b[0] * A(1, 1) - b[1] * A(0, 1) - determinant * at.x();
+    const Vehicle& vehicle = *x.model.vehicle;
+    return sign * share * ratio(rise, -run, nowhere) * vehicle.wheelbase / vehicle.cg_height;
 }
 double brake_share(const Subject& x) { return x.model.vehicle->brake_share; }
 double drive_share(const Subject& x) { return x.model.vehicle->drive_share; }
@@ -280,7 +170,7 @@ double steer_on_tyres(const Subject& x) {
     const Motions* by = unheld(x, at_patch + 1);
     const auto& free = x.response->free;
     const std::size_t n = free.size();
-    if (by == nullptr || n > 2) return nothing(x);
+    if (by == nullptr || n > 2) return without_free(x);
     const auto rise = [&](const Motions& motions, std::size_t w) {
         return x.moved_by(motions, x.of(w).patch()).z();
     };
@@ -403,34 +293,9 @@ const Entry of_response[] = {
           "drives",
           no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), -1); },
           {.elsewhere = milliken, .key = true}),
-    Entry(
-        Owner::wheels, "roll_centre_height", Unit::mm,
-        "height above the contact patches of the intersection of the lines that are perpendicular, "
-        "seen from the front, to the motion of the patches: of both wheels for an axle that rolls, "
-        "with the middle plane of the vehicle for one wheel; positive above the road",
-        no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::patch); },
-        {.elsewhere = "kinematic or geometric roll centre; force-based ones (SAE J670) are the "
-                      "same wherever virtual work holds, which a test shows",
-         .key = true,
-         .explained = true,
-         .live = 7,
-         .cause = "roll",
-         .drawn = {{Over::travel, 8, "Roll centre height", "above the road"}}}),
-    Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
-          "change of toe over the roll of the car body towards this wheel, wheels on the road; "
-          "positive towards toe-in",
-          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::toe); },
-          {.elsewhere = "roll steer coefficient", .key = true, .cause = "roll"}),
-    Entry(Owner::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
-          "change of camber against the car body over its roll towards this wheel; positive where "
-          "the top leans out",
-          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber); },
-          {.elsewhere = "often given relative to the road, which adds 1", .cause = "roll"}),
-    Entry(Owner::wheel_of_axle, std::string(figure::wheel_rate_in_roll), Unit::newton_per_mm,
-          "vertical force at the contact patch over vertical displacement of the wheel centre, "
-          "with the opposite force on the other wheel",
-          no_rate, [](const Subject& x) { return vertical_rate(x, at_patch + 2, x.centre(), -1); },
-          {.elsewhere = "with the anti-roll bar", .cause = "roll"}),
+};
+
+const Entry of_springs[] = {
     Entry(
         Owner::spring, "motion_ratio", Unit::none,
         "shortening of the spring over travel of the wheel centres, all rising by the same amount",
@@ -541,6 +406,20 @@ const Entry more_otherwise[] = {
           "cent of the load transfer if this axle braked alone",
           no_vertical, [](const Subject& x) { return anti(x, x.braked(), 1, 1); },
           {.elsewhere = "programs without a brake distribution"}),
+    Entry(Owner::front_wheel, "anti_dive@planes", Unit::percent,
+          "brake_share · wheelbase / cg_height · slope of the line from the contact patch to the "
+          "instant centre of the side view, where the planes of both wishbones meet the "
+          "longitudinal plane through the wheel centre",
+          no_vertical,
+          [](const Subject& x) { return anti_by_planes(x, x.patch().at, brake_share(x), 1); },
+          {.elsewhere = "drawings in side view", .set = "planes"}),
+    Entry(Owner::rear_wheel, "anti_squat@planes", Unit::percent,
+          "drive_share · wheelbase / cg_height · slope of the line from the wheel centre to the "
+          "instant centre of the side view, where the planes of both wishbones meet the "
+          "longitudinal plane through the wheel centre",
+          no_vertical,
+          [](const Subject& x) { return anti_by_planes(x, x.centre().at, drive_share(x), -1); },
+          {.elsewhere = "drawings in side view", .set = "planes"}),
     Entry(Owner::front_wheel, "anti_lift@outboard", Unit::percent,
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the contact "
           "patch: the carrier carries the drive torque",
@@ -581,7 +460,7 @@ const Entry more_otherwise[] = {
           unresisted,
           [](const Subject& x) {
               const auto* by = unheld(x, at_patch + 1);
-              return by == nullptr ? nothing(x) : inward(x) * x.toe(*by);
+              return by == nullptr ? without_free(x) : inward(x) * x.toe(*by);
           },
           {.elsewhere = "programs whose wheels are free", .reads_free = true}),
     Entry(Owner::wheel_on_tyre, "lateral_force_steer@on_tyres", Unit::deg_per_kN,
@@ -614,25 +493,6 @@ const Entry more_otherwise[] = {
           "distance along the wheel from the contact patch to the point on the road of the axis "
           "about which the carrier turns when the steering moves, positive in front",
           does_not_steer, trail_steered, {.elsewhere = instant_axis}),
-    Entry(
-        Owner::wheels, "roll_centre_height@centre", Unit::mm,
-        "height above the contact patches of the intersection of the lines that are perpendicular, "
-        "seen from the front, to the motion of the wheel centres and pass through them",
-        no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::centre); },
-        {.elsewhere = "tracks that are measured at the wheel centres"}),
-    Entry(Owner::wheels, "roll_centre_height@forces", Unit::mm,
-          "height above the contact patches of the point at which a lateral force on the body "
-          "leaves the wheel centres at their height (of an axle: the body without roll), the same "
-          "lateral force on each patch, elements included",
-          no_roll_centre, roll_centre_by_forces,
-          {.elsewhere = "SAE J670e: roll center; force-based roll centre",
-           .set = "sae",
-           .reads_free = true}),
-    Entry(Owner::wheel_of_axle, "roll_camber@road", Unit::deg_per_deg,
-          "change of camber against the road over the roll of the car body towards this wheel; "
-          "positive where the top leans out",
-          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber) + 1; },
-          {.elsewhere = "inclination to the ground"}),
 };
 
 }  // namespace
@@ -641,6 +501,8 @@ void add_rates(std::vector<Entry>& all) {
     std::ranges::copy(over_travel, std::back_inserter(all));
     add_force_tests(all, false);
     std::ranges::copy(of_response, std::back_inserter(all));
+    add_roll(all);
+    std::ranges::copy(of_springs, std::back_inserter(all));
 }
 
 void add_rates_otherwise(std::vector<Entry>& all) {
@@ -654,6 +516,7 @@ void add_rates_otherwise(std::vector<Entry>& all) {
         motion_ratios(Owner::damper, "damper", damper_ratio, "wheel travel over damper travel"),
         std::back_inserter(all));
     std::ranges::copy(more_otherwise, std::back_inserter(all));
+    add_roll_otherwise(all);
     add_force_tests(all, true);
 }
 

@@ -143,8 +143,10 @@ std::string axis_words(int axis);
 // ---- The parts of the catalogue, in its order.
 void add_angles(std::vector<Entry>& all);            // angles.cpp
 void add_rates(std::vector<Entry>& all);             // rates.cpp
+void add_roll(std::vector<Entry>& all);              // roll.cpp, among the rates
 void add_angles_otherwise(std::vector<Entry>& all);  // angles.cpp
 void add_rates_otherwise(std::vector<Entry>& all);   // rates.cpp
+void add_roll_otherwise(std::vector<Entry>& all);    // roll.cpp, among the rates
 // force_tests.cpp; alone: of one wheel of an axle
 void add_force_tests(std::vector<Entry>& all, bool alone);
 

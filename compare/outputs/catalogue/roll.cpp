@@ -1,0 +1,184 @@
+// Figures of an axle in roll: roll centre, roll steer, stiffness in roll.
+#include <algorithm>
+#include <optional>
+
+#include "compare/outputs/catalogue/motions.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr auto no_roll_centre = "no finite roll centre";
+
+// Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by half
+// the track, the other one goes down by as much.
+Motions rolled_towards(const Subject& x) {
+    Motions roll = rolled(x);
+    const double half = std::abs(x.of(0).patch().at.y() - x.of(1).patch().at.y()) / 2 * x.side();
+    for (auto& motion : roll) motion.dr *= half, motion.dpi *= half;
+    return roll;
+}
+double in_roll(const Subject& x, double (Subject::*angle)(const Motions&) const) {
+    return x.response->tied ? undefined : (x.*angle)(rolled_towards(x));
+}
+
+// The solution of A P = b, of coincident lines the nearest; none of parallel ones.
+std::optional<Vector2d> crossing(const Eigen::Matrix2d& A, const Vector2d& b, double track) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> lines;
+    lines.setThreshold(1e-9);
+    lines.compute(A);
+    const Vector2d P = lines.solve(b);
+    if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= nowhere)) return std::nullopt;
+    return P;
+}
+// Instant centre in front view: the patch of a wheel moves perpendicularly to the line through its
+// instant centre. The roll centre lies on that line: for an axle in roll at the intersection of both
+// lines; for one wheel at the middle of the vehicle, y = 0.
+//
+//   (P - c) · (dy, dz) = 0      h = P_z - c_z
+//
+// Two coincident lines (arms that guide the wheels vertically) meet halfway between the wheels.
+//
+// `point`: of each wheel, the patch; its motion and its place are those of the line. Returns y, and z
+// above the road; none at infinity.
+std::optional<Vector2d> centre_of_axle(const Subject& x, Placed (Subject::*point)() const) {
+    const auto seen = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
+    if (x.response->tied) return std::nullopt;
+    const Motions roll = rolled(x);
+    Eigen::Matrix2d A;
+    Vector2d c[2], b;
+    double above = 0;  // the road
+    for (std::size_t w = 0; w < 2; ++w) {
+        const Placed of = (x.of(w).*point)();
+        c[w] = seen(of.at);
+        above += (of.at.z() - x.of(w).patch().at.z()) / 2;
+        A.row(static_cast<Eigen::Index>(w)) = seen(x.moved_by(roll, of)).normalized().transpose();
+    }
+    const Vector2d middle = (c[0] + c[1]) / 2;
+    for (int w = 0; w < 2; ++w) b[w] = A.row(w).dot(c[w] - middle);
+    const auto P = crossing(A, b, std::abs(c[0].x() - c[1].x()));
+    if (!P) return std::nullopt;
+    return Vector2d(middle.x() + P->x(), P->y() + above);
+}
+double roll_centre(const Subject& x, Placed (Subject::*point)() const) {
+    if (is_axle(x.model)) {
+        const auto centre = centre_of_axle(x, point);
+        return centre ? centre->y() : undefined;
+    }
+    const Placed of = (x.*point)();
+    const Vector3d d = x.moved_by(x.response->travel[0], of);
+    return ratio(of.at.y() * d.y(), d.z(), nowhere) + of.at.z() - x.patch().at.z();
+}
+// Lateral forces on all patches in one direction, with vertical ones that keep the wheel centres at
+// their height (of an axle: from rolling); the roll centre is where the resultant acts. With C the
+// rise of the centres, of an axle that of the left less that of the right one:
+//
+//   f_z = -f_y C_y / C_z      h = -(t/2) f_z / f_y      t/2 = y of the patch of one wheel
+double roll_centre_by_forces(const Subject& x) {
+    const Causes& free = x.response->free;
+    if (free.empty()) return without_free(x);
+    const auto rise = [](const Subject& wheel, const Motions& motions) {
+        return wheel.moved_by(motions, wheel.centre()).z();
+    };
+    if (!is_axle(x.model))
+        return ratio(x.patch().at.y() * rise(x, free[0][at_patch + 1]),
+                     rise(x, free[0][at_patch + 2]), nowhere);
+    if (x.response->tied) return undefined;
+    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const auto roll = [&](const Motions& by) { return rise(left, by) - rise(right, by); };
+    return ratio((left.patch().at.y() - right.patch().at.y()) / 2 *
+                     roll(of_axle(free, left, at_patch + 1, 1)),
+                 roll(of_axle(free, left, at_patch + 2, -1)), nowhere);
+}
+
+// Unit forces on the patches, up on the left and down on the right one, are a moment of the track t, and
+// turn the line through the wheel centres by φ = (z_left - z_right) / t:  t / φ.
+double roll_stiffness(const Subject& x) {
+    if (x.response->free.empty()) return without_free(x);
+    if (x.response->tied) return undefined;
+    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const Motions by = of_axle(x.response->free, left, at_patch + 2, -1);
+    const double track = left.patch().at.y() - right.patch().at.y();
+    const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
+    return ratio(track * track, rise, rigid);
+}
+
+const Entry of_roll[] = {
+    Entry(
+        Owner::wheels, "roll_centre_height", Unit::mm,
+        "height above the contact patches of the intersection of the lines that are perpendicular, "
+        "seen from the front, to the motion of the patches: of both wheels for an axle that rolls, "
+        "with the middle plane of the vehicle for one wheel; positive above the road",
+        no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::patch); },
+        {.elsewhere = "kinematic or geometric roll centre; force-based ones (SAE J670) are the "
+                      "same wherever virtual work holds, which a test shows",
+         .key = true,
+         .explained = true,
+         .live = 7,
+         .cause = "roll",
+         .drawn = {{Over::travel, 8, "Roll centre height", "above the road"}}}),
+    Entry(Owner::axle, "roll_centre_lateral", Unit::mm,
+          "lateral position of the same intersection, positive to the left of the middle plane",
+          no_roll_centre,
+          [](const Subject& x) {
+              const auto centre = centre_of_axle(x, &Subject::patch);
+              return centre ? centre->x() : undefined;
+          },
+          {.elsewhere = "migration of the roll centre in roll", .cause = "roll"}),
+    Entry(
+        Owner::axle, "roll_stiffness", Unit::newton_metre_per_deg,
+        "moment of opposite vertical forces at the two contact patches over the roll angle of the "
+        "wheel centres against the body, without the tyres",
+        no_rate, roll_stiffness,
+        {.elsewhere = "suspension roll rate with springs, bar and bushings",
+         .reads_free = true,
+         .key = true,
+         .explained = true,
+         .cause = "roll"}),
+    Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
+          "change of toe over the roll of the car body towards this wheel, wheels on the road; "
+          "positive towards toe-in",
+          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::toe); },
+          {.elsewhere = "roll steer coefficient", .key = true, .cause = "roll"}),
+    Entry(Owner::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
+          "change of camber against the car body over its roll towards this wheel; positive where "
+          "the top leans out",
+          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber); },
+          {.elsewhere = "often given relative to the road, which adds 1", .cause = "roll"}),
+    Entry(Owner::wheel_of_axle, std::string(figure::wheel_rate_in_roll), Unit::newton_per_mm,
+          "vertical force at the contact patch over vertical displacement of the wheel centre, "
+          "with the opposite force on the other wheel",
+          no_rate, [](const Subject& x) { return vertical_rate(x, at_patch + 2, x.centre(), -1); },
+          {.elsewhere = "with the anti-roll bar", .cause = "roll"}),
+};
+
+const Entry of_roll_otherwise[] = {
+    Entry(
+        Owner::wheels, "roll_centre_height@centre", Unit::mm,
+        "height above the contact patches of the intersection of the lines that are perpendicular, "
+        "seen from the front, to the motion of the wheel centres and pass through them",
+        no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::centre); },
+        {.elsewhere = "tracks that are measured at the wheel centres"}),
+    Entry(Owner::wheels, "roll_centre_height@forces", Unit::mm,
+          "height above the contact patches of the point at which a lateral force on the body "
+          "leaves the wheel centres at their height (of an axle: the body without roll), the same "
+          "lateral force on each patch, elements included",
+          no_roll_centre, roll_centre_by_forces,
+          {.elsewhere = "SAE J670e: roll center; force-based roll centre",
+           .set = "sae",
+           .reads_free = true}),
+    Entry(Owner::wheel_of_axle, "roll_camber@road", Unit::deg_per_deg,
+          "change of camber against the road over the roll of the car body towards this wheel; "
+          "positive where the top leans out",
+          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber) + 1; },
+          {.elsewhere = "inclination to the ground"}),
+};
+
+}  // namespace
+
+void add_roll(std::vector<Entry>& all) { std::ranges::copy(of_roll, std::back_inserter(all)); }
+
+void add_roll_otherwise(std::vector<Entry>& all) {
+    std::ranges::copy(of_roll_otherwise, std::back_inserter(all));
+}
+
+}  // namespace elastocheck::compare
