@@ -38,7 +38,7 @@ ElasticKind without_force(ElasticKind kind) {
 
 }  // namespace
 
-std::vector<Branch> ways(const Branch& branch) {
+std::vector<Branch> branch_sides(const Branch& branch) {
     if (branch.from == 0) return {branch};
     if (branch.to == 0) {
         Branch side = branch;

@@ -9,7 +9,7 @@ namespace elastocheck {
 
 // Splits a branch into its sides, each starting at a = 0: to `from` if that is not 0, then to `to`.
 // The steps are divided by length, at least one each; the total is unchanged if it is two or more.
-std::vector<Branch> ways(const Branch& branch);
+std::vector<Branch> branch_sides(const Branch& branch);
 
 // The model that is active on the branch: joints that are active only where driven, and are not
 // driven here, have no constraints; such elements have no law. Both stay in their lists, so that

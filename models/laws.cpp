@@ -40,8 +40,8 @@ Curve reversed(const Curve& curve) {
     std::ranges::transform(curve.knots, result.knots.rbegin(), [](double x) { return -x; });
     result.pieces.front() = reversed(curve.pieces.back());
     result.pieces.back() = reversed(curve.pieces.front());
-    // A piece between two knots refers to its left knot, which was the right one before the
-    // reversal.
+    // A piece between two knots refers to its left knot, which was the right one
+    // before the reversal.
     for (std::size_t k = 1; k < n; ++k)
         result.pieces[n - k] =
             reversed(shifted(curve.pieces[k], curve.knots[k] - curve.knots[k - 1]));
@@ -55,12 +55,12 @@ ScalarLaw reversed(const ScalarLaw& law) {
 }
 
 bool is_zero(const ScalarLaw& law) {
-    const auto nothing = [](const Cubic& c) {
+    const auto vanishes = [](const Cubic& c) {
         return std::ranges::all_of(c, [](double c_n) { return c_n == 0; });
     };
     return std::visit(
         overloaded{[](const LinearRate& u) { return u.k == 0; },
-                   [&](const Curve& u) { return std::ranges::all_of(u.pieces, nothing); }},
+                   [&](const Curve& u) { return std::ranges::all_of(u.pieces, vanishes); }},
         law);
 }
 bool is_zero(const SpatialLaw& law) {

@@ -7,8 +7,8 @@
 
 namespace elastocheck {
 
-// Constraints of a joint, at most six rows; a constraint with an offset is the only one of its
-// joint:
+// Constraints of a joint, at most six rows; a constraint with an offset is the only one
+// of its joint:
 //
 //   spherical      coincident points                                          3
 //   revolute       coincident points  + axis_i ⟂ two directions across axis_j  5

@@ -19,10 +19,10 @@ Analysis analyse(const Model& model) {
     const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
     const double L = result.diagnosis.length;
     const State<double> q = design_state<double>(model);
-    const Branch nothing;  // no driver
+    const Branch undriven;  // no driver
     const Inputs<double> drawn = inputs_as_drawn<double>(model);
     Inputs<double> inputs;
-    set_inputs<double>(model, nothing, drawn, 0, 0, inputs);
+    set_inputs<double>(model, undriven, drawn, 0, 0, inputs);
 
     Vector<double> Phi(m);
     system.M = saddle_matrix(model);
@@ -32,9 +32,9 @@ Analysis analyse(const Model& model) {
     analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space,
             pattern(model), loops(model));
 
-    assemble_consistent<double>(model, nothing, inputs, q, Vector<double>::Zero(m), system.M, Phi);
+    assemble_consistent<double>(model, undriven, inputs, q, Vector<double>::Zero(m), system.M, Phi);
     result.pivot_ratio = factorise(system);
-    external_force<double>(model, nothing, inputs, q, result.R_d);
+    external_force<double>(model, undriven, inputs, q, result.R_d);
     result.R_d -= elastic_force<double>(model, inputs, q);
     result.Phi_d = Phi;
     // A residual that is rounding of stiffness times length counts as zero.
@@ -46,7 +46,7 @@ Analysis analyse(const Model& model) {
         largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest(system.M) &&
         largest(Phi) <= rounding;
     if (result.at_rest && curves_of(model).empty() && result.pivot_ratio > 0) {
-        SteppingState s(model, nothing, result);
+        SteppingState s(model, undriven, result);
         s.consistent = true;
         go_to(s, {1, 0});
         result.start = start_stability(s);

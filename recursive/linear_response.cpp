@@ -89,7 +89,7 @@ Response responses(SteppingState& s, const Branch& branch, const Analysis& analy
     for (const Disturbance& disturbance : disturbances) {
         disturb(s, disturbance);
         // Redundant joints carry a wrench, in an undetermined distribution; they may not open.
-        const Outcome outcome = answer_response(
+        const Outcome outcome = solve_response(
             s, std::holds_alternative<Motion>(disturbance) ? Judged::all : Judged::idle_motions);
         if (outcome != Outcome::converged)
             return fail(outcome, words(outcome, disturbance, model, analysis.diagnosis));

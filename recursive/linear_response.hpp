@@ -17,8 +17,8 @@ struct ResponseAnalysis {
     ResponseOrders orders = {};
 };
 
-// Response (dr, dπ) of every body to a unit of each disturbance, at the poses and load factor of
-// `state`:
+// Response (dr, dπ) of every body to a unit of each disturbance, at the poses and load
+// factor of `state`:
 //
 // ⎡ K    Φ_qᵀ ⎤ ⎧ dq ⎫   ⎧ (f, s × f + m) ⎫        ⎧    0    ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ dλ ⎭ = ⎩       0        ⎭   or   ⎩ -∂Φ/∂c  ⎭ ,   c the offset that moves    (24)
@@ -29,8 +29,8 @@ struct ResponseAnalysis {
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f_ext - f_elast ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      where Δq = 0 if q is an equilibrium      (24)
 //
-// One factorisation (two with the tangent), one back-substitution per disturbance; in double
-// precision.
+// One factorisation (two with the tangent), one back-substitution per disturbance;
+// in double precision.
 //
 // Outcomes: singular and not_finite refer to the matrix. loaded_idle_mode: the disturbance loads an
 // idle mode. inconsistent_constraints: redundant joints do not allow the offset to move. Throws

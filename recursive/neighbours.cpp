@@ -20,7 +20,8 @@ Residual residual_of(const Model& model, const Branch& branch, double a, const S
                      const Vector<double>& lambda) {
     Residual at{inputs_at<double>(model, branch, a), {}, {}};
     Vector<double> force = Vector<double>::Zero(coordinates(model));
-    at.upper = force, at.lower = Vector<double>::Zero(constraint_rows(model));
+    at.upper = force;
+    at.lower = Vector<double>::Zero(constraint_rows(model));
     external_force<double>(model, branch, at.inputs, q, at.upper);
     elastic_force<double>(model, at.inputs, q, force);
     at.upper -= force;
@@ -82,7 +83,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     for (const Neighbours& stencil : stencils) {
         NeighbourStates& result = all.emplace_back();
         difference(s, state.load, here, stencil);
-        result.outcome = answer_response(s, Judged::all, rounding * amplification(stencil));
+        result.outcome = solve_response(s, Judged::all, rounding * amplification(stencil));
         if (result.outcome != Outcome::converged) {
             result.detail = why_not(result.outcome, analysis.diagnosis);
             continue;
@@ -96,8 +97,9 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                 last = met;
                 const Residual there =
                     residual_of(*k.model, k.model->branches.front(), state.load, q, lambda);
-                s.upper = there.upper - here.upper, s.lower = there.lower - here.lower;
-                (void)answer_response(s, Judged::nothing);
+                s.upper = there.upper - here.upper;
+                s.lower = there.lower - here.lower;
+                (void)solve_response(s, Judged::none);
                 advance(q, s.x.head(s.n()));
                 lambda += s.x.tail(s.m());
                 const double size = std::sqrt(size_of_solution(s));

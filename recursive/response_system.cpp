@@ -26,7 +26,7 @@ double taken_by_border(const SaddlePoint<double>& system, int c) {
 // mode, and a mode that is idle in K but not in the tangent.
 Outcome check_border(SteppingState& s, Judged which, double rounding) {
     const Held<double>& held = s.system.held;
-    if (held.size() == 0 || which == Judged::nothing) return Outcome::converged;
+    if (held.size() == 0 || which == Judged::none) return Outcome::converged;
     constraint_force(s.system.M, s.x.tail(s.m()), s.force);
     const double force = size_of_force(s, s.upper) + size_of_force(s, s.force);
     const double opening =
@@ -85,7 +85,7 @@ Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& or
     return factorise_in(s, orders.with_tangent);
 }
 
-Outcome answer_response(SteppingState& s, Judged judged, double rounding) {
+Outcome solve_response(SteppingState& s, Judged judged, double rounding) {
     back_substitute(s);
     if (!s.x.allFinite()) return Outcome::not_finite;
     const Outcome outcome = check_border(s, judged, rounding);

@@ -23,11 +23,11 @@ struct ResponseOrders {
 Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& orders);
 
 // Which held directions of the border must carry no load.
-enum class Judged { nothing, idle_motions, all };
+enum class Judged { none, idle_motions, all };
 
 // Solves for the right-hand side in s.upper, s.lower: s.x = (dq, dλ), without idle motion (minimum
 // norm). loaded_idle_mode, inconsistent_constraints where a held direction would carry load,
 // not_finite. `rounding` of the forces, as size_of_force(), where that is more than their last digits.
-Outcome answer_response(SteppingState& s, Judged judged, double rounding = 0);
+Outcome solve_response(SteppingState& s, Judged judged, double rounding = 0);
 
 }  // namespace elastocheck::recursive

@@ -83,7 +83,7 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
             detail += fmt::format(
                 ": {} steps were not enough, the matrix is nearly singular or the tolerance too "
                 "small",
-                most_steps);
+                max_steps);
             break;
         case Outcome::not_finite:
         case Outcome::branch_lost:
@@ -195,8 +195,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
     EquilibriumPath path = found(model, branch, options, analysis, visit ? counted : Visit{});
     if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
         return path;
-    // Where a drawing far from rest has several equilibria, homotopies may settle at different
-    // ones.
+    // Where a drawing far from rest has several equilibria, homotopies may settle
+    // at different ones.
     if (const auto other = grown(model, branch)) {
         EquilibriumPath again = found(other->model, other->branch, options, analyse(other->model),
                                       visit ? counted : Visit{});

@@ -81,7 +81,7 @@ class Reference {
             std::ranges::copy(requested, std::back_inserter(all));
             std::ranges::sort(all, nearer);
             all.erase(std::unique(all.begin(), all.end()), all.end());
-            walk_through(side, Leg::equilibrium, all, [&](const Equilibrium& state) {
+            solve_at(side, Leg::equilibrium, all, [&](const Equilibrium& state) {
                 if (!std::ranges::binary_search(requested, state.load, nearer)) return;
                 known_[state.load] =
                     row_of(model_, channels_, side, {.leg = Leg::equilibrium}, state, analyses)
@@ -275,7 +275,7 @@ void add_missing_parts(const Branch& branch, const BranchComparison& of,
                 const auto travel = truth_of(of).channel(abscissa);
                 low = std::ranges::min(travel), high = std::ranges::max(travel);
                 in = symbol(channels[abscissa].unit);
-                if (!(high - low >= least_travel)) continue;
+                if (!(high - low >= min_travel)) continue;
             }
             std::vector<double> at;
             for (std::size_t k = 0; k < reading.at.size(); ++k)
@@ -479,7 +479,7 @@ int judge_columns(const std::vector<Compared>& readings, const std::vector<Chann
         if (by_abscissa) {
             const auto t = truth_of(of).channel(static_cast<std::size_t>(branch.abscissa));
             const auto [low, high] = std::ranges::minmax(t);
-            if (!(high - low >= least_travel)) continue;  // range too short for a reading
+            if (!(high - low >= min_travel)) continue;  // range too short for a reading
         }
         for (std::size_t c = 0; c < reading.columns.size(); ++c) {
             const Deviation& d = reading.columns[c];

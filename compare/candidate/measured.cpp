@@ -237,7 +237,8 @@ DefinedCurves defined_curves(const Model& model, const Comparison& comparison) {
         const Branch& branch = model.branches[b];
         const auto sides = sides_of(model, branch, comparison.branches[b].steps);
         const SolverSettings solver{.leg = Leg::equilibrium, .every = comparison.branches[b].every};
-        defined.branches.push_back(walk(model, defined.channels, branch, sides, solver).curve);
+        defined.branches.push_back(
+            solve_branch(model, defined.channels, branch, sides, solver).curve);
     }
     return defined;
 }

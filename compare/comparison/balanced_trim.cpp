@@ -17,7 +17,7 @@ namespace elastocheck::compare {
 namespace {
 
 constexpr double in_place = 1e-12;  // [m, rad]: of a body that is where it is drawn
-constexpr int most_balances = 30;
+constexpr int max_balances = 30;
 
 bool is_balanced(const Elastic& element) {
     return preload(element.kind) != nullptr && element.written_as == WrittenAs::itself &&
@@ -78,7 +78,8 @@ void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Correcti
         of.dr.conservativeResize(P.size(), k + 1), of.dr.col(k) = r - of.r;
         next -= (of.dP + of.dr) * of.dr.colPivHouseholderQr().solve(r);
     }
-    of.P = P, of.r = r;
+    of.P = P;
+    of.r = r;
     for (std::size_t k = 0; k < preloads.size(); ++k)
         *preloads[k] = next.segment<6>(6 * static_cast<Eigen::Index>(k));
 }
@@ -121,7 +122,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     if (start != nullptr) last = *start;
     double distance = 0;
     Corrections corrections;
-    for (int balances = 0; balances < most_balances; ++balances) {
+    for (int balances = 0; balances < max_balances; ++balances) {
         SettledTrim settled;
         Trimmed found = trim_once(loaded, solver, false, &last, &settled);
         if (!found.record->reached()) return {scene, found.record};
@@ -141,7 +142,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     record.detail = fmt::format(
         "the bushings are not balanced after {} corrections: a body still settles {:.3g} mm from "
         "where it is drawn",
-        most_balances, 1e3 * distance);
+        max_balances, 1e3 * distance);
     return {scene, record};
 }
 

@@ -1,5 +1,5 @@
-// Changes of the numbers in a scene file since a result was accepted: possible causes of a moved
-// result.
+// Changes of the numbers in a scene file since a result was accepted: possible causes of
+// a moved result.
 #pragma once
 
 #include <optional>

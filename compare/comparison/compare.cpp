@@ -29,7 +29,7 @@ Residuals worse(const Residuals& a, const Residuals& b) {
 // when other work evicts their data from the caches.
 double seconds_alone(const std::vector<BranchSide>& sides, const SolverSettings& solver) {
     const double start = processor_time();
-    for (const auto& side : sides) walk(side, solver, [](const Equilibrium&) {});
+    for (const auto& side : sides) solve_branch(side, solver, [](const Equilibrium&) {});
     return processor_time() - start;
 }
 
@@ -115,35 +115,41 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     std::optional<LargestForces> largest;
     if (kept) largest.emplace(model, side);
     static_cast<PathCurve&>(run) =
-        walk(model, channels, branch, sides, solver,
-             [&](const Equilibrium& state, const WheelResponse* response) {
-                 for (const Leg by : legs) {
-                     auto& worst = run.judged[static_cast<std::size_t>(by)];
-                     worst = worse(worst, judge(by, side, state));
-                 }
-                 run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
-                 // The farthest point on either side comes last.
-                 const auto mark = [&](std::optional<Equilibrium>& here,
-                                       std::optional<WheelResponse>& read) {
-                     here = state;
-                     read.reset();
-                     if (response != nullptr) read = *response;
-                 };
-                 if (state.load == 0)
-                     mark(marks.start, responses.start);
-                 else if (both_sides && state.load * side.branch.to > 0)
-                     mark(marks.front, responses.front);
-                 else
-                     mark(marks.back, responses.back);
-                 if (state.load == middle) marks.middle = state;
-                 if (largest) largest->add(state);
-                 if (std::ranges::find(stations, state.load) != stations.end())
-                     run.stations.push_back(state);
-             });
+        solve_branch(model, channels, branch, sides, solver,
+                     [&](const Equilibrium& state, const WheelResponse* response) {
+                         for (const Leg by : legs) {
+                             auto& worst = run.judged[static_cast<std::size_t>(by)];
+                             worst = worse(worst, judge(by, side, state));
+                         }
+                         run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
+                         // The farthest point on either side comes last.
+                         const auto mark = [&](std::optional<Equilibrium>& here,
+                                               std::optional<WheelResponse>& read) {
+                             here = state;
+                             read.reset();
+                             if (response != nullptr) read = *response;
+                         };
+                         if (state.load == 0)
+                             mark(marks.start, responses.start);
+                         else if (both_sides && state.load * side.branch.to > 0)
+                             mark(marks.front, responses.front);
+                         else
+                             mark(marks.back, responses.back);
+                         if (state.load == middle) marks.middle = state;
+                         if (largest) largest->add(state);
+                         if (std::ranges::find(stations, state.load) != stations.end())
+                             run.stations.push_back(state);
+                     });
     std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
     if (largest) run.largest = largest->list();
-    if (!marks.front) marks.front = marks.start, responses.front = responses.start;
-    if (!marks.back) marks.back = marks.start, responses.back = responses.start;
+    if (!marks.front) {
+        marks.front = marks.start;
+        responses.front = responses.start;
+    }
+    if (!marks.back) {
+        marks.back = marks.start;
+        responses.back = responses.start;
+    }
     if (!model.wheels.empty() && has_characteristics(channels))
         run.compliance = compliance_of(model, side, solver, run, responses);
     if (!times)
@@ -211,15 +217,18 @@ std::string on_two_branches(const Model& model, const Branch& requested, const L
         double length = 0, angle = 0;
         for (std::size_t b = 0; b < here->poses.size(); ++b) {
             if (idle[b]) continue;
-            const double apart = (here->poses[b].r - there->poses[b].r).norm();
-            if (apart > length) length = apart, farthest = b;
+            const double distance = (here->poses[b].r - there->poses[b].r).norm();
+            if (distance > length) {
+                length = distance;
+                farthest = b;
+            }
             angle = std::max(angle, here->poses[b].p.angularDistance(there->poses[b].p));
         }
         const BranchSide& side = side_at(sides, here->load);
         const Certificate of_here = certify(side.model, side.branch, *here);
-        if (of_here.answer != Answer::proved) continue;
+        if (of_here.state != ProofState::proved) continue;
         const Certificate of_there = certify(side.model, side.branch, *there);
-        if (of_there.answer != Answer::proved) continue;
+        if (of_there.state != ProofState::proved) continue;
         if (!(length > of_here.error.length + of_there.error.length ||
               angle > of_here.error.angle + of_there.error.angle))
             continue;
@@ -263,12 +272,12 @@ std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& 
 }  // namespace
 
 void Objections::add(std::string what, double share) {
-    constexpr std::size_t most_listed = 3;
+    constexpr std::size_t max_listed = 3;
     ++count;
     const auto place =
         std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
     worst.insert(place, {std::move(what), share});
-    if (worst.size() > most_listed) worst.pop_back();
+    if (worst.size() > max_listed) worst.pop_back();
 }
 
 std::vector<std::string> Objections::texts() const {
@@ -342,7 +351,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     const auto& reading = branch.uncertainty.equal_parameter;
     if (!reading.not_compared.empty())
         objections.add("the references were not compared: " + reading.not_compared);
-    Objections apart;
+    Objections disagreements;
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!branch.determined[c]) continue;
         const double off = reading.channels[c].max,
@@ -350,16 +359,17 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                                  ? bound_of_characteristic(equilibrium.curve.channel(c))
                                  : bound_of(channels[c].unit, branch.bounds);
         if (const double part = share(off, bound); !(part <= 1))
-            apart.add(fmt::format(
-                          "the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
-                          channels[c].name, off, symbol(channels[c].unit), bound),
-                      part);
+            disagreements.add(
+                fmt::format(
+                    "the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
+                    channels[c].name, off, symbol(channels[c].unit), bound),
+                part);
     }
-    if (!apart.empty())
+    if (!disagreements.empty())
         if (const auto two = on_two_branches(model, requested, equilibrium, second); !two.empty())
-            objections.add(two), apart = {};
-    for (const auto& one : apart.worst) objections.add(one.what, one.share);
-    objections.count += apart.count - static_cast<int>(apart.worst.size());
+            objections.add(two), disagreements = {};
+    for (const auto& one : disagreements.worst) objections.add(one.what, one.share);
+    objections.count += disagreements.count - static_cast<int>(disagreements.worst.size());
     for (const auto& [run, other] :
          {std::pair(&equilibrium, &second), std::pair(&second, &equilibrium)})
         if (run->proved.excluded > 0)
@@ -408,8 +418,10 @@ BranchComparison compare_runs(const Model& model, const std::vector<Channel>& ch
     b.every = options.every;
     b.determined = std::move(determined);
     b.runs = std::move(runs);
-    if (const LegRun& energy = b.run(Leg::energy); is_not_applicable(energy.outcome))
-        b.second = Leg::series, b.why_not_energy = energy.detail;
+    if (const LegRun& energy = b.run(Leg::energy); is_not_applicable(energy.outcome)) {
+        b.second = Leg::series;
+        b.why_not_energy = energy.detail;
+    }
     for (std::size_t c = 0; c < channels.size(); ++c)
         b.determined[c] = b.determined[c] && std::ranges::none_of(b.runs, [&](const LegRun& run) {
                               return is_undefined_somewhere(c, run.curve);

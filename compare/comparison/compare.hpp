@@ -1,5 +1,5 @@
-// Runs one leg along a branch, with curve, residuals and proofs, and lists the disagreements of the
-// references.
+// Runs one leg along a branch, with curve, residuals and proofs, and lists the disagreements
+// of the references.
 #pragma once
 
 #include <vector>
@@ -23,10 +23,10 @@ LegRun run(const Model& model, const Branch& branch, Leg leg,
 // for states of its own.
 bool energy_judges_states(const BranchComparison& branch);
 
-// Reasons why the references do not agree on a branch whose runs and readings are complete; `requested`
-// is the branch of the model. all_legs: a failed recursion is an objection too, since it prevents a
-// verdict on the recursion; references: it is not, since it does not affect a verdict on a
-// candidate.
+// Reasons why the references do not agree on a branch whose runs and readings are complete;
+// `requested` is the branch of the model. all_legs: a failed recursion is an objection too, since
+// it prevents a verdict on the recursion; references: it is not, since it does not affect a verdict
+// on a candidate.
 enum class Of { all_legs, references };
 Objections disagreements(const Model& model, const std::vector<Channel>& channels,
                          const Branch& requested, const BranchComparison& branch,

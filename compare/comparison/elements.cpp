@@ -176,8 +176,10 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
                 in_unit(channels[c].unit) * of->entry->formula({model, &state, of->of, &branch});
         const auto* of = std::get_if<OfElement>(&channels[c].reads);
         if (of == nullptr) continue;
-        if (of->element != element)
-            at = state_of(model, branch, state, of->element), element = of->element;
+        if (of->element != element) {
+            at = state_of(model, branch, state, of->element);
+            element = of->element;
+        }
         values[c] = in_unit(channels[c].unit) * at.component(of->component);
     }
     return values;

@@ -14,8 +14,8 @@
 // large rotations s is conjugate to θ and differs from the components of the moment. Without
 // `conjugate`, s are the components along the axes.
 //
-// They are not part of channels(model): a scene of a thousand beams would store twelve thousand
-// curves.
+// They are not part of channels(model): a scene of a thousand beams would store
+// twelve thousand curves.
 #pragma once
 
 #include <memory>
@@ -32,9 +32,9 @@
 
 namespace elastocheck::compare {
 
-// In the order of the elements, then the links. Where two elements share a name and an output, the
-// second is named "NAME#2". No name equals one of channels(model): bushings and joints may share
-// theirs.
+// In the order of the elements, then the links. Where two elements share a name and an
+// output, the second is named "NAME#2". No name equals one of channels(model): bushings and
+// joints may share theirs.
 std::vector<Channel> element_channels(const Model& model);
 std::string element_of(const Channel& channel);  // its element or link: "lower_front"
 
@@ -58,8 +58,8 @@ std::string why_undefined(const Channel& channel);
 // What redundant joints share, summed up (totals()), on any branch of the model.
 std::vector<Channel> sums(const Model& model);
 
-// Per channel, whether the joints that it reads have constraints in `standing`, the model of a
-// branch.
+// Per channel, whether the joints that it reads have constraints in `standing`, the model
+// of a branch.
 std::vector<bool> active_channels(std::span<const Channel> channels, const Model& standing);
 
 // ---- Largest values over the points of a branch.

@@ -51,8 +51,8 @@ EquilibriumPath recursion(const BranchSide& side, recursive::Options options, in
 }
 
 // Runs the leg with extrapolated curves, without a check of their ends.
-EquilibriumPath walk_anywhere(const BranchSide& side, const SolverSettings& solver,
-                              const Visit& visit) {
+EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solver,
+                             const Visit& visit) {
     const auto& [model, branch] = std::tie(side.model, side.branch);
     switch (solver.leg) {
         case Leg::recursive:
@@ -77,7 +77,8 @@ void end_as_both(const std::vector<BranchSide>& sides, Path& first, const Path& 
     };
     // A leg that does not apply to one side does not apply to either.
     if (is_not_applicable(first.outcome) && second.outcome == first.outcome) {
-        first.detail = second.detail, first.counts = second.counts;
+        first.detail = second.detail;
+        first.counts = second.counts;
         return;
     }
     if (first.outcome != Outcome::converged) first.detail = labelled(sides.front(), first.detail);
@@ -90,27 +91,27 @@ void end_as_both(const std::vector<BranchSide>& sides, Path& first, const Path& 
     first.counts.evaluations += second.counts.evaluations;
 }
 
-// Joins both sides. The points of the reversed side are buffered as `Row` until they can be handed
-// over.
+// Joins both sides. The points of the reversed side are buffered as `Row` until they can
+// be handed over.
 template <class Row, class Read, class HandOver>
 EquilibriumPath join(const std::vector<BranchSide>& sides, const SolverSettings& solver,
                      const Read& read, const HandOver& hand_over) {
     if (sides.empty()) return {Outcome::not_finite, "the branch has no length", {}, {}};
     if (sides.size() == 1)
-        return walk(sides.front(), solver,
-                    [&](const Equilibrium& state) { hand_over(read(state)); });
+        return solve_branch(sides.front(), solver,
+                            [&](const Equilibrium& state) { hand_over(read(state)); });
     // Both sides start at a = 0 in the same settled state: the second side's start is used, if it
     // has one.
     std::optional<Equilibrium> start;
     std::vector<Row> reversed;
-    EquilibriumPath joined = walk(sides.front(), solver, [&](const Equilibrium& state) {
+    EquilibriumPath joined = solve_branch(sides.front(), solver, [&](const Equilibrium& state) {
         if (!start)
             start = state;
         else
             reversed.push_back(read(state));
     });
     for (; !reversed.empty(); reversed.pop_back()) hand_over(std::move(reversed.back()));
-    EquilibriumPath second = walk(sides.back(), solver, [&](const Equilibrium& state) {
+    EquilibriumPath second = solve_branch(sides.back(), solver, [&](const Equilibrium& state) {
         start.reset();
         hand_over(read(state));
     });
@@ -139,7 +140,7 @@ const char* name(Leg leg) {
 std::vector<BranchSide> sides_of(const Model& model, Branch branch, int points) {
     if (points > 0) branch.steps = points;
     std::vector<BranchSide> result;
-    const auto all = ways(branch);
+    const auto all = branch_sides(branch);
     for (const auto& side : all)
         result.push_back(
             {all.size() > 1 ? label(side) : branch.name, on_branch(model, side), side});
@@ -163,10 +164,11 @@ const BranchSide& side_at(const std::vector<BranchSide>& sides, double a) {
     return found == sides.end() ? sides.back() : *found;
 }
 
-EquilibriumPath walk(const BranchSide& side, const SolverSettings& solver, const Visit& visit) {
+EquilibriumPath solve_branch(const BranchSide& side, const SolverSettings& solver,
+                             const Visit& visit) {
     std::vector<Equilibrium> kept;
     std::string ended;
-    EquilibriumPath path = walk_anywhere(side, solver, [&](const Equilibrium& state) {
+    EquilibriumPath path = solve_by_leg(side, solver, [&](const Equilibrium& state) {
         if (!ended.empty()) return;
         ended = ends_at_table(side.model, side.branch, state);
         if (!ended.empty()) return;
@@ -175,7 +177,10 @@ EquilibriumPath walk(const BranchSide& side, const SolverSettings& solver, const
         else
             kept.push_back(state);
     });
-    if (!ended.empty()) path.outcome = Outcome::outside_table, path.detail = ended;
+    if (!ended.empty()) {
+        path.outcome = Outcome::outside_table;
+        path.detail = ended;
+    }
     path.points = std::move(kept);
     return path;
 }
@@ -184,7 +189,7 @@ bool is_not_applicable(Outcome outcome) {
     return outcome == Outcome::not_conservative || outcome == Outcome::too_large;
 }
 
-EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver) {
+EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverSettings& solver) {
     std::vector<Equilibrium> points;
     EquilibriumPath path = join<Equilibrium>(
         sides, solver, [](const Equilibrium& state) { return state; },
@@ -233,22 +238,22 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
     return row_of(model, channels, side, solver, state, analyses);
 }
 
-EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver,
-                     const std::function<Row(const Equilibrium&)>& read,
-                     const std::function<void(Row)>& hand_over) {
+EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverSettings& solver,
+                             const std::function<Row(const Equilibrium&)>& read,
+                             const std::function<void(Row)>& hand_over) {
     return join<Row>(sides, solver, read, hand_over);
 }
 
-PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
-               const std::vector<BranchSide>& sides, const SolverSettings& solver,
-               const VisitResponse& also) {
+PathCurve solve_branch(const Model& model, std::span<const Channel> channels, const Branch& branch,
+                       const std::vector<BranchSide>& sides, const SolverSettings& solver,
+                       const VisitResponse& also) {
     PathCurve walked;
     walked.curve.unit = unit_of(branch.unit);
     double reading = 0;
     Analyses analyses;
     std::optional<WheelResponse> response;
     const double start = processor_time();
-    const EquilibriumPath path = walk(
+    const EquilibriumPath path = solve_branch(
         sides, solver,
         [&](const Equilibrium& state) {
             const double found = processor_time();
@@ -283,7 +288,7 @@ EquilibriumPath rest(const BranchSide& side, Leg leg) {
             path = reference::energy::solve(side.model, side.branch, at_start, {}, first);
             break;
         case Leg::recursive:
-        case Leg::series: path = walk_anywhere(side, {.leg = leg}, first); break;
+        case Leg::series: path = solve_by_leg(side, {.leg = leg}, first); break;
     }
     if (!start) return path;
     path.detail = ends_at_table(side.model, side.branch, *start);
@@ -293,8 +298,8 @@ EquilibriumPath rest(const BranchSide& side, Leg leg) {
     return path;
 }
 
-EquilibriumPath walk_through(const BranchSide& side, Leg leg, std::span<const double> points,
-                             const Visit& visit) {
+EquilibriumPath solve_at(const BranchSide& side, Leg leg, std::span<const double> points,
+                         const Visit& visit) {
     std::string ended;
     const Visit checked = [&](const Equilibrium& state) {
         if (ended.empty()) ended = ends_at_table(side.model, side.branch, state);
@@ -313,15 +318,21 @@ EquilibriumPath walk_through(const BranchSide& side, Leg leg, std::span<const do
             // Its points are equal increments: one run to each value.
             for (const double a : points) {
                 BranchSide to = side;
-                if (a != 0) to.branch.to = a, to.branch.steps = 1;
-                path = walk_anywhere(to, {.leg = leg}, [&](const Equilibrium& state) {
+                if (a != 0) {
+                    to.branch.to = a;
+                    to.branch.steps = 1;
+                }
+                path = solve_by_leg(to, {.leg = leg}, [&](const Equilibrium& state) {
                     if (state.load == a) checked(state);
                 });
                 if (path.outcome != Outcome::converged) break;
             }
             break;
     }
-    if (!ended.empty()) path.outcome = Outcome::outside_table, path.detail = ended;
+    if (!ended.empty()) {
+        path.outcome = Outcome::outside_table;
+        path.detail = ended;
+    }
     path.points.clear();
     return path;
 }
@@ -350,7 +361,9 @@ PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCur
     if (curves.size() == 1) return curves.front();
     const PathCurve &first = curves.front(), &second = curves.back();
     PathCurve all = second;
-    all.outcome = first.outcome, all.detail = first.detail, all.counts = first.counts;
+    all.outcome = first.outcome;
+    all.detail = first.detail;
+    all.counts = first.counts;
     all.seconds += first.seconds;
     end_as_both(sides, all, second);
     // The start is that of the second side, if it has one.
@@ -368,10 +381,10 @@ PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCur
 PathCurve second_reference(const Model& model, const std::vector<Channel>& channels,
                            const Branch& branch, const std::vector<BranchSide>& sides, Leg& leg) {
     leg = Leg::energy;
-    PathCurve path = walk(model, channels, branch, sides, {.leg = leg});
+    PathCurve path = solve_branch(model, channels, branch, sides, {.leg = leg});
     if (!is_not_applicable(path.outcome)) return path;
     leg = Leg::series;
-    return walk(model, channels, branch, sides, {.leg = leg});
+    return solve_branch(model, channels, branch, sides, {.leg = leg});
 }
 
 References run_references(const Model& model, const std::vector<Channel>& channels,
@@ -379,10 +392,11 @@ References run_references(const Model& model, const std::vector<Channel>& channe
     References runs;
     const Model& standing = sides.front().model;
     runs.scale = scale_of(standing, branch, {});
-    runs.truth = walk(model, channels, branch, sides, {.leg = Leg::equilibrium},
-                      [&](const Equilibrium& state, const WheelResponse*) {
-                          runs.scale = larger(runs.scale, scale_of(standing, branch, {&state, 1}));
-                      });
+    runs.truth =
+        solve_branch(model, channels, branch, sides, {.leg = Leg::equilibrium},
+                     [&](const Equilibrium& state, const WheelResponse*) {
+                         runs.scale = larger(runs.scale, scale_of(standing, branch, {&state, 1}));
+                     });
     runs.other = second_reference(model, channels, branch, sides, runs.second_leg);
     return runs;
 }

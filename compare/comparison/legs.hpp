@@ -46,18 +46,18 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
 // The same path without keeping points: `read` converts each point when it is found, and
 // `hand_over` receives the rows in the order of the path. The rows of the first of two sides are
 // buffered, since that side runs backwards.
-EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver,
-                     const std::function<Row(const Equilibrium&)>& read,
-                     const std::function<void(Row)>& hand_over);
+EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverSettings& solver,
+                             const std::function<Row(const Equilibrium&)>& read,
+                             const std::function<void(Row)>& hand_over);
 
 // The same path as a curve. `also` is called with every point when it is found, and with its
 // response where an output is read from it.
 using VisitResponse = std::function<void(const Equilibrium&, const WheelResponse*)>;
-PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
-               const std::vector<BranchSide>& sides, const SolverSettings& solver,
-               const VisitResponse& also = {});
+PathCurve solve_branch(const Model& model, std::span<const Channel> channels, const Branch& branch,
+                       const std::vector<BranchSide>& sides, const SolverSettings& solver,
+                       const VisitResponse& also = {});
 
-// The runs of the sides of a branch as one, as walk() joins them.
+// The runs of the sides of a branch as one, as solve_branch() joins them.
 PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves);
 
 // Start of a branch side by this leg: one point, the settled state at a = 0; no point where it does
@@ -65,9 +65,9 @@ PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCur
 EquilibriumPath rest(const BranchSide& side, Leg leg);
 
 // States of a leg at these values of the parameter [SI], of the sign of the side and in ascending
-// size, with the ends of curves as walk() has them.
-EquilibriumPath walk_through(const BranchSide& side, Leg leg, std::span<const double> points,
-                             const Visit& visit);
+// size, with the ends of curves as solve_branch() has them.
+EquilibriumPath solve_at(const BranchSide& side, Leg leg, std::span<const double> points,
+                         const Visit& visit);
 
 // ---- The references along a branch.
 

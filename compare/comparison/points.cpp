@@ -12,9 +12,9 @@
 namespace elastocheck::compare {
 namespace {
 
-// Whether two branches lie on different sides of a = 0, so that an unnamed point belongs to at most
-// one.
-bool apart(const Branch& a, const Branch& b) {
+// Whether two branches lie on different sides of a = 0, so that an unnamed point belongs to
+// at most one.
+bool on_opposite_sides(const Branch& a, const Branch& b) {
     const auto low = [](const Branch& x) { return std::min(x.from, x.to); };
     const auto high = [](const Branch& x) { return std::max(x.from, x.to); };
     return high(a) <= 0 ? low(b) >= 0 : low(a) >= 0 && high(b) <= 0;
@@ -64,7 +64,7 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
     }
     for (std::size_t a = 0; a < all.size(); ++a)
         for (std::size_t b = 0; b < a; ++b)
-            if (!apart(model.branches[a], model.branches[b]))
+            if (!on_opposite_sides(model.branches[a], model.branches[b]))
                 throw std::invalid_argument(
                     fmt::format("branches '{}' and '{}' are on the same side; each point needs the "
                                 "name of its branch",

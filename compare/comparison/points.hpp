@@ -1,5 +1,5 @@
-// External points, measured or computed: their branches, their positions on them, and their output
-// values.
+// External points, measured or computed: their branches, their positions on them, and
+// their output values.
 #pragma once
 
 #include <limits>
@@ -33,8 +33,8 @@ struct Place {
 std::vector<Place> places_of(const Model& model, const Comparison& comparison,
                              const Points& points);
 
-// Values of a leg that place points: its parameter, or a channel; empty where the channel is not
-// monotonic.
+// Values of a leg that place points: its parameter, or a channel; empty where the channel
+// is not monotonic.
 std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel);
 // Whether x lies within the range of a monotonic sequence, up to 1e-9 of it.
 bool reaches(const std::vector<double>& over, double x);

@@ -26,15 +26,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_iterations = 30;
-constexpr int most_halvings = 10;
+constexpr int max_iterations = 30;
+constexpr int max_halvings = 10;
 constexpr double met = 1e-12;        // [m, rad]: accuracy of a settled state
 constexpr double moves = 1e-10;      // [m, rad]: a smaller effect of a step counts as none
 constexpr double contraction = 0.5;  // least progress of an iteration with the J of another scene
 constexpr double known = 1e-6;       // of the largest singular value: resolution of the differences
 
 // The trim equations for any p.
-struct Problem {
+struct TrimProblem {
     const Trim* trim = nullptr;
     BranchSide side;                                // branch on which the adjustments are held
     std::vector<Channel> channels;                  // read by the conditions
@@ -76,7 +76,7 @@ Channel channel_of(const Model& model, const ConditionKind& kind) {
         kind);
 }
 
-VectorXd values(const Problem& problem, const Equilibrium& state) {
+VectorXd values(const TrimProblem& problem, const Equilibrium& state) {
     const auto shown = evaluate(problem.side.model, problem.channels, state);
     VectorXd c(static_cast<Index>(shown.size()));
     for (std::size_t k = 0; k < shown.size(); ++k)
@@ -96,8 +96,8 @@ namespace {
 
 // The scene on a branch whose drivers are the adjustments. compile() treats them as moving, so that
 // no adjustment is left out because it starts at zero.
-Problem pose(const Scene& scene) {
-    Problem problem;
+TrimProblem pose(const Scene& scene) {
+    TrimProblem problem;
     problem.trim = &*scene.trim;
     Scene held = scene;
     Branch branch{
@@ -125,7 +125,7 @@ Problem pose(const Scene& scene) {
     return problem;
 }
 
-BranchSide held_at(const Problem& problem, const VectorXd& p) {
+BranchSide held_at(const TrimProblem& problem, const VectorXd& p) {
     BranchSide side = problem.side;
     for (std::size_t k = 0; k < side.branch.drivers.size(); ++k)
         side.branch.drivers[k].start = problem.trim->adjust[k].per_unit * p[static_cast<Index>(k)];
@@ -133,7 +133,7 @@ BranchSide held_at(const Problem& problem, const VectorXd& p) {
     return side;
 }
 
-TrimAttempt settle(const Problem& problem, const VectorXd& p, Leg leg) {
+TrimAttempt settle(const TrimProblem& problem, const VectorXd& p, Leg leg) {
     BranchSide held = held_at(problem, p);
     if (problem.analysis && leg == Leg::series) {
         recursive::series::keep_start(held.model, held.branch, {}, *problem.analysis);
@@ -158,7 +158,8 @@ double step(const Trim::Adjustment& adjustment) {
 }
 
 // J, one column per step h: change of the conditions with an adjustment. Empty where a leg failed.
-std::optional<MatrixXd> responses(const Problem& problem, const VectorXd& p, TrimAttempt& failed) {
+std::optional<MatrixXd> responses(const TrimProblem& problem, const VectorXd& p,
+                                  TrimAttempt& failed) {
     const Index n = p.size();
     MatrixXd J(static_cast<Index>(problem.channels.size()), n);
     for (Index k = 0; k < n; ++k) {
@@ -251,7 +252,7 @@ void apply(const Trim& trim, const VectorXd& p, Scene& scene) {
 }
 
 // Text of the resulting value in the trimmed scene; `driven` is the driver in the model.
-std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Problem& problem,
+std::string what_it_makes(const Scene& scene, const Driven& adjusted, const TrimProblem& problem,
                           const Driven& driven, const BranchSide& held, const Equilibrium& state) {
     return std::visit(
         overloaded{
@@ -292,6 +293,128 @@ std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Prob
         adjusted);
 }
 
+// Newton's method on the trim equations: the present p, and the trim at it.
+struct TrimIteration {
+    VectorXd p, h;  // adjustments, and the steps of their differences
+    MatrixXd J;     // the last one
+    TrimAttempt here = {};
+    int iterations = 0;
+    std::string stuck = {};  // why it went no further, "; at the next iterate: ..."
+
+    bool has_met() const { return here.outcome == Outcome::converged && here.missed.norm() <= met; }
+    // The same step as settled at p + h s.
+    VectorXd moved(const VectorXd& s) const { return p + h.cwiseProduct(s); }
+};
+
+// From p and J of another scene. Broyden (1965): J is corrected along every step,
+// J ← J + (Δc - J s) sᵀ / sᵀs, J s = -c.
+void iterate_from(const TrimStart& start, const TrimProblem& problem, TrimIteration& it) {
+    it.p = start.p;
+    it.J = start.J;
+    it.here = settle(problem, it.p, problem.solver);
+    for (; it.here.outcome == Outcome::converged && it.here.missed.norm() > met; ++it.iterations) {
+        const VectorXd s = it.J.colPivHouseholderQr().solve(-it.here.missed);
+        TrimAttempt next = settle(problem, it.moved(s), problem.solver);
+        if (next.outcome != Outcome::converged ||
+            !(next.missed.norm() < contraction * it.here.missed.norm()))
+            break;
+        it.p = it.moved(s);
+        it.J += next.missed * s.transpose() / s.squaredNorm();
+        it.here = std::move(next);
+    }
+}
+
+// One step along s, halved until it comes nearer to the conditions; false if none does. Unreachable
+// conditions lead to a singular state, beyond which rounding decides which are met.
+bool step_nearer(const TrimProblem& problem, const VectorXd& dp, TrimIteration& it) {
+    TrimAttempt next;
+    double share = 1;
+    for (int halved = 0; halved <= max_halvings; ++halved, share /= 2) {
+        next = settle(problem, it.p + share * dp, problem.solver);
+        if (next.outcome == Outcome::converged && next.missed.norm() < it.here.missed.norm()) {
+            it.p += share * dp;
+            it.here = std::move(next);
+            ++it.iterations;
+            return true;
+        }
+    }
+    if (next.outcome != Outcome::converged)
+        it.stuck = fmt::format("; at the next iterate: {}: {}", elastocheck::name(next.outcome),
+                               next.detail);
+    return false;
+}
+
+// With differences for J. `again`: J is computed even where the conditions are met, since it is
+// checked before convergence is accepted: conditions met by chance may leave p undetermined. Returns
+// a neighbouring state that does not settle at the first iterate.
+std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimIteration& it) {
+    for (bool first = again; first || it.here.missed.norm() > met; first = false) {
+        TrimAttempt failed;
+        const auto J = responses(problem, it.p, failed);
+        if (!J && it.iterations == 0) return failed;
+        if (!J) {
+            it.stuck = fmt::format("; at a neighbouring state: {}: {}",
+                                   elastocheck::name(failed.outcome), failed.detail);
+            break;
+        }
+        it.J = *J;
+        if (const std::string why = ill_posed(*problem.trim, *J); !why.empty()) {
+            // Well-posed at an earlier iterate: the iteration has reached the limit of what
+            // can be trimmed.
+            if (it.iterations == 0 || it.here.missed.norm() <= acceptable)
+                throw std::invalid_argument(why);
+            it.stuck = "; at that state " + why;
+            break;
+        }
+        if (!(it.here.missed.norm() > met) || it.iterations == max_iterations) break;
+        const VectorXd dp = it.h.cwiseProduct(J->colPivHouseholderQr().solve(-it.here.missed));
+        if (!step_nearer(problem, dp, it)) break;
+    }
+    return std::nullopt;
+}
+
+// Settles the trimmed scene by another leg. Fills `record`; returns a leg that did not settle.
+std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIteration& it,
+                                        const BranchSide& held, TrimRecord& record) {
+    record.confirmed_by = Leg::energy;
+    TrimAttempt second = settle(problem, it.p, Leg::energy);
+    if (is_not_applicable(second.outcome)) {
+        record.confirmed_by = Leg::series;
+        second = settle(problem, it.p, Leg::series);
+    }
+    if (second.outcome != Outcome::converged) return second;
+    const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&it.here.state, 1}));
+    for (std::size_t k = 0; k < record.conditions.size(); ++k) {
+        auto& c = record.conditions[k];
+        c.confirmed = in_unit(c.unit) * second.missed[static_cast<Index>(k)];
+        const double bound = c.unit == Unit::deg ? bounds.angle : bounds.length;
+        if (!(std::isfinite(c.confirmed) && std::abs(c.confirmed) <= bound))
+            record.detail = fmt::format(
+                "not confirmed: the {} leg misses '{}' by {:.3g} {}, at most {:.3g} is allowed",
+                name(record.confirmed_by), c.name, c.confirmed, symbol(c.unit), bound);
+    }
+    return std::nullopt;
+}
+
+// What each condition is missed by; false if more than is acceptable, with the reason in `record`.
+bool record_conditions(const TrimProblem& problem, const TrimIteration& it, TrimRecord& record) {
+    for (std::size_t k = 0; k < problem.trim->until.size(); ++k) {
+        const Unit unit = problem.channels[k].unit;
+        const auto i = static_cast<Index>(k);
+        record.conditions.push_back({problem.trim->until[k].name, unit,
+                                     in_unit(unit) * problem.target[i],
+                                     in_unit(unit) * it.here.missed[i], std::nan("")});
+    }
+    if (it.here.missed.norm() <= acceptable) return true;
+    const auto worst = std::ranges::max_element(
+        record.conditions, {}, [](const auto& c) { return std::abs(c.missed) / in_unit(c.unit); });
+    record.outcome = Outcome::iteration_limit;
+    record.detail =
+        fmt::format("the conditions cannot be met: the closest iterate misses '{}' by {:.3g} {}{}",
+                    worst->name, worst->missed, symbol(worst->unit), it.stuck);
+    return false;
+}
+
 }  // namespace
 
 Scene with_adjusted(Scene scene, const VectorXd& p) {
@@ -301,7 +424,7 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
 }
 
 VectorXd asked_from_drawn(const Scene& scene) {
-    const Problem problem = pose(scene);
+    const TrimProblem problem = pose(scene);
     return problem.target - problem.drawn;
 }
 
@@ -313,142 +436,58 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
         throw std::invalid_argument(
             fmt::format("{} adjusted quantities for {} conditions; their numbers must be equal",
                         trim.adjust.size(), trim.until.size()));
-    Problem problem = pose(scene);
+    TrimProblem problem = pose(scene);
     problem.solver = solver;
     if (solver == Leg::series)
         problem.analysis =
             std::make_shared<recursive::Analysis>(recursive::analyse(problem.side.model));
     TrimRecord& record = result.record.emplace();
-    const auto give_up = [&](const TrimAttempt& answer, const std::string& where) {
-        record.outcome = answer.outcome;
+    const auto give_up = [&](const TrimAttempt& attempt, const std::string& where) {
+        record.outcome = attempt.outcome;
         record.detail =
-            fmt::format("{}: {}: {}", where, elastocheck::name(answer.outcome), answer.detail);
+            fmt::format("{}: {}: {}", where, elastocheck::name(attempt.outcome), attempt.detail);
         return result;
     };
 
-    VectorXd p = VectorXd::Zero(static_cast<Index>(trim.adjust.size())), h = p;
+    TrimIteration it{.p = VectorXd::Zero(static_cast<Index>(trim.adjust.size())), .h = {}, .J = {}};
+    it.h = it.p;
     for (std::size_t k = 0; k < trim.adjust.size(); ++k)
-        h[static_cast<Index>(k)] = step(trim.adjust[k]);
-    MatrixXd changes;  // the last J
-    TrimAttempt here;
-    bool settled = false;
-    if (start != nullptr && start->J.rows() == p.size() && start->J.cols() == p.size()) {
-        p = start->p, changes = start->J;
-        here = settle(problem, p, problem.solver);
-        // Broyden (1965): J is corrected along every step, J ← J + (Δc - J s) sᵀ / sᵀs, J s = -c.
-        for (TrimAttempt next; here.outcome == Outcome::converged && here.missed.norm() > met;
-             here = next, ++record.iterations) {
-            const VectorXd s = changes.colPivHouseholderQr().solve(-here.missed);
-            next = settle(problem, p + h.cwiseProduct(s), problem.solver);
-            if (next.outcome != Outcome::converged ||
-                !(next.missed.norm() < contraction * here.missed.norm()))
-                break;
-            p += h.cwiseProduct(s);
-            changes += next.missed * s.transpose() / s.squaredNorm();
-        }
-        settled = here.outcome == Outcome::converged && here.missed.norm() <= met;
-    }
+        it.h[static_cast<Index>(k)] = step(trim.adjust[k]);
+    const Index n = it.p.size();
+    if (start != nullptr && start->J.rows() == n && start->J.cols() == n)
+        iterate_from(*start, problem, it);
+    const bool settled = it.J.size() > 0 && it.has_met();
     if (!settled) {
-        p.setZero();
-        record.iterations = 0;
-        here = settle(problem, p, problem.solver);
+        it.p.setZero();
+        it.iterations = 0;
+        it.here = settle(problem, it.p, problem.solver);
     }
-    if (here.outcome != Outcome::converged)
-        return give_up(here, "the scene has no settled equilibrium before the trim");
-    std::string stuck;
-    // J is checked before convergence is accepted: conditions met by chance may leave p
-    // undetermined.
-    for (bool first = !settled; first || here.missed.lpNorm<2>() > met; first = false) {
-        TrimAttempt failed;
-        const auto J = responses(problem, p, failed);
-        if (!J && record.iterations == 0) return give_up(failed, "at a neighbouring state");
-        if (!J) {
-            stuck = fmt::format("; at a neighbouring state: {}: {}",
-                                elastocheck::name(failed.outcome), failed.detail);
-            break;
-        }
-        changes = *J;
-        if (const std::string why = ill_posed(trim, *J); !why.empty()) {
-            // Well-posed at an earlier iterate: the iteration has reached the limit of what can be
-            // trimmed.
-            if (record.iterations == 0 || here.missed.norm() <= acceptable)
-                throw std::invalid_argument(why);
-            stuck = "; at that state " + why;
-            break;
-        }
-        if (!(here.missed.norm() > met) || record.iterations == most_iterations) break;
-        const VectorXd dp = h.cwiseProduct(J->colPivHouseholderQr().solve(-here.missed));
-        TrimAttempt next;
-        double share = 1;
-        for (int halved = 0; halved <= most_halvings; ++halved, share /= 2) {
-            next = settle(problem, p + share * dp, problem.solver);
-            if (next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm())
-                break;
-        }
-        if (!(next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm())) {
-            // Unreachable conditions lead to a singular state, beyond which rounding decides which
-            // are met.
-            if (next.outcome != Outcome::converged)
-                stuck = fmt::format("; at the next iterate: {}: {}",
-                                    elastocheck::name(next.outcome), next.detail);
-            break;
-        }
-        p += share * dp;
-        here = next;
-        ++record.iterations;
-    }
+    if (it.here.outcome != Outcome::converged)
+        return give_up(it.here, "the scene has no settled equilibrium before the trim");
+    if (const auto failed = iterate(problem, !settled, it))
+        return give_up(*failed, "at a neighbouring state");
+    record.iterations = it.iterations;
+    if (!record_conditions(problem, it, record)) return result;
 
-    for (std::size_t k = 0; k < trim.until.size(); ++k) {
-        const Unit unit = problem.channels[k].unit;
-        const auto i = static_cast<Index>(k);
-        record.conditions.push_back({trim.until[k].name, unit, in_unit(unit) * problem.target[i],
-                                     in_unit(unit) * here.missed[i], std::nan("")});
-    }
-    if (!(here.missed.norm() <= acceptable)) {
-        const auto worst = std::ranges::max_element(record.conditions, {}, [](const auto& c) {
-            return std::abs(c.missed) / in_unit(c.unit);
-        });
-        record.outcome = Outcome::iteration_limit;
-        record.detail = fmt::format(
-            "the conditions cannot be met: the closest iterate misses '{}' by {:.3g} {}{}",
-            worst->name, worst->missed, symbol(worst->unit), stuck);
-        return result;
-    }
-
-    const BranchSide held = held_at(problem, p);
-    record.confirmed_by = confirm ? Leg::energy : Leg::series;
+    const BranchSide held = held_at(problem, it.p);
+    record.confirmed_by = Leg::series;
     if (confirm) {
-        TrimAttempt second = settle(problem, p, Leg::energy);
-        if (is_not_applicable(second.outcome)) {
-            record.confirmed_by = Leg::series;
-            second = settle(problem, p, Leg::series);
-        }
-        if (second.outcome != Outcome::converged)
-            return give_up(second,
+        if (const auto failed = confirm_trim(problem, it, held, record))
+            return give_up(*failed,
                            fmt::format("not confirmed: the {} leg", name(record.confirmed_by)));
-        const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&here.state, 1}));
-        for (std::size_t k = 0; k < record.conditions.size(); ++k) {
-            auto& c = record.conditions[k];
-            c.confirmed = in_unit(c.unit) * second.missed[static_cast<Index>(k)];
-            const double bound = c.unit == Unit::deg ? bounds.angle : bounds.length;
-            if (!(std::isfinite(c.confirmed) && std::abs(c.confirmed) <= bound))
-                record.detail = fmt::format(
-                    "not confirmed: the {} leg misses '{}' by {:.3g} {}, at most {:.3g} is allowed",
-                    name(record.confirmed_by), c.name, c.confirmed, symbol(c.unit), bound);
-        }
         if (!record.detail.empty()) return result;
     }
 
-    if (start != nullptr) *start = {p, changes};
-    if (settles != nullptr) *settles = {held, here.state};
-    apply(trim, p, result.scene);
+    if (start != nullptr) *start = {it.p, it.J};
+    if (settles != nullptr) *settles = {held, it.here.state};
+    apply(trim, it.p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
         const auto& adjusted = trim.adjust[k];
         const Unit unit = unit_of(adjusted.unit);
         record.adjusted.push_back(
-            {adjusted.name, unit, in_unit(unit) * p[static_cast<Index>(k)],
+            {adjusted.name, unit, in_unit(unit) * it.p[static_cast<Index>(k)],
              what_it_makes(result.scene, adjusted.what, problem,
-                           problem.side.branch.drivers[k].what, held, here.state)});
+                           problem.side.branch.drivers[k].what, held, it.here.state)});
     }
     return result;
 }

@@ -31,9 +31,9 @@ constexpr double one_slope = 1e-3;  // difference of the slopes to both sides th
 
 // Outputs of a model by their names: a figure of the catalogue is made alone; the list of all outputs
 // when another one is asked for, with the sums, which take an analysis, only where it has none.
-class Outputs {
+class NamedOutputs {
   public:
-    explicit Outputs(const Model& model) : model_(model) {}
+    explicit NamedOutputs(const Model& model) : model_(model) {}
     Channel operator()(const std::string& name) {
         for (const Entry& entry : catalogue())
             if (!entry.on_request && name.ends_with(entry.name))
@@ -62,7 +62,7 @@ struct OnBranch {
     FigureValues& result;
     std::vector<Channel> read = {};  // outputs of the figures, each once
 
-    void add(const std::string& name, Outputs& outputs) {
+    void add(const std::string& name, NamedOutputs& outputs) {
         if (!name.empty() && find_channel(read, name) < 0) read.push_back(outputs(name));
     }
     std::size_t column(const std::string& name) const {
@@ -93,7 +93,7 @@ struct OnBranch {
             std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
             if (points.empty()) continue;
             Analyses analyses;
-            const auto path = walk_through(side, leg, points, [&](const Equilibrium& state) {
+            const auto path = solve_at(side, leg, points, [&](const Equilibrium& state) {
                 const auto here = at.find(state.load);
                 if (here == at.end()) return;
                 const Row row = row_of(model, read, side, {.leg = leg}, state, analyses);
@@ -112,7 +112,7 @@ struct OnBranch {
     // Figures at values of another output, interpolated on the curve of the branch.
     void over_outputs(std::span<const std::size_t> which) const {
         const auto sides = sides_of(model, branch, std::min(branch.steps, interpolated_points));
-        const PathCurve path = walk(model, read, branch, sides, {.leg = leg});
+        const PathCurve path = solve_branch(model, read, branch, sides, {.leg = leg});
         for (const std::size_t k : which) {
             const Figure& figure = figures[k];
             const auto x = placed_by(path.curve, column(figure.over));
@@ -163,7 +163,7 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
 
 FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg) {
     FigureValues result{VectorXd::Constant(std::ssize(figures), nan)};
-    Outputs outputs(model);
+    NamedOutputs outputs(model);
     for (const auto& branch : model.branches) {
         OnBranch on{model, branch, leg, figures, result};
         std::map<double, std::vector<std::size_t>> placed;

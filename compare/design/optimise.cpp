@@ -24,7 +24,7 @@ constexpr double none = std::numeric_limits<double>::infinity();
 constexpr int most_evaluations = 200;     // of one run of SLSQP
 constexpr int most_runs = 4;              // each from the best point before
 constexpr int calls_at_one_point = 20;    // the step of SLSQP has vanished: it would loop for ever
-constexpr double least_step = 1e-12;      // of x
+constexpr double min_step = 1e-12;        // of x
 constexpr double active_within = 1e-6;    // of c
 constexpr double optimal_within = 1e-4;   // of |∇F|
 constexpr double least_residual = 1e-7;   // of the conditions of the optimum, where ∇F vanishes
@@ -149,7 +149,7 @@ void run_slsqp(Problem& problem, VectorXd x) {
     const std::vector<double> within(m, within_bands / 10);
     if (m > 0)
         nlopt_add_inequality_mconstraint(run.get(), m, slsqp_excess, &problem, within.data());
-    nlopt_set_xtol_abs1(run.get(), least_step);
+    nlopt_set_xtol_abs1(run.get(), min_step);
     nlopt_set_maxeval(run.get(), most_evaluations);
     double cost = 0;
     nlopt_optimize(run.get(), x.data(), &cost);

@@ -55,7 +55,7 @@ Reading finish(std::vector<Running>& sums, const Curve& a) {
     return reading;
 }
 
-Reading nothing(std::string why) {
+Reading no_reading(std::string why) {
     Reading reading;
     reading.not_compared = std::move(why);
     return reading;
@@ -92,7 +92,7 @@ Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& 
 }
 
 Reading at_equal_parameter(const Curve& a, const Curve& b) {
-    if (a.values.empty() || b.values.empty()) return nothing("a curve is empty");
+    if (a.values.empty() || b.values.empty()) return no_reading("a curve is empty");
     std::vector<Running> sums(a.values.front().size());
     // Two-sided curves that ended early begin at different points; their common range lies around
     // their start.
@@ -100,7 +100,8 @@ Reading at_equal_parameter(const Curve& a, const Curve& b) {
     const std::size_t after = std::min(a.a.size() - a.start, b.a.size() - b.start);
     for (std::size_t k = 0; k < before + after; ++k) {
         const std::size_t i = a.start - before + k, j = b.start - before + k;
-        if (!same(a.a[i], b.a[j], a)) return nothing("the curves are not at the same parameters");
+        if (!same(a.a[i], b.a[j], a))
+            return no_reading("the curves are not at the same parameters");
         for (std::size_t c = 0; c < sums.size(); ++c)
             sums[c].add(b.values[j][c] - a.values[i][c], a.a[i]);
     }
@@ -155,7 +156,7 @@ int read_over(const Curve& a, const Curve& b, std::size_t abscissa, Sink&& sink)
 }  // namespace
 
 Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by) {
-    if (!by.why_not.empty()) return nothing(by.why_not);
+    if (!by.why_not.empty()) return no_reading(by.why_not);
     const auto channel = static_cast<std::size_t>(by.channel);
     std::vector<Running> sums(a.values.front().size());
     const int outside = read_over(

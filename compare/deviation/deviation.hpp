@@ -23,8 +23,8 @@ Reading at_equal_parameter(const Curve& a, const Curve& b);
 // b interpolated at the abscissa values of a, within the range of b.
 Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by);
 
-// Local polynomial interpolation of y over strictly monotonic x through the `nodes` samples around
-// `at`.
+// Local polynomial interpolation of y over strictly monotonic x through the `nodes`
+// samples around `at`.
 double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at,
                    int nodes);
 
@@ -56,9 +56,9 @@ Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Cu
 Accuracy distance(const std::vector<Channel>& channels, const Curve& a, const Curve& b,
                   const std::vector<double>& extents = {});
 
-// Uncertainty due to rounding: 16 units of the last place of the largest values. Two references may
-// agree to the last bit by chance; their values, summed over a path, are not more precise than
-// this.
+// Uncertainty due to rounding: 16 units of the last place of the largest values. Two
+// references may agree to the last bit by chance; their values, summed over a path, are not
+// more precise than this.
 Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve,
                      const std::vector<double>& extents = {});
 

@@ -22,8 +22,8 @@ void keep_least(ProvedBound& all, const Extent& one) {
 
 void add(Tally& tally, double load, Unit unit, const Certificate& certificate) {
     ++tally.points;
-    if (certificate.answer != Answer::proved) {
-        ++(certificate.answer == Answer::excluded ? tally.excluded : tally.open);
+    if (certificate.state != ProofState::proved) {
+        ++(certificate.state == ProofState::excluded ? tally.excluded : tally.open);
         if (tally.not_proved.empty())
             tally.not_proved = fmt::format(
                 "{} at {:.6g} {}{}{}", name(certificate.answer), in_unit(unit) * load, symbol(unit),

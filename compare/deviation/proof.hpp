@@ -6,8 +6,8 @@
 
 namespace elastocheck::compare {
 
-using reference::certificate::Answer;
 using reference::certificate::Certificate;
+using reference::certificate::ProofState;
 
 // Counts one point; `load` in SI.
 void add(Tally& tally, double load, Unit unit, const Certificate& certificate);

@@ -90,8 +90,10 @@ std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const Channel& channel = channels[c];
         double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (const auto& point : truth.values)
-            low = std::min(low, point[c]), high = std::max(high, point[c]);
+        for (const auto& point : truth.values) {
+            low = std::min(low, point[c]);
+            high = std::max(high, point[c]);
+        }
         const double part = channel.kind() == ChannelKind::characteristic ? 1 : of_value;
         double extent = truth.values.empty()
                             ? 0

@@ -15,8 +15,8 @@ namespace elastocheck::compare {
 enum class ToleranceParts { motion, with_shares, with_forces };
 Tolerance parse_tolerance(std::string_view text, ToleranceParts allowed = ToleranceParts::motion);
 
-// Whether the output is a position or an angle of the configuration: its limit is a length or an
-// angle.
+// Whether the output is a position or an angle of the configuration: its limit is a length
+// or an angle.
 bool is_motion(const Channel& channel);
 
 // Extent of every output along a branch, in its unit: the reference of Tolerance::share. With F the

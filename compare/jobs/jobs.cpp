@@ -29,7 +29,10 @@ void run_jobs(const std::vector<Job>& jobs, int threads, const Progress& progres
                 guard.lock();
             } catch (...) {
                 if (!guard.owns_lock()) guard.lock();
-                if (k < failed) failed = k, failure = std::current_exception();
+                if (k < failed) {
+                    failed = k;
+                    failure = std::current_exception();
+                }
             }
             ++ended;
         }

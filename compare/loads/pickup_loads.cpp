@@ -204,7 +204,7 @@ std::optional<Equilibrium> end_state(const BranchSide& side, Leg leg, SolvedCase
     std::optional<Equilibrium> state;
     const std::array end{side.branch.to};
     const EquilibriumPath path =
-        walk_through(side, leg, end, [&](const Equilibrium& point) { state = point; });
+        solve_at(side, leg, end, [&](const Equilibrium& point) { state = point; });
     if (path.outcome == Outcome::converged && state) return state;
     result.outcome = path.outcome == Outcome::converged ? Outcome::branch_lost : path.outcome;
     result.detail = path.detail;

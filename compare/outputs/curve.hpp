@@ -23,7 +23,14 @@ Curve curve(const Model& model, std::span<const Channel> channels, const Branch&
 Curve thinned(const Curve& curve, std::size_t stride);
 
 // Direction of a sequence. Only a rising or falling sequence can be inverted.
-enum class Course { rising, falling, still, turning, not_finite, too_short };
+enum class Course {
+    rising,      // x_k+1 > x_k for all k
+    falling,     // x_k+1 < x_k for all k
+    still,       // max x - min x below rounding
+    turning,     // neither rising nor falling
+    not_finite,  // !isfinite(x_k) for some k
+    too_short    // fewer than two values
+};
 struct Trend {
     Course course = Course::too_short;
     std::size_t at = 0;  // index where it first reverses, or is not finite
@@ -34,8 +41,8 @@ Trend trend(std::span<const double> x);
 // Abscissa of a comparison other than the parameter: a channel that is monotonic on both curves.
 struct Abscissa {
     int channel = -1;  // -1: there is none
-    // reason why not, "travel turns back at 1230 N (at 35.2 mm)", "travel does not move"; empty if
-    // usable
+    // reason why not, "travel turns back at 1230 N (at 35.2 mm)", "travel does not move";
+    // empty if usable
     std::string why_not;
 };
 // Default abscissa: the first wheel's travel; without a wheel the main position channel with the

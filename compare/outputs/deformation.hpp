@@ -42,8 +42,8 @@ bool at_corner(const Model& model, const Branch& branch, const Equilibrium& stat
 // curve ends at 60 mm". Empty where there is none.
 std::string outside_table(const Model& model, const Branch& branch, const Equilibrium& state);
 
-// The same message with the position on the branch: the detail of a path that ends before this
-// state.
+// The same message with the position on the branch: the detail of a path that ends
+// before this state.
 std::string ends_at_table(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::compare

@@ -16,7 +16,7 @@ inline std::string parameter_reading(std::string_view unit) {
 
 // An abscissa that moves less than this [mm] is not used: a longitudinal force lifts the wheel by
 // some tenths of a millimetre, over which a camber curve has no meaning.
-inline constexpr double least_travel = 1;
+inline constexpr double min_travel = 1;
 
 // "at equal travel"; without such a channel "at equal abscissa".
 inline std::string abscissa_reading(std::string_view channel) {

@@ -13,8 +13,8 @@ namespace elastocheck::compare {
 // per Model::bodies, per unit of the cause [m/N, m/(N·m), m/m, ...]
 using Motions = std::vector<Increment>;
 
-// Wrenches on a wheel, ground axes: a force at the wheel centre, a moment, a force at the contact
-// patch.
+// Wrenches on a wheel, ground axes: a force at the wheel centre, a moment, a force at
+// the contact patch.
 inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 
 struct WheelResponse {

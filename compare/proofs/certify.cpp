@@ -31,7 +31,7 @@ CertifiedSide certify_side(const BranchSide& side, SolverSettings solver,
     result.to = in_unit(result.unit) * side.branch.to;
     result.solver = solver_of(solver);
     solver.every = std::max(1, side.branch.steps / options.points);
-    const EquilibriumPath path = walk(side, solver);
+    const EquilibriumPath path = solve_branch(side, solver);
     result.outcome = path.outcome;
     result.detail = path.detail;
     for (const Equilibrium& state : path.points)
@@ -99,8 +99,8 @@ bool CertifyStudy::conclusive() const {
     return proved() > 0 && std::ranges::all_of(sides, [](const CertifiedSide& side) {
                if (is_not_applicable(side.outcome)) return true;
                const bool ended = side.outcome == Outcome::converged ||
-                                  (side.limit && side.limit->answer == Answer::proved);
-               const bool one_curve = !side.curve || side.curve->answer == Answer::proved;
+                                  (side.limit && side.limit->state == ProofState::proved);
+               const bool one_curve = !side.curve || side.curve->state == ProofState::proved;
                return ended && one_curve && side.tally.points > 0 &&
                       side.tally.proved == side.tally.points;
            });

@@ -95,19 +95,20 @@ void add_notes(std::vector<std::string>& notes, const CertifiedSide& side) {
     const auto add = [&](const std::string& what) {
         if (!what.empty()) notes.push_back(fmt::format("{}: {}", side.solver, what));
     };
-    if (side.curve && side.curve->answer == Answer::proved)
+    if (side.curve && side.curve->state == ProofState::proved)
         notes.push_back(fmt::format(
             "one curve of equilibria is proved from {:.10g} to {:.10g} {}{}",
             in_unit(side.unit) * side.curve->from + 0.0, in_unit(side.unit) * side.curve->to + 0.0,
             unit, side.curve->corners > 0 ? ", over corners of laws" : ""));
-    if (side.limit && side.limit->answer == Answer::proved)
+    if (side.limit && side.limit->state == ProofState::proved)
         notes.push_back(fmt::format("a limit point is proved, between {:.16g} and {:.16g} {}",
                                     in_unit(side.unit) * side.limit->from,
                                     in_unit(side.unit) * side.limit->to, unit));
     add(side.detail);
     add(side.tally.not_proved);
-    if (side.curve && side.curve->answer != Answer::proved) add("the curve: " + side.curve->detail);
-    if (side.limit && side.limit->answer != Answer::proved)
+    if (side.curve && side.curve->state != ProofState::proved)
+        add("the curve: " + side.curve->detail);
+    if (side.limit && side.limit->state != ProofState::proved)
         add("the limit point: " + side.limit->detail);
     // The theorems of the other solvers' points hold about the same motions.
     if (!side.tally.theorem.empty() && std::ranges::find(notes, side.tally.theorem) == notes.end())

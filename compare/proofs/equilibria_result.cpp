@@ -70,7 +70,7 @@ Result result_of(const Model& model, const AllEquilibria& all) {
                          : "not all of this is proved",
         elastocheck::name(all.outcome), all.detail.empty() ? "" : ": ", all.detail);
     for (const auto& one : all.list)
-        if (one.proof.answer != reference::certificate::Answer::proved)
+        if (one.proof.state != reference::certificate::ProofState::proved)
             list.notes.push_back(fmt::format("{}: {}", name(one.proof.answer), one.proof.detail));
     result.tables = {std::move(list), poses(model, all)};
     result.notes.push_back(

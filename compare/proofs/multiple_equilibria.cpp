@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using reference::certificate::Answer;
+using reference::certificate::ProofState;
 
 // Two states are the same within this share of the scene's size, or of a radian.
 constexpr double one_state = 1e-6;
@@ -30,7 +30,7 @@ constexpr double one_state = 1e-6;
 constexpr std::array shares_along{0.03, 0.3, 1.0};
 
 // Larger models are not searched: `beside` has no motions for them, and the many starts take long.
-constexpr std::size_t most_bodies = 100;
+constexpr std::size_t max_bodies = 100;
 
 // Attempts from one start, each with the newly found states deflated.
 constexpr int tries = 4;
@@ -70,14 +70,16 @@ void measure(const Model& model, const std::vector<Pose>& from, FoundEquilibrium
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const double length = (found.state.poses[b].r - from[b].r).norm(),
                      angle = found.state.poses[b].p.angularDistance(from[b].p);
-        if (length > found.length || found.body.empty())
-            found.length = length, found.body = model.bodies[b].name;
+        if (length > found.length || found.body.empty()) {
+            found.length = length;
+            found.body = model.bodies[b].name;
+        }
         found.angle = std::max(found.angle, angle);
     }
 }
 
-// Whether the boxes of two proofs are disjoint: some body's poses are separated by more than both
-// bounds.
+// Whether the boxes of two proofs are disjoint: some body's poses are separated by more
+// than both bounds.
 bool are_two(const FoundEquilibrium& a, const FoundEquilibrium& b) {
     for (std::size_t k = 0; k < a.state.poses.size(); ++k) {
         const Pose &p = a.state.poses[k], &q = b.state.poses[k];
@@ -144,10 +146,10 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what), nan);
     };
 
-    if (model.bodies.size() > most_bodies) {
+    if (model.bodies.size() > max_bodies) {
         all.outcome = Outcome::too_large;
         all.detail = fmt::format("{} bodies, equilibria are searched for up to {}",
-                                 model.bodies.size(), most_bodies);
+                                 model.bodies.size(), max_bodies);
         return all;
     }
 
@@ -157,13 +159,14 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     constexpr int pieces = 8;
     for (int k = 0; k <= pieces; ++k) values.push_back(a * k / pieces);
     EquilibriumPath path = leg::solve(side.model, side.branch, values);
-    all.outcome = path.outcome, all.detail = path.detail;
+    all.outcome = path.outcome;
+    all.detail = path.detail;
     const bool arrives = path.outcome == Outcome::converged;
     std::vector<Equilibrium> known;
 
     const auto is_known = [&](const Equilibrium& state) {
         return std::ranges::any_of(known, [&](const Equilibrium& other) {
-            return leg::apart(side.model, side.branch, other, state) <= one_state;
+            return leg::distance(side.model, side.branch, other, state) <= one_state;
         });
     };
     const std::vector<Pose> reached =
@@ -218,7 +221,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     for (auto& one : all.list) {
         say("proof");
         one.proof = reference::certificate::certify(side.model, side.branch, one.state);
-        all.proved &= one.proof.answer == Answer::proved;
+        all.proved &= one.proof.state == ProofState::proved;
         measure(side.model, reached, one);
         one.meaning = meaning_of(all, one);
     }

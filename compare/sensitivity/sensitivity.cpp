@@ -196,8 +196,8 @@ struct SideWork {
             auto& found = states.emplace_back();
             const auto visit = [&](const Equilibrium& state) { found.push_back(state); };
             const EquilibriumPath path = stations.empty()
-                                             ? walk(read.side, {.leg = used[l]}, visit)
-                                             : walk_through(read.side, used[l], stations, visit);
+                                             ? solve_branch(read.side, {.leg = used[l]}, visit)
+                                             : solve_at(read.side, used[l], stations, visit);
             if (path.outcome != Outcome::converged) {
                 by.failure = fmt::format("{}: {}", elastocheck::name(path.outcome), path.detail);
                 by.not_applicable = is_not_applicable(path.outcome);

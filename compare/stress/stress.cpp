@@ -20,8 +20,8 @@ namespace elastocheck::compare {
 namespace {
 
 using Eigen::Vector3d;
-using reference::certificate::Answer;
 using reference::certificate::certify;
+using reference::certificate::ProofState;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -103,7 +103,7 @@ Vectors values_of(const std::vector<Output>& outputs, const std::vector<double>&
 }
 
 // Largest distance of the positions; NaN counts as largest.
-double apart(const std::vector<Output>& outputs, const Vectors& a, const Vectors& b) {
+double distance(const std::vector<Output>& outputs, const Vectors& a, const Vectors& b) {
     double most = 0;
     for (const Output& output : outputs)
         if (output.quantity == of_position && a.contains(output.name) && b.contains(output.name))
@@ -198,7 +198,7 @@ Known proved(const SideRun& run, const std::vector<const Run*>& exact, std::size
         const auto& e = found.error;
         // A weakly resisted motion that is held for the proof stays at its value in the state, not
         // at equilibrium.
-        if (found.answer == Answer::proved && (found.held == 0 || anything_idle))
+        if (found.state == ProofState::proved && (found.held == 0 || anything_idle))
             return {"proof",
                     path->points[k],
                     {e.length + run.size * e.angle, e.angle, e.force, e.moment},
@@ -258,7 +258,8 @@ void run_side(SideRun& result, const Variant& variant, Model model,
     double reach = scale.length;  // X
     for (const auto& body : model.bodies)
         reach = std::max(reach, body.design.r.cwiseAbs().maxCoeff());
-    result.size = scale.length / how.length, result.rounding = 4 * eps * reach / how.length;
+    result.size = scale.length / how.length;
+    result.rounding = 4 * eps * reach / how.length;
     const double length = std::max(1e-9 * scale.length, 1e3 * eps * reach),
                  least = 1e-6 * std::max(scale.force, 1e-9);  // [N]
     result.tolerance = {length, exact_angle, least, least * scale.length, least, length};
@@ -276,7 +277,8 @@ void run_side(SideRun& result, const Variant& variant, Model model,
                                  : compare::run(model, comparison.channels, model.branches.front(),
                                                 {side}, settings, false);
         run.claim = claim_of(solvers[s], scale, how);
-        run.outcome = found.outcome, run.detail = found.detail;
+        run.outcome = found.outcome;
+        run.detail = found.detail;
         const auto& [front, start, middle, back] = found.landmarks;
         for (std::size_t k = 0; k < found.curve.a.size(); ++k)
             for (const auto* state : {&start, &middle, &back})
@@ -345,7 +347,7 @@ double range_of(const SideRun& run) {
     for (const Known& known : run.known) {
         if (known.by.empty()) continue;
         if (start == nullptr) start = &known;
-        range = std::max(range, apart(run.outputs, start->values, known.values));
+        range = std::max(range, distance(run.outputs, start->values, known.values));
     }
     return range > 1e-9 * run.size ? range : run.size;
 }
@@ -360,7 +362,8 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
                     solver.name, found.outcome, found.detail};
     cell.range = range_of(truth);
     const auto wrong = [&](std::string why) {
-        cell.verdict = CellVerdict::wrong, cell.why = std::move(why);
+        cell.verdict = CellVerdict::wrong;
+        cell.why = std::move(why);
         return cell;
     };
     if (!run.bug.empty()) return wrong("ended with an exception: " + run.bug);
@@ -384,8 +387,8 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
         }
         const Known& known = truth.known[k];
         cell.known_by = base != nullptr ? "the unchanged scene" : known.by;
-        error = worse(error,
-                      apart(run.outputs, found.points[k], known.values) + known.error[of_position]);
+        error = worse(
+            error, distance(run.outputs, found.points[k], known.values) + known.error[of_position]);
         std::string why = breach(run.outputs, found.claim, found.points[k], known, rounding);
         if (why.empty()) continue;
         // Another equilibrium, and of a transformed scene the same one as without the transform.
@@ -397,7 +400,7 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
         const bool other =
             known.proved && as_there &&
             certify(run.side.model, run.side.branch, found.states[k], run.tolerance).answer ==
-                Answer::proved;
+                ProofState::proved;
         (other ? elsewhere : breaks) = std::move(why);
     }
     if (!cell.known_by.empty()) cell.error = error;

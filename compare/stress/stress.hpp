@@ -19,8 +19,8 @@
 // reference that reports that end where the states of another solver are proved and stable at every
 // point, or known in the unchanged scene.
 //
-// The position of a body along an idle mode is arbitrary, so outputs of such bodies are not
-// compared.
+// The position of a body along an idle mode is arbitrary, so outputs of such bodies
+// are not compared.
 #pragma once
 
 #include <limits>
@@ -42,10 +42,10 @@ struct Variant {
     std::optional<Transform> transforms = {};  // of the unchanged scene
     // Properties known by construction, independent of any solver.
     enum class Construction {
-        nothing,
+        unknown,
         no_equilibrium,
         nothing_moves
-    } known = Construction::nothing;
+    } known = Construction::unknown;
     // methods to run beside `published` and the references; empty: all
     std::vector<std::string> requested = {};
 };
@@ -57,8 +57,8 @@ struct Trial {
 
 inline constexpr std::string_view as_it_is = "as it is";  // sweep of the unchanged scene alone
 inline constexpr std::string_view extreme = "extreme";    // scenes that are extreme by construction
-// All sweeps of a scene (sweeps.cpp): the unchanged scene with every branch, its variants with the
-// first.
+// All sweeps of a scene (sweeps.cpp): the unchanged scene with every branch, its variants
+// with the first.
 std::vector<Trial> trials(const std::string& name, const Scene& scene);
 
 struct Solver {
@@ -67,12 +67,18 @@ struct Solver {
 };
 std::vector<Solver> solvers();  // every method of the recursion, then the references
 
+// With x the outputs of a cell, x_T the true ones, known to within e, at every point; in the order of
+// the tests: wrong first.
 enum class CellVerdict {
-    right,             // converged, within its claim
-    no_claim,          // converged, without a claim: its digits are reported
-    reported_failure,  // another outcome
-    elsewhere,         // converged at another equilibrium of the same load, which is proved too
-    unjudged,          // converged, but the truth is unknown
+    right,             // converged, and |x - x_T| - e ≤ claim < ∞
+    no_claim,          // converged, claim = ∞: its digits -log10(|x - x_T| / range) are reported
+    reported_failure,  // outcome ≠ converged, and nothing shows that the branch continues
+    // converged, |x - x_T| - e > claim, and the certificate of x is `proved`: another equilibrium of
+    // the same load
+    elsewhere,
+    unjudged,  // converged, and x_T is unknown at a point
+    // |x - x_T| - e > claim without such a proof; a value that is not finite; a point missing; converged
+    // where no equilibrium exists, or ended where the branch is proved to continue
     wrong,
 };
 const char* name(CellVerdict verdict);

@@ -22,7 +22,10 @@ Scene first_branch(const Scene& scene) {
 // The first branch with `to` and `from` times a factor.
 Scene driven(const Scene& scene, double factor) {
     Scene farther = first_branch(scene);
-    for (auto& branch : farther.branches) branch.from *= factor, branch.to *= factor;
+    for (auto& branch : farther.branches) {
+        branch.from *= factor;
+        branch.to *= factor;
+    }
     return farther;
 }
 

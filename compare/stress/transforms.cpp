@@ -99,7 +99,8 @@ Scene transformed(const Scene& original, const Transform& how) {
                                  : branch.unit == ParameterUnit::newton_metre ? moment
                                  : branch.unit == ParameterUnit::metre        ? length
                                                                               : 1;
-        branch.from *= parameter, branch.to *= parameter;
+        branch.from *= parameter;
+        branch.to *= parameter;
         for (auto& driver : branch.drivers) {
             double by = length;  // of a free length
             each_member(driver.what,
@@ -128,7 +129,10 @@ Scene transformed(const Scene& original, const Transform& how) {
         wheel.side *= static_cast<int>(sign);
         wheel.tyre_rate *= force / length;
     }
-    if (scene.vehicle) scene.vehicle->wheelbase *= length, scene.vehicle->cg_height *= length;
+    if (scene.vehicle) {
+        scene.vehicle->wheelbase *= length;
+        scene.vehicle->cg_height *= length;
+    }
     return scene;
 }
 

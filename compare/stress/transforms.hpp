@@ -1,5 +1,5 @@
-// Invariance transforms of a scene (rotation, mirror image, translation, units), and changed
-// stiffness.
+// Invariance transforms of a scene (rotation, mirror image, translation, units),
+// and changed stiffness.
 #pragma once
 
 #include "elastocheck/scene.hpp"

@@ -132,11 +132,11 @@ const std::vector<Shape>& shapes(const std::vector<double>& l) {
         std::vector<double> l;
         std::vector<Shape> shapes;
     };
-    constexpr std::size_t most_known = 64;
+    constexpr std::size_t max_known = 64;
     thread_local std::deque<KnownShapes> all;
     for (const KnownShapes& known : all)
         if (known.l == l) return known.shapes;
-    if (all.size() == most_known) all.pop_front();
+    if (all.size() == max_known) all.pop_front();
     KnownShapes& made = all.emplace_back(KnownShapes{l, std::vector<Shape>(cells + 1)});
     for (int k = 0; k <= cells; ++k) shape(l, grid(k), made.shapes[static_cast<std::size_t>(k)]);
     return made.shapes;
@@ -156,11 +156,13 @@ double zero_of(const auto& f, double low, double high) {
         if (std::abs(x - before) <= std::numeric_limits<double>::epsilon() * std::abs(x)) break;
         const double at_x = f(x);
         if (at_x < 0) {
-            low = x, at_low = at_x;
+            low = x;
+            at_low = at_x;
             if (side < 0) at_high /= 2;
             side = -1;
         } else {
-            high = x, at_high = at_x;
+            high = x;
+            at_high = at_x;
             if (side > 0) at_low /= 2;
             side = 1;
         }
@@ -175,8 +177,10 @@ Fit fit(Levels levels) {
     int best = 0;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k <= cells; ++k)
-        if (const double R = line(on_grid[static_cast<std::size_t>(k)], values).R; R < least)
-            best = k, least = R;
+        if (const double R = line(on_grid[static_cast<std::size_t>(k)], values).R; R < least) {
+            best = k;
+            least = R;
+        }
     Shape shape_at;
     const auto at = [&](double p) {
         shape(l, p, shape_at);
@@ -200,9 +204,9 @@ Fit fit(Levels levels) {
 
 // ---- Behaviour and window
 
-// Under a law L + C h^p the difference per unit of ln h falls with refinement exactly if p > 0, in
-// any ratio of steps. True if it grows by more than the floor explains from levels k, k+1 to k+1,
-// k+2.
+// Under a law L + C h^p the difference per unit of ln h falls with refinement exactly if p >
+// 0, in any ratio of steps. True if it grows by more than the floor explains from levels k,
+// k+1 to k+1, k+2.
 bool grows(Levels levels, std::size_t k, double floor) {
     const auto difference = [&](std::size_t j) {
         return std::abs(levels[j + 1].value - levels[j].value);
@@ -241,8 +245,10 @@ std::size_t asymptotic_start(Levels levels, double floor) {
     double least = fit(levels).sigma;
     for (std::size_t k = 1; k + 4 <= levels.size() && least > floor / 2; ++k) {
         const double sigma = fit(levels.subspan(k)).sigma;
-        if (sigma <= std::ldexp(least, static_cast<int>(first) - static_cast<int>(k)))
-            first = k, least = sigma;
+        if (sigma <= std::ldexp(least, static_cast<int>(first) - static_cast<int>(k))) {
+            first = k;
+            least = sigma;
+        }
     }
     return first;
 }

@@ -9,14 +9,16 @@
 
 namespace elastocheck::compare {
 
+// With d_k = v_k+1 - v_k the differences of successive levels; the first condition that
+// holds, from below.
 enum class Behaviour {
-    converging,       // differences fall with refinement, at the finest levels all with one sign
-    oscillating,      // differences still change sign at the finest levels
-    diverging,        // differences grow with refinement
-    round_off_floor,  // too few differences are above round-off for an order
-    reference_floor,  // all levels lie within the reference's uncertainty
-    not_finite,       // a NaN or infinity somewhere
+    converging,  // the last d_k have one sign and |d_k+1| < |d_k|: p > 0 in v = limit + C·h^p
+    oscillating,  // d_k still changes its sign within the three finest levels (four, if often before)
+    diverging,    // |d_k+1| ≥ |d_k| at the finest levels, or the fitted p ≤ 0
+    reference_floor,  // max v - min v ≤ the reference's uncertainty
+    round_off_floor,  // fewer than three levels with |d_k| above round-off
     too_few_levels,   // fewer than three
+    not_finite,       // !isfinite(v_k) for some k
 };
 const char* name(Behaviour behaviour);  // "converging", "at the round-off floor", ...
 
@@ -47,8 +49,8 @@ struct StepConvergence {
     bool as_formal = false;     // the order agrees with the formal order
 };
 
-// Pre: steps strictly increasing, in any ratio, else std::invalid_argument. Formal order: NaN if
-// unknown.
+// Pre: steps strictly increasing, in any ratio, else std::invalid_argument. Formal order:
+// NaN if unknown.
 StepConvergence step_convergence(std::span<const Level> levels, double formal_order,
                                  const Floors& floors);
 

@@ -10,7 +10,7 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are rounding
+constexpr double zero_tolerance = 1e-9;  // [mm], [deg]: smaller deviations are rounding
 
 std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& reading) {
     std::optional<Worst> worst;
@@ -116,7 +116,7 @@ bool is_readable(const Comparison& comparison, const BranchComparison& branch) {
     if (truth.values.empty()) return false;
     const auto x = truth.channel(c);
     const auto [low, high] = std::ranges::minmax(x);
-    return high - low >= least_travel;
+    return high - low >= min_travel;
 }
 
 std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit) {
@@ -165,7 +165,7 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 if (end == truth.start) continue;
                 RateError error{branch.branch, wheel.name, truth.a[end], branch.unit};
                 error.over = gained(truth, travel, end);
-                if (std::abs(error.over) < least_travel) continue;
+                if (std::abs(error.over) < min_travel) continue;
                 error.travel = fast.values[end][travel] - truth.values[end][travel];
                 const double change = (truth.a[end] - truth.a[truth.start]) / in_unit(branch.unit);
                 // Lifting force [N]: of the load; of the jack; of the tyre on the road, k_t
@@ -180,8 +180,8 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                     return wheel.tyre_rate *
                            (by.height * change - (z(end == 0 ? front : back) - z(start)));
                 };
-                // [N/mm]: under a load, equal force over different travel; on a jack, different
-                // forces
+                // [N/mm]: under a load, equal force over different travel; on a
+                // jack, different forces
                 const auto rate = [&](const LegRun& run) {
                     return lifting(run) / gained(run.curve, travel, end);
                 };
@@ -225,7 +225,8 @@ std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study
                     branch.deviation.equal_parameter.channels[static_cast<std::size_t>(c)].end;
                 const ChannelStudy& s = m.equal_parameter[k];
                 if (!std::isfinite(s.gap) ||
-                    !(std::abs(end) > std::max(nothing, found ? std::abs(found->deviation) : 0)))
+                    !(std::abs(end) >
+                      std::max(zero_tolerance, found ? std::abs(found->deviation) : 0)))
                     continue;
                 found = GapPart{branch.branch, study.channels[k].name, end, s.gap, s.end.band};
             }
@@ -234,7 +235,7 @@ std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study
     if (!found) return std::nullopt;
     const double share = found->gap / found->deviation;
     found->role =
-        std::abs(found->gap) <= std::max(std::isnan(found->band) ? 0 : found->band, nothing)
+        std::abs(found->gap) <= std::max(std::isnan(found->band) ? 0 : found->band, zero_tolerance)
             ? GapRole::none
         : share < 0   ? GapRole::opposite
         : share > 1.1 ? GapRole::hidden

@@ -15,17 +15,17 @@ namespace elastocheck::compare {
 const Reading& reading_of(const Pair& pair, ReadingKind kind);
 
 // Whether outputs are compared at equal abscissa on a branch: a wheel's travel must change by at
-// least `least_travel`; a main output is always accepted.
+// least `min_travel`; a main output is always accepted.
 bool is_readable(const Comparison& comparison, const BranchComparison& branch);
 // of the recursion
 std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit);
 // of the references
 std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit);
 
-// Wheel rate (force over travel from a = 0) at one end of a branch, and its error in the recursion.
-// Only for branches that move nothing but a vertical load on that wheel, a jack under it, or the
-// road under its tyre, with a wheel travel of a millimetre or more: the quotient is meaningless
-// below.
+// Wheel rate (force over travel from a = 0) at one end of a branch, and its error in the
+// recursion. Only for branches that move nothing but a vertical load on that wheel, a jack
+// under it, or the road under its tyre, with a wheel travel of a millimetre or more: the
+// quotient is meaningless below.
 struct RateError {
     std::string branch, wheel;
     double to = 0;  // end of the branch, in `unit`
@@ -46,13 +46,13 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
 
 // Share of the formulation gap in the deviation at the end of a branch, for the position with the
 // largest deviation there.
-enum class GapRole {
-    none,        // the gap is below its own uncertainty
-    nearly_all,  // within a tenth
-    part,
-    hardly_any,  // less than a tenth
-    hidden,      // the gap is larger: step errors cancel part of it
-    opposite,    // the gap points the other way
+enum class GapRole {  // with s = gap / deviation
+    none,             // |gap| ≤ its uncertainty
+    nearly_all,       // 0.9 < s ≤ 1.1
+    part,             // 0.1 ≤ s ≤ 0.9
+    hardly_any,       // 0 ≤ s < 0.1
+    hidden,           // s > 1.1: step errors cancel part of the gap
+    opposite,         // s < 0
 };
 struct GapPart {
     std::string branch, channel;

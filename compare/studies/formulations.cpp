@@ -15,7 +15,7 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double least_spread = 1e-9;  // [mm], [deg]: smaller spreads are rounding
+constexpr double min_spread = 1e-9;  // [mm], [deg]: smaller spreads are rounding
 
 bool is_flat(const ScalarLaw& law) { return !(steepest(law) > 0); }
 
@@ -42,12 +42,13 @@ std::vector<Formulation> formulations_of(const Scene& scene) {
     return list;
 }
 
-struct Solved {
+struct SolvedFormulation {
     std::string name;
     Curve curve;
 };
 
-std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::size_t channel) {
+std::optional<FormulationSpread> spread_of(const std::vector<SolvedFormulation>& all,
+                                           std::size_t channel) {
     FormulationSpread found{.channel = channel, .spread = -1, .at = 0, .lowest = {}, .highest = {}};
     // Range that every curve reaches, around the start points.
     std::size_t before = all.front().curve.start, after = all.front().curve.a.size();
@@ -56,7 +57,7 @@ std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::
         after = std::min(after, one.curve.a.size() - one.curve.start);
     }
     for (std::size_t k = 0; k < before + after; ++k) {
-        const auto value = [&](const Solved& one) {
+        const auto value = [&](const SolvedFormulation& one) {
             return one.curve.values[one.curve.start - before + k][channel];
         };
         const auto [low, high] = std::ranges::minmax_element(all, {}, value);
@@ -69,7 +70,7 @@ std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::
         found.highest = high->name;
     }
     if (found.spread < 0) return std::nullopt;
-    if (found.spread < least_spread) found.lowest.clear(), found.highest.clear();
+    if (found.spread < min_spread) found.lowest.clear(), found.highest.clear();
     return found;
 }
 
@@ -111,9 +112,9 @@ FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& 
                     {fmt::format("{}: {}", branches[b].name, models[m].first), [&, b, m] {
                          const Model& model = models[m].second;
                          const Branch& branch = model.branches[b];
-                         curves[b][m] =
-                             walk(model, study.channels, branch, sides_of(model, branch, steps),
-                                  {.leg = Leg::equilibrium, .every = every});
+                         curves[b][m] = solve_branch(model, study.channels, branch,
+                                                     sides_of(model, branch, steps),
+                                                     {.leg = Leg::equilibrium, .every = every});
                      }});
     run_jobs(jobs, threads, progress);
     for (std::size_t b = 0; b < branches.size(); ++b) {
@@ -122,7 +123,7 @@ FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& 
                             .solved = {},
                             .not_solved = {},
                             .outputs = {}};
-        std::vector<Solved> solved;
+        std::vector<SolvedFormulation> solved;
         for (std::size_t m = 0; m < models.size(); ++m) {
             const std::string& name = models[m].first;
             const PathCurve& walked = curves[b][repeats_the_first(m) ? 0 : m];

@@ -13,8 +13,8 @@ namespace elastocheck::compare {
 namespace {
 
 // NaN unless the series reached the end.
-Accuracy apart(const std::vector<Channel>& channels, const References& truth, const Curve& curve,
-               Outcome outcome) {
+Accuracy distance(const std::vector<Channel>& channels, const References& truth, const Curve& curve,
+                  Outcome outcome) {
     if (!truth.failures.empty() || outcome != Outcome::converged) return {nan, nan};
     return distance(channels, truth.truth.curve, curve);
 }
@@ -35,7 +35,7 @@ OrderLevel level_of(const Solves& solves, const BranchSide& side, const Referenc
                               .factorisations = path.counts.factorisations,
                               .evaluations = path.counts.evaluations},
                      .nearest = {},
-                     .error = apart(solves.channels, truth, found, points.outcome)};
+                     .error = distance(solves.channels, truth, found, points.outcome)};
     if (!path.expansions.empty()) {
         level.first_reach = path.expansions.front().reach;
         level.nearest = path.expansions.front().singularity;

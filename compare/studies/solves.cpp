@@ -104,8 +104,8 @@ const PathCurve& solved(Solves& solves, const BranchSide& side, const SolverSett
         solver.leg == Leg::recursive ? key(solver.recursion.method) : "", solver.refine);
     return run_once(solves, run_name,
                     [&](Solves::Run& run) {
-                        run.curve =
-                            walk(solves.model, solves.channels, side.branch, {side}, solver);
+                        run.curve = solve_branch(solves.model, solves.channels, side.branch, {side},
+                                                 solver);
                     })
         .curve;
 }

@@ -85,7 +85,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
 
 // Station at which the last refinement moves the value most: there the leading term of the error
 // is largest, while at coarse levels the next one may be.
-std::size_t most_moved(const std::vector<std::vector<double>>& levels) {
+std::size_t max_moved(const std::vector<std::vector<double>>& levels) {
     const auto moves = difference(levels[levels.size() - 2], levels.back());
     return static_cast<std::size_t>(
         std::ranges::max_element(moves, {}, [](double e) { return std::abs(e); }) - moves.begin());
@@ -107,7 +107,7 @@ StepConvergence at_station(const std::vector<int>& steps,
 // two finest levels v and w, h_v = r h_w, give the limit:  w + (w - v) / (r^p - 1).
 std::vector<double> own_limit(const std::vector<int>& steps,
                               const std::vector<std::vector<double>>& levels, double formal) {
-    const auto leading = at_station(steps, levels, most_moved(levels), formal, 0);
+    const auto leading = at_station(steps, levels, max_moved(levels), formal, 0);
     const double p = leading.as_formal ? formal : leading.order;
     const auto& finest = levels.back();
     const auto& before = levels[levels.size() - 2];
@@ -139,7 +139,7 @@ void add_order(ChannelStudy& study, const std::vector<int>& steps,
                              std::abs(study.step_error_end[l]) < hardly_any * errors.back().value);
     }
     study.behaviour =
-        at_station(steps, levels, most_moved(levels), formal, study.uncertainty).behaviour;
+        at_station(steps, levels, max_moved(levels), formal, study.uncertainty).behaviour;
     if (study.behaviour != Behaviour::converging) return;
     study.order = asymptotic_order_of(errors, above_rounding * round_off);
     study.as_formal = agrees_with_formal(study.order.order, study.order.order_error, formal);
@@ -219,8 +219,8 @@ PathCurve level_of(Solves& solves, const StudiedSide& side, const recursive::Met
     if (solves.finest > 1) return solved(solves, side, method, steps / side.branch.steps);
     BranchSide level = side;
     level.branch.steps = steps;
-    return walk(solves.model, solves.channels, level.branch, {level},
-                {.recursion = {.method = method}});
+    return solve_branch(solves.model, solves.channels, level.branch, {level},
+                        {.recursion = {.method = method}});
 }
 
 // All levels of one method on one branch side.
@@ -266,7 +266,7 @@ std::vector<StudiedSide> sides_with_steps(const Model& model, const Branch& bran
     for (const int N : steps) {
         Branch whole = branch;
         whole.steps = N;
-        const auto shares = ways(whole);
+        const auto shares = branch_sides(whole);
         for (std::size_t w = 0; w < shares.size(); ++w) result[w].steps.push_back(shares[w].steps);
     }
     return result;
@@ -409,8 +409,8 @@ BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
                     share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
             }
             const auto& g = share.combinations;
-            // Mean over the orders of adding: alone (1/3), after one other (1/6 each), after both
-            // (1/3).
+            // Mean over the orders of adding: alone (1/3), after one other (1/6 each),
+            // after both (1/3).
             const auto effect = [&](unsigned term) {
                 const unsigned a = 1u << ((term + 1) % 3), b = 1u << ((term + 2) % 3),
                                t = 1u << term;

@@ -97,8 +97,8 @@ void study_levels(MethodStudy& study, const std::vector<Channel>& all,
                   const std::vector<Curve>& levels, const References& references,
                   double formal_order);
 
-// Reasons why the references cannot be used in a study: a failure, or too large a distance between
-// them.
+// Reasons why the references cannot be used in a study: a failure, or too large a
+// distance between them.
 std::vector<std::string> unfit(const References& references, const std::string& side);
 
 // A branch side as the references of a study run it, with its share of every step count.

@@ -19,9 +19,9 @@ double median(std::vector<double> values);  // NaN for an empty vector
 // by round
 std::vector<double> ratios(const std::vector<double>& times, const std::vector<double>& base);
 
-// Noise of a time ratio, from one job timed twice per round: deviation of the median ratio from 1,
-// or half the interquartile range if that is larger. Differences up to the noise are not
-// significant.
+// Noise of a time ratio, from one job timed twice per round: deviation of the median ratio
+// from 1, or half the interquartile range if that is larger. Differences up to the noise
+// are not significant.
 double noise_of(const std::vector<double>& self_ratios);
 
 }  // namespace elastocheck::compare

@@ -46,7 +46,7 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
             continue;
         }
         const auto affordable = [&](long steps) {
-            return steps <= options.most_steps &&
+            return steps <= options.max_steps &&
                    static_cast<double>(steps) * per_step <= options.work_budget;
         };
         for (long steps = options.points; steps == options.points || affordable(steps); steps *= 2)
@@ -104,7 +104,7 @@ void rank(Trade& trade) {
         else if (point.outcome != Outcome::converged)
             point.not_ranked = name(point.outcome);
         else if (!std::isfinite(point.share))
-            point.not_ranked = "no number";
+            point.not_ranked = "not a number";
         else if (!(point.share > least))
             point.not_ranked = "below the reference uncertainty";
         point.ranked = point.not_ranked.empty();
@@ -164,10 +164,10 @@ std::optional<std::size_t> cheapest(const Trade& trade,
     return *best;
 }
 
-// Misfit factor of the law C·h^p: between the rungs h/2 and 2h it predicts the geometric mean at
-// the middle one, at an end of the ladder the extrapolation of the two next rungs. The same factor
-// is the uncertainty of the error elsewhere. The band also contains the result of the confirming
-// run.
+// Misfit factor of the law C·h^p: between the rungs h/2 and 2h it predicts the geometric mean
+// at the middle one, at an end of the ladder the extrapolation of the two next rungs. The
+// same factor is the uncertainty of the error elsewhere. The band also contains the result of
+// the confirming run.
 double misfit(double error, double neighbour, double other, bool between) {
     const double expected = between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
     return std::max(error / expected, expected / error);
@@ -185,13 +185,19 @@ void band(const Trade& trade, Recommendation& found) {
     std::ptrdiff_t a = k, b = k;
     if (!trade.points[found.point].ranked)
         found.band_from = "below the reference uncertainty: only that is known";
-    else if (usable(k - 1) && usable(k + 1))
-        a = k - 1, b = k + 1, found.band_from = "from the rungs on either side";
-    else if (usable(k + 1) && usable(k + 2))
-        a = k + 1, b = k + 2, found.band_from = "from the two finer rungs";
-    else if (usable(k - 1) && usable(k - 2))
-        a = k - 1, b = k - 2, found.band_from = "from the two coarser rungs";
-    else
+    else if (usable(k - 1) && usable(k + 1)) {
+        a = k - 1;
+        b = k + 1;
+        found.band_from = "from the rungs on either side";
+    } else if (usable(k + 1) && usable(k + 2)) {
+        a = k + 1;
+        b = k + 2;
+        found.band_from = "from the two finer rungs";
+    } else if (usable(k - 1) && usable(k - 2)) {
+        a = k - 1;
+        b = k - 2;
+        found.band_from = "from the two coarser rungs";
+    } else
         found.band_from =
             "no two neighbouring rungs above the reference uncertainty: only that is known";
     const auto one = [&](double Accuracy::*unit) {
@@ -212,14 +218,14 @@ void band(const Trade& trade, Recommendation& found) {
 // Runs the configuration again at output points that were not used for its selection: finer ones,
 // and those of branches that end half a step earlier. The reference is the equilibrium leg; that of
 // the equilibrium leg itself is the second reference.
-struct Confirmation {
+struct ConfirmingRun {
     Accuracy error;
     int compared = 0;
     // failed runs, with their branch; empty if none failed
     std::string reference_failed = {}, configuration_failed = {};
 };
-Confirmation confirm(const Solves& solves, const std::vector<std::vector<double>>& extents,
-                     const TradePoint& point, int threads, const Progress& progress) {
+ConfirmingRun confirm(const Solves& solves, const std::vector<std::vector<double>>& extents,
+                      const TradePoint& point, int threads, const Progress& progress) {
     const Model& model = solves.model;
     const auto& channels = solves.channels;
     int finer = 3;  // refinement factor of the output points
@@ -235,32 +241,32 @@ Confirmation confirm(const Solves& solves, const std::vector<std::vector<double>
         auto sides = sides_of(model, shorter, solves.base);
         for (auto& side : sides) side.branch.steps *= finer;
         Leg leg = Leg::equilibrium;
-        const PathCurve found = walk(model, channels, shorter, sides,
-                                     settings_of(point, finer * solves.base)),
+        const PathCurve found = solve_branch(model, channels, shorter, sides,
+                                             settings_of(point, finer * solves.base)),
                         truth = point.leg == Leg::equilibrium
                                     ? second_reference(model, channels, shorter, sides, leg)
-                                    : walk(model, channels, shorter, sides, {.leg = leg});
+                                    : solve_branch(model, channels, shorter, sides, {.leg = leg});
         const auto failure = [&](const PathCurve& path, const std::string& which) {
             return path.outcome == Outcome::converged
                        ? ""
                        : fmt::format("{}: {}: {}: {}", shorter.name, which, name(path.outcome),
                                      path.detail);
         };
-        Confirmation one{distance(channels, truth.curve, found.curve, extents[b]), 0,
-                         failure(truth, fmt::format("{} leg", name(leg))),
-                         failure(found, describe(point))};
+        ConfirmingRun one{distance(channels, truth.curve, found.curve, extents[b]), 0,
+                          failure(truth, fmt::format("{} leg", name(leg))),
+                          failure(found, describe(point))};
         for (std::size_t c = 0; c < channels.size(); ++c)
             if (channels[c].main || (!is_motion(channels[c]) && std::isfinite(extents[b][c])))
                 one.compared += static_cast<int>(found.curve.a.size());
         return one;
     };
-    std::vector<Confirmation> all(ends.size() * model.branches.size());
+    std::vector<ConfirmingRun> all(ends.size() * model.branches.size());
     std::vector<Job> jobs;
     for (std::size_t k = 0; k < all.size(); ++k)
         jobs.push_back({"the recommendation, again",
                         [&, k] { all[k] = run_again(k / ends.size(), ends[k % ends.size()]); }});
     run_jobs(jobs, threads, progress);
-    Confirmation worst;
+    ConfirmingRun worst;
     for (const auto& one : all) {
         worst.error = worse(worst.error, one.error);
         worst.compared += one.compared;
@@ -278,7 +284,7 @@ void recommend(const Solves& solves, const std::vector<std::vector<double>>& ext
         if (eligible(trade, k)) candidates.push_back(k);
     while (const auto k = cheapest(trade, candidates)) {
         const TradePoint& point = trade.points[*k];
-        const Confirmation again = confirm(solves, extents, point, threads, progress);
+        const ConfirmingRun again = confirm(solves, extents, point, threads, progress);
         if (!again.reference_failed.empty()) {
             trade.inconclusive.push_back(
                 fmt::format("{} cannot be confirmed: no reference at the points of the "
@@ -425,7 +431,7 @@ Trade trade(Solves& solves, const TradeOptions& options) {
         timed.push_back(k);
         timings.emplace_back([&, k] {
             for (const auto& sides : solves.sides)
-                (void)walk(sides, settings_of(result.points[k], solves.base));
+                (void)solve_branch(sides, settings_of(result.points[k], solves.base));
         });
     }
     if (options.rounds > 0 && result.points.front().outcome == Outcome::converged) {

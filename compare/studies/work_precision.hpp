@@ -1,5 +1,5 @@
-// Work-precision comparison: error and cost of every method, and the cheapest one that meets a
-// tolerance.
+// Work-precision comparison: error and cost of every method, and the cheapest one that
+// meets a tolerance.
 //
 // Every configuration (a method with a step count or a tolerance of its own, or a reference leg)
 // produces the same output points: `points` equal increments of the parameter of every branch. Its
@@ -11,13 +11,12 @@
 //
 //   price = N/3 · factorisations + solves + evaluations
 //
-//
 // The price is reproducible, and so is the recommendation. Time relative to the equilibrium leg,
 // measured interleaved (timing.hpp), is shown beside it.
 //
-// The accuracy of the comparison is limited by the reference uncertainty u, the distance of the two
-// reference legs: an error e is at most e + u, and errors up to u are indistinguishable, hence not
-// ranked.
+// The accuracy of the comparison is limited by the reference uncertainty u, the distance of the
+// two reference legs: an error e is at most e + u, and errors up to u are indistinguishable,
+// hence not ranked.
 #pragma once
 
 #include <array>
@@ -87,7 +86,7 @@ struct TradeOptions {
     Tolerance tolerance = default_tolerance;
     std::vector<std::string> methods = {};  // of the recursion; empty: all
     int points = 10;  // output points per branch besides a = 0; also the smallest step count
-    int most_steps = 2560;
+    int max_steps = 2560;
     double work_budget = 5e8;  // limit for one configuration: steps · branches · (unknowns)³
     int rounds = 7;            // timing rounds; 0: no times
     int threads = 1;
@@ -123,9 +122,9 @@ Profile profile(Solves& solves, std::size_t branch, const TradePoint& configurat
 // "tangent, 40 steps", "adaptive at 1e-05 m", "equilibrium leg"
 std::string describe(const TradePoint& point);
 
-// Pareto front of work against error: no other point is as good in both and better in one. Equal
-// points are all on the front. Points that are not finite are neither on it nor do they exclude
-// others.
+// Pareto front of work against error: no other point is as good in both and better in one.
+// Equal points are all on the front. Points that are not finite are neither on it nor do
+// they exclude others.
 struct WorkError {
     double work = 0, error = 0;
 };

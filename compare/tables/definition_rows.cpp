@@ -19,8 +19,8 @@ std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison&
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const BranchComparison& of = comparison.branches[b];
         const Branch& branch = model.branches[b];
-        const PathCurve path = walk(model, pairs, branch, sides_of(model, branch, of.steps),
-                                    {.leg = Leg::equilibrium});
+        const PathCurve path = solve_branch(model, pairs, branch, sides_of(model, branch, of.steps),
+                                            {.leg = Leg::equilibrium});
         for (std::size_t p = 0; p + 1 < pairs.size(); p += 2) {
             const auto figure =
                 static_cast<std::size_t>(find_channel(comparison.channels, pairs[p].name));

@@ -24,7 +24,7 @@ namespace elastocheck::compare::variants {
 namespace {
 
 constexpr const char* other_outputs = "the variant has other outputs than the scene";
-constexpr int points_for_extremes = 20, most_points = 1000;
+constexpr int points_for_extremes = 20, max_points = 1000;
 
 // Whether the station is a recorded point of a way with so many increments: which one, or -1.
 int point_at(double at, double to, int increments) {
@@ -80,7 +80,8 @@ VariantFigure parse_variant_figure(const std::string& name, std::string words, c
     if (parsed.station.at && figure.over != Over::station)
         throw std::invalid_argument(
             "an extreme is that of the whole branch; allowed: min OUTPUT@BRANCH");
-    figure.output = parsed.output->name, figure.unit = parsed.output->unit;
+    figure.output = parsed.output->name;
+    figure.unit = parsed.output->unit;
     figure.branch = parsed.station.branch->name;
     figure.at = parsed.station.at.value_or(0);
     if (is_shared(*parsed.output, model, *parsed.station.branch))
@@ -109,7 +110,7 @@ VariantSolver::VariantSolver(const Model& design, std::vector<VariantFigure> fig
             if (std::ranges::any_of(way.readings, [&](const Reading& reading) {
                     return (*outputs_)[reading.figure].kind() == ChannelKind::characteristic;
                 })) {
-                const Branch side = ways(design.branches[way.branch])[way.side];
+                const Branch side = branch_sides(design.branches[way.branch])[way.side];
                 const BranchSide whole{side.name, on_branch(design, side), side};
                 (void)wheel_response(whole, {.leg = Leg::series}, steering_joint(design),
                                      design_state(design), way.responses);
@@ -139,7 +140,7 @@ void VariantSolver::place(const Model& design) {
             throw std::invalid_argument(
                 fmt::format("{}: the scene has no branch '{}'", figure.name, figure.branch));
         const auto b = static_cast<std::size_t>(branch - design.branches.begin());
-        const auto sides = ways(*branch);
+        const auto sides = branch_sides(*branch);
         if (is_extreme(figure)) {
             for (std::size_t side = 0; side < sides.size(); ++side)
                 way_of(b, side).readings.push_back({k});
@@ -155,12 +156,12 @@ void VariantSolver::place(const Model& design) {
             return point_at(figures_[s.figure].at, s.to, points_) >= 0;
         });
     };
-    while (points_ <= most_points && !all_placed()) ++points_;
-    if (points_ > most_points)
+    while (points_ <= max_points && !all_placed()) ++points_;
+    if (points_ > max_points)
         throw std::invalid_argument(fmt::format(
             "the stations are not among {} equal increments of their branches, however many; move "
             "them to common fractions of a branch",
-            most_points));
+            max_points));
     for (const Station& s : stations)
         way_of(s.branch, s.side)
             .readings.push_back({s.figure, point_at(figures_[s.figure].at, s.to, points_)});
@@ -168,7 +169,8 @@ void VariantSolver::place(const Model& design) {
     for (Way& way : all) std::ranges::stable_sort(way.readings, {}, &Reading::point);
 
     for (const Way& way : all)
-        together_ = together_ && stands_on(design, ways(design.branches[way.branch])[way.side]);
+        together_ =
+            together_ && stands_on(design, branch_sides(design.branches[way.branch])[way.side]);
     for (Way& way : all)
         if (!groups_.empty() && (together_ || groups_.back().ways.front().branch == way.branch))
             groups_.back().ways.push_back(std::move(way));
@@ -180,7 +182,8 @@ void VariantSolver::place(const Model& design) {
 Model VariantSolver::followed(const Model& model, const std::vector<Way>& of) const {
     Model result = together_ ? model : on_branch(model, model.branches[of.front().branch]);
     result.branches.clear();
-    for (const Way& way : of) result.branches.push_back(ways(model.branches[way.branch])[way.side]);
+    for (const Way& way : of)
+        result.branches.push_back(branch_sides(model.branches[way.branch])[way.side]);
     return result;
 }
 
@@ -251,8 +254,10 @@ void VariantSolver::read(const Model& model, const Branch& side,
             };
             values = row();
             // An idle mode of the design may be none here.
-            if (std::ranges::any_of(values, [](double x) { return std::isnan(x); }))
-                analyses = {}, values = row();
+            if (std::ranges::any_of(values, [](double x) { return std::isnan(x); })) {
+                analyses = {};
+                values = row();
+            }
         } else {
             for (const std::size_t k : here)
                 values.push_back(
@@ -335,10 +340,10 @@ VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
     }
     for (const Group& group : groups_)
         for (const Way& way : group.ways) {
-            Branch side = ways(variant.branches[way.branch])[way.side];
+            Branch side = branch_sides(variant.branches[way.branch])[way.side];
             side.steps = points_;
             const EquilibriumPath path =
-                walk(BranchSide{side.name, on_branch(variant, side), side}, {.leg = leg});
+                solve_branch(BranchSide{side.name, on_branch(variant, side), side}, {.leg = leg});
             read(variant, side, *own, way, path, {}, result);
         }
     finish(result);

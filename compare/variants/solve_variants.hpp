@@ -76,7 +76,7 @@ class VariantSolver {
         int point = -1;  // recorded point; -1: every one
     };
     struct Way {
-        std::size_t branch = 0, side = 0;  // position in Model::branches, in ways() of it
+        std::size_t branch = 0, side = 0;  // position in Model::branches, in branch_sides() of it
         std::vector<Reading> readings = {};
         Analyses responses = {};  // of the design, where a characteristic is read
     };

@@ -62,15 +62,17 @@ double place(const Pusher& of, const BranchSide& side, Leg leg, double a, double
     for (int k = 0; k < 60 && std::abs(b - a) > 1e-9 * std::abs(side.branch.to); ++k) {
         const double c = a + f_a / (f_a - f_b) * (b - a);
         double f_c = std::numeric_limits<double>::quiet_NaN();
-        walk_through(side, leg, std::span(&c, 1),
-                     [&](const Equilibrium& state) { f_c = load_on(of, side, state); });
+        solve_at(side, leg, std::span(&c, 1),
+                 [&](const Equilibrium& state) { f_c = load_on(of, side, state); });
         if (!std::isfinite(f_c)) return f_c;
         if (std::abs(f_c) <= 1e-3 * touching) return c;
-        if ((f_c > 0) != (f_b > 0))
-            a = b, f_a = f_b;
-        else
+        if ((f_c > 0) != (f_b > 0)) {
+            a = b;
+            f_a = f_b;
+        } else
             f_a /= 2;
-        b = c, f_b = f_c;
+        b = c;
+        f_b = f_c;
     }
     return b;
 }
@@ -95,7 +97,7 @@ std::vector<LiftOff> lift_offs(const Model& model, const Branch& branch, Leg leg
             const Unit unit = unit_of(branch.unit);
             list.push_back({what, parameter_in(unit, a), unit});
         };
-        walk_through(side, leg, requested_parameters({side}, 1), [&](const Equilibrium& state) {
+        solve_at(side, leg, requested_parameters({side}, 1), [&](const Equilibrium& state) {
             for (std::size_t p = 0; p < pushing.size(); ++p) {
                 const Pusher& of = pushing[p];
                 const double now = load_on(of, side, state);

@@ -69,7 +69,7 @@ std::optional<AtRest> at_rest(const Model& model) {
 
 std::string prefix(const std::string& name) { return name.empty() ? "" : name + "."; }
 
-struct Reading {
+struct PrintedValue {
     std::vector<std::string> place;
     double value;
     const char* unit;
@@ -79,16 +79,16 @@ std::vector<std::string> place_of(const Wheel& wheel) {
     return {"wheels", wheel.name};
 }
 
-std::vector<Reading> of_wheels(const AtRest& state, const Entry& entry) {
-    std::vector<Reading> list;
+std::vector<PrintedValue> of_wheels(const AtRest& state, const Entry& entry) {
+    std::vector<PrintedValue> list;
     for (const auto& wheel : state.model.wheels)
         if (const auto value = state.find(prefix(wheel.name) + entry.name))
             list.push_back({place_of(wheel), *value, symbol(entry.unit)});
     return list;
 }
 // Of the wheel centres, from the drawing.
-std::vector<Reading> movements(const AtRest& state) {
-    std::vector<Reading> list;
+std::vector<PrintedValue> movements(const AtRest& state) {
+    std::vector<PrintedValue> list;
     for (std::size_t w = 0; w < state.model.wheels.size(); ++w) {
         const Wheel& wheel = state.model.wheels[w];
         Vector3d by;
@@ -99,8 +99,8 @@ std::vector<Reading> movements(const AtRest& state) {
     }
     return list;
 }
-std::vector<Reading> of_elements(const AtRest& state, bool springs) {
-    std::vector<Reading> list;
+std::vector<PrintedValue> of_elements(const AtRest& state, bool springs) {
+    std::vector<PrintedValue> list;
     for (const auto& elastic : state.model.elastics) {
         const bool is_spring = member<ScalarLaw>(elastic.kind) != nullptr;
         if (elastic.written_as != WrittenAs::itself || is_spring != springs) continue;
@@ -125,8 +125,8 @@ std::string words_of(const Plausible& range) {
 }
 
 // The first reading out of the range, with the number of others.
-void judge(const std::vector<Reading>& readings, const std::string& output, const Plausible& range,
-           std::vector<Implausible>& list) {
+void judge(const std::vector<PrintedValue>& readings, const std::string& output,
+           const Plausible& range, std::vector<Implausible>& list) {
     int more = -1;
     for (const auto& [place, value, unit] : readings)
         if (!(value >= range.from && value <= range.to) && ++more == 0)
@@ -260,12 +260,12 @@ std::string exchanged_joints(const Drawn& d, BodyId body) {
 
 std::string wrong_body(const Drawn& d, const std::string& name, const Attached& of,
                        const Attached& other) {
-    constexpr double apart = 1e-3, far = 1;  // [m]
+    constexpr double distinct = 1e-3, far = 1;  // [m]
     const double away = d.nearest(of.body, of.at, of.connection);
     if (of.body == ground || !std::isfinite(away) || away <= far) return {};
     const double size = d.extent(of.body, of.connection),
                  near = d.nearest(other.body, of.at, other.connection);
-    if (size <= apart || away <= by_far * size || away <= by_far * near) return {};
+    if (size <= distinct || away <= by_far * size || away <= by_far * near) return {};
     return fmt::format(
         "'{}' is {:.0f} mm from the other points of '{}', which extend over {:.0f} mm, and {:.0f} "
         "mm from those of '{}'; is '{}' the body meant?",

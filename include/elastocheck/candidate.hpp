@@ -22,15 +22,15 @@ namespace elastocheck::compare {
 struct PointColumn {
     std::size_t channel = 0;  // position in Comparison::channels
     bool change = false;      // relative to the design position
-    // per point, in the channel's unit; NaN for a missing value, infinite for a value that is not a
-    // number
+    // per point, in the channel's unit; NaN for a missing value, infinite for a value that is
+    // not a number
     std::vector<double> values;
 };
 
 // All vectors have one entry per point, or none.
 struct Points {
-    // name of the branch; empty: of branches on different sides of a = 0, the one that reaches the
-    // point
+    // name of the branch; empty: of branches on different sides of a = 0, the one that
+    // reaches the point
     std::vector<std::string> branch;
     std::vector<double> a;                // parameter, in the branch's unit
     std::optional<std::size_t> abscissa;  // a channel that places the points ...
@@ -157,8 +157,8 @@ struct CandidateState {
     std::vector<Pose> poses;  // one per Model::bodies; NaN for a body without a given pose
 };
 
-// Points with every output computed from the poses, and the residuals of the states in the legs'
-// equations.
+// Points with every output computed from the poses, and the residuals of the states in
+// the legs' equations.
 Candidate candidate_of(const Model& model, const Comparison& comparison, std::string name,
                        const std::vector<CandidateState>& states);
 

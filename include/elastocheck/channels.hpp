@@ -62,8 +62,8 @@ struct Coordinate {
 struct OfElement {
     static constexpr ChannelKind kind = ChannelKind::element;
     int element = 0;  // position in Model::elastics
-    int component =
-        0;  // 0-5 along and about x y z, of a spring 0; then 6-11 the conjugate forces and moments
+    // 0-5 along and about x y z, of a spring 0; then 6-11 the conjugate forces and moments
+    int component = 0;
 };
 // Axial force of a joint that fixes the distance of two points, positive in tension:
 // F · (p_j - p_i) / |p_j - p_i|, F on its body i.

@@ -90,7 +90,11 @@ struct Tolerance {
 inline constexpr double default_share = 0.01;
 inline constexpr Tolerance default_tolerance{.mm = 0.01, .deg = 0.001, .share = default_share};
 
-enum class Grade { pass, fail, not_judged };
+enum class Grade {
+    pass,       // isfinite(d) && d ≤ limit for every deviation d that is compared, at least one
+    fail,       // some d > limit or not finite
+    not_judged  // nothing compared, or a reference or its proof is missing: reasons are given
+};
 const char* name(Grade verdict);  // "pass", "fail", "not judged"
 
 // ---- Scale of a branch, and bounds within which the references have to agree.
@@ -237,8 +241,8 @@ struct Comparison {
     std::vector<BranchComparison> branches;
     int compared = 0;  // numbers compared in all
 
-    // every leg converged, the references agree, every branch moves some output, and something was
-    // compared
+    // every leg converged, the references agree, every branch moves some output, and
+    // something was compared
     bool conclusive() const;
     // The branch of this name. Pre: there is one.
     const BranchComparison& branch(std::string_view name) const;
@@ -252,8 +256,8 @@ struct Options {
     int every = 1;                      // compares every `every`-th step (SolverSettings)
     Agreement agreement = {};
     std::string abscissa = {};  // name of a channel; empty: default_abscissa
-    // prove that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; a disproved landmark is an
-    // objection
+    // prove that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; a disproved landmark
+    // is an objection
     bool prove = true;
     // of these, only the last point of the equilibrium leg on each side of a branch
     bool prove_ends_only = false;

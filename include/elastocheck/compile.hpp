@@ -15,9 +15,9 @@ enum class Detail {
 // output reads, parts without effect or never active, elements and joints within one body,
 // duplicates. Bodies fixed to each other are merged, links with two balls become distances. An
 // output lost with a joint is listed there. In either detail a branch keeps its place and its
-// remaining drivers; a branch that moves nothing is listed as well. The motion of a joint without
-// length, offset or angle is removed. Pre: the scene is consistent (read_scene checks files). Never
-// throws.
+// remaining drivers; a branch that moves nothing is listed as well. The motion of a joint
+// without length, offset or angle is removed. Pre: the scene is consistent (read_scene checks
+// files). Never throws.
 Model compile(const Scene& scene, Detail detail = Detail::required);
 
 }  // namespace elastocheck

@@ -14,8 +14,8 @@
 namespace elastocheck::reference::equilibrium {
 
 struct Options {
-    // on the largest scaled residual; a point is accepted by this residual, never by a solver's
-    // status
+    // on the largest scaled residual; a point is accepted by this residual, never by
+    // a solver's status
     double tolerance = 1e-12;
     int iteration_limit = 100;  // per solve
     // smallest step: the whole branch halved this often; then the branch counts as ended
@@ -28,11 +28,11 @@ struct Options {
 // constraints violated by the design pose.
 //
 // The path has one Equilibrium per point, or passes it to `visit`, up to the first that is not
-// reached. It ends where the branch ends, independently of the points: `branch_lost` where it turns
-// back or steepens, `singular` where it bifurcates or loses stability, `inconsistent_constraints`
-// where the joints cannot be closed (named), `loaded_idle_mode` where a load acts on an unresisted
-// motion. `not_finite` and `iteration_limit` are numerical failures. `detail` has the reason of an
-// outcome.
+// reached. It ends where the branch ends, independently of the points: `branch_lost` where it
+// turns back or steepens, `singular` where it bifurcates or loses stability,
+// `inconsistent_constraints` where the joints cannot be closed (named), `loaded_idle_mode` where a
+// load acts on an unresisted motion. `not_finite` and `iteration_limit` are numerical failures.
+// `detail` has the reason of an outcome.
 //
 // Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves a quantity
 // that its joint or element does not have.

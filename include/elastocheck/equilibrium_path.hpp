@@ -21,27 +21,44 @@ struct Equilibrium {
     std::vector<Wrench>
         // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
         reactions;
-    double constraint_error =
-        0;  // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
+    // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
+    double constraint_error = 0;
 };
 
+// How a path ended. J is the matrix of the linearised equations, ∂(G, Φ)/∂(q, λ); M its reduced
+// Hessian, the stiffness of the motions that the joints allow; z' = dz/da the tangent of the path of
+// z = (q, λ); ε the unit round-off, 2⁻⁵². The thresholds are those of the leg that returns the outcome.
 enum class Outcome {
+    // every requested point is reached, with the residual of each below the tolerance of its leg
     converged,
-    singular,                  // the linear system is rank deficient on the branch
-    loaded_idle_mode,          // a load acts on a motion that nothing resists
-    inconsistent_constraints,  // redundant joints are inconsistent
-    not_finite,                // a NaN or infinity appeared
-    iteration_limit,           // the iteration stopped before its own criterion was met
-    diverged,                  // steps alternate and grow: the method is unstable here
-    // limit point: the branch turns back, and no equilibrium continues it
+    // smallest / largest pivot of J ≤ ε (6nb + m), or det J or det M changes its sign on the step and
+    // nothing shows whether the path turns back or another one crosses it
+    singular,
+    // |u·f| > tolerance · |f| for a motion u with Φ_q u = 0 and K u = 0, f the forces on the bodies
+    loaded_idle_mode,
+    // |y·Φ| > tolerance for a dependency yᵀ Φ_q = 0 of the joints, or |Φ| > tolerance at the pose that
+    // minimises it: no pose satisfies all joints
+    inconsistent_constraints,
+    not_finite,  // !isfinite of a residual, a correction, a state or its response
+    // the residual or the correction is above its tolerance after the last iteration allowed
+    iteration_limit,
+    // fixed steps: Δqⁿ·Δqⁿ⁻¹ < 0 with |Δqⁿ| > |Δqⁿ⁻¹| twice in a row, a rotation |Δπ| > 1 rad in a step,
+    // or two increments that should agree differ by more than half the larger one
+    diverged,
+    // |z'| ~ (a* - a)^-½ → ∞ as the step approaches a*: the branch turns back at a*, and no equilibrium
+    // continues it
     limit_point,
-    // bifurcation: another path of equilibria crosses here, and the branch is unstable past it
+    // det J or an eigenvalue of M passes zero while z' stays finite: another path crosses here, and the
+    // branch is unstable past it
     bifurcation_point,
-    branch_lost,       // no equilibrium continues the branch, however small the load step
-    not_conservative,  // a load or a formulation has no energy: the energy leg does not apply
-    // the cost grows with the cube of the scene and exceeds the leg's limit: not run
+    // no step above the smallest one reaches an equilibrium of this path, and none of the reasons above
+    // is shown
+    branch_lost,
+    // a follower load, moment or formulation with curl f ≠ 0: the energy leg has no function to minimise
+    not_conservative,
+    // 6nb + m above the leg's limit (its cost grows with the cube): not run
     too_large,
-    // the branch left the range of a curve that is defined within its end knots only
+    // x < x_first or x > x_last of a curve that is defined between its end knots only
     outside_table,
 };
 const char* name(Outcome outcome);  // "converged", "loaded idle mode", ...
@@ -69,9 +86,9 @@ struct EquilibriumPath {
     Counts counts;
 };
 
-// Visitor that receives each point as it is found, in order, so that the path need not be stored:
-// with a visitor a leg returns the path without points. The reference is valid during the call
-// only.
+// Visitor that receives each point as it is found, in order, so that the path need not be
+// stored: with a visitor a leg returns the path without points. The reference is valid during
+// the call only.
 using Visit = std::function<void(const Equilibrium&)>;
 
 }  // namespace elastocheck

@@ -45,11 +45,12 @@ struct SolverSettings {
 // Runs one branch side by any leg. Ends before the first point at which an element is deformed
 // beyond the end of a curve that is not extrapolated: Outcome::outside_table. With a `visit`,
 // points are not kept.
-EquilibriumPath walk(const BranchSide& side, const SolverSettings& solver, const Visit& visit = {});
+EquilibriumPath solve_branch(const BranchSide& side, const SolverSettings& solver,
+                             const Visit& visit = {});
 
 // Joins the sides into one path from `from` to `to`; one side is returned as it was run. The path
 // has the outcome of the first side that failed, and the points reached on either side of a = 0.
-EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver);
+EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverSettings& solver);
 
 // Residuals of the state in the equations of a leg.
 Residuals judge(Leg by, const BranchSide& side, const Equilibrium& state);

@@ -53,8 +53,8 @@ struct ModelJoint {
     std::string name;
     BodyId i = ground, j = ground;
     Point at;  // on body i (its origin for joints without a point)
-    int driven =
-        -1;  // position in Model::constraints of the one whose offset, length or angle may move, or -1
+    // position in Model::constraints of the one whose offset, length or angle may move, or -1
+    int driven = -1;
     bool active_only_where_driven = false;
 };
 

@@ -56,7 +56,7 @@ using VisitBatch =
     std::function<void(std::size_t variant, std::size_t branch, const EquilibriumPath& path)>;
 
 // Follows all branches of all variants by `series`, four variants at a time in one arithmetic, each
-// branch from load factor 0 to branch.to. A branch with two sides is two branches here (ways() in
+// branch from load factor 0 to branch.to. A branch with two sides is two branches here (branch_sides() in
 // models/branch.hpp), and every part of a model is active on all its branches.
 //
 // The result of a variant is that of solve() with the method `series`, within 1e-12 of the largest

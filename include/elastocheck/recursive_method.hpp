@@ -1,6 +1,6 @@
 // The stepping methods and their settings.
-// Each method solves one saddle-point system per step; they differ in the terms that they leave
-// out.
+// Each method solves one saddle-point system per step; they differ in the terms that
+// they leave out.
 //
 //   method      right-hand side                                  matrix         solves  order
 //   published   what (29) carries over; constraints (7)          K of (19)      1       0

@@ -96,8 +96,8 @@ struct Damper {
 enum class Axle { front, rear };
 struct Vehicle {
     double wheelbase = 0;  // [m] > 0
-    double cg_height =
-        0;  // of the whole vehicle, above the contact patches of the design position [m] > 0
+    // of the whole vehicle, above the contact patches of the design position [m] > 0
+    double cg_height = 0;
     Axle axle = Axle::front;  // axle of the scene's wheels
     double brake_share = 0;   // of the vehicle's braking force, at this axle, 0 ... 1
     double drive_share = 0;   // of the driving force, 0 ... 1

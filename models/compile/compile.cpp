@@ -76,8 +76,8 @@ void turn_round(Model& model) {
         }
 }
 
-// Removes drivers of joints without a length, offset or angle, and reports branches that move
-// nothing.
+// Removes drivers of joints without a length, offset or angle, and reports branches
+// that move nothing.
 void name_what_cannot_move(Model& model) {
     for (Branch& branch : model.branches) {
         std::erase_if(branch.drivers, [&](const Driver& driver) {

@@ -10,8 +10,8 @@
 
 namespace elastocheck::reduce {
 
-// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output reads, ground
-// included.
+// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output
+// reads, ground included.
 template <class S, class F>
 void each_output_body(S& scene, F f) {
     for (auto& wheel : scene.wheels) {
@@ -45,8 +45,8 @@ Pose design(const Scene& scene, BodyId body);
 Vector3 position(const Scene& scene, const Point& p);
 Vector3 direction(const Scene& scene, const Direction& u);
 
-// Whether a length, offset or angle of the joint differs from the drawing, so that it moves without
-// load.
+// Whether a length, offset or angle of the joint differs from the drawing, so that it
+// moves without load.
 bool is_strained_at_design(const JointKind& joint, const Scene& scene);
 // Whether the element has a force; assumed if its markers are apart or rotated.
 bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene);

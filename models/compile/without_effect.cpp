@@ -63,9 +63,9 @@ void drop_what_never_stands(Scene& scene) {
         },
         [&](std::size_t k) {
             const Elastic& elastic = scene.elastics[k];
-            const bool nothing = is_zero(elastic.kind);
-            if (driven.elastics[k] || (!elastic.active_only_where_driven && !nothing)) return "";
-            return nothing ? "its rates and preload are zero" : "no branch drives it";
+            const bool vanishes = is_zero(elastic.kind);
+            if (driven.elastics[k] || (!elastic.active_only_where_driven && !vanishes)) return "";
+            return vanishes ? "its rates and preload are zero" : "no branch drives it";
         });
 }
 

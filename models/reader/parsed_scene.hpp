@@ -22,8 +22,8 @@ class ParsedScene {
     // Of a file. Throws SceneError if it cannot be read.
     explicit ParsedScene(const std::filesystem::path& file);
 
-    // As read_whole() of the text; without `warnings` nothing is checked for them. Throws SceneError.
-    // Thread-safe.
+    // As read_whole() of the text; without `warnings` nothing is checked for them.
+    // Throws SceneError. Thread-safe.
     Scene read(std::span<const Setting> settings,
                std::vector<std::string>* warnings = nullptr) const;
     std::vector<RequestedDefinition> definitions(std::span<const Setting> settings) const;

@@ -23,8 +23,10 @@ std::string at(const Cursor& field, const std::string& what) {
 void check_size(const Cursor& scene, const Units& units, const Scene& read,
                 std::vector<std::string>& warnings) {
     Vector3 low = Vector3::Constant(INFINITY), high = -low;
-    for (const auto& point : read.hardpoints)
-        low = low.cwiseMin(point.position), high = high.cwiseMax(point.position);
+    for (const auto& point : read.hardpoints) {
+        low = low.cwiseMin(point.position);
+        high = high.cwiseMax(point.position);
+    }
     const double extent = (high - low).maxCoeff();
     const bool huge = extent > largest_car,
                tiny = !read.wheels.empty() && extent > 0 && extent < smallest_car;

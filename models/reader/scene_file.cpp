@@ -205,7 +205,7 @@ void keep_each_once(std::vector<Number>& numbers) {
 // `twins`: definitions of the other side; its own are written to `own`.
 Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::string>* warnings,
                 const Definitions* twins, Definitions* own) {
-    if (scene.value->kind == Value::Kind::nothing)
+    if (scene.value->kind == Value::Kind::empty)
         scene.fail("empty; a scene begins with `elastocheck: 1`");
     scene.only_keys({"elastocheck",     "name",     "units",    "mirror",      "gravity",
                      "points",          "bodies",   "joints",   "springs",     "stops",

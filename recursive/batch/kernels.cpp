@@ -37,7 +37,7 @@ void eliminate_all(Factors& lu) {
             }
         }
     }
-    lu.least_pivot = least;
+    lu.min_pivot = least;
     lu.largest_pivot = most;
     lu.largest_multiplier = multiplier;
     lu.sign = sign;
@@ -63,7 +63,7 @@ void solve_all(Factors& lu, const Lanes* b, Lanes* x) {
     }
 }
 
-Lanes least_pivot_of(Matrix<Lanes>& A) {
+Lanes min_pivot_of(Matrix<Lanes>& A) {
     Lanes least = std::numeric_limits<double>::infinity();
     for (Eigen::Index k = 0; k < A.rows(); ++k) {
         const Lanes pivot = A(k, k);
@@ -93,8 +93,8 @@ ELASTOCHECK_WITH_AVX2 void eliminate_avx2(Factors& lu) { eliminate_all(lu); }
 ELASTOCHECK_WITH_AVX2 void solve_avx2(Factors& lu, const Lanes* b, Lanes* x) {
     solve_all(lu, b, x);
 }
-ELASTOCHECK_WITH_AVX2 void least_pivot_avx2(Matrix<Lanes>& A, Lanes& least) {
-    least = least_pivot_of(A);
+ELASTOCHECK_WITH_AVX2 void min_pivot_avx2(Matrix<Lanes>& A, Lanes& least) {
+    least = min_pivot_of(A);
 }
 
 }  // namespace
@@ -111,12 +111,12 @@ void eliminate(Factors& lu) { with_avx2 ? eliminate_avx2(lu) : eliminate_all(lu)
 void solve(Factors& lu, const Lanes* b, Lanes* x) {
     with_avx2 ? solve_avx2(lu, b, x) : solve_all(lu, b, x);
 }
-Lanes least_pivot(Matrix<Lanes>& A) {
+Lanes min_pivot(Matrix<Lanes>& A) {
     Lanes least = 0;
     if (with_avx2)
-        least_pivot_avx2(A, least);
+        min_pivot_avx2(A, least);
     else
-        least = least_pivot_of(A);
+        least = min_pivot_of(A);
     return least;
 }
 

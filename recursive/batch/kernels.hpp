@@ -25,7 +25,7 @@ struct Factors {
     std::vector<Lanes> values;  // of the scaled and bordered matrices, in the order of the pattern
     std::vector<Lanes> LU, inverse, y;  // as in SparseLU
     // of the last elimination: pivots by size, largest multiplier of L, sign of the determinant
-    Lanes least_pivot, largest_pivot, largest_multiplier, sign;
+    Lanes min_pivot, largest_pivot, largest_multiplier, sign;
     Lanes finite;  // zero; NaN where an entry of a matrix is not finite
 
     std::size_t size() const { return static_cast<std::size_t>(order->pattern.size); }
@@ -41,6 +41,6 @@ void solve(Factors& lu, const Lanes* b, Lanes* x);
 
 // Least pivot of the LDLᵀ of a symmetric matrix [n × n] without pivoting; destroys the matrix, of
 // which the lower half is read.
-Lanes least_pivot(Matrix<Lanes>& A);
+Lanes min_pivot(Matrix<Lanes>& A);
 
 }  // namespace elastocheck::recursive::batch

@@ -17,7 +17,7 @@ namespace elastocheck::recursive::batch {
 namespace {
 // A lane whose smallest pivot at the design position, over the largest, is below this fraction of
 // the design's ratio leaves: it may have an idle mode or a redundancy that the design has not.
-constexpr double least_share_of_ratio = 1e-3;
+constexpr double min_share_of_ratio = 1e-3;
 // Strain up to which a held mode is exactly idle, or a combination exactly redundant.
 constexpr double exactly_idle = 1e-12;
 // Relative correction of x_1 above which all coefficients of a lane are corrected. The scalar path
@@ -25,7 +25,7 @@ constexpr double exactly_idle = 1e-12;
 // the higher orders, a fraction of the travel, 3e-12 is below the tolerance of the series.
 constexpr double loses_digits = 30 * series::loses_digits;
 constexpr double largest_multiplier = 1e4;  // as in the scalar path
-constexpr int most_coordinates = 300;       // of a stability test with a dense matrix
+constexpr int max_coordinates = 300;        // of a stability test with a dense matrix
 
 double value(const Vector<double>& c, double tau) {
     double sum = 0;
@@ -66,7 +66,7 @@ void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int at) {
 // Whether an idle mode may be unstable under load: the first look of negative_idle_stiffness().
 bool may_push_idle(SteppingState& s) {
     constexpr double noticed = 1e-6;
-    const double stiffness = least_of_idle(s);
+    const double stiffness = min_of_idle(s);
     if (!(stiffness < 0)) return false;
     external_force<double>(s.model, s.branch, s.inputs, s.q, s.upper);
     elastic_force<double>(s.model, s.inputs, s.q, s.force);
@@ -166,10 +166,10 @@ void Pack::prepare(int at, const Branch& branch) {
     for (int b = 0; b < s.n() / 6; ++b) s.system.weight.segment(6 * b + 3, 3).setConstant(s.length);
     s.system.held.value = design.system.held.value;
     slot.curves = series::curves_of(slot.model);
-    const Branch nothing;
+    const Branch undriven;
     go_to(s, {0, 0});
-    assemble_consistent<double>(s.model, nothing, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
-    external_force<double>(s.model, nothing, s.inputs, s.q, s.R_d);
+    assemble_consistent<double>(s.model, undriven, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
+    external_force<double>(s.model, undriven, s.inputs, s.q, s.R_d);
     s.R_d -= elastic_force<double>(s.model, s.inputs, s.q);
     s.Phi_d = s.Phi;
     // A residual that is rounding of coordinates, or of stiffness times them, counts as zero.
@@ -198,14 +198,14 @@ void Pack::follow_group(std::size_t group) {
         if (slot.inside) settles = settles || !slot.at_rest || !starts_as_drawn(front);
     });
     if (settles) {
-        walk(group, Drive::start, true);
+        solve_branch(group, Drive::start, true);
         each(inside(), [&](Slot& slot, int) {
             SteppingState& s = *slot.s;
             if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
             if (settled(s, Outcome::converged, 0.0) != Outcome::converged) slot.inside = false;
         });
     }
-    walk(group, Drive::rate, !settles);
+    solve_branch(group, Drive::rate, !settles);
 }
 
 void Pack::assemble(int at) {
@@ -227,8 +227,8 @@ void Pack::load_matrix(int at) {
                  s.system.M.values[static_cast<std::size_t>(of.source[e])] * of.factor[e]);
 }
 
-// Factorises the matrices of all lanes, and updates and checks the held directions of those in the
-// mask.
+// Factorises the matrices of all lanes, and updates and checks the held directions of those
+// in the mask.
 void Pack::factorise(const Mask& mask, bool at_design) {
     eliminate(lu);
     const SaddlePoint<double>& of = design.system;
@@ -249,13 +249,12 @@ void Pack::factorise(const Mask& mask, bool at_design) {
         SteppingState& s = *slot.s;
         ++s.counts.factorisations;
         orthonormalise(s.system);
-        const double ratio = lane(lu.least_pivot, at) / lane(lu.largest_pivot, at);
+        const double ratio = lane(lu.min_pivot, at) / lane(lu.largest_pivot, at);
         const bool regular = lane(lu.finite, at) == 0 && is_regular(s, ratio) &&
                              lane(lu.largest_multiplier, at) <= largest_multiplier &&
                              check_factors(s, s.q, ratio) == Outcome::converged;
-        slot.inside =
-            regular && (!at_design || (ratio > least_share_of_ratio * design.pivot_ratio &&
-                                       strain_of_held(s, s.q) <= exactly_idle));
+        slot.inside = regular && (!at_design || (ratio > min_share_of_ratio * design.pivot_ratio &&
+                                                 strain_of_held(s, s.q) <= exactly_idle));
     });
 }
 
@@ -293,7 +292,7 @@ void Pack::use_pieces(series::Equations<Lanes>& e, int at) {
 }
 
 void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
-                           const std::vector<std::array<double, Lanes::count>>& to) {
+                           const std::vector<LaneEnds>& to) {
     each(inside(), [&](Slot& slot, int) { go(*slot.s, drive, 0); });
     if (e.curved) {
         each(inside(),
@@ -327,7 +326,7 @@ void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
 
 // The polynomial about the states of the lanes, with the factors of the last elimination.
 void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, Drive drive,
-                  const std::array<double, Lanes::count>& to) {
+                  const LaneEnds& to) {
     const SaddlePoint<double>& of = design.system;
     const int n = of.n, m = of.m;
     each(inside(), [&](Slot& slot, int at) {
@@ -397,7 +396,10 @@ static void stop_at_knots(Slot& slot, const series::Near& near) {
             met.push_back(*there);
             of.push_back(k);
             if (there->at_once) slot.inside = false;
-            if (there->tau < slot.reached) slot.reached = there->tau, slot.last = false;
+            if (there->tau < slot.reached) {
+                slot.reached = there->tau;
+                slot.last = false;
+            }
         }
     // Several deformations may reach their knots at the same τ.
     for (std::size_t k = 0; k < met.size(); ++k)
@@ -431,7 +433,7 @@ void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive,
 }
 
 // Newton corrections at the ends of the ranges; the last factors serve the next expansion.
-void Pack::correct_ends(Drive drive, const std::array<double, Lanes::count>& to) {
+void Pack::correct_ends(Drive drive, const LaneEnds& to) {
     Mask correcting = going();
     each(correcting, [&](Slot& slot, int at) {
         move_to(slot, drive, slot.reached);
@@ -481,8 +483,8 @@ void Pack::correct_ends(Drive drive, const std::array<double, Lanes::count>& to)
     });
 }
 
-// As least_stiffness() of one variant: the same iteration with the factors of the lanes.
-std::array<LeastStiffness, Lanes::count> Pack::least_stiffness(const Mask& mask, Matrix<Lanes>& U) {
+// As min_stiffness() of one variant: the same iteration with the factors of the lanes.
+std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, Matrix<Lanes>& U) {
     constexpr int vectors = 3, first_turns = 5, turns = 2;
     std::array<LeastStiffness, Lanes::count> found{};
     const int n = design.system.n;
@@ -502,7 +504,7 @@ std::array<LeastStiffness, Lanes::count> Pack::least_stiffness(const Mask& mask,
         return sum;
     };
     const auto orthonormalise_columns = [&] {
-        constexpr double nothing = 1e-9;
+        constexpr double zero_tolerance = 1e-9;
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
             const Lanes whole = inner(U, c, U, c);
             for (int pass = 0; pass < 2; ++pass)
@@ -514,7 +516,8 @@ std::array<LeastStiffness, Lanes::count> Pack::least_stiffness(const Mask& mask,
             for (int k = 0; k < n; ++k) U(k, c) *= inverse;
             // one variant alone drops the dependent vector
             each(mask, [&](Slot& slot, int at) {
-                if (!(lane(left, at) > nothing * nothing * lane(whole, at))) slot.inside = false;
+                if (!(lane(left, at) > zero_tolerance * zero_tolerance * lane(whole, at)))
+                    slot.inside = false;
             });
         }
     };
@@ -545,17 +548,17 @@ std::array<LeastStiffness, Lanes::count> Pack::least_stiffness(const Mask& mask,
     each(mask, [&](Slot&, int at) {
         Eigen::MatrixXd one(H.rows(), H.cols());
         for (Eigen::Index k = 0; k < H.size(); ++k) one.data()[k] = lane(H.data()[k], at);
-        found[static_cast<std::size_t>(at)] = detail::least_of(one);
+        found[static_cast<std::size_t>(at)] = detail::min_of(one);
     });
     return found;
 }
 
-// Whether the start is stable by the tests of stability.hpp; a lane in which one of them fails
-// leaves.
+// Whether the start is stable by the tests of stability.hpp; a lane in which one of
+// them fails leaves.
 void Pack::judge_start(Matrix<Lanes>& softest) {
     const int n = design.system.n;
-    const auto least = least_stiffness(inside(), softest);
-    if (n > most_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
+    const auto least = min_stiffness(inside(), softest);
+    if (n > max_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
     each(inside(), [&](Slot& slot, int at) {
         const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
         slot.inside = of_energy && mu > 0 && !may_push_idle(*slot.s);
@@ -602,20 +605,22 @@ void Pack::judge_start(Matrix<Lanes>& softest) {
             double size = 0;
             for (int e = held.begin(c); e < held.end(c); ++e) {
                 const auto k = static_cast<std::size_t>(e);
-                if (const double here = std::abs(held.value[k] * W[held.row[k]]); here > size)
-                    most = held.row[k], size = here;
+                if (const double here = std::abs(held.value[k] * W[held.row[k]]); here > size) {
+                    most = held.row[k];
+                    size = here;
+                }
             }
             if (most >= 0) add(most, most, stiffness);
         }
     });
-    const Lanes least_of_all = least_pivot(definite);
-    each(inside(), [&](Slot& slot, int at) { slot.inside = lane(least_of_all, at) > 0; });
+    const Lanes min_of_all = min_pivot(definite);
+    each(inside(), [&](Slot& slot, int at) { slot.inside = lane(min_of_all, at) > 0; });
 }
 
 // Stability at the ends of the ranges, and of the determinant between.
 void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
     std::array<LeastStiffness, Lanes::count> least{};
-    if (stable) least = least_stiffness(going(), softest);
+    if (stable) least = min_stiffness(going(), softest);
     each(going(), [&](Slot& slot, int at) {
         const double log_end = log_determinant(lu, at);
         slot.inside = static_cast<int>(lane(lu.sign, at)) == slot.side &&
@@ -693,17 +698,16 @@ void Pack::cross_knots(series::Equations<Lanes>& e) {
     });
 }
 
-void Pack::walk(std::size_t group, Drive drive, bool from_design) {
+std::vector<LaneEnds> Pack::load_group(std::size_t group, Drive drive) {
     const bool rate = drive == Drive::rate;
     series::Equations<Lanes>& e = rate ? equations[group].rate : equations[group].start;
     const std::vector<std::size_t>& branches = groups[group];
-    const std::size_t sides = rate ? branches.size() : 1;
-    std::vector<std::array<double, Lanes::count>> to(sides);
+    std::vector<LaneEnds> to(rate ? branches.size() : 1);
     for (auto& end : to) end.fill(1);
     each(inside(), [&](Slot& slot, int at) {
         const auto k = static_cast<std::size_t>(at);
         series::take(e, slot.model, slot.branch, at);
-        for (std::size_t side = 0; rate && side < sides; ++side)
+        for (std::size_t side = 0; rate && side < to.size(); ++side)
             to[side][k] = slot.model.branches[branches[side]].to;
         for (Eigen::Index row = 0; !rate && row < e.G_d.size(); ++row)
             set_lane(e.G_d[row], at, -slot.s->R_d[row]);
@@ -711,6 +715,86 @@ void Pack::walk(std::size_t group, Drive drive, bool from_design) {
             set_lane(e.Phi_d[row], at, slot.s->Phi_d[row]);
     });
     series::settle_on_constants(e);
+    return to;
+}
+
+void Pack::keep_start(const series::Equations<Lanes>& e) {
+    each(inside(), [&](Slot& slot, int at) {
+        read_deformations(e, slot, at);
+        slot.deformations_at_start = slot.deformations;
+        slot.curves_at_start = slot.curves;
+        slot.q_start = slot.s->q;
+        slot.lambda_start = slot.s->lambda;
+        slot.side = static_cast<int>(lane(lu.sign, at));
+        slot.log_at_start = log_determinant(lu, at);
+    });
+}
+
+// The expansion at the start of another side is the first one's in another unit of τ: coefficient k
+// times the quotient of the ends to the k.
+void Pack::begin_side(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& to,
+                      std::size_t side) {
+    present = first;
+    const auto share = [&](int at) {
+        const auto k = static_cast<std::size_t>(at);
+        return to[side][k] / to.front()[k];
+    };
+    if (side > 0) {
+        const Lanes shares = each_lane(share);
+        Lanes power = 1;
+        for (Eigen::Index k = 1; k < present.x.cols(); ++k) {
+            power *= shares;
+            for (Eigen::Index row = 0; row < present.x.rows(); ++row) present.x(row, k) *= power;
+        }
+        present.load[1] *= shares;
+    }
+    each(inside(), [&](Slot& slot, int at) {
+        slot.s->q = slot.q_start;
+        slot.s->lambda = slot.lambda_start;
+        go(*slot.s, drive, 0);
+        slot.log_begin = slot.log_at_start;
+        slot.deformations = slot.deformations_at_start;
+        slot.curves = slot.curves_at_start;
+        use_pieces(e, at);
+        double power = 1;
+        for (Eigen::Index row = 0; row < slot.deformations.rows(); ++row) {
+            slot.deformations.row(row) *= power;
+            power *= share(at);
+        }
+        slot.going = true;
+        slot.next = 0;
+    });
+}
+
+void Pack::clear_paths(std::size_t branch) {
+    each(inside(), [&](Slot& slot, int) {
+        EquilibriumPath& path = slot.paths[branch];
+        path.outcome = Outcome::converged;
+        path.detail.clear();
+        const Equilibrium blank{0, std::vector<Pose>(slot.model.bodies.size()),
+                                std::vector<Wrench>(slot.model.joints.size()), 0};
+        path.points.resize(static_cast<std::size_t>(options.points) + 1, blank);
+    });
+}
+
+void Pack::measure_middle(Drive drive) {
+    each(going(), [&](Slot& slot, int at) {
+        move_to(slot, drive, slot.reached / 2);
+        assemble(at);
+    });
+    factorise(going(), false);
+    each(going(), [&](Slot& slot, int at) {
+        slot.in_middle = static_cast<int>(lane(lu.sign, at)) == slot.side
+                             ? std::exp2(log_determinant(lu, at) - slot.log_begin)
+                             : -1;
+    });
+}
+
+void Pack::solve_branch(std::size_t group, Drive drive, bool from_design) {
+    const bool rate = drive == Drive::rate;
+    series::Equations<Lanes>& e = rate ? equations[group].rate : equations[group].start;
+    const std::vector<std::size_t>& branches = groups[group];
+    const std::vector<LaneEnds> to = load_group(group, drive);
     if (from_design)
         start_at_design(e, drive, to);
     else
@@ -721,61 +805,16 @@ void Pack::walk(std::size_t group, Drive drive, bool from_design) {
     expand(e, first, drive, to.front());
     Matrix<Lanes> softest_at_start, softest;
     if (rate) judge_start(softest_at_start);
-    std::array<double, Lanes::count> log_start{};
-    each(inside(), [&](Slot& slot, int at) {
-        read_deformations(e, slot, at);
-        slot.deformations_at_start = slot.deformations;
-        slot.curves_at_start = slot.curves;
-        slot.q_start = slot.s->q;
-        slot.lambda_start = slot.s->lambda;
-        slot.side = static_cast<int>(lane(lu.sign, at));
-        log_start[static_cast<std::size_t>(at)] = log_determinant(lu, at);
-    });
-    for (std::size_t side = 0; side < sides; ++side) {
+    keep_start(e);
+    for (std::size_t side = 0; side < to.size(); ++side) {
         softest = softest_at_start;
-        present = first;
-        if (side > 0) {
-            const Lanes share = each_lane([&](int at) {
-                const auto k = static_cast<std::size_t>(at);
-                return to[side][k] / to.front()[k];
-            });
-            Lanes power = 1;
-            for (Eigen::Index k = 1; k < present.x.cols(); ++k) {
-                power *= share;
-                for (Eigen::Index row = 0; row < present.x.rows(); ++row)
-                    present.x(row, k) *= power;
-            }
-            present.load[1] *= share;
-        }
-        each(inside(), [&](Slot& slot, int at) {
-            slot.s->q = slot.q_start;
-            slot.s->lambda = slot.lambda_start;
-            go(*slot.s, drive, 0);
-            slot.log_begin = log_start[static_cast<std::size_t>(at)];
-            slot.deformations = slot.deformations_at_start;
-            slot.curves = slot.curves_at_start;
-            use_pieces(e, at);
-            const auto lane_at = static_cast<std::size_t>(at);
-            double power = 1;
-            for (Eigen::Index row = 0; row < slot.deformations.rows(); ++row) {
-                slot.deformations.row(row) *= power;
-                power *= to[side][lane_at] / to.front()[lane_at];
-            }
-            slot.going = true;
-            slot.next = 0;
-            if (!rate) return;
-            EquilibriumPath& path = slot.paths[branches[side]];
-            path.outcome = Outcome::converged;
-            path.detail.clear();
-            const Equilibrium blank{0, std::vector<Pose>(slot.model.bodies.size()),
-                                    std::vector<Wrench>(slot.model.joints.size()), 0};
-            path.points.resize(static_cast<std::size_t>(options.points) + 1, blank);
-        });
+        begin_side(e, drive, to, side);
+        if (rate) clear_paths(branches[side]);
         int knots = 0;
         for (const auto& f : slots.front().curves) knots += static_cast<int>(f.curve->knots.size());
-        const int most_expansions = options.series.expansions * (1 + knots);
+        const int max_expansions = options.series.expansions * (1 + knots);
         for (int k = 0; std::ranges::count(going(), true) > 0; ++k) {
-            if (k == most_expansions) {
+            if (k == max_expansions) {
                 each(going(), [](Slot& slot, int) { slot.inside = false; });
                 break;
             }
@@ -786,25 +825,13 @@ void Pack::walk(std::size_t group, Drive drive, bool from_design) {
             each(going(), [&](Slot&, int at) {
                 find_range(present, at, drive, to[side][static_cast<std::size_t>(at)]);
             });
-            if (rate) {
-                each(going(), [&](Slot& slot, int at) {
-                    move_to(slot, drive, slot.reached / 2);
-                    assemble(at);
-                });
-                factorise(going(), false);
-                each(going(), [&](Slot& slot, int at) {
-                    slot.in_middle = static_cast<int>(lane(lu.sign, at)) == slot.side
-                                         ? std::exp2(log_determinant(lu, at) - slot.log_begin)
-                                         : -1;
-                });
-            }
+            if (rate) measure_middle(drive);
             correct_ends(drive, to[side]);
             check_ends(rate, softest);
             each(going(), [&](Slot& slot, int at) {
                 if (rate) sample(at, branches[side]);
                 slot.going = !slot.last;
-                if (slot.going) return;
-                if (!rate) return;
+                if (slot.going || !rate) return;
                 slot.paths[branches[side]].counts = slot.s->counts;
                 if (slot.next != static_cast<std::size_t>(options.points) + 1) slot.inside = false;
             });

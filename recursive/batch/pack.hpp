@@ -37,18 +37,20 @@ struct Slot {
     State<double> from;                                  // at τ = 0 of the present expansion
     State<double> q_start;                               // at the start of the branches
     Vector<double> lambda_start, x;
-    int side = 0;          // as in the scalar path: sign of the determinant at the start
-    double log_begin = 0;  // log₂ |determinant| at the start of the expansion
-    double in_middle = 1;  // determinant in the middle over that at the start
-    double error = 0;      // of the present expansion at its end [m]
-    double reached = 0;    // τ at the end of the present expansion
-    bool last = false;     // whether that is the end of the branch
-    bool going = false;    // on the present side
-    std::size_t next = 0;  // point of the branch
-    double before = 0;     // size of the last correction
+    int side = 0;             // as in the scalar path: sign of the determinant at the start
+    double log_at_start = 0;  // log₂ |determinant| at the start of the branches
+    double log_begin = 0;     // log₂ |determinant| at the start of the expansion
+    double in_middle = 1;     // determinant in the middle over that at the start
+    double error = 0;         // of the present expansion at its end [m]
+    double reached = 0;       // τ at the end of the present expansion
+    bool last = false;        // whether that is the end of the branch
+    bool going = false;       // on the present side
+    std::size_t next = 0;     // point of the branch
+    double before = 0;        // size of the last correction
 };
 
 using Mask = std::array<bool, Lanes::count>;
+using LaneEnds = std::array<double, Lanes::count>;  // parameter at the end of a side, per lane
 
 struct Pack {
     const Analysis& design;
@@ -88,17 +90,24 @@ struct Pack {
     void factorise(const Mask& mask, bool at_design);
     void back_substitute(const Mask& mask);
     void load_rhs(int at);
-    void start_at_design(series::Equations<Lanes>& e, Drive drive,
-                         const std::vector<std::array<double, Lanes::count>>& to);
+    void start_at_design(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& to);
     void use_pieces(series::Equations<Lanes>& e, int at);
     void expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, Drive drive,
-                const std::array<double, Lanes::count>& to);
+                const LaneEnds& to);
     void find_range(const series::Coefficients<Lanes>& c, int at, Drive drive, double to);
-    void correct_ends(Drive drive, const std::array<double, Lanes::count>& to);
+    void correct_ends(Drive drive, const LaneEnds& to);
     void cross_knots(series::Equations<Lanes>& e);
     void check_ends(bool stable, Matrix<Lanes>& softest);
-    void walk(std::size_t group, Drive drive, bool from_design);
-    std::array<LeastStiffness, Lanes::count> least_stiffness(const Mask& mask, Matrix<Lanes>& U);
+    // Loads the equations of a group of branches with the same drivers; the ends of its sides.
+    std::vector<LaneEnds> load_group(std::size_t group, Drive drive);
+    void keep_start(const series::Equations<Lanes>& e);
+    // Returns to the start, with the first side's expansion there scaled to this side.
+    void begin_side(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& to,
+                    std::size_t side);
+    void clear_paths(std::size_t branch);
+    void measure_middle(Drive drive);  // the determinant in the middle of the present expansions
+    void solve_branch(std::size_t group, Drive drive, bool from_design);
+    std::array<LeastStiffness, Lanes::count> min_stiffness(const Mask& mask, Matrix<Lanes>& U);
     void judge_start(Matrix<Lanes>& softest);
     void sample(int at, std::size_t branch);
 };

@@ -26,7 +26,7 @@ struct LeastStiffness {
 // Stability of an equilibrium where a branch starts (stability.hpp).
 struct StartStability {
     LeastStiffness least;
-    Matrix<double> softest;  // the basis that least_stiffness() keeps
+    Matrix<double> softest;  // the basis that min_stiffness() keeps
     bool unstable = false;
     std::string motion;  // where it is unstable: the bodies that move in the softest motion
 };

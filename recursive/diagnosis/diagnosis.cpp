@@ -31,8 +31,8 @@ using Eigen::VectorXd;
 
 // Eigenvalues of a 6×6 matrix with unit diagonal above its rounding (some 1e-15).
 constexpr double stiffness_threshold = 1e-13;
-// A lever is a difference of coordinates: rounding bound for a zero lever, relative to the
-// coordinates.
+// A lever is a difference of coordinates: rounding bound for a zero lever, relative
+// to the coordinates.
 constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
 constexpr double part_threshold = 1e-7;  // smallest entry of a unit combination that counts
 
@@ -234,8 +234,8 @@ std::string describe(const std::string& name, const BodyState<double>& at,
         return fmt::format("{}: translation along ({:.3f}, {:.3f}, {:.3f})", name, u.x(), u.y(),
                            u.z());
     }
-    const Vector3d foot =
-        at.r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
+    // nearest point of the axis to the origin
+    const Vector3d foot = at.r + w.cross(v) / w.squaredNorm();
     const Vector3d u = w.normalized();
     std::vector<std::string> on_axis;
     for (const auto& [what, s_local] : attached) {
@@ -466,7 +466,10 @@ std::vector<SelfStress> self_stresses(const Model& model, const Branch& branch,
         double largest = 0;
         for (const Wrench& w : stress.wrenches)
             largest = std::max({largest, w.force.norm(), w.moment.norm() / L});
-        for (Wrench& w : stress.wrenches) w.force /= largest, w.moment /= largest;
+        for (Wrench& w : stress.wrenches) {
+            w.force /= largest;
+            w.moment /= largest;
+        }
     }
     return list;
 }

@@ -34,9 +34,9 @@ struct Redundancy {
     double left = 0;  // largest remainder of such a row of unit length; 0 if it depends exactly
     // whether `left` exceeds rounding: the row may be dependent or independent
     bool undecided = false;
-    // Joints that share the dependency, each with its squared entries in the left null vectors y of
-    // the row-scaled Φ_q: largest first, sum 1. Removing any of these joints removes the
-    // dependency.
+    // Joints that share the dependency, each with its squared entries in the left null
+    // vectors y of the row-scaled Φ_q: largest first, sum 1. Removing any of these joints
+    // removes the dependency.
     std::vector<std::pair<int, double>> shares;
 };
 
@@ -46,8 +46,8 @@ struct Diagnosis {
     int rank = 0;                 // of Φ_q
     double length = 1;            // L, characteristic lever of the model [m]
     double constraint_error = 0;  // largest |Φ| at the design position [m] or [-]
-    double imbalance =
-        0;  // largest unbalanced force [N] (or moment/L) at load factor 0 at the design position
+    // largest unbalanced force [N] (or moment/L) at load factor 0 at the design position
+    double imbalance = 0;
     std::vector<Redundancy> redundant;
     // Per joint: whether its reaction is determined by the loads. It is not where one of its rows
     // has a non-zero entry in a dependency yᵀ Φ_q = 0. Then only the sum over the joints of a set
@@ -64,8 +64,8 @@ struct Diagnosis {
 
 Diagnosis diagnose(const Model& model);
 
-// Names the joint for which the rank decision is within rounding, as text; empty where there is
-// none.
+// Names the joint for which the rank decision is within rounding, as text; empty where
+// there is none.
 std::string undecided(const Model& model, const Diagnosis& diagnosis);
 
 // Idle modes as text, one a line: "strut: rotation about ..., moves no output"; modes of the same

@@ -15,7 +15,8 @@
 //
 //   distance between           Φ = (d·d - c²) / (2c): a length, with |Φ_q,r| = 1 on the surface
 //
-//   direction at angle         Φ = u_i·w,  w = cos c y_j - sin c x_j
+//   direction at angle         Φ = u_i·w,  w = cos c y_j - sin c x_j, which is perpendicular to the
+//                              direction of body j at the angle c from its x_j towards its y_j
 //
 // Derivatives with respect to c, with w' = dw/dc = -(sin c y_j + cos c x_j):
 //

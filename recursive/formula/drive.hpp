@@ -40,7 +40,8 @@ void for_each_stored_rate(const Model& model, const Branch& branch, const Inputs
                                    return force_of_free_length<Real>(e, inputs.rest[k], q);
                                },
                                model.elastics[k].kind);
-                           force.F *= by, force.M *= by;
+                           force.F *= by;
+                           force.M *= by;
                            add(k, force);
                        },
                        [&](const Preload& p) {

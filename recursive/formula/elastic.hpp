@@ -21,9 +21,9 @@
 //
 // Elements that the paper does not cover enter K in this same form, as an extension: a curve with
 // its slope at the current deformation, a frame in the middle with its axes A_f in place of A_i.
-// Angles that differ only at finite rotations, forces that are not conjugate, and an omitted moment
-// of the offset do not change increments between unloaded markers. They do not enter K, only the
-// forces.
+// Angles that differ only at finite rotations, forces that are not conjugate, and an omitted
+// moment of the offset do not change increments between unloaded markers. They do not enter K,
+// only the forces.
 #pragma once
 
 #include "recursive/formula/inputs.hpp"
@@ -115,8 +115,8 @@ ElementStiffness<Real> element_stiffness(const AxialSpring& e, const Rest<Real>&
     const Vector3<Real> D = q[e.j.body].r + k.s_j - q[e.i.body].r - k.s_i, n = D.normalized();
     const Real rate = hessian<Real>(
         e.law, [&] { return D.norm() - rest.free_length; }, rest.piece[0]);
-    k.K.template topLeftCorner<3, 3>() =
-        rate * n * n.transpose();  // (8), (10): one axis, along the spring
+    // (8), (10): one axis, along the spring
+    k.K.template topLeftCorner<3, 3>() = rate * n * n.transpose();
     return k;
 }
 
@@ -135,7 +135,8 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>& res
     };
     turn(0, 0);
     turn(1, 1);
-    k.coupled = !K_local.template topRightCorner<3, 3>().isZero(0);
+    k.coupled = !K_local.template topRightCorner < 3;
+    3 > ().isZero(0);
     if (k.coupled)
         turn(0, 1);
     else
@@ -166,7 +167,10 @@ void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
         Matrix6<Real> K;
         Matrix3<Real> moment;
         for (int k = 0; k < 3; ++k) moment.col(k) = s_a.cross(F_b.col(k));
-        if (e.rotational) moment += e.K.template bottomRightCorner<3, 3>();
+        if (e.rotational) {
+            moment += e.K.template bottomRightCorner < 3;
+            3 > ();
+        }
         if (e.coupled) moment -= C.transpose() * tilde(s_b);
         K << K_T, F_b, F_a.transpose(), moment;
         return K;

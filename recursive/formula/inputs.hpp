@@ -71,8 +71,8 @@ inline std::size_t constraint_of(const Model& model, const Motion& motion) {
     return static_cast<std::size_t>(model.joints[static_cast<std::size_t>(motion.joint)].driven);
 }
 
-// Throws std::invalid_argument unless the branch fits the model and every driver has a matching
-// target.
+// Throws std::invalid_argument unless the branch fits the model and every driver has
+// a matching target.
 inline void check(const Model& model, const Branch& branch) {
     const auto require = [&](bool met, const char* what) {
         if (!met) throw std::invalid_argument("branch '" + branch.name + "': " + what);

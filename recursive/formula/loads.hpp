@@ -47,8 +47,8 @@ void add_load(const LoadKind& load, Real factor, const State<Real>& q, Vector<Re
     std::visit([&](const auto& kind) { add_load<Real>(kind, factor, q, f_ext); }, load);
 }
 
-// Calls sink(load, factor) for the static loads with factor 1, then for the loads that the branch
-// drives.
+// Calls sink(load, factor) for the static loads with factor 1, then for the loads that
+// the branch drives.
 template <class Real, class Sink>
 void for_each_load(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
                    Sink&& sink) {

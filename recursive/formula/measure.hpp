@@ -1,6 +1,6 @@
 // Deformation measures of a bushing, with first and second derivatives.
-// They are the position and angles of marker j relative to marker i, for each formulation of
-// include/elastocheck/mechanism.hpp.
+// They are the position and angles of marker j relative to marker i, for each
+// formulation of include/elastocheck/mechanism.hpp.
 //
 // Relative to i, j is at x = A_iᵀ D, D = p_j - p_i, rotated by B = A_iᵀ A_j. A small motion is
 //
@@ -41,8 +41,8 @@ Vector3<Real> logarithm(const Matrix3<Real>& R) {
     Eigen::Quaternion<Real> p(R);
     if (p.w() < 0) p.coeffs() = -p.coeffs();
     const Real sine = p.vec().norm();
-    // θ = 2 atan2(|v|, w) along v/|v|. Near zero 2/w replaces the quotient and is exact to the last
-    // bit.
+    // θ = 2 atan2(|v|, w) along v/|v|. Near zero 2/w replaces the quotient and is exact to
+    // the last bit.
     const Real factor =
         sine > std::numeric_limits<Real>::epsilon() ? 2 * atan2(sine, p.w()) / sine : 2 / p.w();
     return factor * p.vec();
@@ -118,8 +118,8 @@ Matrix3<Real> cardan_turning_moment(const Vector3<Real>& theta, const Vector3<Re
     using std::tan;
     const Real s = sin(theta.x()), c = cos(theta.x()), t = tan(theta.y()), r = 1 / cos(theta.y());
     const Real along = m.x() * t - m.z() * r, change = r * (m.x() * r - m.z() * t);  // ∂along/∂θ_y
-    Matrix3<Real> N =
-        Matrix3<Real>::Zero();  // of Hᵀ m = (m_x, s · along + c m_y, -c · along + s m_y)
+    // of Hᵀ m = (m_x, s · along + c m_y, -c · along + s m_y)
+    Matrix3<Real> N = Matrix3<Real>::Zero();
     N.col(0) << Real(0), c * along - s * m.y(), s * along + c * m.y();
     N.col(1) << Real(0), s * change, -c * change;
     return N;

@@ -79,8 +79,8 @@ Eigen::Quaternion<Real> exponential(const Vector3<Real>& dpi) {
     using std::cos;
     using std::sin;
     const Real half = dpi.norm() / 2;
-    // sin(h)/h is accurate for every h > 0 whose square does not underflow; below that its limit is
-    // used.
+    // sin(h)/h is accurate for every h > 0 whose square does not underflow; below that its
+    // limit is used.
     const Real sinc = half > 0 ? sin(half) / half : Real(1);
     const Vector3<Real> v = sinc / 2 * dpi;
     return {cos(half), v.x(), v.y(), v.z()};

@@ -4,10 +4,10 @@
 //
 //   G(q, λ) = f_elast(q) + Φ_q(q)ᵀ λ - f_ext(q, a)
 //
-// ∂G/∂q has, beside the material stiffness K of (19), the rotation of the present forces: the
-// elastic geometric stiffness, the curvature of the constraints Σ λ_k ∂²Φ_k, and the load
-// stiffness. Increments are (Δr, Δπ) in ground axes, in which ∂G/∂q is not symmetric away from
-// equilibrium.
+// ∂G/∂q has, beside the material stiffness K of (19), the rotation of the present forces:
+// the elastic geometric stiffness, the curvature of the constraints Σ λ_k ∂²Φ_k, and the
+// load stiffness. Increments are (Δr, Δπ) in ground axes, in which ∂G/∂q is not symmetric
+// away from equilibrium.
 //
 // Everything below is the variation of a force F at a lever s on one body, with its opposite on
 // another: the force changes, δF, and its lever turns or moves,
@@ -157,8 +157,8 @@ void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q,
     const Matrix3<Real> H = jacobian<Real>(e.formulation.angles, g.B, g.theta());
     const Matrix6<Real> E = strain_rate<Real>(e, g, H);
 
-    // (F_x, M_φ) = Eᵀ σ: conjugate forces act through E; F_x alone where the offset's moment is left
-    // out.
+    // (F_x, M_φ) = Eᵀ σ: conjugate forces act through E; F_x alone where the offset's moment
+    // is left out.
     Matrix6<Real> through = E;
     if (!e.formulation.conjugate) through.setIdentity();
     if (!e.formulation.offset_moment) through.template topRightCorner<3, 3>().setZero();
@@ -270,8 +270,8 @@ void add_load_stiffness(const DeadForce& force, Real factor, const State<Real>& 
 }
 template <class Real, class Target>
 void add_load_stiffness(const DeadMoment&, Real, const State<Real>&, Target&) {}
-// Follower loads rotate: -δf = f̃ δπ for the force, and the same for its moment s × f and for any
-// moment.
+// Follower loads rotate: -δf = f̃ δπ for the force, and the same for its moment s × f and
+// for any moment.
 template <class Real, class Target>
 void add_load_stiffness(const FollowerForce& force, Real factor, const State<Real>& q,
                         Target& target) {

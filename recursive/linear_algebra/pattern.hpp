@@ -1,7 +1,7 @@
 // Sparsity pattern of eq. (24), with the consistent tangent in place of K.
-// It holds the entries of every element and constraint, by halves of bodies (Δr or Δπ) and rows of
-// Φ. A point in the origin of its body has no lever, and a part fixed in the ground has structural
-// zeros.
+// It holds the entries of every element and constraint, by halves of bodies (Δr or Δπ) and
+// rows of Φ. A point in the origin of its body has no lever, and a part fixed in the ground
+// has structural zeros.
 #pragma once
 
 #include "elastocheck/model.hpp"

@@ -45,9 +45,9 @@ struct PivotSearch {
     std::vector<long> in_row, in_column;  // ... remaining entries per row and column
     std::vector<Real> largest;            // ... and the largest entry of a column
 
-    static constexpr Real least_pivot = Real(0.1);  // as a fraction of its column's largest entry
-    static constexpr int exhaustive = 60;           // up to this size the full search is used
-    static constexpr int columns = 4;               // ... and beyond it this many columns per pivot
+    static constexpr Real min_pivot = Real(0.1);  // as a fraction of its column's largest entry
+    static constexpr int exhaustive = 60;         // up to this size the full search is used
+    static constexpr int columns = 4;             // ... and beyond it this many columns per pivot
 };
 
 namespace detail {
@@ -102,7 +102,7 @@ void search_all(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
                 const long fill = others * (search.in_column[c] - 1);
                 if (fill > best_fill) continue;
                 const Real value = std::abs(search.W[r * n + c]);
-                if (!(value > 0 && value >= search.least_pivot * search.largest[c]) ||
+                if (!(value > 0 && value >= search.min_pivot * search.largest[c]) ||
                     (fill == best_fill && !(value > best_value)))
                     continue;
                 best_fill = fill;
@@ -195,8 +195,8 @@ struct Pivot {
     Real value = 0;
 };
 
-// The best pivot of the first few columns, shortest first; row -1 where all remaining entries are
-// zero.
+// The best pivot of the first few columns, shortest first; row -1 where all remaining
+// entries are zero.
 template <class Real>
 Pivot<Real> best_of_few(Left<Real>& left, const ByCount& columns) {
     Pivot<Real> best;
@@ -209,7 +209,7 @@ Pivot<Real> best_of_few(Left<Real>& left, const ByCount& columns) {
             if (!(largest > 0)) continue;
             for (const auto& e : left.in_column(c)) {
                 const Real value = std::abs(e.value);
-                if (!(value >= PivotSearch<Real>::least_pivot * largest)) continue;
+                if (!(value >= PivotSearch<Real>::min_pivot * largest)) continue;
                 const std::size_t fill = (left.in_row(e.row).size() - 1) * (entries - 1);
                 if (fill > best_fill || (fill == best_fill && !(value > std::abs(best.value))))
                     continue;

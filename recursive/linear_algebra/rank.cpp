@@ -43,8 +43,8 @@ struct Reduced {
 // l, starting from row k alone, gives its dependency in terms of the rows themselves.
 Repeated repeated(const Rows& rows, std::span<const int> expected, double remainder) {
     const auto m = static_cast<std::size_t>(rows.rows()), n = static_cast<std::size_t>(rows.cols());
-    std::vector<int> to_come(n, 0),
-        pivot_of(n, -1);  // of a column: how many rows touch it, whose pivot it is
+    // of a column: how many rows touch it, whose pivot it is
+    std::vector<int> to_come(n, 0), pivot_of(n, -1);
     for (int k = 0; k < rows.outerSize(); ++k)
         for (Rows::InnerIterator e(rows, k); e; ++e) ++to_come[static_cast<std::size_t>(e.col())];
 
@@ -53,8 +53,8 @@ Repeated repeated(const Rows& rows, std::span<const int> expected, double remain
     std::vector<Reduced> reduced(m);
     Scattered x(rows.cols()), y(rows.rows());
     for (int k = 0; k < static_cast<int>(m); ++k) {
-        std::priority_queue<int, std::vector<int>, std::greater<>>
-            earlier;  // rows to take out, first to last
+        // rows to take out, first to last
+        std::priority_queue<int, std::vector<int>, std::greater<>> earlier;
         const auto add = [&](int at, double value) {
             if (x.add(at, value))
                 if (const int row = pivot_of[static_cast<std::size_t>(at)]; row >= 0)
@@ -94,8 +94,8 @@ Repeated repeated(const Rows& rows, std::span<const int> expected, double remain
                     u.entries.push_back({at, x.value[at]});
             pivot_of[static_cast<std::size_t>(u.pivot)] = k;
         } else {
-            std::priority_queue<int>
-                later;  // rows to be expressed by those before them, last to first
+            // rows to be expressed by those before them, last to first
+            std::priority_queue<int> later;
             const auto spread = [&](int row, double value) {
                 if (y.add(row, value)) later.push(row);
             };
@@ -128,13 +128,13 @@ Repeated repeated(const Rows& rows, std::span<const int> expected, double remain
 // 1 / ε².
 VectorXd left_free(const Rows& rows, const VectorXd& f) {
     constexpr double e2 = 1e-12, enough = 1e-14;
-    constexpr int most_rounds = 50;
+    constexpr int max_rounds = 50;
     const Columns A = rows, At = A.transpose();
     Columns N = At * A / e2;
     for (int k = 0; k < N.cols(); ++k) N.coeffRef(k, k) += 1;
     const Eigen::SimplicialLDLT<Columns> factors(N);
     VectorXd left = VectorXd::Zero(f.size()), mu = VectorXd::Zero(rows.rows());
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < max_rounds; ++round) {
         const VectorXd force = f - left - At * mu, motion = -(A * left);
         if (force.norm() + motion.norm() <= enough * f.norm()) break;
         const VectorXd more = factors.solve(force + At * motion / e2);

@@ -3,9 +3,9 @@
 // ⎡ K    Φ_qᵀ ⎤     K      a 6 × 6 block for every body, and for every ordered connected pair
 // ⎣ Φ_q   0   ⎦     Φ_q    two parts of 6 for every row, one per body; Φ_qᵀ uses the same values
 //
-// Storage grows with the model and not with its square. Assembly writes blocks by row and column,
-// as in the full matrix. The positions of the blocks depend on the model alone (`saddle_matrix`,
-// pattern.hpp).
+// Storage grows with the model and not with its square. Assembly writes blocks by row
+// and column, as in the full matrix. The positions of the blocks depend on the model
+// alone (`saddle_matrix`, pattern.hpp).
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -20,8 +20,8 @@ namespace elastocheck::recursive {
 template <class Real>
 struct SaddleMatrix {
     int n = 0, m = 0;  // 6nb, rows of Φ
-    std::vector<int> first,
-        neighbour;  // of every body, ascending: neighbour[first[b] ... first[b+1])
+    // of every body, ascending: neighbour[first[b] ... first[b+1])
+    std::vector<int> first, neighbour;
     std::vector<std::array<BodyId, 2>> ends;  // of every row of Φ: the bodies of its two parts
     // Blocks column by column: those of the bodies, then those of their neighbours; then the parts
     // of rows.

@@ -66,8 +66,8 @@ Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
     using Column = Eigen::SparseMatrix<double>::InnerIterator;
     const auto at = [](auto k) { return static_cast<std::size_t>(k); };
     const auto d = static_cast<int>(null_space.cols());
-    // A place is a body or a loop (numbered after the bodies), with the first direction found
-    // there.
+    // A place is a body or a loop (numbered after the bodies), with the first
+    // direction found there.
     const int bodies = n / 6, loops = loop.empty() ? 0 : *std::ranges::max_element(loop) + 1;
     std::vector<int> leader(at(d)), first_there(at(bodies + loops), -1);
     std::vector<std::vector<int>> of_leader(at(d));

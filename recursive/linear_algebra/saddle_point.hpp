@@ -3,9 +3,9 @@
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩ 0 ⎭      [(6nb + m) × (6nb + m)]      (24)
 //
-// The raw matrix mixes N/m, N·m and pure numbers. It is equilibrated symmetrically to M̂ = D M D
-// with unit rows (Ruiz 2001) before pivots are judged. D holds powers of two, so scaling causes no
-// rounding.
+// The raw matrix mixes N/m, N·m and pure numbers. It is equilibrated symmetrically to M̂ = D M
+// D with unit rows (Ruiz 2001) before pivots are judged. D holds powers of two, so scaling
+// causes no rounding.
 //
 // A motion z that nothing resists (idle mode), or a redundant combination y of constraints, makes M
 // singular in a direction known from the diagnosis (diagnosis.hpp). Bordering holds that direction,
@@ -77,8 +77,8 @@ struct SaddlePoint {
     const Real* border() const { return M.values.data() + M.part_at(m, 0); }
 };
 
-// D of the matrix M by Ruiz equilibration (2001): every row of D M D has its largest entry in (½,
-// 2].
+// D of the matrix M by Ruiz equilibration (2001): every row of D M D has its largest entry
+// in (½, 2].
 Vector<double> equilibration(const SaddleMatrix<double>& M);
 
 // W² at the places of a direction.
@@ -90,8 +90,8 @@ auto weights(const SaddlePoint<Real>& system, int c) {
     };
 }
 
-// Makes the held directions orthonormal in the norm W; those without common places are orthogonal
-// already.
+// Makes the held directions orthonormal in the norm W; those without common places
+// are orthogonal already.
 template <class Real>
 void orthonormalise(SaddlePoint<Real>& system) {
     Held<Real>& held = system.held;
@@ -175,9 +175,9 @@ void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vec
     x.array() = system.scale.array() * system.solution.head(n + m).array();
 }
 
-// Factorises the matrix now in M and updates the held directions. Allocates nothing. Returns the
-// ratio of the smallest to the largest pivot of the scaled, bordered matrix, which the caller
-// checks.
+// Factorises the matrix now in M and updates the held directions. Allocates nothing.
+// Returns the ratio of the smallest to the largest pivot of the scaled, bordered matrix,
+// which the caller checks.
 template <class Real>
 Real factorise(SaddlePoint<Real>& system) {
     set_border(system);

@@ -26,7 +26,10 @@ struct Scattered {
         return true;
     }
     void clear() {
-        for (const int at : touched) value[at] = 0, is_touched[static_cast<std::size_t>(at)] = 0;
+        for (const int at : touched) {
+            value[at] = 0;
+            is_touched[static_cast<std::size_t>(at)] = 0;
+        }
         touched.clear();
     }
     double norm() const {

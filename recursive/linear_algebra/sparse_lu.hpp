@@ -94,8 +94,8 @@ inline int parity(std::vector<int>& permutation, std::vector<char>& seen) {
 }
 
 // Sorts column numbers into rows (or row numbers into columns) by counting: each(put) calls
-// put(row, column, which) for all entries, and runs twice. The order within a row is that of the
-// calls.
+// put(row, column, which) for all entries, and runs twice. The order within a row is that
+// of the calls.
 template <class Each>
 void sort_into_rows(std::size_t n, std::vector<int>& first, std::vector<int>& column,
                     std::vector<int>* which, Each&& each) {
@@ -317,7 +317,7 @@ Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
         const Real* const factor = lu.factor.data();
         for (std::size_t e = 0; e < entries; ++e) LU[to[e]] = values[source[e]] * factor[e];
     }
-    Real least_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0, most = 0;
+    Real min_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0, most = 0;
     int orientation = order.parity;
     const int* target = order.target.data();
     const auto *below = order.below.data(), *const first_below = below;
@@ -328,7 +328,7 @@ Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
             largest = most;
             return size;  // zero or NaN
         }
-        least_pivot = std::min(least_pivot, size);
+        min_pivot = std::min(min_pivot, size);
         largest_pivot = std::max(largest_pivot, size);
         const Real inverse = lu.inverse[k] = 1 / pivot;
         if (pivot < 0) orientation = -orientation;
@@ -347,7 +347,7 @@ Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
     }
     largest = most;
     lu.orientation = orientation;
-    return least_pivot / largest_pivot;
+    return min_pivot / largest_pivot;
 }
 
 // log2 |det| of the last matrix factorised.

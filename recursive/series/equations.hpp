@@ -4,8 +4,8 @@
 //
 // with power series q, λ, a in τ.
 //
-// A body rotates from its orientation at τ = 0 by the Gibbs vector g = tan(θ/2) n; its rotation is
-// rational:
+// A body rotates from its orientation at τ = 0 by the Gibbs vector g = tan(θ/2) n; its
+// rotation is rational:
 //
 //   C(g) = (1 - h·g) I + h̃ + h gᵀ,   h = 2 g / (1 + g·g)
 //
@@ -73,8 +73,8 @@ struct SpringSeries {
     Driven<Real> free_length;
     Arm<Real> i, j;
     Vector3Series<Real> D, F;
-    Series<Real> length_squared, length, inverse, stretch, force,
-        tension;              // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
+    // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
+    Series<Real> length_squared, length, inverse, stretch, force, tension;
     CubicSeries<Real> cubic;  // if the law is a curve
 };
 
@@ -92,8 +92,8 @@ template <class Real>
 struct MiddleSeries {
     Series<Real> squared, size, sum, inverse;  // p·p, |p|, |p| + W, 1 / (|p| + W)
     TurnSeries<Real> half;                     // B^½
-    Vector3Series<Real> d_i, d, F_local, F_i, m,
-        g_m;  // d_i in axes of i, d = B^-½ d_i; F_i = B^½ F', F_i × d_i
+    // d_i in axes of i, d = B^-½ d_i; F_i = B^½ F', F_i × d_i
+    Vector3Series<Real> d_i, d, F_local, F_i, m, g_m;
 };
 
 // One of the three Cardan or projected angles of B: the polar angle of a vector in a plane, with
@@ -124,8 +124,8 @@ struct BushingSeries {
     bool rotational = false;  // whether there is a moment M' = ∂U/∂θ; else θ is not computed
     Arm<Real> i, j;
     Matrix3<Real> E_i;  // axes of marker i at τ = 0
-    Eigen::Matrix<Real, 4, 4>
-        to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion p of B = A_iᵀ A_j, any length
+    // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion p of B = A_iᵀ A_j, any length
+    Eigen::Matrix<Real, 4, 4> to_relative;
     Vector3Series<Real> rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1,
         spread_2, force_i, moment_i, F, M;
     Series<Vector4<Real>> relative;
@@ -178,8 +178,8 @@ struct AngleSeries {
     Driven<Real> angle;
     Arm<Real> i, x, y;
     Series<Real> alpha, cosine, sine;
-    Vector3Series<Real> along, across, w,
-        M;  // cos α y_j, sin α x_j, w = cos α y_j - sin α x_j, u_i × w
+    // cos α y_j, sin α x_j, w = cos α y_j - sin α x_j, u_i × w
+    Vector3Series<Real> along, across, w, M;
 };
 
 template <class Real>
@@ -235,8 +235,8 @@ struct Equations {
     std::vector<ConstraintSeries<Real>> constraints;
     std::vector<LoadSeries<Real>> loads;  // static, then driven
     Vector<Real> G, Phi;                  // coefficient k after pass `known` [6nb], [m]
-    // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d replace G and Φ; d: at the design
-    // position.
+    // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d replace G and Φ; d: at
+    // the design position.
     Vector<Real> G_d, Phi_d;  // [6nb], [m]
     bool curved = false;      // whether any law is a curve
 
@@ -267,8 +267,8 @@ CubicSeries<Real>& cubic_of(Equations<Real>& e, std::size_t elastic, int axis);
 template <class Real>
 const Real& deformation(const Equations<Real>& e, std::size_t elastic, int axis, int k);
 
-// Sets τ = 0 at (q, λ, a) in a lane: coefficients 0 of the unknowns, and the vectors fixed in the
-// bodies.
+// Sets τ = 0 at (q, λ, a) in a lane: coefficients 0 of the unknowns, and the vectors fixed
+// in the bodies.
 template <class Real>
 void begin(Equations<Real>& e, const State<double>& q, const Vector<double>& lambda, double a,
            int lane = 0);

@@ -92,8 +92,8 @@ Singularity nearest_singularity(const SteppingState& s, const Coefficients<doubl
     };
     const double last = weighted(p).norm(), before = weighted(p - 1).norm();
     if (p < 5 || !(last > 0 || before > 0)) return none;
-    // Scale τ so that the last coefficients are near one and all orders have the same weight in the
-    // fit.
+    // Scale τ so that the last coefficients are near one and all orders have the same weight
+    // in the fit.
     const double unit = std::min(
         last > 0 ? std::pow(last, -1.0 / p) : std::numeric_limits<double>::infinity(),
         before > 0 ? std::pow(before, -1.0 / (p - 1)) : std::numeric_limits<double>::infinity());

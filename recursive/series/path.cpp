@@ -201,8 +201,8 @@ struct End {
     double tau = 0;
     bool last = false;
     std::vector<Crossing> over;
-    std::vector<Crossing>
-        at_once;  // deformations outside their piece from the start: the expansion is invalid
+    // deformations outside their piece from the start: the expansion is invalid
+    std::vector<Crossing> at_once;
 };
 
 // Shortens the range to where the first deformation leaves its piece.
@@ -301,7 +301,7 @@ double rises_ahead(const Continuation& w) {
 bool is_past(Continuation& w, double rises) {
     if (side(w, rises) != w.side) return true;
     if (!w.stable) return false;
-    const LeastStiffness least = least_stiffness(w.s, w.softest);
+    const LeastStiffness least = min_stiffness(w.s, w.softest);
     return (least.of_energy && least.value < 0) ||
            negative_idle_stiffness(w.s, w.s.q, w.s.lambda) < 0;
 }
@@ -517,7 +517,7 @@ std::optional<double> reversed_inside(Continuation& w, const State<double>& from
 
 // Maximum number of expansions: the option's number, and as many again for each crossing of a knot;
 // crossings count up to the number of knots.
-std::size_t most_expansions(const Continuation& w, std::size_t gone_over) {
+std::size_t max_expansions(const Continuation& w, std::size_t gone_over) {
     std::size_t knots = 0;
     for (const auto& curve : w.curves) knots += curve.curve->knots.size();
     return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(gone_over, knots));
@@ -555,7 +555,7 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
     SteppingState& s = w.s;
     std::size_t gone_over = 0;
     const std::vector<Piece> pieces = pieces_of(w.curves);
-    while (w.path.expansions.size() < most_expansions(w, gone_over)) {
+    while (w.path.expansions.size() < max_expansions(w, gone_over)) {
         const bool starts = w.path.expansions.empty();
         const bool again = starts && begun != nullptr && *begun;
         const State<double> from = s.q;
@@ -593,8 +593,8 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
             end = {*reversed, false, {}, {}};
             w.reversed = true;
         }
-        // The polynomial continues past a bifurcation point, and the branch past a loss of
-        // stability.
+        // The polynomial continues past a bifurcation point, and the branch past a
+        // loss of stability.
         bool past = !reversed && is_past(w, rises_ahead(w));
         if (!past && !reversed)
             if (const auto lost = lost_inside(w, from, end.tau)) past = true, end.tau = *lost;
@@ -729,7 +729,9 @@ Outcome settle(Continuation& settling, const Analysis& analysis) {
 }
 
 void stand_on(SteppingState& s, std::vector<Followed>& curves, const Start& start) {
-    s.q = start.q, s.lambda = start.lambda, s.Phi_d = start.Phi_d;
+    s.q = start.q;
+    s.lambda = start.lambda;
+    s.Phi_d = start.Phi_d;
     s.system = start.system;
     for (std::size_t k = 0; k < curves.size(); ++k) curves[k].piece = start.pieces[k];
 }
@@ -801,7 +803,8 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     check(model, branch);
     if (std::isnan(analysis.diagnosis.constraint_error)) {
         Path none;
-        none.outcome = Outcome::not_finite, none.detail = not_finite(model);
+        none.outcome = Outcome::not_finite;
+        none.detail = not_finite(model);
         return none;
     }
     SteppingState s = series_state(model, branch, analysis);

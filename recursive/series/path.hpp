@@ -25,8 +25,8 @@ namespace elastocheck::recursive::series {
 // Pole or branch point nearest to τ = 0, estimated from the coefficients.
 struct Singularity {
     double radius = 0;  // |τ|
-    double angle =
-        0;  // of τ in the complex plane: 0 straight ahead, ±π/2 beside the path, π behind [rad]
+    // of τ in the complex plane: 0 straight ahead, ±π/2 beside the path, π behind [rad]
+    double angle = 0;
     double misfit = 0;  // relative residual of the fit: 0 exact, 1 no fit
 };
 

@@ -8,8 +8,8 @@
 
 namespace elastocheck::recursive::series {
 
-// Whether two branches have the same drivers with the same numbers: then they differ in their range
-// only.
+// Whether two branches have the same drivers with the same numbers: then they differ in
+// their range only.
 bool same_drivers(const Branch& a, const Branch& b);
 
 // The paths of several branches. Those in sequence with the same drivers share the settled start and

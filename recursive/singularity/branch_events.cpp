@@ -13,8 +13,8 @@
 namespace elastocheck::recursive {
 namespace {
 
-constexpr double longest = 1. / 4, least_step = 1. / 64;  // step, as a fraction of the branch
-constexpr double tolerance = 1e-4;  // of L, or rad: tolerance of the corrector
+constexpr double longest = 1. / 4, min_step = 1. / 64;  // step, as a fraction of the branch
+constexpr double tolerance = 1e-4;                      // of L, or rad: tolerance of the corrector
 
 // Whether the outcome means the end of the branch and not a numerical failure.
 bool ends(Outcome outcome) {
@@ -41,7 +41,7 @@ struct Stability {
     bool is_lost(SteppingState& s, const Trial& trial) {
         if (trial.verdict == Verdict::past_singular_point) return true;
         if (trial.verdict != Verdict::accepted) return false;
-        const LeastStiffness least = least_stiffness(s, softest);
+        const LeastStiffness least = min_stiffness(s, softest);
         return least.of_energy && least.value < 0;
     }
 };
@@ -104,8 +104,8 @@ std::optional<double> suspect_between(SteppingState& s, const ContinuationSettin
                : std::nullopt;
 }
 
-// Result of following the branch with few steps. Stability lost inside may be regained before the
-// end.
+// Result of following the branch with few steps. Stability lost inside may be regained
+// before the end.
 struct Traversal {
     bool through = false;             // the end was reached and no loss of stability was found
     std::optional<double> lost = {};  // parameter at which stability is lost
@@ -167,7 +167,7 @@ Traversal follow_by_long_steps(SteppingState& s, double to) {
             gone = ahead;
             continue;
         }
-        if (h = (ahead - gone) / 4; h < least_step) return {};
+        if (h = (ahead - gone) / 4; h < min_step) return {};
     }
     return {true};
 }

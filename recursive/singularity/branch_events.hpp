@@ -1,11 +1,11 @@
 // Detects limit and bifurcation points that K of (19) misses and fixed steps skip.
 //
-// Before the method runs, the true branch is followed by a few long predictor-corrector steps
-// (continuation.hpp) of at most a quarter of the branch, each corrected to an equilibrium. A step
-// is accepted if the corrections are small compared with the step, the determinant of the
-// consistent matrix keeps its sign, and the chord agrees with the tangents at its ends. No
-// stiffness may be negative at the start and at the end of the branch (stiffness.hpp,
-// stability.hpp).
+// Before the method runs, the true branch is followed by a few long predictor-corrector
+// steps (continuation.hpp) of at most a quarter of the branch, each corrected to an
+// equilibrium. A step is accepted if the corrections are small compared with the step, the
+// determinant of the consistent matrix keeps its sign, and the chord agrees with the
+// tangents at its ends. No stiffness may be negative at the start and at the end of the
+// branch (stiffness.hpp, stability.hpp).
 //
 // These tests do not detect stability that is lost inside a step and regained before its end. The
 // determinant is therefore evaluated at the midpoint of the first and the last step, and of the two
@@ -34,8 +34,8 @@ struct Event {
     std::string unstable_start = {};  // as in SteppingState
 };
 
-// Follows the branch with `adaptive`; none where `adaptive` reaches the end or fails for another
-// reason.
+// Follows the branch with `adaptive`; none where `adaptive` reaches the end or fails
+// for another reason.
 std::optional<Event> find_event(const Model& model, const Branch& branch, const Analysis& analysis);
 
 // Follows the branch by few long steps. None if they reach its end and it stays stable; else the

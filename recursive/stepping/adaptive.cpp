@@ -33,8 +33,8 @@ double share_of_reactions(SteppingState& s, const ContinuationSettings& settings
     return allowed > 0 ? change / allowed : 0;
 }
 
-// Records the points at equal increments of the parameter up to `to`. Pre: the state has just
-// settled.
+// Records the points at equal increments of the parameter up to `to`. Pre: the state
+// has just settled.
 Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& recording) {
     const ContinuationSettings settings{Drive::rate, method.length_tolerance,
                                         method.angle_tolerance};
@@ -85,7 +85,7 @@ Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& re
     double log_here = log_determinant(s.system);
     Matrix<double> softest;
     const auto unstable = [&] {
-        const LeastStiffness least = least_stiffness(s, softest);
+        const LeastStiffness least = min_stiffness(s, softest);
         return (least.of_energy && least.value < 0) ||
                negative_idle_stiffness(s, next.q, next.lambda) < 0;
     };
@@ -95,7 +95,7 @@ Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& re
     keep(node.q, node.lambda, 0);
 
     for (int steps = 0; reached <= last; ++steps) {
-        if (steps == most_steps) return Outcome::iteration_limit;
+        if (steps == max_steps) return Outcome::iteration_limit;
         if (node.p == s.end && s.end != to) return Outcome::inconsistent_constraints;
         next.p = std::abs(s.end - node.p) < std::abs(h) * 1.1 ? s.end : node.p + h;
         KnotCrossing met;

@@ -51,8 +51,8 @@ Trial try_step(SteppingState& s, const ContinuationSettings& settings, const Nod
     }
     if (!(trial.left <= 0.01)) return trial;
     differentiate(s, settings, next);
-    // The predictor is of second order: corrections of half its step mean that it predicted another
-    // branch.
+    // The predictor is of second order: corrections of half its step mean that it
+    // predicted another branch.
     const bool continues = corrected <= forecast / 2 + 1;
     trial.verdict = !continues                             ? Verdict::another_branch
                     : next.orientation != node.orientation ? Verdict::past_singular_point

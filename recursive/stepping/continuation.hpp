@@ -63,13 +63,14 @@ double share(const ContinuationSettings& settings, const Motion& dq) {
 Outcome correct(SteppingState& s, const ContinuationSettings& settings, State<double>& q,
                 Vector<double>& lambda, double p, double& size);
 
-// Result of a step.
+// Result of a step. |δ_k| is the k-th correction and |h z' + ½ h² z''| the predictor step, both in units
+// of the tolerance; det the determinant of the consistent tangent.
 enum class Verdict {
-    accepted,
-    unsolved,            // the corrections do not fall, or the remaining error is too large
-    another_branch,      // an equilibrium, but far from the predictor
-    nearly_singular,     // on this path, but nearly singular in between
-    past_singular_point  // on this path, but beyond a point where the matrix is singular
+    accepted,        // none of the following
+    unsolved,        // |δ_k| ≥ |δ_k-1|, or |δ_k|² / |δ_k-1| > 0.01 after the last correction
+    another_branch,  // Σ |δ_k| > ½ |h z' + ½ h² z''| + 1: an equilibrium far from the predictor
+    nearly_singular,     // on this path, det passes near zero between the nodes (stability.hpp)
+    past_singular_point  // sign det differs between the nodes
 };
 
 struct Trial {

@@ -34,8 +34,8 @@ double cubic(const std::array<double, 4>& x, double t) {
            x[3] * a * b * c / 6;
 }
 
-// First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t of the
-// step.
+// First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t
+// of the step.
 template <class At>
 KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& settings, double from,
                            double h, State<double>& q, At&& at) {

@@ -24,8 +24,8 @@ inline Piece& piece_of(SteppingState& s, const CurvePlace& at) {
     return s.inputs.rest[at.element].piece[at.axis];
 }
 
-// First knot reached between two nodes: its curve, the end of the piece, and the fraction of the
-// step.
+// First knot reached between two nodes: its curve, the end of the piece, and the fraction
+// of the step.
 struct KnotCrossing {
     const CurvePlace* curve = nullptr;  // nullptr: no knot is reached
     int side = 0;                       // -1 at the lower end of the piece, +1 at the upper

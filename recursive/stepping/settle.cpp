@@ -70,8 +70,8 @@ Outcome settle(SteppingState& s, const Linear& method, int steps) {
         const bool rested = outcome == Outcome::converged && s.last.norm() <= at_rest;
         s.swings = 0;
         s.last.setZero();
-        // The gap left by linear steps falls with their number; a gap of more than half is not
-        // closing.
+        // The gap left by linear steps falls with their number; a gap of more than half
+        // is not closing.
         if (rested || N == steps) return settled(s, outcome, 0.5);
     }
     return Outcome::converged;

@@ -14,8 +14,8 @@ inline bool starts_as_drawn(const Branch& branch) {
                                [](const Driver& driver) { return driver.start == 0; });
 }
 
-// Whether the forces load an idle mode, tested at the design position, where the modes are most
-// accurate.
+// Whether the forces load an idle mode, tested at the design position, where the modes
+// are most accurate.
 bool loads_idle_mode(const SteppingState& s);
 
 // Outcome of settling: joints that were open and cannot be closed explain other failures.

@@ -89,7 +89,7 @@ namespace {
 
 // The bodies that a motion W x displaces, and the one that it turns most.
 std::string moving_bodies(const Model& model, const Eigen::VectorXd& motion) {
-    constexpr double nothing = 1e-6, with_the_largest = 0.5;
+    constexpr double zero_tolerance = 1e-6, with_the_largest = 0.5;
     std::vector<double> displaced, turned;
     for (Eigen::Index row = 0; row < motion.size(); row += 6) {
         displaced.push_back(motion.segment<3>(row).norm());
@@ -98,11 +98,11 @@ std::string moving_bodies(const Model& model, const Eigen::VectorXd& motion) {
     const double farthest = std::ranges::max(displaced);
     std::string text;
     for (std::size_t b = 0; b < displaced.size(); ++b)
-        if (displaced[b] > nothing && displaced[b] >= with_the_largest * farthest)
+        if (displaced[b] > zero_tolerance && displaced[b] >= with_the_largest * farthest)
             text += fmt::format("{}'{}'", text.empty() ? "bodies that are displaced: " : ", ",
                                 model.bodies[b].name);
     const auto most = std::ranges::max_element(turned);
-    if (*most > nothing)
+    if (*most > zero_tolerance)
         text += fmt::format("{}body that turns most: '{}'", text.empty() ? "" : "; ",
                             model.bodies[static_cast<std::size_t>(most - turned.begin())].name);
     return text;
@@ -110,11 +110,11 @@ std::string moving_bodies(const Model& model, const Eigen::VectorXd& motion) {
 
 // Z, a basis of the null space of Φ_q [n × d], and ZᵀKZ with the matrix in the system, in the norm
 // |W x|; computed densely.
-struct Reduced {
+struct ReducedStiffness {
     Eigen::MatrixXd Z, K;
 };
-constexpr int most_reduced = 600;  // coordinates
-Reduced reduced(const SteppingState& s) {
+constexpr int max_reduced = 600;  // coordinates
+ReducedStiffness reduced(const SteppingState& s) {
     constexpr double independent = 1e-9;  // of rows of length one
     const Eigen::Index n = s.n(), m = s.m();
     const Eigen::MatrixXd M = sparse(s.system.M);
@@ -134,8 +134,8 @@ Reduced reduced(const SteppingState& s) {
 
 // The motion of least stiffness: an eigenvector of the symmetric part of ZᵀKZ.
 std::string softest_motion(const SteppingState& s) {
-    if (s.n() > most_reduced) return "a motion of a model too large to say which bodies move";
-    const Reduced at = reduced(s);
+    if (s.n() > max_reduced) return "a motion of a model too large to say which bodies move";
+    const ReducedStiffness at = reduced(s);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
         Eigen::MatrixXd((at.K + at.K.transpose()) / 2));
     return moving_bodies(s.model, at.Z * solver.eigenvectors().col(0));
@@ -145,7 +145,7 @@ std::string softest_motion(const SteppingState& s) {
 // not decide on complex ones.
 bool is_unstable_under_moments(const SteppingState& s) {
     constexpr double rounding = 1e-12;  // of the largest eigenvalue
-    if (s.free <= 0 || s.n() > most_reduced || s.system.held.idle > 0) return false;
+    if (s.free <= 0 || s.n() > max_reduced || s.system.held.idle > 0) return false;
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(reduced(s).K, false);
     const auto& mu = solver.eigenvalues();
     const double size = mu.cwiseAbs().maxCoeff();
@@ -159,7 +159,7 @@ bool is_unstable_under_moments(const SteppingState& s) {
 
 StartStability start_stability(SteppingState& s) {
     StartStability start;
-    start.least = least_stiffness(s, start.softest);
+    start.least = min_stiffness(s, start.softest);
     // modes soft relative to the stiffest are below the rounding of is_unstable()
     start.unstable =
         is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
@@ -208,13 +208,13 @@ bool determinant_dips(double log_from, double log_middle, double log_to) {
 
 Dip lowest_determinant(std::array<double, 3> d, const std::function<double(double)>& at) {
     // Smallest distance of a new point from the others, as a fraction of their interval.
-    constexpr double apart = 0.05, outside = 0.1;
+    constexpr double separation = 0.05, outside = 0.1;
     constexpr int looks = 20;
     std::array<double, 3> t{0, 0.5, 1};
     for (int look = 0; look < looks && d[1] >= 0; ++look) {
         const auto dip = parabola_dips(t, d, outside);
         if (!dip) break;
-        const double nearest = apart * (t[2] - t[0]);
+        const double nearest = separation * (t[2] - t[0]);
         double there = std::clamp(dip->t, t[0] + nearest, t[2] - nearest);
         if (!(std::abs(there - t[1]) > nearest))
             there = t[1] + (t[2] - t[1] > t[1] - t[0] ? nearest : -nearest);
@@ -224,7 +224,8 @@ Dip lowest_determinant(std::array<double, 3> d, const std::function<double(doubl
         if (value < d[1]) {
             (left ? t[2] : t[0]) = t[1];
             (left ? d[2] : d[0]) = d[1];
-            t[1] = there, d[1] = value;
+            t[1] = there;
+            d[1] = value;
         } else {
             (left ? t[0] : t[2]) = there;
             (left ? d[0] : d[2]) = value;
@@ -234,13 +235,13 @@ Dip lowest_determinant(std::array<double, 3> d, const std::function<double(doubl
     return {t[lowest], d[lowest]};
 }
 
-double least_eigenvalue(const Eigen::MatrixXd& Q) {
+double min_eigenvalue(const Eigen::MatrixXd& Q) {
     const Eigen::MatrixXd S = (Q + Q.transpose()) / 2;
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S, Eigen::EigenvaluesOnly)
         .eigenvalues()[0];
 }
 
-double least_of_idle(const SteppingState& s) {
+double min_of_idle(const SteppingState& s) {
     constexpr double several = 256;  // multiple of the rounding of a sum
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const Held<double>& held = s.system.held;
@@ -271,7 +272,7 @@ double least_of_idle(const SteppingState& s) {
                     }
             }
         if (!Q.allFinite()) continue;
-        if (const double lowest = least_eigenvalue(Q); lowest < -several * epsilon * sizes.norm())
+        if (const double lowest = min_eigenvalue(Q); lowest < -several * epsilon * sizes.norm())
             least = std::min(least, lowest);
     }
     return least;
@@ -283,7 +284,7 @@ double negative_idle_stiffness(SteppingState& s, const State<double>& near,
     constexpr double noticed = 1e-6;
     if (s.system.held.idle == 0 || !has_energy(s.model, s.branch)) return 0;
     const auto least = [&](const State<double>& q) {
-        const double stiffness = least_of_idle(s);
+        const double stiffness = min_of_idle(s);
         if (!(stiffness < 0)) return 0.;
         external_force<double>(s.model, s.branch, s.inputs, q, s.upper);
         elastic_force<double>(s.model, s.inputs, q, s.force);

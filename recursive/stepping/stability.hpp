@@ -1,5 +1,5 @@
-// Stability of an equilibrium: inertia of its reduced Hessian, idle modes under load, settled
-// start.
+// Stability of an equilibrium: inertia of its reduced Hessian, idle modes under
+// load, settled start.
 //
 // Inertia: with Z a basis of the motions that the joints allow, ZᵀKZ is positive definite if and
 // only if K + ρ Φ_qᵀ Φ_q is for some ρ (Finsler, Debreu). That matrix has as many negative
@@ -29,9 +29,9 @@ namespace elastocheck::recursive {
 // symmetric part of its K does not decide stability.
 bool has_energy(const Model& model, const Branch& branch);
 
-// Whether the equilibrium whose consistent tangent is in the system has a negative eigenvalue.
-// False where the negative pivot may be round-off, which grows with ρ, and where K is not
-// symmetric.
+// Whether the equilibrium whose consistent tangent is in the system has a negative
+// eigenvalue. False where the negative pivot may be round-off, which grows with ρ, and where
+// K is not symmetric.
 bool is_unstable(const SteppingState& s);
 
 // Stability of the start, whose matrix is in the system. Settling from a drawing far from rest may
@@ -55,11 +55,11 @@ struct Dip {
 Dip lowest_determinant(std::array<double, 3> values, const std::function<double(double)>& at);
 
 // The smallest eigenvalue of the symmetric part of Q.
-double least_eigenvalue(const Eigen::MatrixXd& Q);
+double min_eigenvalue(const Eigen::MatrixXd& Q);
 
 // The least eigenvalue of ZᵀKZ over all groups of idle modes, K of the consistent matrix in the
 // system; 0 where none is negative beyond rounding.
-double least_of_idle(const SteppingState& s);
+double min_of_idle(const SteppingState& s);
 
 // The least stiffness of an idle mode at the equilibrium near (q, λ) if the acting forces make that
 // mode unstable, else 0. Pre: the consistent matrix at (q, λ) is in the system and factorised.

@@ -117,8 +117,8 @@ bool has_diverged(SteppingState& s) {
 Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_ratio) {
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!is_regular(s, pivot_ratio)) return Outcome::singular;
-    // A strain above the blur is a real stiffness; holding that mode would give a wrong result
-    // silently.
+    // A strain above the blur is a real stiffness; holding that mode would give a
+    // wrong result silently.
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
     const double blur = s.Phi.norm() / std::min(1.0, s.length);
     if (!(strain_of_held(s, q) <= rounding + guard::idle_strain + guard::strain_per_error * blur))

@@ -15,8 +15,8 @@
 
 namespace elastocheck::recursive {
 
-// Position on the path: t goes from 0 to 1 while the start is settled, then a changes along the
-// branch.
+// Position on the path: t goes from 0 to 1 while the start is settled, then a changes
+// along the branch.
 //
 //   Φ(q, inputs(t, a)) = (1 - t) Φ_d        G(q, λ, inputs(t, a)) = -(1 - t) R_d
 //
@@ -46,8 +46,8 @@ inline constexpr double closed = 1e-9;
 inline constexpr double agreeing = 1e-9;
 // The linearisation of a rotation, eq. (6), is wrong by half at one radian.
 inline constexpr double largest_turn = 1;
-// One step that reverses and exceeds the step before may follow a turn of the path; two in a row do
-// not.
+// One step that reverses and exceeds the step before may follow a turn of the path; two in a
+// row do not.
 inline constexpr int swings = 2;
 // A step across a kink overshoots or undershoots and the next one corrects that: number of steps
 // that are not compared with the step before.
@@ -115,8 +115,8 @@ struct SteppingState {
     int swings = 0;  // steps in a row that reversed the one before and were larger
 
     std::vector<std::vector<Moved>> moved;  // for every idle mode
-    // The elastic elements that idle modes move, and those of them that may exert a force along
-    // one.
+    // The elastic elements that idle modes move, and those of them that may exert a
+    // force along one.
     std::vector<std::size_t> at_idle, pushing;
 
     std::vector<CurvePlace> curves;
@@ -164,8 +164,8 @@ struct SteppingState {
     int m() const { return system.m; }
 
   private:
-    // Throws for a load that moves others and is without entries in the pattern: the matrix would silently omit its
-    // tangent.
+    // Throws for a load that moves others and is without entries in the pattern: the matrix would
+    // silently omit its tangent.
     void check_followers(const Pattern& pattern) const {
         for (const auto& driver : branch.drivers) {
             const Load* load = driven_load(driver.what);

@@ -57,8 +57,8 @@ void store(SteppingState& s, const Follow& follow) {
     }
 }
 
-// Adds the change of f_elast at qⁿ by the drivers in this step, ∂f_elast/∂a Δa, to the stored
-// forces.
+// Adds the change of f_elast at qⁿ by the drivers in this step, ∂f_elast/∂a Δa, to
+// the stored forces.
 void store_driven(SteppingState& s, const Follow& follow, Drive drive, double amount) {
     if (follow.lever && follow.axis) return elastic_force<double>(s.model, s.inputs, s.q, s.stored);
     for_each_stored_rate<double>(s.model, s.branch, s.inputs, drive, amount, s.q,

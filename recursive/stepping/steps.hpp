@@ -29,8 +29,8 @@ inline Outcome check_held_modes(SteppingState& s) {
     return check_idle_load(s, s.q, s.consistent ? s.missed : 0);
 }
 
-// Error of the last step, by a correction with its own factors; for other steps the next step shows
-// it.
+// Error of the last step, by a correction with its own factors; for other steps the next
+// step shows it.
 inline Outcome check_last_step(SteppingState& s) {
     if (s.kinked > 0) return Outcome::converged;  // the step is not comparable
     residual_at(s, s.q, s.lambda);

@@ -5,7 +5,7 @@
 namespace elastocheck::recursive::detail {
 
 void orthonormalise(const Vector<double>& weight, Matrix<double>& U) {
-    constexpr double nothing = 1e-9;
+    constexpr double zero_tolerance = 1e-9;
     const auto W2 = weight.head(U.rows()).array().square();
     Eigen::Index kept = 0;
     for (Eigen::Index c = 0; c < U.cols(); ++c) {
@@ -17,12 +17,12 @@ void orthonormalise(const Vector<double>& weight, Matrix<double>& U) {
                 u -= part * U.col(k);
             }
         const double left = std::sqrt((u.array().square() * W2).sum());
-        if (left > nothing * whole) U.col(kept++) = u / left;
+        if (left > zero_tolerance * whole) U.col(kept++) = u / left;
     }
     U.conservativeResize(Eigen::NoChange, kept);
 }
 
-LeastStiffness least_of(const Eigen::MatrixXd& H) {
+LeastStiffness min_of(const Eigen::MatrixXd& H) {
     // If K is symmetric, H is nearly so: each θ of H = S + N is within |N| of one of S (Bauer and
     // Fike 1960).
     constexpr double rounding = 1e-6, may_matter = 1e-3;
@@ -40,7 +40,7 @@ LeastStiffness least_of(const Eigen::MatrixXd& H) {
 
 namespace elastocheck::recursive {
 
-LeastStiffness least_stiffness(SteppingState& s, Matrix<double>& U) {
+LeastStiffness min_stiffness(SteppingState& s, Matrix<double>& U) {
     constexpr int vectors = 3, first_turns = 5, turns = 2;
     if (s.free <= 0) return {};
     const int n = s.n();
@@ -66,7 +66,7 @@ LeastStiffness least_stiffness(SteppingState& s, Matrix<double>& U) {
         U = V;
         detail::orthonormalise(s.system.weight, U);
     }
-    return detail::least_of(H);
+    return detail::min_of(H);
 }
 
 }  // namespace elastocheck::recursive

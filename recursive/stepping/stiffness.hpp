@@ -29,12 +29,12 @@ namespace detail {
 void orthonormalise(const Vector<double>& weight, Matrix<double>& U);
 
 // 1/θ for the negative eigenvalue θ of H of largest modulus, else for the largest θ.
-LeastStiffness least_of(const Eigen::MatrixXd& H);
+LeastStiffness min_of(const Eigen::MatrixXd& H);
 
 }  // namespace detail
 
 // Least stiffness with the factors in the system, which must be those of the consistent tangent. U
 // [6nb × 3 at most], orthonormal in W, is kept for the next point; empty at the first.
-LeastStiffness least_stiffness(SteppingState& s, Matrix<double>& U);
+LeastStiffness min_stiffness(SteppingState& s, Matrix<double>& U);
 
 }  // namespace elastocheck::recursive

@@ -1,5 +1,5 @@
-// Sweep along a branch by the methods with equal steps: settle at a = 0, then N increments, eqs.
-// (25)-(29).
+// Sweep along a branch by the methods with equal steps: settle at a = 0, then N
+// increments, eqs. (25)-(29).
 #pragma once
 
 #include "elastocheck/recursive.hpp"

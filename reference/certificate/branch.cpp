@@ -26,8 +26,8 @@
 //
 //   ρ(|Y| R) = ½ Δk c / (1 + k c + ½ Δk c) < 1
 //
-// for any stiffness of the stop: the piece contracts. r is then (I - |Y| R)⁻¹ times the part to be
-// covered.
+// for any stiffness of the stop: the piece contracts. r is then (I - |Y| R)⁻¹ times the part
+// to be covered.
 #include <fmt/format.h>
 
 #include <numbers>
@@ -138,7 +138,7 @@ struct NodeSolver {
         return node;
     }
     bool is_sound(const Node& node) const {
-        return worth(problem(node.y.head(system.n())), node.y, node.a).sound;
+        return check_border(problem(node.y.head(system.n())), node.y, node.a).sound;
     }
 };
 
@@ -344,8 +344,8 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
 
 // Whether the piece crosses a corner.
 bool over_a_corner(const System& system, const Piece& piece) {
-    for (std::size_t k = 0; k < system.apart.size(); ++k)
-        if (over_a_knot(std::get<Curve>(law_of(system, system.apart[k])),
+    for (std::size_t k = 0; k < system.separated.size(); ++k)
+        if (over_a_knot(std::get<Curve>(law_of(system, system.separated[k])),
                         expanded<0>(powers(piece, system.deformation(k)), Interval(-1, 1)).c[0]))
             return true;
     return false;
@@ -423,6 +423,88 @@ std::string in_unit_of(ParameterUnit unit, double a) {
     return fmt::format("{:.12g}", a);
 }
 
+// Two neighbouring nodes of the path, with the one halfway between them.
+struct Section {
+    Node from, middle, to;
+};
+
+struct ProvedPiece {
+    Piece piece;
+    bool proved = false, over_knot = false;
+    Held held = {};
+    bool pushed = false;  // proved, but `held` exceeds the tolerance
+};
+
+// Proves one curve of equilibria from `from` to `to`, whose ends lie within the tube of the piece.
+// `over_knots`: the piece is short enough to be straight across the knot of a law.
+ProvedPiece prove_section(const NodeSolver& solver, Section& s, bool over_knots,
+                          const Tolerance& tolerance) {
+    ProvedPiece result;
+    Piece& piece = result.piece;
+    const auto joined = [&] {
+        return all_less(s.from.box, piece.r) && all_less(s.to.box, piece.r);
+    };
+    const auto attempt = [&](const VectorXd& joint) {
+        if (s.to.found && s.middle.found) {
+            piece = quintic(s.from, s.middle, s.to);
+            result.proved = !over_a_corner(solver.system, piece) &&
+                            prove(solver, piece, s.middle.Y, joint, tolerance);
+        }
+        result.over_knot = false;
+        if (!result.proved && s.to.found && over_knots) {
+            piece = straight(s.from, s.to);
+            result.proved = result.over_knot = prove_over_knot(solver, piece, joint, tolerance);
+        }
+    };
+    attempt(VectorXd::Zero(s.from.y.size()));
+    if (result.proved) enclose(solver, s.to);
+    if (result.proved && s.to.box.size() > 0 && !joined())
+        attempt(1.1 * s.from.box.cwiseMax(s.to.box));
+    result.proved = result.proved && solver.is_sound(s.to);
+    if (!result.proved) return result;
+    result.held = held_over(solver, piece);
+    result.pushed = result.held.held > tolerance.held || result.held.gap > tolerance.gap;
+    result.proved = !result.pushed && s.to.box.size() > 0 && joined();
+    return result;
+}
+
+// Why no piece is proved past a place.
+std::string why_it_ends(const NodeSolver& solver, const Held& pushed, const Tolerance& tolerance,
+                        const std::string& place) {
+    if (pushed.held > tolerance.held)
+        return fmt::format("past {} the idle motion of {} is loaded by up to {:.2g} N or N·m",
+                           place, idle_bodies(solver.system, solver.border), pushed.held);
+    if (pushed.gap > tolerance.gap)
+        return fmt::format("past {} joints {} have a gap of up to {:.2g} m or rad", place,
+                           redundant_joints(solver.system, solver.border), pushed.gap);
+    return fmt::format(
+        "no piece is proved past {}: the branch turns back or bifurcates, or a law ends", place);
+}
+
+// Why the states are not a path; empty if they are.
+std::string why_not_a_path(const std::vector<StateAt>& at, std::span<const Equilibrium> states,
+                           const Branch& branch) {
+    const double range = states.back().load - states.front().load;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        if (!at[k].z.allFinite() || !std::isfinite(states[k].load)) return "a state is not finite";
+        if (k > 0 && !((states[k].load - states[k - 1].load) * range > 0))
+            return fmt::format("the states turn back at {}",
+                               in_unit_of(branch.unit, states[k].load));
+    }
+    return {};
+}
+
+// Adds the width of a piece: its radius, and its distance from the states along it.
+void widen(Tube& tube, const System& system, const Piece& piece, std::span<const StateAt> along) {
+    Extent width{0, 0, 0, 0};
+    for (const StateAt& state : along) raise(width, distance(piece, state));
+    for (int b = 0; b < system.bodies; ++b) {
+        width.length = std::max(width.length, piece.r.segment<3>(system.pose(b)).norm());
+        width.angle = std::max(width.angle, 2 * piece.r.segment<4>(system.pose(b) + 3).norm());
+    }
+    raise(tube.width, width);
+}
+
 }  // namespace
 
 Tube certify_branch(const Model& model, const Branch& branch, std::span<const Equilibrium> states,
@@ -431,130 +513,81 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     tube.width = {0, 0, 0, 0};
     const auto place = [&](double a) { return in_unit_of(branch.unit, a); };
     const auto open = [&](const std::string& why) {
-        tube.answer = Answer::open;
+        tube.state = ProofState::open;
         tube.detail = why;
         return tube;
     };
     if (states.size() < 2) return open("a path between states needs two of them");
-    const System system = make_system(model, branch, Corners::apart);
+    const System system = make_system(model, branch, Corners::separated);
     if (const auto why = why_not_tried(system); !why.empty()) return open(why);
     std::vector<StateAt> at;
     for (const auto& state : states) at.push_back(state_at(system, state));
     tube.from = tube.to = states.front().load;
     const double end = states.back().load, range = end - tube.from;
-    for (std::size_t k = 0; k < at.size(); ++k) {
-        if (!at[k].z.allFinite() || !std::isfinite(states[k].load))
-            return open("a state is not finite");
-        if (k > 0 && !((states[k].load - states[k - 1].load) * range > 0))
-            return open(fmt::format("the states turn back at {}", place(states[k].load)));
-    }
+    if (const auto why = why_not_a_path(at, states, branch); !why.empty()) return open(why);
     const StateAt& middle = at[at.size() / 2];
     const Interpolant interpolant_of = interpolant(at);
     const NodeSolver solver{system, interpolant_of,
-                            approach(system, middle.z, middle.state.load).problem.border};
+                            equilibrium_near(system, middle.z, middle.state.load).problem.border};
 
     // Step-size control: halved after a failure, enlarged by three fifths after a success.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
-    constexpr int most_bridges = 40;  // consecutive
+    constexpr int max_bridges = 40;  // consecutive
     double h = first_share * range;
     Held held, pushed;
-    Node from = solver.node(tube.from), middle_node, to;
-    if (!from.found)
+    Section section{solver.node(tube.from), {}, {}};
+    if (!section.from.found)
         return open(fmt::format("Newton's method does not converge near the state at {}",
                                 place(tube.from)));
-    enclose(solver, from);
-    if (from.box.size() == 0 || !solver.is_sound(from))
+    enclose(solver, section.from);
+    if (section.from.box.size() == 0 || !solver.is_sound(section.from))
         return open(fmt::format("nothing is proved at {}", place(tube.from)));
-    const VectorXd none = VectorXd::Zero(from.y.size());
     std::size_t next_state = 0;
     bool halved = false;
     int bridges = 0;  // consecutive pieces across knots up to here
     while (tube.to != end) {
-        if (bridges == most_bridges)
+        if (bridges == max_bridges)
             return open(
                 fmt::format("past {} the path stays on a knot, or close to one", place(tube.to)));
         const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = last ? end : tube.to + h;
-        if (a1 == tube.to || std::abs(h) < shortest * std::abs(range)) {
-            if (pushed.held > tolerance.held)
-                return open(
-                    fmt::format("past {} the idle motion of {} is loaded by up to {:.2g} N or N·m",
-                                place(tube.to), idle_bodies(system, solver.border), pushed.held));
-            if (pushed.gap > tolerance.gap)
-                return open(fmt::format("past {} joints {} have a gap of up to {:.2g} m or rad",
-                                        place(tube.to), redundant_joints(system, solver.border),
-                                        pushed.gap));
-            return open(
-                fmt::format("no piece is proved past {}: the branch turns back or bifurcates, "
-                            "or a law ends",
-                            place(tube.to)));
-        }
-        to = halved && middle_node.a == a1 ? middle_node : solver.node(a1);
-        middle_node = solver.node(tube.to / 2 + a1 / 2);
-        Piece piece;
-        bool proved = false, over_knot = false;
-        Held of_piece;
-        // Whether the boxes at both ends lie within the tube.
-        const auto joined = [&] {
-            return all_less(from.box, piece.r) && all_less(to.box, piece.r);
-        };
-        const auto attempt = [&](const VectorXd& joint) {
-            if (to.found && middle_node.found) {
-                piece = quintic(from, middle_node, to);
-                proved = !over_a_corner(system, piece) &&
-                         prove(solver, piece, middle_node.Y, joint, tolerance);
-            }
-            over_knot = false;
-            if (!proved && to.found && std::abs(h) < bridge * std::abs(range)) {
-                piece = straight(from, to);
-                proved = over_knot = prove_over_knot(solver, piece, joint, tolerance);
-            }
-        };
-        attempt(none);
-        if (proved) enclose(solver, to);
-        if (proved && to.box.size() > 0 && !joined()) attempt(1.1 * from.box.cwiseMax(to.box));
-        proved = proved && solver.is_sound(to);
-        if (proved) {
-            of_piece = held_over(solver, piece);
-            if (of_piece.held > tolerance.held || of_piece.gap > tolerance.gap) {
-                pushed = of_piece;
-                proved = false;
-            }
-        }
-        if (!proved || to.box.size() == 0 || !joined()) {
+        if (a1 == tube.to || std::abs(h) < shortest * std::abs(range))
+            return open(why_it_ends(solver, pushed, tolerance, place(tube.to)));
+        section.to = halved && section.middle.a == a1 ? section.middle : solver.node(a1);
+        section.middle = solver.node(tube.to / 2 + a1 / 2);
+        const ProvedPiece found =
+            prove_section(solver, section, std::abs(h) < bridge * std::abs(range), tolerance);
+        if (found.pushed) pushed = found.held;
+        if (!found.proved) {
             h /= 2;
             halved = true;
             continue;
         }
         halved = false;
-        Extent width{0, 0, 0, 0};
-        for (; next_state < at.size() &&
-               std::abs(states[next_state].load - tube.from) <= std::abs(a1 - tube.from);
-             ++next_state)
-            raise(width, distance(piece, at[next_state]));
-        for (int b = 0; b < system.bodies; ++b) {
-            width.length = std::max(width.length, piece.r.segment<3>(system.pose(b)).norm());
-            width.angle = std::max(width.angle, 2 * piece.r.segment<4>(system.pose(b) + 3).norm());
-        }
-        raise(tube.width, width);
-        held.held = std::max(held.held, of_piece.held);
-        held.gap = std::max(held.gap, of_piece.gap);
+        const std::size_t first_state = next_state;
+        while (next_state < at.size() &&
+               std::abs(states[next_state].load - tube.from) <= std::abs(a1 - tube.from))
+            ++next_state;
+        widen(tube, system, found.piece,
+              std::span(at).subspan(first_state, next_state - first_state));
+        held.held = std::max(held.held, found.held.held);
+        held.gap = std::max(held.gap, found.held.gap);
         pushed = {};
         ++tube.pieces;
-        tube.corners += over_a_corner(system, piece) ? 1 : 0;
+        tube.corners += over_a_corner(system, found.piece) ? 1 : 0;
         tube.to = a1;
-        from = to;
+        section.from = section.to;
         h *= 1.6;
         // the knot is passed
-        if (over_knot && std::abs(h) < std::abs(first_share * range)) h = first_share * range;
-        bridges = over_knot ? bridges + 1 : 0;
+        if (found.over_knot && std::abs(h) < std::abs(first_share * range)) h = first_share * range;
+        bridges = found.over_knot ? bridges + 1 : 0;
         if (std::abs(h) > std::abs(range)) h = range;
     }
     if (!within(tube.width, tolerance))
         return open(fmt::format(
             "a curve of equilibria is proved, but up to {} from the states, beyond the tolerance",
             as_text(tube.width)));
-    tube.answer = Answer::proved;
+    tube.state = ProofState::proved;
     tube.detail = statement(system, solver.border, held, "states");
     return tube;
 }

@@ -1,6 +1,6 @@
-// Computer-assisted proof that a computed state is near a true equilibrium of the stored model, by
-// Krawczyk's interval operator (Krawczyk 1969). A leg of its own: it shares only models/ with the
-// others.
+// Computer-assisted proof that a computed state is near a true equilibrium of the stored model,
+// by Krawczyk's interval operator (Krawczyk 1969). A leg of its own: it shares only models/
+// with the others.
 //
 // The equations are those of the model, with its stored doubles taken as exact numbers. The proof
 // is about these equations; it covers neither their physics nor the tolerances of the input.
@@ -27,12 +27,18 @@ struct Tolerance {
     double gap = 1e-9;               // largest remaining gap of redundant constraints [m, rad]
 };
 
-enum class Answer {
-    proved,    // an equilibrium exists within the tolerance, and no other within `unique`
-    excluded,  // provably no equilibrium within the tolerance
-    open,      // undecided
+// State of a proof, for a point z_s, in the letters of krawczyk.hpp: F the bordered equations, Y an
+// approximate inverse of their Jacobian, [y] = ỹ ± r a box, δ the tolerance.
+enum class ProofState {
+    // |Y F(ỹ)| + |I - Y F'([y])| r < r, so one equilibrium is in [y]; and |z - z_s| ≤ δ for all z of
+    // [y], with |μ| at most `held` and `gap`
+    proved,
+    // |y E(z_s)| > |y E'([z])| δ + |y| |ε| for some row y, so no equilibrium has |z - z_s| ≤ δ
+    excluded,
+    // neither inequality could be shown
+    open,
 };
-const char* name(Answer answer);  // "proved", ...
+const char* name(ProofState state);  // "proved", ...
 
 // The largest over all bodies and joints.
 struct Extent {
@@ -44,7 +50,7 @@ struct Extent {
 };
 
 struct Certificate {
-    Answer answer = Answer::open;
+    ProofState state = ProofState::open;
     // reason for `open`; additional statements of the theorem: held idle modes, redundant
     // constraints and their gap
     std::string detail;
@@ -54,8 +60,8 @@ struct Certificate {
     Extent unique;
     double held = 0;  // upper bound of |μ| that holds idle modes [N, N·m]; 0 without any
     double gap = 0;   // upper bound of the gap of redundant constraints [m, rad]; 0 without any
-    // Every stiffness of free motions that are not idle is positive over the whole box; false: not
-    // proved.
+    // Every stiffness of free motions that are not idle is positive over the whole box;
+    // false: not proved.
     bool stable = false;
     Equilibrium centre;  // of the box, as doubles; without poses if there is no box
 };
@@ -66,9 +72,11 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
                     const Tolerance& tolerance = {});
 
 // Certifies the path between states: one connected, locally unique curve of equilibria from the
-// first state to the last, within a tube around an interpolating polynomial.
+// first state to the last, within a tube around an interpolating polynomial. `proved` if the
+// inequality of a point holds over every piece with a as a coefficient, and neighbouring pieces share
+// their zero; else `open`.
 struct Tube {
-    Answer answer = Answer::open;
+    ProofState state = ProofState::open;
     std::string detail;
     double from = 0, to = 0;  // range of a covered without a gap
     Extent width;  // of the tube: largest distance of the curve from the states at their a
@@ -78,9 +86,10 @@ struct Tube {
 Tube certify_branch(const Model& model, const Branch& branch, std::span<const Equilibrium> states,
                     const Tolerance& tolerance = {});
 
-// Certifies a limit point near the state, with a as an unknown.
+// Certifies a limit point near the state, with a as an unknown. `proved` if the box contracts for
+// every σ in [-δ, δ] along the tangent and da/dσ has opposite signs at its ends; else `open`.
 struct LimitPoint {
-    Answer answer = Answer::open;
+    ProofState state = ProofState::open;
     std::string detail;
     double from = 0, to = 0;  // bounds of the limit value of a
     Extent error;

@@ -1,8 +1,8 @@
 // Certifies a point. The tolerance fixes the claim before anything is computed; then
 //
 //   Newton's method in doubles    from the state to ỹ, and Y ≈ F'(ỹ)⁻¹
-//   smallest box that passes      [y] = ỹ ± r: contains one zero, at a bounded distance from the
-//                                 state
+//   smallest box that passes      [y] = ỹ ± r, |Y F(ỹ)| + |I - Y F'([y])| r < r: contains one zero,
+//                                 at a bounded distance from the state
 //   large box that passes         contains no other zero
 //   box of the tolerance          if the first box fails: y·F over all that is within the
 //                                 tolerance, for each row y of Y; if one of these cannot be zero,
@@ -16,11 +16,11 @@
 
 namespace elastocheck::reference::certificate {
 
-const char* name(Answer answer) {
-    switch (answer) {
-        case Answer::proved: return "proved";
-        case Answer::excluded: return "excluded";
-        case Answer::open: return "open";
+const char* name(ProofState state) {
+    switch (state) {
+        case ProofState::proved: return "proved";
+        case ProofState::excluded: return "excluded";
+        case ProofState::open: return "open";
     }
     return "unknown";
 }
@@ -56,8 +56,8 @@ Box smallest(const Problem& problem, Approximate& at, double a) {
         }
         const Contraction rest = contraction(at.Y, found.J);
         if (!rest.finite) return found;
-        // First by fixed-point iteration, which suffices where F' hardly changes; then by a linear
-        // solve.
+        // First by fixed-point iteration, which suffices where F' hardly changes; then by
+        // a linear solve.
         VectorXd r;
         if (trial == 0) {
             r = (first * 1.01).cwiseMax(least);
@@ -117,11 +117,11 @@ double alone(const Problem& problem, const Approximate& at, double a, const Vect
         }
         r = r.cwiseMax(small);  // p* ∈ [p]
         std::vector<Interval> y = box(found, r);
-        if (!system.apart.empty()) {
+        if (!system.separated.empty()) {
             const auto x = deformations(system, {y.begin(), y.begin() + system.n()}, Interval(a));
-            for (std::size_t k = 0; k < system.apart.size(); ++k)
+            for (std::size_t k = 0; k < system.separated.size(); ++k)
                 y[static_cast<std::size_t>(system.deformation(k))] =
-                    x[system.apart[k].element][system.apart[k].axis];
+                    x[system.separated[k].element][system.separated[k].axis];
         }
         const auto J = evaluate(problem, y, Interval(a), Slopes::yes).J;
         double by = shrinks(contraction(at.Y, J), r);
@@ -259,7 +259,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
     if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
     if (const auto why = why_not_tried(system); !why.empty()) return open(why);
 
-    auto [problem, found, there] = approach(system, at.z, state.load);
+    auto [problem, found, there] = equilibrium_near(system, at.z, state.load);
     const Interval a = state.load;
 
     if (found.settled && found.y.allFinite()) {
@@ -273,11 +273,12 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             const VectorXd mu =
                 (found.y.tail(problem.border.count()).cwiseAbs() + r.tail(problem.border.count()));
             const Held held = held_by(system, problem.border, mu);
-            certificate.held = held.held, certificate.gap = held.gap;
+            certificate.held = held.held;
+            certificate.gap = held.gap;
             const bool balanced = there.sound && certificate.held <= tolerance.held &&
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
-                certificate.answer = Answer::proved;
+                certificate.state = ProofState::proved;
                 certificate.unique = unique_around(at, found, alone(problem, found, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
                 certificate.detail = statement(system, problem.border, held, "state");
@@ -291,7 +292,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         }
     }
     if (none_within(at, tolerance)) {
-        certificate.answer = Answer::excluded;
+        certificate.state = ProofState::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail = fmt::format(
                 "the nearest equilibrium found{} is {} away",
@@ -328,11 +329,12 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
 Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
                     const Tolerance& tolerance) {
     Certificate certificate = certify(make_system(model, branch), state, tolerance);
-    const bool shown = certificate.answer == Answer::excluded || certificate.stable;
+    const bool shown = certificate.state == ProofState::excluded || certificate.stable;
     if (shown || !has_corners(model)) return certificate;
     // At the corner of a stiff stop the slopes inside the element vary too independently.
-    Certificate apart = certify(make_system(model, branch, Corners::apart), state, tolerance);
-    return apart.answer == Answer::open ? certificate : apart;
+    Certificate separated =
+        certify(make_system(model, branch, Corners::separated), state, tolerance);
+    return separated.state == ProofState::open ? certificate : separated;
 }
 
 }  // namespace elastocheck::reference::certificate

@@ -1,9 +1,12 @@
 // Krawczyk's existence and uniqueness test (Krawczyk 1969; Moore 1977), in doubles with bounded
 // rounding errors.
 //
-// For every y in [y] = ỹ ± r,
+// For the box [y] = ỹ ± r and any matrix Y, in practice Y ≈ F'(ỹ)⁻¹,
 //
-// F' is an interval matrix M ± R. With the unit roundoff u and p the most entries of a column of M,
+//   |Y F(ỹ)| + |I - Y F'([y])| r < r   ⟹   F has exactly one zero in [y]
+//
+// because y - Y F(y) then maps [y] into its interior, and is a contraction there. F' is an interval
+// matrix M ± R. With the unit roundoff u and p the most entries of a column of M,
 //
 //   |I - Y F'| r ≤ |I - fl(Y M)| r + γ_p |Y| (|M| r) + |Y| (R r),     γ_p = p u / (1 - p u)
 //

@@ -6,7 +6,7 @@
 // One box that contracts for every σ in [-δ, δ] contains one equilibrium y(σ) at each: a curve. Its
 // derivative dy/dσ solves F' dy/dσ = e, e the unit vector of the last row, so
 //
-// |dy/dσ - Y e| ≤ |I - Y F'| |Y e| + |I - Y F'| |dy/dσ - Y e|      (the last term bounds itself)
+//   |dy/dσ - Y e| ≤ |I - Y F'| |Y e| + |I - Y F'| |dy/dσ - Y e|      (the last term bounds itself)
 //
 // Where da/dσ has opposite signs at -δ and δ, a has its extremum between: the limit, which for a
 // maximum is at least a(±δ) and at most the largest a of the box.
@@ -153,10 +153,11 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     Problem problem{system, known.border, known.z_g, true, normalised(system, along).t, y};
     const OnCurve top = turning_point(problem);
     if (!top.found) return open("no limit point is found near the state");
-    if (!worth(problem, top.y, top.y[n - 1]).sound)
+    if (!check_border(problem, top.y, top.y[n - 1]).sound)
         return open(
-            "an idle motion or redundant constraint at the limit point is none, is loaded, or has "
-            "a gap");
+            "a held motion or constraint is not idle or redundant at the limit point, is loaded, "
+            "or "
+            "has a gap");
 
     problem.y_t = top.y;
     for (double delta = 1e-9; delta < 1e-3; delta *= 4) {
@@ -192,7 +193,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         const auto whole = box(top.y, all.r);
         limit.error = distance(at, {whole.begin(), whole.begin() + system.n()});
         if (within(limit.error, tolerance))
-            limit.answer = Answer::proved;
+            limit.state = ProofState::proved;
         else
             limit.detail =
                 fmt::format("a limit point is proved, {} from the state, beyond the tolerance",

@@ -91,12 +91,12 @@ bool stable(const Problem& problem, const std::vector<Interval>& z,
             H[b * N + a] += part;
         }
     }
-    for (std::size_t c = 0; c < system.apart.size(); ++c) {
+    for (std::size_t c = 0; c < system.separated.size(); ++c) {
         const auto at = static_cast<std::size_t>(system.corner(c));
         // from the law itself: the smallest slope of a stop is zero, and outward rounding would
         // make it negative
         std::array<Interval, 2> f;
-        expand(std::get<Curve>(law_of(system, system.apart[c])),
+        expand(std::get<Curve>(law_of(system, system.separated[c])),
                z[static_cast<std::size_t>(system.deformation(c))], 2, f.data());
         const double k = f[1].lo;
         if (!system.conservative || !(k >= 0)) return false;

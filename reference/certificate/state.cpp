@@ -183,10 +183,10 @@ VectorXd radii(const StateAt& at, const Tolerance& near) {
         for (std::size_t i = 0; i < q; ++i)
             r[7 * system.bodies + rows[i]] = moment[i] ? (Interval(within) * length).hi : within;
     }
-    if (system.apart.empty()) return r;
+    if (system.separated.empty()) return r;
     const auto x = deformations(system, poses, Interval(at.state.load));
-    for (std::size_t k = 0; k < system.apart.size(); ++k) {
-        const Apart& corner = system.apart[k];
+    for (std::size_t k = 0; k < system.separated.size(); ++k) {
+        const SeparatedCorner& corner = system.separated[k];
         const Interval& over = x[corner.element][corner.axis];
         const Index to = system.deformation(k);
         r[to] = mag(over - Interval(at.z[to]));

@@ -68,11 +68,11 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     const System& system = tangent.system;
     Response response;
     for (const Disturbance& disturbance : disturbances) {
-        const Answered answered = answer_to(
+        const Solved solved = solve_at_state(
             tangent, rate_of(disturbed(system, disturbance, a), tangent.loading, tangent.x));
-        if (answered.outcome != Outcome::converged)
-            return fail(answered.outcome, name_of(model, disturbance) + ": " + answered.what);
-        response.increments.push_back(increments_of(system, answered.dx));
+        if (solved.outcome != Outcome::converged)
+            return fail(solved.outcome, name_of(model, disturbance) + ": " + solved.what);
+        response.increments.push_back(increments_of(system, solved.dx));
     }
     return response;
 }

@@ -18,11 +18,11 @@ namespace elastocheck::reference::equilibrium {
 // imbalance are computed.
 //
 // Outcomes. not_finite: the state or the result. singular: ∂E/∂x cannot be factorised, a
-// disturbance meets only round-off stiffness, or a limit point prevents the motion of the branch's
-// own drivers. loaded_idle_mode, inconsistent_constraints: a disturbance lies outside the range of
-// ∂E/∂x; the detail names a body or joints. Throws std::invalid_argument as `solve` does, and where
-// a wrench acts on no body, a moved joint has no offset, or `state` does not have one pose per
-// body.
+// disturbance meets only round-off stiffness, or a limit point prevents the motion of the
+// branch's own drivers. loaded_idle_mode, inconsistent_constraints: a disturbance lies outside
+// the range of ∂E/∂x; the detail names a body or joints. Throws std::invalid_argument as `solve`
+// does, and where a wrench acts on no body, a moved joint has no offset, or `state` does not have
+// one pose per body.
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances);
 

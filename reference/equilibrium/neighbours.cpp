@@ -15,7 +15,9 @@ System in_scales_of(const System& of, const Model& model, double a) {
     System system = make_system(model, model.branches.front(), {&a, 1});
     if (system.equations() != of.equations())
         throw std::invalid_argument("a neighbour of another model");
-    system.centre = of.centre, system.length = of.length, system.force = of.force;
+    system.centre = of.centre;
+    system.length = of.length;
+    system.force = of.force;
     return system;
 }
 
@@ -38,9 +40,10 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             systems.push_back(in_scales_of(tangent.system, *k.model, state.load));
             E_rate += k.weight * (residual(systems.back(), tangent.loading, tangent.x) - here);
         }
-        const Answered answered = answer_to(tangent, E_rate, rounding * amplification(stencil));
-        if (answered.outcome != Outcome::converged) {
-            result.outcome = answered.outcome, result.detail = answered.what;
+        const Solved solved = solve_at_state(tangent, E_rate, rounding * amplification(stencil));
+        if (solved.outcome != Outcome::converged) {
+            result.outcome = solved.outcome;
+            result.detail = solved.what;
             continue;
         }
         // what is of second order need not be in the range of J
@@ -51,8 +54,8 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             bool met = false, last = false;
             for (int step = 0; step < chord_steps && !last; ++step) {
                 last = met;
-                const Answered by =
-                    answer_to(tangent, residual(system, tangent.loading, x) - here, not_judged);
+                const Solved by = solve_at_state(
+                    tangent, residual(system, tangent.loading, x) - here, not_judged);
                 if (by.outcome != Outcome::converged) break;
                 x = moved(system, x, by.dx);
                 const double size = pose_size(system, by.dx);

@@ -42,13 +42,13 @@ void balance(const System& system, const Loading& loading, VectorXd& x, Derivati
 // the null vectors together, which is not wanted. The small number regularises modes that consist
 // of reactions alone.
 VectorXd with_shortest_motion(const System& system, const Linearisation& at, const VectorXd& dx) {
-    constexpr double nothing = 1e-14;
+    constexpr double zero_tolerance = 1e-14;
     if (at.modes.count() == 0) return dx;
     const Eigen::Index n = 6 * system.bodies;
     const Sparse V = at.modes.right.topRows(n), V_T = V.transpose();
     Sparse one(V.cols(), V.cols());
     one.setIdentity();
-    const Eigen::SimplicialLDLT<Sparse> gram(Sparse(V_T * V + nothing * one));
+    const Eigen::SimplicialLDLT<Sparse> gram(Sparse(V_T * V + zero_tolerance * one));
     return dx - at.modes.right * gram.solve(VectorXd(V_T * dx.head(n)));
 }
 
@@ -77,15 +77,15 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     t.at = linearise(std::move(by.J), nullptr, unused);
     const VectorXd ahead = rate_of(moving, t.loading, t.x);
     if (t.system.equations() > 0 &&
-        (t.at.bordered.sign() == 0 || is_pushed(refined_answer(t.at, ahead), ahead))) {
+        (t.at.bordered.sign() == 0 || is_pushed(solve_bordered_refined(t.at, ahead), ahead))) {
         t.outcome = Outcome::singular;
         t.what = "the system is singular, the branch turns back here";
     }
     return t;
 }
 
-Answered answer_to(const StateTangent& t, const VectorXd& E_rate, double rounding) {
-    const Rate rate = refined_answer(t.at, E_rate);
+Solved solve_at_state(const StateTangent& t, const VectorXd& E_rate, double rounding) {
+    const Rate rate = solve_bordered_refined(t.at, E_rate);
     if (!rate.dx.allFinite()) return {Outcome::not_finite, "a response that is not finite", {}};
     if (rate.dx.norm() > farthest * E_rate.norm())
         return {Outcome::singular, "a motion with almost no stiffness", {}};

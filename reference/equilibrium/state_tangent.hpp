@@ -23,11 +23,12 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
 // J dx = -E_rate, with minimum-norm motion in the idle modes. `rounding`: of the entries of E_rate,
 // where that is more than their own last digits; a part outside the range of J that is smaller does
 // not count.
-struct Answered {
+struct Solved {
     Outcome outcome = Outcome::converged;
     std::string what;  // half a sentence on the failure
     Eigen::VectorXd dx;
 };
-Answered answer_to(const StateTangent& tangent, const Eigen::VectorXd& E_rate, double rounding = 0);
+Solved solve_at_state(const StateTangent& tangent, const Eigen::VectorXd& E_rate,
+                      double rounding = 0);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -52,7 +52,7 @@ const Command certify_command{
         command
             .add_option("--points", request->points,
                         "points of each direction of a branch, besides its start (default: 20)")
-            ->check(CLI::Range(1, most_steps));
+            ->check(CLI::Range(1, max_steps));
         add_output(command, request->folder, "folder for result.json and sides.csv");
         return [request](const std::string& line) {
             return certify(*request, request->delivery(line));

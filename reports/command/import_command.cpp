@@ -126,8 +126,8 @@ std::string settling(const std::string& yaml) {
         branch.from = 0;
         branch.to *= 1e-6;
         branch.steps = 1;
-        const auto path =
-            compare::walk(compare::sides_of(model, branch, 1), {.leg = compare::Leg::equilibrium});
+        const auto path = compare::solve_branch(compare::sides_of(model, branch, 1),
+                                                {.leg = compare::Leg::equilibrium});
         if (path.points.empty())
             return fmt::format(
                 "The drawn position does NOT settle, so that no branch starts: {}: {}.",
@@ -351,9 +351,9 @@ int export_map(const ExportRequest& request) {
                         ? ""
                         : fmt::format("{} [as in the scene]", fmt::join(rows.held, " "))};
         }
-        const auto path = compare::walk(loaded.model, table.channels, branch,
-                                        compare::sides_of(loaded.model, branch),
-                                        {.leg = compare::Leg::equilibrium});
+        const auto path = compare::solve_branch(loaded.model, table.channels, branch,
+                                                compare::sides_of(loaded.model, branch),
+                                                {.leg = compare::Leg::equilibrium});
         if (path.outcome != Outcome::converged) {
             print_error("{}: {}: {}\n",
                         rows.held.empty()

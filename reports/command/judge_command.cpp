@@ -84,7 +84,7 @@ const Command judge_command{
         command
             .add_option("--steps", request->steps,
                         "steps per branch passed to the command (default: of the scene)")
-            ->check(CLI::Range(1, most_steps));
+            ->check(CLI::Range(1, max_steps));
         command.add_option("--tolerance", request->tolerance,
                            "required accuracy: mm, deg, N, Nm, and % of the extent of forces, "
                            "moments and rates (default: 0.01mm,0.001deg,1%)");

@@ -47,9 +47,9 @@ void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
     for (reader::CsvLines lines(csv); lines.next();) {
         const int number = lines.number();
         const Cells cells = lines.cells();
-        if (cells.size() > lines.most_cells)
+        if (cells.size() > lines.max_cells)
             fail_at(file, number,
-                    fmt::format("more columns than {}, the most that are read", lines.most_cells));
+                    fmt::format("more columns than {}, the most that are read", lines.max_cells));
         if (columns == 0) {
             columns = cells.size();
             head(cells, number);

@@ -24,16 +24,16 @@ constexpr std::size_t rows_in_table = 10, annotations_in_all = 10;
 constexpr std::size_t rows_in_summary = 100, scenes_in_summary = 300, cell_length = 300;
 
 // Worst number of a channel or counter over branches, legs and loads.
-struct Worst {
+struct WorstOffence {
     const GatedScene* scene;
     const Offence* offence;
     std::size_t numbers = 1;  // number of values of this channel out of tolerance
 };
 
 // In the order of comes_before, of each scene and over all.
-std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
-                                         const std::vector<const Offence*>& offences) {
-    std::vector<Worst> all;
+std::vector<WorstOffence> worst_of_each_channel(const GatedScene* scene,
+                                                const std::vector<const Offence*>& offences) {
+    std::vector<WorstOffence> all;
     std::map<std::string_view, std::size_t> place;
     for (const auto* offence : offences) {
         const auto [at, is_new] = place.emplace(offence->channel, all.size());
@@ -44,19 +44,20 @@ std::vector<Worst> worst_of_each_channel(const GatedScene* scene,
     }
     return all;
 }
-std::vector<Worst> worst_of_each_channel(std::span<const GatedScene> scenes) {
-    std::vector<Worst> all;
+std::vector<WorstOffence> worst_of_each_channel(std::span<const GatedScene> scenes) {
+    std::vector<WorstOffence> all;
     for (const auto& scene : scenes) {
         std::vector<const Offence*> offences;
         for (const auto& offence : scene.verdict.offences) offences.push_back(&offence);
         std::ranges::copy(worst_of_each_channel(&scene, offences), std::back_inserter(all));
     }
-    std::ranges::stable_sort(
-        all, [](const Worst& a, const Worst& b) { return comes_before(*a.offence, *b.offence); });
+    std::ranges::stable_sort(all, [](const WorstOffence& a, const WorstOffence& b) {
+        return comes_before(*a.offence, *b.offence);
+    });
     return all;
 }
 
-std::string describe_worst(const Worst& worst) {
+std::string describe_worst(const WorstOffence& worst) {
     return describe(*worst.offence) +
            (worst.numbers > 1 ? fmt::format("; {} numbers of it in all", worst.numbers) : "");
 }
@@ -72,29 +73,31 @@ std::string what(const Offence& o) {
 }
 
 // "was" is the accepted number, or the limit.
-compare::Table offences_table(const std::vector<Worst>& worst, bool with_scene) {
+compare::Table offences_table(const std::vector<WorstOffence>& worst, bool with_scene) {
     using enum compare::Digits;
     using compare::nan;
-    std::vector<compare::ColumnOf<Worst>> columns{
-        {"branch", words, [](const Worst& w) { return w.offence->branch; }},
-        {"what", words, [](const Worst& w) { return what(*w.offence); }},
-        {"channel", words, [](const Worst& w) { return w.offence->channel; }},
-        {"unit", words, [](const Worst& w) { return w.offence->unit; }},
-        {"at", given, [](const Worst& w) { return w.offence->a.value_or(nan); }},
-        {"unit of at", words, [](const Worst& w) { return w.offence->a_unit; }, "", "", " "},
-        {"accepted", given, [](const Worst& w) { return w.offence->was; }, "of a limit: its bound"},
-        {"measured", given, [](const Worst& w) { return w.offence->is; }},
-        {"difference", three, [](const Worst& w) { return w.offence->difference(); }},
-        {"tolerance", hidden, [](const Worst& w) { return w.offence->tolerance; }},
+    std::vector<compare::ColumnOf<WorstOffence>> columns{
+        {"branch", words, [](const WorstOffence& w) { return w.offence->branch; }},
+        {"what", words, [](const WorstOffence& w) { return what(*w.offence); }},
+        {"channel", words, [](const WorstOffence& w) { return w.offence->channel; }},
+        {"unit", words, [](const WorstOffence& w) { return w.offence->unit; }},
+        {"at", given, [](const WorstOffence& w) { return w.offence->a.value_or(nan); }},
+        {"unit of at", words, [](const WorstOffence& w) { return w.offence->a_unit; }, "", "", " "},
+        {"accepted", given, [](const WorstOffence& w) { return w.offence->was; },
+         "of a limit: its bound"},
+        {"measured", given, [](const WorstOffence& w) { return w.offence->is; }},
+        {"difference", three, [](const WorstOffence& w) { return w.offence->difference(); }},
+        {"tolerance", hidden, [](const WorstOffence& w) { return w.offence->tolerance; }},
         {"noticeable", three,
-         [](const Worst& w) { return w.offence->of_limit ? nan : w.offence->noticed(); },
+         [](const WorstOffence& w) { return w.offence->of_limit ? nan : w.offence->noticed(); },
          "ratio to the smallest change that an engineer notices", "", "times noticeable"},
-        {"tolerances", three, [](const Worst& w) { return w.offence->share(); },
+        {"tolerances", three, [](const WorstOffence& w) { return w.offence->share(); },
          "ratio to the tolerance; of a limit 1 + excess / |limit|", "", "times the tolerance"},
-        {"numbers", whole, [](const Worst& w) { return w.numbers; }, "of the channel out of it"}};
+        {"numbers", whole, [](const WorstOffence& w) { return w.numbers; },
+         "of the channel out of it"}};
     if (with_scene)
         columns.insert(columns.begin(),
-                       {"scene", words, [](const Worst& w) { return w.scene->file; }});
+                       {"scene", words, [](const WorstOffence& w) { return w.scene->file; }});
     return compare::table("offences", columns, worst);
 }
 
@@ -315,7 +318,7 @@ json gate_document(const std::vector<GatedScene>& scenes, const Provenance& prov
     json list = json::array();
     int compared = 0;
     for (const auto& scene : scenes) {
-        std::vector<Worst> offences;
+        std::vector<WorstOffence> offences;
         for (const auto& offence : scene.verdict.offences) offences.push_back({&scene, &offence});
         compared += scene.verdict.compared;
         list.push_back({{"scene", scene.file},

@@ -25,7 +25,7 @@ using MeaningKind = Meaning::Kind;
 
 // ---- Table of outputs.
 
-struct Table {
+struct OutputTable {
     std::vector<Meaning> columns;
     std::vector<std::vector<double>> values;  // per column
     std::vector<std::string> branch, unit;    // per point, where given by a column
@@ -35,7 +35,7 @@ struct Table {
 
 // The columns named in the first line. An unknown one is an error unless it may be left out.
 void read_headings(const Cells& cells, int line, const std::string& file, const Names& names,
-                   const std::vector<compare::Channel>* also_known, Table& table,
+                   const std::vector<compare::Channel>* also_known, OutputTable& table,
                    std::vector<std::string>& left_out) {
     for (const auto cell : cells) {
         const std::string name(cell);
@@ -58,10 +58,10 @@ void read_headings(const Cells& cells, int line, const std::string& file, const 
     table.values.resize(table.columns.size());
 }
 
-Table read_table(std::string_view csv, const std::string& file, const Names& names,
-                 const std::vector<compare::Channel>* also_known,
-                 std::vector<std::string>& left_out) {
-    Table table;
+OutputTable read_table(std::string_view csv, const std::string& file, const Names& names,
+                       const std::vector<compare::Channel>* also_known,
+                       std::vector<std::string>& left_out) {
+    OutputTable table;
     const auto head = [&](const Cells& cells, int line) {
         read_headings(cells, line, file, names, also_known, table, left_out);
     };
@@ -95,8 +95,8 @@ Table read_table(std::string_view csv, const std::string& file, const Names& nam
 
 // Adds the parameters of one column where it is in the unit of the point's branch, converted to that
 // unit.
-void add_parameters(const Table& table, std::size_t c, const std::string& file, const Names& names,
-                    std::vector<double>& a) {
+void add_parameters(const OutputTable& table, std::size_t c, const std::string& file,
+                    const Names& names, std::vector<double>& a) {
     const Meaning& meaning = table.columns[c];
     for (std::size_t k = 0; k < a.size(); ++k) {
         if (std::isnan(table.values[c][k])) continue;
@@ -156,7 +156,7 @@ void keep_rows(PointTable& table, const std::function<std::string(std::size_t po
 PointTable read_points(std::string_view csv, const std::string& file, const Names& names,
                        const std::vector<compare::Channel>* also_known) {
     PointTable result;
-    const Table table = read_table(csv, file, names, also_known, result.left_out);
+    const OutputTable table = read_table(csv, file, names, also_known, result.left_out);
     auto& points = result.points;
     points.branch = table.branch;
     result.lines = table.lines;

@@ -29,7 +29,7 @@ using compare::Channel;
 using Eigen::Vector3d;
 
 constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
-constexpr int most_points = 400;
+constexpr int max_points = 400;
 
 // Points of a drawing in their bodies.
 std::vector<Point> drawn_points(const Model& model, const reports::Drawing& drawing) {
@@ -79,13 +79,14 @@ struct Solver {
     std::size_t rates = 0;      // position of the first characteristic in `channels`
 
     // Adds the rows of all sides. With `full` the characteristics too; with `geometry` the drawing.
-    EquilibriumPath walk(const Branch& branch, const std::vector<compare::BranchSide>& sides,
-                         const compare::SolverSettings& solver, bool full, bool geometry,
-                         compare::Analyses& analyses, Rows& rows) const {
+    EquilibriumPath solve_branch(const Branch& branch,
+                                 const std::vector<compare::BranchSide>& sides,
+                                 const compare::SolverSettings& solver, bool full, bool geometry,
+                                 compare::Analyses& analyses, Rows& rows) const {
         const std::span<const Channel> read =
             std::span(channels).first(full ? channels.size() : rates);
         const compare::Unit unit = compare::unit_of(branch.unit);
-        return compare::walk(
+        return compare::solve_branch(
             sides, solver,
             [&](const Equilibrium& state) {
                 compare::Row row = row_of(model, read, sides.front(), solver, state, analyses);
@@ -127,8 +128,8 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
     if (known == shared.end()) known = shared.insert(known, {parts, analysis_of(sides.front())});
     for (auto& side : sides) side.analysis = known->analysis;
     Rows rows;
-    const EquilibriumPath path = solver.walk(branch, sides, {.leg = compare::Leg::series}, full,
-                                             true, known->responses, rows);
+    const EquilibriumPath path = solver.solve_branch(branch, sides, {.leg = compare::Leg::series},
+                                                     full, true, known->responses, rows);
     json result = {{"name", branch.name}, {"unit", symbol(compare::unit_of(branch.unit))}};
     result.update(outcome_json(path));
     result["idle"] = recursive::told_idle_modes(known->analysis->diagnosis);
@@ -142,8 +143,8 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
     const int refine = std::max(1, (branch.steps + request.points / 2) / request.points);
     Rows fast;
     const EquilibriumPath published =
-        solver.walk(branch, sides, {.leg = compare::Leg::recursive, .refine = refine}, false, false,
-                    known->responses, fast);
+        solver.solve_branch(branch, sides, {.leg = compare::Leg::recursive, .refine = refine},
+                            false, false, known->responses, fast);
     json& part = result["published"] = outcome_json(published);
     part["steps"] = refine * request.points;
     part["points"] = fast.rows.size();
@@ -206,9 +207,9 @@ json open(Session& session, std::string_view text, const std::string& name,
 
 Answer solve(Session& session, const Request& request) {
     if (!session.parsed) throw std::logic_error("no scene is open");
-    if (request.points < 1 || request.points > most_points)
+    if (request.points < 1 || request.points > max_points)
         throw std::invalid_argument(
-            fmt::format("points: {} is not from 1 to {}", request.points, most_points));
+            fmt::format("points: {} is not from 1 to {}", request.points, max_points));
     const compare::Trimmed trimmed =
         compare::trim_by_series(session.parsed->read(request.settings), &session.trim);
     Answer answer;

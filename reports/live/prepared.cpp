@@ -43,11 +43,11 @@ Prepared& prepared(Session& session, const Request& request) {
     at.stations.clear(), at.paths.clear();
     at.sides = compare::sides_of(at.model, *branch, request.points);
     for (std::size_t side = 0; side < at.sides.size(); ++side)
-        at.paths.push_back(compare::walk(at.sides[side], {.leg = compare::Leg::series},
-                                         [&](const Equilibrium& state) {
-                                             if (side == 0 || state.load != 0)
-                                                 at.stations.push_back({side, state});
-                                         }));
+        at.paths.push_back(compare::solve_branch(at.sides[side], {.leg = compare::Leg::series},
+                                                 [&](const Equilibrium& state) {
+                                                     if (side == 0 || state.load != 0)
+                                                         at.stations.push_back({side, state});
+                                                 }));
     std::ranges::sort(at.stations, {}, [](const auto& station) { return station.state.load; });
     at.branch = request.only, at.points = request.points;
     return at;

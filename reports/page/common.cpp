@@ -92,7 +92,7 @@ bool over_abscissa(const SceneAnalyses& scene, const ComparedBranch& branch) {
     if (scene.comparison.channels[c].name.ends_with("travel")) {
         const auto x = branch.truth().channel(c);
         const auto [low, high] = std::ranges::minmax_element(x);
-        if (low == x.end() || !(*high - *low >= compare::least_travel)) return false;
+        if (low == x.end() || !(*high - *low >= compare::min_travel)) return false;
     }
     return std::ranges::all_of(branch.result->runs, [&](const compare::LegRun& run) {
         return run.curve.a.empty() || compare::trend(run.curve.channel(c)).monotonic();

@@ -179,9 +179,9 @@ SolveRequest request_of(std::string method, int steps, int every, std::string to
     if (std::ranges::find(known, method) == known.end())
         throw std::invalid_argument(fmt::format("method {}{}", reader::quote(method),
                                                 reader::did_you_mean(method, known, "allowed")));
-    if (steps < 0 || steps > reports::most_steps)
+    if (steps < 0 || steps > reports::max_steps)
         throw std::invalid_argument(
-            fmt::format("steps {}; allowed: 1 to {}", steps, reports::most_steps));
+            fmt::format("steps {}; allowed: 1 to {}", steps, reports::max_steps));
     if (every < 1) throw std::invalid_argument(fmt::format("every {}; allowed: 1 or more", every));
     if (order < 0 || order > 60)
         throw std::invalid_argument(fmt::format("order {}; allowed: 1 to 60", order));

@@ -19,15 +19,15 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr std::array components{"x", "y", "z", "rx", "ry", "rz"};
 
 // Display units of a deformation and its rate.
-struct Scale {
+struct RateUnits {
     double length;  // [m] or [rad] per unit
     const char* length_name;
     double rate;  // [N/m] or [N·m/rad] per unit
     const char* rate_name;
 };
-constexpr Scale lengths{1e-3, "mm", 1e3, "N/mm"}, angular{degree, "deg", 1 / degree, "N·m/deg"};
+constexpr RateUnits lengths{1e-3, "mm", 1e3, "N/mm"}, angular{degree, "deg", 1 / degree, "N·m/deg"};
 
-std::string rate_words(double k, const Scale& s) {
+std::string rate_words(double k, const RateUnits& s) {
     return fmt::format("{:.4g} {}", k / s.rate, s.rate_name);
 }
 
@@ -35,7 +35,7 @@ bool is_free(const std::array<double, 4>& piece) {
     return std::ranges::all_of(piece, [](double c) { return c == 0; });
 }
 
-std::string range_words(const Curve& curve, const Scale& s) {
+std::string range_words(const Curve& curve, const RateUnits& s) {
     return fmt::format("curve from {:.4g} to {:.4g} {}, {}", curve.knots.front() / s.length,
                        curve.knots.back() / s.length, s.length_name,
                        curve.known_outside ? "straight beyond" : "undefined beyond");
@@ -108,7 +108,7 @@ Resisted resisted(const SpatialLaw& law) {
     return found;
 }
 
-std::string law_words(const SpatialLaw& law, std::size_t k, const Scale& s) {
+std::string law_words(const SpatialLaw& law, std::size_t k, const RateUnits& s) {
     return std::visit(
         overloaded{[&](const LinearStiffness& u) {
                        const auto i = static_cast<Eigen::Index>(k);

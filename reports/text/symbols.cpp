@@ -10,11 +10,11 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 // Local frame of a line: its length, and points by coordinates along and across it.
-struct Frame {
+struct LineFrame {
     PaperPoint from;
     double length, ux, uy;
 
-    Frame(PaperPoint a, PaperPoint b)
+    LineFrame(PaperPoint a, PaperPoint b)
         : from(a), length(std::hypot(b.x - a.x, b.y - a.y)), ux(1), uy(0) {
         if (length > 0) ux = (b.x - a.x) / length, uy = (b.y - a.y) / length;
     }
@@ -36,7 +36,7 @@ Stroke ring(PaperPoint at, double radius) {
 }
 
 Strokes coil(PaperPoint a, PaperPoint b) {
-    const Frame line(a, b);
+    const LineFrame line(a, b);
     constexpr double radius = 8;
     if (line.length < 3 * radius) return {ring({(a.x + b.x) / 2, (a.y + b.y) / 2}, radius)};
     const double lead = 0.1 * line.length, wound = line.length - 2 * lead;
@@ -55,7 +55,7 @@ Strokes coil(PaperPoint a, PaperPoint b) {
 }
 
 Strokes damper(PaperPoint a, PaperPoint b) {
-    const Frame line(a, b);
+    const LineFrame line(a, b);
     constexpr double half = 4.5;
     if (line.length < 4 * half) return {ring({(a.x + b.x) / 2, (a.y + b.y) / 2}, half)};
     const double foot = 0.08 * line.length, mouth = 0.6 * line.length, piston = 0.45 * line.length;
@@ -70,7 +70,7 @@ Strokes barrel(PaperPoint at, PaperPoint along, double half_length) {
     constexpr double half = 4;
     const double seen = std::hypot(along.x, along.y);  // of a unit length
     if (seen * half_length < half) return {ring(at, half + 1), ring(at, 1)};
-    const Frame line(at, {at.x + along.x, at.y + along.y});
+    const LineFrame line(at, {at.x + along.x, at.y + along.y});
     const double l = seen * half_length;
     return {{line.at(-l, -half), line.at(l, -half), line.at(l, half), line.at(-l, half),
              line.at(-l, -half)},
@@ -103,7 +103,7 @@ Strokes hatching(PaperPoint at) {
 }
 
 Strokes arrow(PaperPoint from, PaperPoint to, bool both_ways) {
-    const Frame line(from, to);
+    const LineFrame line(from, to);
     const double l = line.length;
     Strokes strokes{{from, to}, {line.at(l - 6, 3), to, line.at(l - 6, -3)}};
     if (both_ways) strokes.push_back({line.at(6, 3), from, line.at(6, -3)});

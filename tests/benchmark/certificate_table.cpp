@@ -45,14 +45,14 @@ void table(const std::string& file, int count) {
             solver.leg = compare::Leg::equilibrium;
             Points points;
             const double start = now();
-            const auto path = compare::walk(way, solver);
+            const auto path = compare::solve_branch(way, solver);
             points.leg = now() - start;
             for (const auto& state : path.points) {
                 const double from = now();
                 const Certificate c = certify(way.model, way.branch, state);
                 points.proof += now() - from;
                 ++points.of;
-                if (c.answer != Answer::proved) continue;
+                if (c.state != ProofState::proved) continue;
                 ++points.proved;
                 raise(points.error, c.error);
                 points.unique = std::min(points.unique, c.unique.length);
@@ -67,9 +67,9 @@ void table(const std::string& file, int count) {
                 "pieces, {:.1e} mm, {:.2f} s |\n",
                 model.name, way.name, points.proved, points.of, 1e3 * points.error.length,
                 points.error.angle, points.error.force, 1e3 * points.unique,
-                1e3 * points.proof / points.of, points.proof / points.leg, name(tube.answer),
+                1e3 * points.proof / points.of, points.proof / points.leg, name(tube.state),
                 tube.pieces, 1e3 * tube.width.length, seconds);
-            if (tube.answer != Answer::proved) fmt::print("    {}\n", tube.detail);
+            if (tube.state != ProofState::proved) fmt::print("    {}\n", tube.detail);
         }
 }
 
@@ -91,7 +91,7 @@ void arch(const std::string& file) {
         return at;
     };
     const LimitPoint limit = certify_limit_point(model, way, state(top, force(top)));
-    fmt::print("\narch: limit {}, {:.12f} ± {:.1e} N\n", name(limit.answer),
+    fmt::print("\narch: limit {}, {:.12f} ± {:.1e} N\n", name(limit.state),
                (limit.from + limit.to) / 2, (limit.to - limit.from) / 2);
     for (double share = 1e-6; share > 1e-14; share /= 10) {
         const double load = force(top) * (1 - share);
@@ -99,8 +99,7 @@ void arch(const std::string& file) {
         for (int n = 0; n < 200; ++n)
             (force((low + high) / 2) < load ? low : high) = (low + high) / 2;
         const Certificate c = certify(model, way, state(low, load), {.length = 1e-7});
-        fmt::print("  {:.0e} from it: {}, {:.1e} mm\n", share, name(c.answer),
-                   1e3 * c.error.length);
+        fmt::print("  {:.0e} from it: {}, {:.1e} mm\n", share, name(c.state), 1e3 * c.error.length);
     }
 }
 

@@ -341,9 +341,9 @@ Frame frame(int bodies) {
 }
 
 std::string scene(const Family& family) {
-    if (family.bodies < least_bodies(family.kind) || family.bodies > most_bodies)
+    if (family.bodies < least_bodies(family.kind) || family.bodies > max_bodies)
         throw std::out_of_range(fmt::format("a {} has {} to {} bodies, not {}", name(family.kind),
-                                            least_bodies(family.kind), most_bodies, family.bodies));
+                                            least_bodies(family.kind), max_bodies, family.bodies));
     if (!has_hinges(family.kind) && family.hinge != Hinge::bushing)
         throw std::invalid_argument(
             fmt::format("a {} is made of beams and has no joints to choose", name(family.kind)));

@@ -41,7 +41,7 @@ struct Family {
     int bodies = 100;  // as solved
     Hinge hinge = Hinge::bushing;
 };
-inline constexpr int most_bodies = 2000;  // what the format of scenes has room for
+inline constexpr int max_bodies = 2000;  // what the format of scenes has room for
 int least_bodies(Kind kind);
 
 // The text of the scene. Throws std::invalid_argument for what is no such family, std::out_of_range for a number of

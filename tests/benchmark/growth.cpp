@@ -276,7 +276,7 @@ int main(int argc, char** argv) {
     app.add_option("-o,--output", folder, "folder for growth.csv and figures (default: this one)");
     app.add_option("--bodies", sizes, "sizes, rising (default: 30,100,300,1000,2000)")
         ->delimiter(',')
-        ->check(CLI::Range(4, families::most_bodies));
+        ->check(CLI::Range(4, families::max_bodies));
     app.add_option("--families", kinds, "which (default: all)")
         ->delimiter(',')
         ->check(CLI::IsMember(kinds));

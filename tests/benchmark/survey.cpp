@@ -40,7 +40,8 @@ compare::Curve walked(const Model& model, const std::vector<Channel>& channels,
                       const recursive::Method& method, int refine) {
     return curve(
         model, channels, branch,
-        walk(ways, {.leg = Leg::recursive, .recursion = {.method = method}, .refine = refine})
+        solve_branch(ways,
+                     {.leg = Leg::recursive, .recursion = {.method = method}, .refine = refine})
             .points);
 }
 
@@ -73,8 +74,8 @@ bool survey(const std::string& file) {
     double time_of_series = 0, time_of_equilibrium = 0;
     std::string failed;
     for (const auto& branch : model.branches) {
-        const auto ways =
-            sides_of(model, branch, points * static_cast<int>(elastocheck::ways(branch).size()));
+        const auto ways = sides_of(
+            model, branch, points * static_cast<int>(elastocheck::branch_sides(branch).size()));
         const auto known = references(model, channels, branch, ways);
         for (const auto& why : known.failures) failed += fmt::format(" {}: {};", branch.name, why);
         if (!known.failures.empty()) continue;
@@ -86,8 +87,8 @@ bool survey(const std::string& file) {
         for (auto& [name, error] : rungs) {
             const auto hundred =
                 sides_of(model, branch, coarse / 5 * static_cast<int>(ways.size()));
-            const auto truth =
-                curve(model, channels, branch, walk(hundred, {.leg = Leg::equilibrium}).points);
+            const auto truth = curve(model, channels, branch,
+                                     solve_branch(hundred, {.leg = Leg::equilibrium}).points);
             error = worse(error, distance(channels, truth,
                                           walked(model, channels, branch, hundred,
                                                  *recursive::find_method(name), 5))
@@ -100,7 +101,7 @@ bool survey(const std::string& file) {
         const auto least = [&](const SolverSettings& solver) {
             double time = std::numeric_limits<double>::infinity();
             for (int turn = 0; turn < 3; ++turn)
-                time = std::min(time, seconds([&] { walk(ways, solver); }));
+                time = std::min(time, seconds([&] { solve_branch(ways, solver); }));
             return time;
         };
         time_of_series += least({.leg = Leg::recursive, .recursion = {.method = series}});

@@ -173,8 +173,8 @@ std::vector<Answer> answers(const Scene& scene, Arithmetic how = Arithmetic::nea
         settings.every = 4;
         for (const auto& side : sides_of(model, model.branches.front(), 4)) {
             const WithArithmetic in_force(how);
-            const auto path =
-                walk(side, settings, [&](const Equilibrium& state) { answer.poses = state.poses; });
+            const auto path = solve_branch(
+                side, settings, [&](const Equilibrium& state) { answer.poses = state.poses; });
             if (answer.outcome == Outcome::converged) answer.outcome = path.outcome;
         }
     }
@@ -182,7 +182,7 @@ std::vector<Answer> answers(const Scene& scene, Arithmetic how = Arithmetic::nea
 }
 
 // Largest distance of a body; NaN where one is not finite.
-double apart(const Answer& a, const Answer& b) {
+double distance(const Answer& a, const Answer& b) {
     double most = 0;
     for (std::size_t k = 0; k < a.poses.size(); ++k)
         if (const double off = (a.poses[k].r - b.poses[k].r).norm(); !(off <= most)) most = off;
@@ -200,7 +200,7 @@ double half_of_the_least() {
     return product;
 }
 
-TEST(Arithmetic, IsInForceWhileItIsAskedForAndNoLonger) {
+TEST(Arithmetic, RoundingModeIsSetOnlyWithinItsScope) {
     const double nearest = third();
     for (const Arithmetic how : others) {
         try {
@@ -213,8 +213,8 @@ TEST(Arithmetic, IsInForceWhileItIsAskedForAndNoLonger) {
         EXPECT_EQ(third(), nearest);
         EXPECT_GT(half_of_the_least(), 0);
     }
-    // 1/3 lies above its nearest double: -1/3 distinguishes rounding down from rounding towards
-    // zero.
+    // 1/3 lies above its nearest double: -1/3 distinguishes rounding down from
+    // rounding towards zero.
     const auto minus_third = [](Arithmetic how) {
         const WithArithmetic in_force(how);
         const volatile double minus = -1, three = 3;
@@ -239,7 +239,7 @@ void expect_the_same(const char* name) {
         double most = 0;
         for (std::size_t k = 0; k < changed.size(); ++k) {
             EXPECT_EQ(changed[k][s].outcome, Outcome::converged) << name << ", " << solver;
-            const double off = apart(changed[k][s], usual[s]);
+            const double off = distance(changed[k][s], usual[s]);
             EXPECT_LE(off, exact                  ? 1e-9
                            : solver == "adaptive" ? 1e-5
                                                   : 1e-7)
@@ -250,15 +250,15 @@ void expect_the_same(const char* name) {
     }
 }
 
-TEST(Arithmetic, ChangesNoResultOfAStrut) { expect_the_same("mcpherson"); }
+TEST(Arithmetic, RoundingModeDoesNotChangeAStrut) { expect_the_same("mcpherson"); }
 
 // A single bushing: all its points coincide, and a rounding difference between them is no length.
-TEST(NightlyArithmetic, ChangesNoResult) {
+TEST(NightlyArithmetic, RoundingModeDoesNotChangeAnyScene) {
     for (const char* name : {"pendulum", "arch_driven", "parallel_springs", "single_bushing"})
         expect_the_same(name);
 }
 
-TEST(Arithmetic, EveryNumberIsAnUlpOffAndNoFurther) {
+TEST(Arithmetic, PerturbedSceneDiffersByOneUlpPerNumber) {
     Scene before = support::scene("double_wishbone"), after = an_ulp_off(before);
     std::vector<double> a, b;
     for_each_number(before, [&](double& x) { a.push_back(x); });
@@ -281,7 +281,7 @@ TEST(Arithmetic, EveryNumberIsAnUlpOffAndNoFurther) {
 
 // Each number of the scene in turn is NaN, also of its geometry: it has no effect, or the outcome
 // reports it.
-TEST(NightlyArithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
+TEST(NightlyArithmetic, NonFiniteNumberIsHarmlessOrReported) {
     for (const char* name : {"mcpherson", "tyre_on_road"}) {
         const Scene scene = small(name);
         const auto expected = answers(scene);
@@ -299,7 +299,7 @@ TEST(NightlyArithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
                 for (std::size_t s = 0; s < now.size(); ++s) {
                     if (now[s].outcome != Outcome::converged) continue;
                     ASSERT_EQ(now[s].poses.size(), expected[s].poses.size());
-                    EXPECT_LE(apart(now[s], expected[s]), 1e-12)
+                    EXPECT_LE(distance(now[s], expected[s]), 1e-12)
                         << name << ", number " << at << " of " << count << ", "
                         << solvers()[s].name;
                 }

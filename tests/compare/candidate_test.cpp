@@ -394,7 +394,7 @@ TEST(Candidate, AtLoadsOfItsOwnIsHeldAgainstTheReferenceThere) {
     const auto toe = solved().channel("toe"), travel = solved().channel("travel");
     candidate.points.columns = {{toe, false, {}}, {travel, false, {}}};
     const BranchSide side = sides_of(solved().model, solved().model.branches[0], 7).front();
-    const auto path = walk(side, {.leg = Leg::energy});
+    const auto path = solve_branch(side, {.leg = Leg::energy});
     for (const auto& point : path.points) {
         const auto row = evaluate(solved().model, solved().comparison.channels, point);
         candidate.points.branch.push_back("jounce");
@@ -422,7 +422,7 @@ TEST(Candidate, AsAFunctionIsALeg) {
     const auto run = [&](Leg leg) {
         const CandidateSolver solver = [&](const Model& model, const Branch& branch,
                                            std::span<const double>) {
-            return walk(BranchSide{branch.name, model, branch}, {.leg = leg});
+            return solve_branch(BranchSide{branch.name, model, branch}, {.leg = leg});
         };
         return judged(candidate_of(solved().model, all, "mine", solver));
     };
@@ -454,7 +454,7 @@ TEST(Candidate, AsAFunctionIsALeg) {
 TEST(Candidate, AStateThatIsMovedLeavesTheForceOfItsStiffness) {
     const auto& all = solved().comparison;
     const BranchSide side = sides_of(solved().model, solved().model.branches[0], 4).front();
-    const auto path = walk(side, {.leg = Leg::equilibrium});
+    const auto path = solve_branch(side, {.leg = Leg::equilibrium});
     std::vector<CandidateState> states;
     for (const auto& point : path.points) states.push_back({"jounce", point.load, point.poses});
     const auto at_rest = candidate_of(solved().model, all, "mine", states);
@@ -477,7 +477,7 @@ TEST(Candidate, WhoseSolverGivesUpIsNotJudged) {
     EXPECT_EQ(judgement.verdict, Grade::not_judged) << texts(judgement);
     const CandidateSolver no_numbers = [](const Model& model, const Branch& branch,
                                           std::span<const double>) {
-        auto path = walk(BranchSide{branch.name, model, branch}, {.leg = Leg::equilibrium});
+        auto path = solve_branch(BranchSide{branch.name, model, branch}, {.leg = Leg::equilibrium});
         path.points.back().poses.front().r.y() = std::nan("");
         return path;
     };

@@ -17,7 +17,7 @@ CertifyOptions by(Leg leg, int points = 4) {
     return options;
 }
 
-TEST(Certify, EveryWayOfEveryBranchIsProvedByEachReference) {
+TEST(Certify, EverySideOfEveryBranchIsProvedForEachReference) {
     const Model model = compile(support::scene("mcpherson"));
     for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series}) {
         const CertifyStudy study = certify(model, by(leg));
@@ -35,7 +35,7 @@ TEST(Certify, EveryWayOfEveryBranchIsProvedByEachReference) {
     }
 }
 
-TEST(Certify, WhatThePublishedRecursionFindsIsExcluded) {
+TEST(Certify, StatesOfThePublishedRecursionAreExcluded) {
     CertifyOptions options = by(Leg::recursive);
     const CertifyStudy study = certify(compile(support::scene("mcpherson")), options);
     EXPECT_TRUE(study.excluded());
@@ -49,7 +49,7 @@ TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {
     CertifiedSide& side = study.sides.emplace_back();
     side.unit = Unit::newton;
     Certificate proved;
-    proved.answer = Answer::proved;
+    proved.state = ProofState::proved;
     proved.error = {1e-12, 1e-12, 1e-9, 1e-9};
     proved.unique = {1e-4, 1e-4, 1, 1};
     add(side.tally, 0, side.unit, proved);
@@ -63,7 +63,7 @@ TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {
     EXPECT_EQ(side.tally.error.length, 1e-12);  // of the proved points only
 }
 
-TEST(Certify, AReferenceThatIsProvablyWrongObjects) {
+TEST(Certify, ExcludedReferenceMakesTheComparisonInconclusive) {
     Scene scene = support::scene("pinned_bar");
     scene.branches.resize(1);
     const Model model = compile(scene);
@@ -82,7 +82,7 @@ TEST(Certify, AReferenceThatIsProvablyWrongObjects) {
         << objections.worst.front().what;
 }
 
-TEST(Certify, AComparisonProvesNothingWhereNobodyAsks) {
+TEST(Certify, ComparisonWithoutARequestProvesNothing) {
     Options options;
     options.prove = false;
     EXPECT_EQ(

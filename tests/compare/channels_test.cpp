@@ -58,7 +58,7 @@ TEST(Channels, CamberIsPositiveWhenTheTopLeansOut) {
     }
 }
 
-TEST(Channels, WheelSpinChangesNothing) {
+TEST(Channels, WheelSpinDoesNotChangeTheOutputs) {
     const auto [model, state] = wheel(1, about(Vector3d::UnitY(), 77));
     EXPECT_NEAR(value(model, state, "toe"), 0, 1e-12);
     EXPECT_NEAR(value(model, state, "camber"), 0, 1e-12);
@@ -83,7 +83,7 @@ TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
         EXPECT_TRUE(!list[c].main && list[c].kinematic()) << c;
 }
 
-TEST(Channels, EveryOneHasAUnitADefinitionAndANameOfItsOwn) {
+TEST(Channels, EachHasAUnitADefinitionAndAUniqueName) {
     for (const auto& name : support::small_scene_names()) {
         const auto list = channels(compile(support::scene(name)));
         for (std::size_t c = 0; c < list.size(); ++c) {
@@ -98,7 +98,7 @@ TEST(Channels, EveryOneHasAUnitADefinitionAndANameOfItsOwn) {
     }
 }
 
-TEST(Channels, OfSeveralWheelsCarryTheWheelsName) {
+TEST(Channels, NamesContainTheWheelWhereThereAreSeveral) {
     auto [model, state] = wheel(1, about(Vector3d::UnitZ(), -2));
     model.bodies.push_back({"other", {}});
     model.wheels.push_back(
@@ -146,7 +146,7 @@ struct Steered {
     double operator[](const std::string& name) const { return value(model, state, name); }
 };
 
-TEST(SteeringAxis, IsToTheWheelWhatItsDefinitionsSay) {
+TEST(SteeringAxis, FiguresEqualTheirDefinitions) {
     for (const int side : {+1, -1}) {
         Steered drawn(side);
         for (int order = 0; order < 2; ++order) {  // exchanging the ends of the axis has no effect
@@ -161,9 +161,9 @@ TEST(SteeringAxis, IsToTheWheelWhatItsDefinitionsSay) {
     }
 }
 
-// Rotated about the vertical through its patch, the wheel carries the directions along and across
-// it.
-TEST(SteeringAxis, CountsAlongAndAcrossTheWheelWhereverThatIsTurned) {
+// Rotated about the vertical through its patch, the wheel carries the directions along
+// and across it.
+TEST(SteeringAxis, ScrubAndTrailAreMeasuredInAxesOfTheSteeredWheel) {
     for (const int side : {+1, -1})
         for (const double turn : {-35.0, -3.0, 20.0, 60.0}) {
             const Steered turned(side, about(Vector3d::UnitZ(), side * turn));
@@ -176,14 +176,14 @@ TEST(SteeringAxis, CountsAlongAndAcrossTheWheelWhereverThatIsTurned) {
 }
 
 // The road is at the patch: raised by 50 mm, it meets the axis 5 mm further back and inboard.
-TEST(SteeringAxis, MeetsTheRoadAtTheHeightOfThePatch) {
+TEST(SteeringAxis, IntersectsTheRoadAtTheHeightOfThePatch) {
     Steered risen(1);
     risen.state.poses[0].r.z() = 0.05;
     EXPECT_NEAR(risen["mechanical_trail"], 25, 1e-10);
     EXPECT_NEAR(risen["scrub_radius"], 95, 1e-10);
 }
 
-TEST(SteeringAxis, ThatIsVerticalHasNoAnglesAndOneThatLiesFlatIsUndefined) {
+TEST(SteeringAxis, VerticalAxisHasZeroAnglesAndAHorizontalOneIsUndefined) {
     const char* names[] = {"caster", "kingpin_inclination", "scrub_radius", "mechanical_trail"};
     Steered upright(1);
     auto& axis = *upright.model.wheels[0].steering_axis;
@@ -207,7 +207,7 @@ TEST(SteeringAxis, ThatIsVerticalHasNoAnglesAndOneThatLiesFlatIsUndefined) {
     for (const char* name : names) EXPECT_EQ(find_channel(channels(upright.model), name), -1);
 }
 
-TEST(ContactPatch, MovesOutwardsAndTheWayTheWheelbaseGrows) {
+TEST(ContactPatch, DisplacementIsPositiveOutwardsAndForALongerWheelbase) {
     for (const int side : {+1, -1})
         for (const Axle axle : {Axle::front, Axle::rear}) {
             Steered moved(side);
@@ -222,8 +222,8 @@ TEST(ContactPatch, MovesOutwardsAndTheWayTheWheelbaseGrows) {
         }
 }
 
-// Two wheels with vertical axes j = 1.2 m apart and 0.1 m inboard of the patches, steered about
-// them.
+// Two wheels with vertical axes j = 1.2 m apart and 0.1 m inboard of the patches,
+// steered about them.
 struct TwoSteered {
     Model model;
     Equilibrium state;
@@ -249,7 +249,7 @@ struct TwoSteered {
 };
 
 // Circle about a point on the rear-axle line, R to the left of the middle: tan δ = l / (R -+ j/2).
-TEST(Ackermann, IsHundredPercentWhereThePerpendicularsMeetOnTheRearAxle) {
+TEST(Ackermann, IsHundredPercentIfPerpendicularsMeetOnTheRearAxle) {
     const auto angle = [](double R, double y) {
         return std::atan(2.7 / (R - y)) * 180 / std::numbers::pi;
     };
@@ -263,7 +263,7 @@ TEST(Ackermann, IsHundredPercentWhereThePerpendicularsMeetOnTheRearAxle) {
     EXPECT_LT(TwoSteered(-20, -19)["ackermann"], -1);
 }
 
-TEST(Ackermann, IsUndefinedUnlessBothWheelsTurnTheSameWay) {
+TEST(Ackermann, IsUndefinedUnlessBothWheelsSteerInOneDirection) {
     for (const auto& [left, right] :
          {std::pair{0.0, 0.0}, {1.9, 5.0}, {5.0, 1.9}, {3.0, -3.0}, {-4.0, 6.0}})
         EXPECT_TRUE(std::isinf(TwoSteered(left, right)["ackermann"])) << left << " " << right;
@@ -274,7 +274,7 @@ TEST(Ackermann, IsUndefinedUnlessBothWheelsTurnTheSameWay) {
     EXPECT_EQ(find_channel(channels(rear.model), "ackermann"), -1);
 }
 
-TEST(Track, IsBetweenThePatchesOfTwoOppositeWheels) {
+TEST(Track, IsTheDistanceOfOppositeContactPatches) {
     TwoSteered axle(0, 0);
     EXPECT_NEAR(axle["track"], 1400, 1e-10);
     axle.state.poses[0].r.y() += 0.004;
@@ -288,7 +288,7 @@ TEST(Track, IsBetweenThePatchesOfTwoOppositeWheels) {
     EXPECT_EQ(find_channel(channels(axle.model), "track"), -1);
 }
 
-TEST(Compression, IsWhatASpringOrADamperIsShorterThanDrawn) {
+TEST(Compression, IsTheDesignLengthMinusTheLength) {
     Model model;
     model.bodies.push_back({"arm", {}});
     const AxialSpring coil{{0, {0.3, 0, 0}}, {ground, {0.3, 0, 0.5}}, LinearRate{1e4}, 0.6};
@@ -320,7 +320,7 @@ struct Driven {
     }
 };
 
-TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
+TEST(Effort, TimesTheDrivenDisplacementIsTheWork) {
     // A rod between the origins, pushing them apart with 5 N; a plane whose normal is z of body j,
     // which is -y of the ground; and an angle about x.
     const Driven rod(DistanceBetween{Point{0}, Point{1}, 1}, {Vector3d(5, 0, 0), Vector3d::Zero()});
@@ -345,7 +345,7 @@ TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
               std::vector<double>{0});
 }
 
-TEST(Totals, AddUpTheWrenchesOnOneBodyAboutOnePoint) {
+TEST(Totals, SumTheWrenchesOnABodyAboutOnePoint) {
     Model model;
     model.bodies = {{"arm", {}}, {"knuckle", {}}};
     model.joints = {{"front", 0, ground, {0, {1, 0, 0}}},

@@ -106,7 +106,7 @@ std::string arm_scene(const Arm& arm, const std::string& more = "") {
         point(arm.a), point(arm.b), point(arm.centre), point(arm.patch), more);
 }
 
-TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
+TEST(Characteristics, SemiTrailingArmEqualsRotationAboutItsAxisInEveryLeg) {
     const Arm arm{{0.5, 0.9, 0.02}, {0.42, 0.5, -0.05}, {0, 1.1, 0}, {0.03, 1.12, -0.3}};
     const Model model = model_of(arm_scene(arm));
     const Vector3d v_c = arm.v(arm.centre), v_p = arm.v(arm.patch), n = arm.n(), e(0, 1, 0),
@@ -137,7 +137,7 @@ TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
     }
 }
 
-TEST(Characteristics, TrailingArmHasItsRollCentreOnTheRoadAndAnEndlessArmFromTheFront) {
+TEST(Characteristics, TrailingArmHasRollCentreOnTheRoadAndInfiniteFrontViewArm) {
     for (const Leg leg : all_legs) {
         const Read is(model_of(arm_scene(trailing)), leg);
         EXPECT_NEAR(is["roll_centre_height"], 0, 1e-9);
@@ -163,9 +163,9 @@ wheels:
 )");
 }
 
-// On an oblique slide both wheels move together: back by a quarter and across by a tenth of their
-// rise.
-TEST(Characteristics, AnAxleThatMovesOnlyAsOneHasTheFiguresOfThatMotion) {
+// On an oblique slide both wheels move together: back by a quarter and across by a tenth
+// of their rise.
+TEST(Characteristics, RigidAxleFiguresAreThoseOfItsHeave) {
     const Model model = axle_on("type: translational, at: mid, axis: [-0.25, 0.1, 1]");
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
@@ -176,8 +176,8 @@ TEST(Characteristics, AnAxleThatMovesOnlyAsOneHasTheFiguresOfThatMotion) {
             EXPECT_NEAR(is[wheel + "track_gradient"], wheel == "left." ? 10 : -10, 1e-9);
             EXPECT_NEAR(is[wheel + "bump_steer"], 0, 1e-12);
             EXPECT_EQ(is[wheel + "roll_steer"], undefined);
-            // Half of the spring's 50 N/mm with the effect of the oblique slide: each patch takes 1
-            // N.
+            // Half of the spring's 50 N/mm with the effect of the oblique slide: each patch
+            // takes 1 N.
             EXPECT_NEAR(is[wheel + "wheel_rate"], 25, 1e-9);
             EXPECT_EQ(is[wheel + "wheel_rate_in_roll"], undefined);
         }
@@ -188,7 +188,7 @@ TEST(Characteristics, AnAxleThatMovesOnlyAsOneHasTheFiguresOfThatMotion) {
 
 // About an axis beside the right wheel the left one rises by 2.8, the right one by 1.2: each value
 // is per metre of its own wheel's travel.
-TEST(Characteristics, OfAnAxleThatMovesAsOneEachWheelHasItsOwnTravel) {
+TEST(Characteristics, WheelsOfARigidAxleHaveTheirOwnTravel) {
     const Model model = axle_on("type: revolute, at: beside, axis: x");
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
@@ -203,7 +203,7 @@ TEST(Characteristics, OfAnAxleThatMovesAsOneEachWheelHasItsOwnTravel) {
 
 // Per unit of rise the patch moves back by (0.1 + 0.3)/0.5, the centre by 0.1/0.5: the pivot is
 // ahead and above.
-TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
+TEST(Characteristics, AntiFiguresFollowFromTheAngleOfTheArm) {
     const auto with = [](const char* axle) {
         return model_of(arm_scene(
             trailing,
@@ -219,9 +219,9 @@ TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     EXPECT_NEAR(front["anti_lift"], -100 * 0.2 * 5, 1e-9);
 }
 
-// An unresisted motion has an undefined rate; a failed solve gives NaN, and the two are never
-// confused.
-TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
+// An unresisted motion has an undefined rate; a failed solve gives NaN, and the two
+// are never confused.
+TEST(Characteristics, FailedResponseIsNotReportedAsAMissingRate) {
     const Model model = model_of(arm_scene(trailing));
     Read is(model, Leg::equilibrium);
     const auto list = characteristics(model);
@@ -257,7 +257,7 @@ std::string wishbones(const std::string& upper_inner, const std::string& upper_o
         upper_inner, upper_outer, lower_inner, lower_outer);
 }
 
-TEST(Characteristics, EqualParallelArmsCarryTheWheelUprightAndHaveNoArmFromTheFront) {
+TEST(Characteristics, EqualParallelArmsHaveNoCamberGainAndInfiniteFrontViewArm) {
     // Both arms fall by 0.1 over 0.4 towards the wheel: its points move inwards by a quarter of the
     // rise; with rising arms outwards.
     for (const double fall : {0.0, 0.1, -0.1}) {
@@ -292,7 +292,7 @@ TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
 
 // A carrier on two balls, held to the ground: it rotates about the line through them when the rack
 // pushes its arm. The line passes the wheel centre, whose height steering then keeps.
-TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
+TEST(Characteristics, SteeringAxisPassesThroughBothBallJoints) {
     struct Line {
         // slopes: dx/dz, dy/dz to the top; of the wheel centre [m]
         double caster, inclination, inboard;
@@ -327,8 +327,8 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
                 EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
                 EXPECT_NEAR(is["kingpin_inclination_steered"], deg * std::atan(inclination), 1e-8);
                 EXPECT_NEAR(is["mechanical_trail_steered"], 1e3 * 0.3 * caster, 1e-7);
-                // 0.3 below the wheel centre the axis is further out by 0.3 · 0.2: beyond the
-                // patch.
+                // 0.3 below the wheel centre the axis is further out by 0.3 · 0.2:
+                // beyond the patch.
                 EXPECT_NEAR(is["scrub_radius_steered"], 1e3 * (inboard - 0.3 * inclination), 1e-7);
             }
         }
@@ -336,7 +336,7 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
 
 // About a vertical kingpin the distance of patch and axis across and along the wheel is the same at
 // every angle.
-TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSteered) {
+TEST(Characteristics, ScrubAndTrailAreMeasuredInAxesOfTheSteeredWheel) {
     for (const int side : {1, -1})
         for (const double steered : {0.0, 0.9, -0.4}) {
             const auto turned = [&](double x, double y) {
@@ -371,7 +371,7 @@ TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSt
 // ---- Compliance.
 
 // One body on one bushing: closed form of the response to a wrench at a point at r, from r and K.
-TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
+TEST(Characteristics, ComplianceOfOneBushingIsItsInverseStiffnessAtTheWheel) {
     const Model model = model_of(
         "points: {m: [0.1, 0.7, 0.4], c: [0, 1, 0.3], p: [0, 1, 0]}\nbodies: {wheel: {origin: c}}\n"
         "bushings: {mount: {bodies: [wheel, ground], at: m, rates: [2e6, 5e6, 4e6], "
@@ -423,12 +423,12 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
 
 // A jack and a tyre act as the dead force they exert: the response equals that under this force at
 // the same place.
-TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
+TEST(Characteristics, HeldWheelHasTheComplianceOfOneUnderTheHoldingForce) {
     const auto rates_at_end = [&](const Model& model, const std::string& force) {
         const auto all = characteristics(model);
         const BranchSide way = sides_of(model, model.branches[0]).front();
         const SolverSettings solver{.leg = Leg::equilibrium};
-        const auto path = walk(way, solver);
+        const auto path = solve_branch(way, solver);
         EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
         auto told = channels(model);
         std::ranges::move(element_channels(model), std::back_inserter(told));
@@ -486,7 +486,7 @@ TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
     }
 }
 
-TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
+TEST(Characteristics, MirrorImageAndUnitsDoNotMatter) {
     for (const char* name : {"double_wishbone", "semi_trailing_arm", "front_axle"}) {
         const Scene scene = support::scene(name);
         const Read is(standing(scene), Leg::equilibrium),
@@ -508,7 +508,7 @@ TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
 
 // Virtual work: the lateral movement of the patch per wheel rise equals the jack force per lateral
 // force. The first is a motion, the second a force, from independent curves.
-TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
+TEST(Characteristics, RollCentreFromForcesEqualsThatFromMotion) {
     for (const char* name :
          {"double_wishbone", "mcpherson_strut", "multi_link", "semi_trailing_arm"}) {
         Scene scene = support::scene(name);
@@ -532,7 +532,7 @@ TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
 }
 
 // Rates equal the slopes of the curves, by central differences.
-TEST(Characteristics, RatesAreTheSlopesOfTheCurves) {
+TEST(Characteristics, RatesAreTheDerivativesOfTheCurves) {
     Scene scene = support::scene("double_wishbone");
     const double step = 1e-4;
     for (auto& branch : scene.branches)
@@ -551,7 +551,7 @@ TEST(Characteristics, RatesAreTheSlopesOfTheCurves) {
 }
 
 // The published matrix contains no spring force: its wheel rate is that of the unloaded suspension.
-TEST(Characteristics, PublishedTangentLeavesOutWhatThePreloadDoes) {
+TEST(Characteristics, PublishedTangentOmitsTheEffectOfPreload) {
     const Model unloaded = model_of(arm_scene(trailing)),
                 loaded = model_of(arm_scene(
                     trailing, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n"));

@@ -16,12 +16,12 @@ namespace {
 using namespace support;  // the leaf: E, G, L, width, thick, EI
 using std::numbers::pi;
 
-constexpr double no_curve =
-    1e-8;  // [mm] [deg] distance of the references without a knot of a curve
+// [mm] [deg] distance of the references without a knot of a curve
+constexpr double no_curve = 1e-8;
 constexpr double expansions = 1e-9;  // [mm] [deg] distance of the series from the equilibrium leg
 
-// A scene in metres, radians and newtons, solved by the series and both references, which must
-// agree.
+// A scene in metres, radians and newtons, solved by the series and both references,
+// which must agree.
 class Solved {
   public:
     // `told`: tolerance of the series [m]; smaller for chains of many bodies.
@@ -76,15 +76,16 @@ class Solved {
 // at each by θ = M L/(n EI) and lies on a circle as well, smaller by
 // (θ/2)/tan(θ/2) = 1 - θ²/12 - ...: order 2 in n. In the plane a dead moment and a follower moment
 // are equal; the latter has no energy.
-TEST(Cantilever, RollsIntoACircleUnderAMomentAtItsTip) {
+TEST(Cantilever, EndMomentBendsItIntoACircle) {
     const double turn = 2 * pi;
     for (const bool follows : {false, true}) {
         std::vector<double> errors;
         for (const int n : {4, 8, 16}) {
             const Solved s(
                 leaf(n) +
-                    fmt::format("loads: {{roll: {{on: tip, moment: [0, 0, 1], follows: {}}}}}\n"
-                                "branches: {{roll: {{load: roll, to: {}, steps: 8}}}}\n",
+                    fmt::format(R"(loads: {{roll: {{on: tip, moment: [0, 0, 1], follows: {}}}}}
+branches: {{roll: {{load: roll, to: {}, steps: 8}}}}
+)",
                                 follows, turn * EI / L),
                 fmt::format("leaf of {} segments, {}", n, follows ? "follower" : "dead"), 1e-13);
             EXPECT_EQ(s.all.branches[0].second, follows ? Leg::series : Leg::energy);
@@ -115,24 +116,25 @@ TEST(Cantilever, RollsIntoACircleUnderAMomentAtItsTip) {
 // indefinite before half a turn, although no other equilibrium branches off: the tangent stays
 // regular. The energy leg, which finds only minima, ends there with an outcome; the equilibrium leg
 // and the series continue round.
-TEST(Cantilever, ARoundRodUnderADeadMomentIsNoMinimumOfAnEnergyAllTheWayRound) {
+TEST(Cantilever, RoundRodUnderADeadMomentEndsOnlyInTheEnergyLeg) {
     const int n = 8, steps = 16;
     const double diameter = 0.022, EI_rod = E * pi * std::pow(diameter, 4) / 64;
-    const Model model = compile(parse_scene(
-        fmt::format(
-            "elastocheck: 1\nname: rod\nunits: {{length: m, angle: rad, force: N}}\n"
-            "points: {{root: [0, 0, 0], tip: [{0}, 0, 0]}}\nbodies: {{tip: {{origin: tip}}}}\n"
-            "beams: {{rod: {{bodies: [ground, tip], through: [root, tip], segments: {1}, E: {2}, "
-            "G: "
-            "{3}, diameter: {4}}}}}\n"
-            "probes: {{tip: {{on: tip, at: tip}}}}\nloads: {{roll: {{on: tip, moment: [0, 0, "
-            "1]}}}}\n"
-            "branches: {{roll: {{load: roll, to: {5}, steps: {6}}}}}\n",
-            L, n, E, G, diameter, 2 * pi * EI_rod / L, steps),
-        "rod.yaml"));
+    const Model model = compile(parse_scene(fmt::format(
+                                                R"(elastocheck: 1
+name: rod
+units: {{length: m, angle: rad, force: N}}
+points: {{root: [0, 0, 0], tip: [{0}, 0, 0]}}
+bodies: {{tip: {{origin: tip}}}}
+beams: {{rod: {{bodies: [ground, tip], through: [root, tip], segments: {1}, E: {2}, G: {3}, diameter: {4}}}}}
+probes: {{tip: {{on: tip, at: tip}}}}
+loads: {{roll: {{on: tip, moment: [0, 0, 1]}}}}
+branches: {{roll: {{load: roll, to: {5}, steps: {6}}}}}
+)",
+                                                L, n, E, G, diameter, 2 * pi * EI_rod / L, steps),
+                                            "rod.yaml"));
     const auto ways = sides_of(model, model.branches[0]);
     for (const Leg leg : {Leg::equilibrium, Leg::series, Leg::energy}) {
-        const auto path = walk(ways, {.leg = leg});
+        const auto path = solve_branch(ways, {.leg = leg});
         if (leg == Leg::energy) {
             EXPECT_EQ(path.outcome, Outcome::branch_lost) << path.detail;
             EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << path.detail;
@@ -166,18 +168,20 @@ const std::string steel_rod = fmt::format("E: {}, G: {}, diameter: {}", E, G, D)
 TEST(TorsionBar, TwistsByItsTorqueTimesLengthOverGJ) {
     const double turn = 2.5;  // [rad]
     const std::string end = fmt::format(
-        "loads: {{torque: {{on: tip, moment: [1, 0, 0]}}}}\nprobes: {{lever: {{on: tip, at: "
-        "lever}}}}\n"
-        "branches: {{twist: {{load: torque, from: {}, to: {}, steps: 10}}}}\n",
+        R"(loads: {{torque: {{on: tip, moment: [1, 0, 0]}}}}
+probes: {{lever: {{on: tip, at: lever}}}}
+branches: {{twist: {{load: torque, from: {}, to: {}, steps: 10}}}}
+)",
         -turn * GJ_rod / L, turn * GJ_rod / L);
     const std::string points = fmt::format(
-        "points: {{root: [0, 0, 0], tip: [{}, 0, 0], lever: [{}, 0.1, 0]}}\nbodies: {{tip: "
-        "{{origin: "
-        "tip}}}}\n",
+        R"(points: {{root: [0, 0, 0], tip: [{}, 0, 0], lever: [{}, 0.1, 0]}}
+bodies: {{tip: {{origin: tip}}}}
+)",
         L, L);
     std::vector<std::string> bars{fmt::format(
-        "joints: {{hinge: {{type: revolute, bodies: [tip, ground], at: tip, axis: x}}}}\n"
-        "torsion_springs: {{bar: {{bodies: [tip, ground], at: tip, axis: x, rate: {}}}}}\n",
+        R"(joints: {{hinge: {{type: revolute, bodies: [tip, ground], at: tip, axis: x}}}}
+torsion_springs: {{bar: {{bodies: [tip, ground], at: tip, axis: x, rate: {}}}}}
+)",
         GJ_rod / L)};
     for (const int n : {1, 3, 12})
         bars.push_back(fmt::format(
@@ -201,24 +205,23 @@ TEST(TorsionBar, TwistsByItsTorqueTimesLengthOverGJ) {
 }
 
 // w = F L³/(48 E I) for small forces, for any number of segments; the remainder grows as F³.
-TEST(LeafSpring, GivesWayInTheMiddleByFLCubedOver48EI) {
+TEST(LeafSpring, MidpointDeflectionIsFLCubedOver48EI) {
     const double length = 1.2, b = 0.060, t = 0.012, EI_leaf = E * b * t * t * t / 12;
     const double rate = 48 * EI_leaf / (length * length * length);  // 49 kN/m
     for (const int n : {2, 4, 10}) {
         const auto text = [&](double force) {
             return fmt::format(
-                "points: {{eye_front: [{0}, 0, 0], seat: [0, 0, 0], eye_rear: [-{0}, 0, 0]}}\n"
-                "bodies: {{front: {{origin: eye_front}}, rear: {{origin: eye_rear}}}}\n"
-                "joints:\n  front: {{type: revolute, bodies: [front, ground], at: eye_front, axis: "
-                "y}}\n"
-                "  shackle: {{type: in_plane, bodies: [rear, ground], at: eye_rear, normal: z}}\n"
-                "beams: {{leaf: {{bodies: [front, rear], through: [eye_front, seat, eye_rear], "
-                "segments: "
-                "{1}, up: z, E: "
-                "{2}, G: {3},\n  A: {4}, I_y: {5}, I_z: {6}, J: {7}}}}}\n"
-                "loads: {{push: {{on: leaf.seat, at: seat, force: [0, 0, 1]}}}}\n"
-                "probes: {{seat: {{on: leaf.seat, at: seat}}}}\n"
-                "branches: {{push: {{load: push, to: {8}, steps: 4}}}}\n",
+                R"(points: {{eye_front: [{0}, 0, 0], seat: [0, 0, 0], eye_rear: [-{0}, 0, 0]}}
+bodies: {{front: {{origin: eye_front}}, rear: {{origin: eye_rear}}}}
+joints:
+  front: {{type: revolute, bodies: [front, ground], at: eye_front, axis: y}}
+  shackle: {{type: in_plane, bodies: [rear, ground], at: eye_rear, normal: z}}
+beams: {{leaf: {{bodies: [front, rear], through: [eye_front, seat, eye_rear], segments: {1}, up: z, E: {2}, G: {3},
+  A: {4}, I_y: {5}, I_z: {6}, J: {7}}}}}
+loads: {{push: {{on: leaf.seat, at: seat, force: [0, 0, 1]}}}}
+probes: {{seat: {{on: leaf.seat, at: seat}}}}
+branches: {{push: {{load: push, to: {8}, steps: 4}}}}
+)",
                 length / 2, n, E, G, b * t, b * t * t * t / 12, t * b * b * b / 12,
                 b * t * t * t / 3, force);
         };
@@ -241,7 +244,7 @@ TEST(LeafSpring, GivesWayInTheMiddleByFLCubedOver48EI) {
 // force F at the other. Both arms bend like cantilevers, the rod between them twists under F a:
 //
 //   w = F (2 a³/(3 E I) + a² b/(G J))
-TEST(AntiRollBar, HasTheRateOfItsTextbookSum) {
+TEST(AntiRollBar, RateIsTheTextbookSumOfCompliances) {
     const double a = 0.2, b = 0.9;
     const double rate = 1 / (2 * a * a * a / (3 * EI_rod) + a * a * b / GJ_rod);  // 45 kN/m
     for (const int n : {3, 7, 21}) {
@@ -285,8 +288,8 @@ TEST(AntiRollBar, HasTheRateOfItsTextbookSum) {
 
 // ---- Stops.
 
-// A block on a spring of 20 kN/m, with a bump stop at 30 mm below and a rebound stop at 50 mm
-// above.
+// A block on a spring of 20 kN/m, with a bump stop at 30 mm below and a rebound stop at
+// 50 mm above.
 struct Block {
     double k = 20e3, c = 0.03, s = 300e3, d = 0.05, r = 120e3;
 
@@ -315,7 +318,7 @@ struct Block {
 // step keep that error: the part of the step beyond the knot times the difference in flexibility,
 // of first order in the step. Methods that start each step from the true force recover it in the
 // next step.
-TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
+TEST(Stop, IsPassedByEveryMethod) {
     const Block block;
     const double to = 3100;
     const Model model = compile(parse_scene(

@@ -25,8 +25,8 @@ const Comparison& mcpherson() {
     return comparison;
 }
 
-// Channels without a value somewhere on the branch, such as an infinite swing arm, are not compared
-// there.
+// Channels without a value somewhere on the branch, such as an infinite swing arm, are
+// not compared there.
 bool is_undefined(const Comparison& all, const BranchComparison& branch, std::size_t c) {
     return all.channels[c].may_be_undefined() && !branch.determined[c];
 }
@@ -40,7 +40,7 @@ double share_of_rate(const Comparison& all, const BranchComparison& branch, std:
     return 1e-6 * largest;
 }
 
-TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
+TEST(Compare, EachReferenceSatisfiesTheEquationsOfTheOther) {
     for (const auto& branch : mcpherson().branches) {
         for (const auto& [run, by] : {std::pair{1, Leg::energy}, std::pair{2, Leg::equilibrium},
                                       std::pair{1, Leg::recursive}, std::pair{2, Leg::recursive}}) {
@@ -53,9 +53,9 @@ TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
     }
 }
 
-TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
-    // At 1 N rotations are negligible, and without preload eq. (24) is the tangent of the true
-    // equations.
+TEST(Compare, RecursionEqualsTheReferenceForSmallLoads) {
+    // At 1 N rotations are negligible, and without preload eq. (24) is the tangent of
+    // the true equations.
     for (const auto& name : support::small_scene_names()) {
         if (name == "chrono_mcpherson_preload") continue;
         Scene scene = support::scene(name);
@@ -90,10 +90,13 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
 }
 
 TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
-    // Preload adds a geometric stiffness that eq. (24) leaves out: the wheel rate is wrong from the
-    // start.
+    // Preload adds a geometric stiffness that eq. (24) leaves out: the wheel rate is wrong
+    // from the start.
     Scene scene = support::scene("chrono_mcpherson_preload");
-    for (auto& branch : scene.branches) branch.to = std::copysign(1, branch.to), branch.steps = 1;
+    for (auto& branch : scene.branches) {
+        branch.to = std::copysign(1, branch.to);
+        branch.steps = 1;
+    }
     const Model model = compile(scene);
     for (const auto& branch : model.branches) {
         const LegRun fast = run(model, branch, Leg::recursive),
@@ -110,9 +113,9 @@ TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
     }
 }
 
-TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
-    // Known errors of the published method: per cents at equal load, a small part of that at equal
-    // travel.
+TEST(Compare, RecursionErrorIsLargerAlongThePathThanAcrossIt) {
+    // Known errors of the published method: per cents at equal load, a small part of that
+    // at equal travel.
     for (const auto& branch : mcpherson().branches) {
         const auto& load = branch.deviation.equal_parameter.channels;
         const auto& travel = branch.deviation.equal_abscissa.channels;
@@ -124,7 +127,7 @@ TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
 
 // ---- Inconclusive comparisons
 
-TEST(Compare, ALegThatDoesNotConvergeMakesItInconclusive) {
+TEST(Compare, LegThatDoesNotConvergeMakesItInconclusive) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches[0].to = -300;  // the limit is at -211.5 N
     const auto comparison = compare(compile(scene));
@@ -152,7 +155,7 @@ TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
     EXPECT_FALSE(compare(compile(support::scene("pinned_bar")), options).conclusive());
 }
 
-TEST(Compare, AReferenceIsJudgedByTheEquationsOfTheOtherNeverByItsOwn) {
+TEST(Compare, ReferenceIsJudgedOnlyByTheEquationsOfTheOther) {
     Options options;
     options.agreement.residual_force = -1;  // no residual is below zero
     const auto branch = compare(compile(support::scene("pinned_bar")), options).branches.front();
@@ -191,7 +194,7 @@ TEST(Compare, NothingComparedIsNotConclusive) {
     EXPECT_FALSE(compare(model).conclusive());
 }
 
-TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs) {
+TEST(Compare, ReactionsOfRedundantJointsAreComparedAsTheirTotal) {
     // The bar's hinge duplicated; the joints of a second bar stay determined.
     Scene scene = support::scene("pinned_bar");
     const auto bodies = scene.bodies.size();
@@ -253,7 +256,7 @@ TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs
     EXPECT_NEAR(together, alone, 1e-6 * std::abs(alone) + 1e-6);
 }
 
-TEST(Compare, ProgressIsToldBeforeEachLeg) {
+TEST(Compare, ProgressIsReportedBeforeEachLeg) {
     std::vector<std::string> said;
     Options options;
     double last = 0;
@@ -292,7 +295,7 @@ Scene one_arm(double k, double load) {
     return scene;
 }
 
-TEST(Judgement, AReactionThatVanishesIsComparedWithWhatActs) {
+TEST(Judgement, VanishingReactionIsComparedRelativeToTheActingForces) {
     // The bushing carries the load at its point of action: the pin force is only rounding.
     for (const double load : {1e-2, 1e3, 5e4}) {
         const auto comparison = compare(compile(one_arm(1e5, load)));
@@ -302,7 +305,7 @@ TEST(Judgement, AReactionThatVanishesIsComparedWithWhatActs) {
     }
 }
 
-TEST(Judgement, AMountIsJudgedByWhatTheLastDigitOfAPositionIsWorth) {
+TEST(Judgement, StiffMountIsJudgedByTheRoundingOfPositions) {
     for (const double k : {1e7, 1e9, 1e11}) {
         const auto comparison = compare(compile(one_arm(k, 1000)));
         for (const auto& reason : comparison.branches[0].inconclusive.texts())
@@ -310,7 +313,7 @@ TEST(Judgement, AMountIsJudgedByWhatTheLastDigitOfAPositionIsWorth) {
     }
 }
 
-TEST(Judgement, BoundsAreSharesOfWhatActs) {
+TEST(Judgement, BoundsAreFractionsOfTheActingForces) {
     const Model model = compile(one_arm(1e5, 1000));
     const auto bounds = compare(model).branches[0].bounds;
     EXPECT_NEAR(bounds.scale.force, 1000, 20);  // the load, and the mount's force that balances it
@@ -326,7 +329,7 @@ TEST(Judgement, BoundsAreSharesOfWhatActs) {
     EXPECT_GE(stiff.residual_force, 0.5 * 1e11 * std::numeric_limits<double>::epsilon());
 }
 
-TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
+TEST(Judgement, DisagreementOfTenBoundsIsNeverConclusive) {
     // The references' own numbers, one of them changed by ten times its bound.
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto comparison = compare(model);
@@ -361,7 +364,7 @@ TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
         }
 }
 
-TEST(Judgement, AnOutputThatHasAValueByOneReferenceOnlyIsAnObjection) {
+TEST(Judgement, OutputUndefinedInOneReferenceIsAnObjection) {
     const auto& comparison = mcpherson();
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto c = std::ranges::find_if(comparison.channels, &Channel::may_be_undefined) -
@@ -381,7 +384,7 @@ TEST(Judgement, AnOutputThatHasAValueByOneReferenceOnlyIsAnObjection) {
     }
 }
 
-TEST(Judgement, ALegThatIsWrongByTenBoundsIsFound) {
+TEST(Judgement, LegWrongByTenBoundsIsIdentified) {
     // The energy leg solves a spring that is stiffer by 1e-6.
     const Scene right = support::scene("pinned_bar");
     Scene wrong = right;
@@ -397,7 +400,7 @@ TEST(Judgement, ALegThatIsWrongByTenBoundsIsFound) {
     EXPECT_GT(disagreements(a, comparison.channels, a.branches[0], branch).count, 0);
 }
 
-TEST(Judgement, ManyComplaintsBecomeTheWorstThreeAndACount) {
+TEST(Judgement, ManyObjectionsAreShownAsTheWorstThreeAndACount) {
     Objections all;
     for (int k = 0; k < 440; ++k) all.add(std::to_string(k), 2 + (k * 37) % 440);
     all.add("no number");
@@ -413,7 +416,7 @@ TEST(Judgement, ManyComplaintsBecomeTheWorstThreeAndACount) {
 
 // ---- Branches without information
 
-TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
+TEST(Judgement, BranchWithoutItsLoadDoesNotPass) {
     Scene scene = one_arm(1e5, 1000);
     scene.bodies.push_back({"far away", {}});
     for (auto& driver : scene.branches[0].drivers)
@@ -434,7 +437,7 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
     EXPECT_EQ(verdict.grade(), Grade::not_judged);
 }
 
-TEST(Judgement, ABranchOnWhichNoOutputMovesIsAResultOfZeros) {
+TEST(Judgement, BranchWithoutMovementGivesZeros) {
     Scene scene = one_arm(1e5, 1000);
     // The load acts on the pin, which carries all of it.
     std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind) = {{0, {0, 0, 0}},
@@ -448,7 +451,7 @@ TEST(Judgement, ABranchOnWhichNoOutputMovesIsAResultOfZeros) {
 
 // ---- Two-sided branches
 
-TEST(Ways, ATwoWayBranchIsItsTwoHalvesInOneCurve) {
+TEST(BranchSides, TwoSidesAreJoinedIntoOneCurve) {
     Scene both = support::scene("chrono_mcpherson");
     ASSERT_EQ(both.branches.size(), 2u);
     const Scene halves = both;
@@ -481,7 +484,7 @@ TEST(Ways, ATwoWayBranchIsItsTwoHalvesInOneCurve) {
     EXPECT_EQ(comparison.branches[0].deviation.equal_abscissa.not_compared, "");
 }
 
-TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
+TEST(BranchSides, FailureOnOneSideNamesTheSide) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches.resize(1);
     scene.branches[0].from = -300;  // the limit is at -211.5 N
@@ -502,7 +505,7 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
         << second.detail;
 }
 
-TEST(Ways, AnyChannelCanBeTheAbscissa) {
+TEST(BranchSides, AnyMonotonicChannelCanBeTheAbscissa) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Options options;
     options.abscissa = "camber";
@@ -522,7 +525,7 @@ TEST(Ways, AnyChannelCanBeTheAbscissa) {
 
 // ---- Start of a branch
 
-TEST(Settled, SaysHowFarTheSceneSinksFromItsDrawing) {
+TEST(Settled, DisplacementFromTheDesignPositionIsReported) {
     // The arm of the test above with half its load held from the start: 5 mm by closed form.
     Scene scene = one_arm(1e5, 10);
     scene.branches[0].drivers[0].start = 500;

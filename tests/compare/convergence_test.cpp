@@ -73,7 +73,7 @@ void expect_nothing(const StepConvergence& c, Behaviour expected) {
 
 // ---- exact laws ----
 
-TEST(Convergence, AnExactLawGivesItsOrderAndLimitInAnyRatioOfSteps) {
+TEST(Convergence, ExactPowerLawGivesItsOrderAndLimitForAnyStepRatio) {
     double worst_order = 0, worst_limit = 0;
     for (const auto& steps : step_counts)
         for (const double p : {0.5, 1.0, 2.0, 3.0, 4.0})
@@ -189,7 +189,7 @@ TEST(Convergence, PublishedGridStudiesAreReproduced) {
     }
 }
 
-TEST(Convergence, ThePublishedOscillatingStudyGetsNoOrder) {
+TEST(Convergence, PublishedOscillatingStudyHasNoOrder) {
     const auto levels = levels_of(oscillating);
     const double p = fixed_point(levels);  // for which the published procedure gives an order
     EXPECT_NEAR(p, oscillating.p, 0.005);
@@ -246,7 +246,10 @@ TEST(Convergence, HigherOrderTermsStayWithinTheBand) {
                         if (!(ratio <= 1))
                             ADD_FAILURE() << p << " " << q << " D " << D << ": " << text(c);
                         worst = std::max(worst, ratio);
-                        if (c.as_formal) worst_formal = std::max(worst_formal, ratio), ++formal;
+                        if (c.as_formal) {
+                            worst_formal = std::max(worst_formal, ratio);
+                            ++formal;
+                        }
                         ++compared;
                     }
     EXPECT_GE(compared, 4500);
@@ -256,7 +259,7 @@ TEST(Convergence, HigherOrderTermsStayWithinTheBand) {
         compared, worst, formal, worst_formal);
 }
 
-TEST(Convergence, CoarseLevelsOutsideTheAsymptoticRangeAreLeftOut) {
+TEST(Convergence, LevelsOutsideTheAsymptoticRangeAreExcluded) {
     const auto law = [](double h) { return 4 + h + 40 * std::pow(h, 3); };
     const auto c = step_convergence(sequence({2, 4, 8, 16, 32, 64, 128, 256}, law), 1, exact);
     ASSERT_EQ(c.behaviour, Behaviour::converging);
@@ -302,7 +305,7 @@ TEST(Convergence, NoiseOfKnownSizeIsCoveredByTheStandardErrorAndTheBand) {
         }
 }
 
-TEST(Convergence, MoreLevelsOfPureNoiseAreTakenForConvergenceMoreRarely) {
+TEST(Convergence, FalsePositivesOfPureNoiseFallWithTheNumberOfLevels) {
     // No floor is given: three random numbers are monotone one time in three by chance.
     std::mt19937 random(99);
     std::normal_distribution<double> noise(0, 1);
@@ -326,7 +329,7 @@ TEST(Convergence, MoreLevelsOfPureNoiseAreTakenForConvergenceMoreRarely) {
     EXPECT_LE(taken(12), 45);
 }
 
-TEST(Convergence, ScatterAboutTheLawReachesOrderAndLimitAsPerturbedValuesDo) {
+TEST(Convergence, StandardErrorsEqualThoseOfPerturbedValues) {
     // A poor fit, whose scatter determines the band. Standard errors are σ |J| with J the
     // sensitivity to every value, so that of the limit is the order's times |J_limit| / |J_order|.
     const auto levels = sequence({10, 40, 160, 640}, [](double h) { return 1 + h + 66 * h * h; });
@@ -359,12 +362,12 @@ TEST(Convergence, TheSafetyFactorIsSmallOnlyForTheFormalOrderOnFourLevels) {
     EXPECT_TRUE(step_convergence(three, 1, exact).as_formal);
     EXPECT_FALSE(step_convergence(four, 2, exact).as_formal);
     EXPECT_FALSE(step_convergence(four, nan, exact).as_formal);
-    // A higher order than the formal one may hide it: the band is wider than three times the step
-    // error.
+    // A higher order than the formal one may hide it: the band is wider than three times
+    // the step error.
     EXPECT_GT(factor(step_convergence(four, 0.5, exact)), 3.5);
 }
 
-TEST(Convergence, AnOrderIsFormalWithinATenthAndAtMostAQuarter) {
+TEST(Convergence, OrderCountsAsFormalWithinItsBand) {
     const std::vector<double> steps = {10, 20, 40, 80, 160};
     const auto as_formal = [&](double order, double formal) {
         return step_convergence(sequence(steps, [&](double h) { return std::pow(h, order); }),
@@ -438,7 +441,7 @@ TEST(Convergence, SequencesAreClassifiedByTheirFinestLevels) {
 
 // ---- sequences without an order ----
 
-TEST(Convergence, DivergenceNeverComesOutWithAPositiveOrder) {
+TEST(Convergence, DivergenceNeverHasAPositiveOrder) {
     for (const auto& steps : step_counts)
         for (const double p : {-0.05, -0.5, -1.0, -2.0, -5.0})
             for (const double C : {1.0, -1e-3}) {
@@ -453,7 +456,7 @@ TEST(Convergence, DivergenceNeverComesOutWithAPositiveOrder) {
             Behaviour::diverging);
 }
 
-TEST(Convergence, NoisyDivergenceIsNotTakenForConvergence) {
+TEST(Convergence, NoisyDivergenceIsNotClassifiedAsConverging) {
     std::mt19937 random(31);
     std::normal_distribution<double> noise(0, 1);
     int converging = 0;
@@ -465,7 +468,7 @@ TEST(Convergence, NoisyDivergenceIsNotTakenForConvergence) {
     EXPECT_EQ(converging, 0);
 }
 
-TEST(Convergence, OscillationHasNoOrderWhetherItDecaysOrNot) {
+TEST(Convergence, OscillationHasNoOrder) {
     for (const double ratio : {-0.1, -0.5, -0.9, -1.0, -1.5})
         for (const int count : {3, 4, 5, 8}) {
             std::vector<double> values;
@@ -474,7 +477,7 @@ TEST(Convergence, OscillationHasNoOrderWhetherItDecaysOrNot) {
         }
 }
 
-TEST(Convergence, ATurnAtTheCoarseEndIsLeftOutOfTheWindow) {
+TEST(Convergence, TurnAtTheCoarseEndIsExcluded) {
     // Step error and higher terms cancel at the coarse end: 10 steps look better than 80.
     const auto law = [](double h) { return 2 + h - 10 * h * h; };
     const auto levels = sequence({10, 20, 40, 80, 160, 320, 640, 1280}, law);
@@ -486,7 +489,7 @@ TEST(Convergence, ATurnAtTheCoarseEndIsLeftOutOfTheWindow) {
     EXPECT_LE(std::abs(c.limit - 2), c.band) << text(c);
 }
 
-TEST(Convergence, AConstantIsAtTheRoundOffFloor) {
+TEST(Convergence, ConstantSequenceIsAtTheRoundOffFloor) {
     for (const double value : {0.0, -1.68, 1e12}) {
         const auto c = step_convergence(doubling({value, value, value, value}), 1, exact);
         expect_no_order(c, Behaviour::round_off_floor);
@@ -505,7 +508,7 @@ TEST(Convergence, AConstantIsAtTheRoundOffFloor) {
     }
 }
 
-TEST(Convergence, LevelsAtRoundOffAreLeftOutAndGiveTheLimit) {
+TEST(Convergence, LevelsAtRoundOffAreExcludedFromTheOrderAndGiveTheLimit) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> jitter(-0.5e-10, 0.5e-10);
     for (const double p : {3.0, 4.0}) {
@@ -523,7 +526,7 @@ TEST(Convergence, LevelsAtRoundOffAreLeftOutAndGiveTheLimit) {
     }
 }
 
-TEST(Convergence, ANumberThatIsNotFiniteAnywhereIsReported) {
+TEST(Convergence, NonFiniteLevelIsReported) {
     for (const double bad : {nan, infinity, -infinity})
         for (int count = 1; count <= 6; ++count)
             for (int at = 0; at < count; ++at) {
@@ -550,7 +553,7 @@ TEST(Convergence, StepsMustBePositiveAndIncrease) {
     }
 }
 
-TEST(Convergence, AnOrderBeyondTheSearchRangeIsReadAsTenOrMore) {
+TEST(Convergence, OrderBeyondTheSearchRangeIsTenOrMore) {
     for (const auto& values :
          std::vector<std::vector<double>>{{1, 1e-5, 1e-10}, {1, 1e-4, 1e-8, 1e-11}}) {
         const auto c = step_convergence(doubling(values), 1, {1e-13, 0});
@@ -564,7 +567,7 @@ TEST(Convergence, AnOrderBeyondTheSearchRangeIsReadAsTenOrMore) {
 
 // ---- order against a known truth ----
 
-TEST(OrderOf, APowerLawGivesItsSignedOrder) {
+TEST(OrderOf, PowerLawHasItsSignedOrder) {
     for (const auto& steps : step_counts)
         for (const double p : {-2.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0})
             for (const double C : {3.0, -1e-6}) {

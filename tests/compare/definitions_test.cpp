@@ -219,8 +219,8 @@ struct AtDesign {
         std::ranges::move(characteristics(model), std::back_inserter(outputs));
         std::ranges::move(definition_channels(model), std::back_inserter(outputs));
         const Branch& branch = model.branches.front();
-        const PathCurve path =
-            walk(model, outputs, branch, sides_of(model, branch, 2), {.leg = Leg::equilibrium});
+        const PathCurve path = solve_branch(model, outputs, branch, sides_of(model, branch, 2),
+                                            {.leg = Leg::equilibrium});
         EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
         values = path.curve.values.at(path.curve.start);
     }
@@ -384,7 +384,7 @@ double by_difference(const Model& model) {
     const auto all = channels(model);
     const Branch& branch = model.branches.front();
     const PathCurve path =
-        walk(model, all, branch, sides_of(model, branch, 2), {.leg = Leg::equilibrium});
+        solve_branch(model, all, branch, sides_of(model, branch, 2), {.leg = Leg::equilibrium});
     const auto toe = path.curve.channel(static_cast<std::size_t>(find_channel(all, "toe")));
     // towards the middle of the vehicle: -y on a left wheel
     return -(toe.back() - toe.front()) / (path.curve.a.back() - path.curve.a.front()) * 1e3;
@@ -412,10 +412,12 @@ struct Slopes {
     Slopes(Model model, const std::string& branch_name, double half) {
         std::erase_if(model.branches, [&](const Branch& b) { return b.name != branch_name; });
         Branch& branch = model.branches.front();
-        branch.from = -half, branch.to = half, branch.steps = 2;
+        branch.from = -half;
+        branch.to = half;
+        branch.steps = 2;
         all = channels(model);
         const PathCurve path =
-            walk(model, all, branch, sides_of(model, branch, 2), {.leg = Leg::equilibrium});
+            solve_branch(model, all, branch, sides_of(model, branch, 2), {.leg = Leg::equilibrium});
         EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (std::size_t c = 0; c < all.size(); ++c) {
             const auto values = path.curve.channel(c);
@@ -559,8 +561,8 @@ struct Judged {
     Model model;
     Comparison comparison;
     std::vector<Channel> defined;
-    // of a branch by the equilibrium leg: parameter in its unit, outputs of the comparison, then of
-    // `defined`
+    // of a branch by the equilibrium leg: parameter in its unit, outputs of the comparison,
+    // then of `defined`
     std::string branch;
     std::vector<double> a;
     std::vector<std::vector<double>> values;
@@ -576,7 +578,7 @@ struct Judged {
         all.insert(all.end(), defined.begin(), defined.end());
         const Branch& of = model.branches.front();
         const PathCurve path =
-            walk(model, all, of, sides_of(model, of, 12), {.leg = Leg::equilibrium});
+            solve_branch(model, all, of, sides_of(model, of, 12), {.leg = Leg::equilibrium});
         a = path.curve.a;
         for (std::size_t c = 0; c < all.size(); ++c) values.push_back(path.curve.channel(c));
     }
@@ -626,7 +628,8 @@ TEST(Definitions, InAColumnAreRecognisedWithSignUnitAndOffset) {
                     const double reference = at.values[c][k];
                     if (!std::isfinite(column[k]) || !std::isfinite(reference)) continue;
                     off = std::max(off, std::abs(column[k] - reference));
-                    low = std::min(low, reference), high = std::max(high, reference);
+                    low = std::min(low, reference);
+                    high = std::max(high, reference);
                 }
                 if (plain.verdict == Grade::pass || !(off > 1e-3 * (high - low))) {
                     same.insert(name);

@@ -32,14 +32,14 @@ Law cubic(bool known_outside = true) {
         known_outside};
 }
 
-TEST(Laws, ForceOfACurveIsThatOfItsPolynomialOnEveryPiece) {
+TEST(Laws, CurveForceEqualsItsPolynomialOnEveryPiece) {
     for (double x = -0.02; x <= 0.03; x += 0.0005)
         EXPECT_NEAR(force(ScalarLaw(cubic()), x), 1000 * x + 2e5 * x * x * x, 1e-11) << x;
     EXPECT_NEAR(force(ScalarLaw(cubic()), 0.05),
                 1000 * 0.03 + 2e5 * 27e-6 + 0.02 * (1000 + 6e5 * 9e-4), 1e-11);
 }
 
-TEST(Laws, SteepestSlopeIsFoundAtEndsAndInside) {
+TEST(Laws, SteepestSlopeIsFoundAtTheEndsAndInside) {
     EXPECT_NEAR(steepest(cubic()), 1000 + 6e5 * 9e-4, 1e-9);
     EXPECT_EQ(steepest(LinearRate{42}), 42);
     // f = 3 x² - 2 x³ is steepest halfway.
@@ -58,7 +58,7 @@ Pair turned(const Quaterniond& B, const Vector3d& d) {
     return pair;
 }
 
-TEST(Deformation, AnglesAreThoseOfTheirNames) {
+TEST(Deformation, AnglesEqualTheirNamedFormulation) {
     using Angles = Formulation::Angles;
     const Quaterniond cardan = Quaterniond(AngleAxisd(0.3, Vector3d::UnitX())) *
                                AngleAxisd(-0.2, Vector3d::UnitY()) *
@@ -81,7 +81,7 @@ TEST(Deformation, AnglesAreThoseOfTheirNames) {
     }
 }
 
-TEST(Deformation, InTheMiddleItIsTheSameFromBothSides) {
+TEST(Deformation, MiddleFrameTreatsBothMarkersAlike) {
     const Vector3d theta(0.4, -0.3, 0.2), d(1e-3, 2e-3, -3e-3);
     auto [bushing, state] = turned(Quaterniond(AngleAxisd(theta.norm(), theta.normalized())), d);
     bushing.formulation.frame = Formulation::Frame::middle;
@@ -92,7 +92,7 @@ TEST(Deformation, InTheMiddleItIsTheSameFromBothSides) {
     EXPECT_LE((deformation(bushing, state).head<3>() - d).norm(), 1e-17) << "i is at rest";
 }
 
-TEST(Deformation, IsCountedFromWhereNothingIsDeformed) {
+TEST(Deformation, IsMeasuredFromTheUndeformedState) {
     auto [bushing, state] = turned(Quaterniond::Identity(), {1e-3, 0, 0});
     bushing.undeformed = Vector6::Constant(third);
     EXPECT_LE((deformation(bushing, state) - Vector6::Unit(0) * 1e-3 + bushing.undeformed).norm(),
@@ -112,7 +112,7 @@ Scene short_table(bool known_outside) {
     return scene;
 }
 
-TEST(OutsideTable, ACurveThatGoesOnIsTheRateItIs) {
+TEST(OutsideTable, ExtrapolatedCurveHasTheRateOfItsEnd) {
     Scene linear = support::scene("chrono_mcpherson");
     for (auto& branch : linear.branches) branch.steps = 30;
     const Comparison straight = compare(compile(linear)),
@@ -129,7 +129,7 @@ TEST(OutsideTable, ACurveThatGoesOnIsTheRateItIs) {
     }
 }
 
-TEST(OutsideTable, EveryLegEndsThereAndBothReferencesAgreeOnWhere) {
+TEST(OutsideTable, EveryLegEndsAtTheSamePoint) {
     const Model model = compile(short_table(false));
     const Comparison found = compare(model);
     EXPECT_FALSE(found.conclusive());
@@ -149,7 +149,7 @@ TEST(OutsideTable, EveryLegEndsThereAndBothReferencesAgreeOnWhere) {
                   std::string::npos)
             << branch.inconclusive.worst.front().what;
         const auto ways = sides_of(model, model.branches[b]);
-        const auto points = walk(ways, {.leg = Leg::equilibrium}).points;
+        const auto points = solve_branch(ways, {.leg = Leg::equilibrium}).points;
         EXPECT_EQ(points.size(), equilibrium.curve.a.size());
         for (const auto& point : points)
             EXPECT_EQ(outside_table(ways.front().model, model.branches[b], point), "");

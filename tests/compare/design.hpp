@@ -40,7 +40,8 @@ inline Varied varied_of(const std::function<Scene(std::span<const Setting>)>& sc
     Varied all;
     const auto n = std::ssize(paths);
     all.start.resize(n);
-    all.low = Eigen::VectorXd::Constant(n, -infinity), all.high = -all.low;
+    all.low = Eigen::VectorXd::Constant(n, -infinity);
+    all.high = -all.low;
     for (Eigen::Index k = 0; k < n; ++k) {
         all.numbers.push_back(find_number(scene({}), paths[static_cast<std::size_t>(k)]).value());
         all.start[k] = all.numbers.back().value;
@@ -59,7 +60,10 @@ inline Varied varied_of(const std::string& name, const std::vector<std::string>&
         varied_of([file = std::string(ELASTOCHECK_SCENES "/") + name + ".yaml"](
                       std::span<const Setting> settings) { return read_scene(file, settings); },
                   paths);
-    if (low.size() > 0) all.low = low, all.high = high;
+    if (low.size() > 0) {
+        all.low = low;
+        all.high = high;
+    }
     return all;
 }
 

@@ -30,7 +30,7 @@ Reading at_equal_travel(const Curve& a, const Curve& b) {
     return at_equal_abscissa(a, b, abscissa(outputs, 0, a, b));
 }
 
-TEST(Deviation, AWrongRateShowsAtEqualLoadAndVanishesAtEqualTravel) {
+TEST(Deviation, WrongRateAppearsAtEqualLoadAndNotAtEqualTravel) {
     const auto shape = [](double x) { return std::sin(0.2 * x) + 0.01 * x * x; };
     const Curve a = made(1, shape), b = made(1.04, shape);
     const auto load = at_equal_parameter(a, b), travel = at_equal_travel(a, b);
@@ -45,7 +45,7 @@ TEST(Deviation, AWrongRateShowsAtEqualLoadAndVanishesAtEqualTravel) {
     EXPECT_EQ(travel.channels[1].compared, 41);
 }
 
-TEST(Deviation, PointsBeyondTheOtherCurveAreCountedNotExtrapolated) {
+TEST(Deviation, PointsBeyondTheOtherCurveAreNotExtrapolated) {
     const auto shape = [](double x) { return x; };
     const auto reading = at_equal_travel(made(1, shape), made(0.9, shape));
     EXPECT_EQ(reading.outside, 4);
@@ -53,7 +53,7 @@ TEST(Deviation, PointsBeyondTheOtherCurveAreCountedNotExtrapolated) {
 }
 
 // An end to which both curves are driven: rounding must not decide whether it is compared.
-TEST(Deviation, TheEndThatBothReachToTheirRoundingIsCompared) {
+TEST(Deviation, CommonEndIsComparedDespiteRounding) {
     const auto shape = [](double x) { return x * x; };
     const Curve a = made(1, shape), b = made(1 - 1e-15, shape);
     EXPECT_EQ(at_equal_travel(a, b).outside, 0);
@@ -61,14 +61,14 @@ TEST(Deviation, TheEndThatBothReachToTheirRoundingIsCompared) {
     EXPECT_EQ(at_equal_travel(a, made(1 - 1e-6, shape)).outside, 1);
 }
 
-TEST(Deviation, FallingTravelIsReadAsWell) {
+TEST(Deviation, FallingAbscissaIsCompared) {
     const auto shape = [](double x) { return x * x; };
     const auto reading = at_equal_travel(made(-1, shape), made(-1.1, shape));
     EXPECT_TRUE(reading.not_compared.empty());
     EXPECT_LE(reading.channels[1].max, 1e-12);
 }
 
-TEST(Deviation, RmsAndSignAreOfTheDifference) {
+TEST(Deviation, RmsAndSignAreThoseOfTheDifference) {
     Curve a = made(
               1, [](double) { return 0.0; }, 4),
           b = a;
@@ -81,7 +81,7 @@ TEST(Deviation, RmsAndSignAreOfTheDifference) {
     EXPECT_EQ(d.end, 0);
 }
 
-TEST(Deviation, ANaNAnywhereIsNeverSmall) {
+TEST(Deviation, NaNIsNeverSmall) {
     for (const std::size_t where : {0u, 20u, 40u}) {
         Curve a = made(1, [](double x) { return x; }), b = a;
         b.values[where][1] = nan;
@@ -99,7 +99,7 @@ TEST(Deviation, ANaNAnywhereIsNeverSmall) {
     }
 }
 
-TEST(Deviation, NothingComparedSaysWhy) {
+TEST(Deviation, ReasonIsGivenWhereNothingIsCompared) {
     const Curve a = made(1, [](double x) { return x; });
     EXPECT_FALSE(at_equal_parameter(a, {}).not_compared.empty());
     EXPECT_FALSE(at_equal_parameter({}, a).not_compared.empty());
@@ -117,7 +117,7 @@ TEST(Deviation, NothingComparedSaysWhy) {
     EXPECT_TRUE(std::isnan(reading.channels[1].max));
 }
 
-TEST(Deviation, TwoWayCurvesAreComparedAroundTheirStartHoweverFarTheyGot) {
+TEST(Deviation, TwoSidedCurvesAreComparedFromTheirStartOutwards) {
     Curve a = made(1, [](double x) { return x; }), b = a;
     for (Curve* curve : {&a, &b}) {
         curve->start = 20;
@@ -152,7 +152,7 @@ TEST(Deviation, ProfilesAreTheWorstMainChannelPointByPoint) {
     EXPECT_TRUE(std::isnan(travel.apart[40].mm));  // not reached
 }
 
-TEST(Abscissa, SaysWhichChannelTurnsBackWhereOrDoesNotMove) {
+TEST(Abscissa, ReasonNamesTheChannelThatReversesOrDoesNotMove) {
     const Curve a = made(1, [](double x) { return (x - 4) * (x - 4); });
     EXPECT_EQ(abscissa(outputs, 0, a, a).why_not, "");
     EXPECT_EQ(abscissa(outputs, 1, a, a).why_not, "y turns back at 4 N (at 0 mm)");
@@ -168,7 +168,7 @@ TEST(Abscissa, SaysWhichChannelTurnsBackWhereOrDoesNotMove) {
               "y turns back at 4 N (at 0 mm)");
 }
 
-TEST(Abscissa, IsTravelWhereThereIsAWheelElseWhatMovesFarthest) {
+TEST(Abscissa, DefaultIsTravelOrTheChannelWithTheLargestRange) {
     const Curve a = made(0.5, [](double x) { return -3 * x; });
     std::vector<Channel> of_wheel = outputs;
     of_wheel[0].reads = Catalogued{find_entry(figure::travel)};

@@ -128,7 +128,7 @@ std::vector<std::string> scenes_of_energies() {
 
 class Balance : public testing::TestWithParam<std::string> {};
 
-TEST_P(Balance, ForcesOfElementsLoadsAndJointsAddUpToNothingOnEveryBody) {
+TEST_P(Balance, ForcesOfElementsLoadsAndJointsSumToZeroOnEveryBody) {
     const Scene scene = trim(support::scene(GetParam())).scene;
     const Model model = compile(scene);
     for (const auto& branch : model.branches)
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Nightly, Balance, testing::ValuesIn(scenes_of_energies(
 
 // ---- Values at the ends of the branches.
 
-TEST(ForceRows, StandAtBothEndsOfEveryBranchWithWhatTheRecursionIsOff) {
+TEST(ForceRows, HaveBothEndsOfEveryBranchWithTheErrorOfTheRecursion) {
     const Model model = compile(support::scene("tyre_on_road"));
     Options options;
     options.recursion.steps = 20;
@@ -213,10 +213,12 @@ TEST(ForceRows, GiveTheErrorOfTheRecursionInTheUnitAndAsAShare) {
 
 // From z = h to -h the springs are shortest in the middle, where the arch is flat, and free at both
 // ends: F = k (ℓ₀ - b).
-TEST(LargestForces, AreThoseWithinTheBranchAndNotAtItsEnds) {
+TEST(LargestForces, MaximumInsideTheBranchIsFound) {
     const Model model = compile(support::scene("arch_driven"));
     Branch branch = model.branches.front();
-    branch.from = 0, branch.to = -0.16, branch.steps = 80;
+    branch.from = 0;
+    branch.to = -0.16;
+    branch.steps = 80;
     const auto found = run(model, branch, Leg::equilibrium);
     ASSERT_EQ(found.outcome, Outcome::converged);
     const double shortened = std::hypot(300, 80) - 300;

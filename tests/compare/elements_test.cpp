@@ -45,7 +45,7 @@ Pose turned(const Vector3d& r, double degrees, const Vector3d& axis) {
     return {r, Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis))};
 }
 
-TEST(ElementOutputs, OfASpringAndAStopArePositiveInCompression) {
+TEST(ElementOutputs, SpringAndStopArePositiveInCompression) {
     const AxialSpring coil{{0, Vector3d::Zero()}, {ground, {0, 0, 0.5}}, LinearRate{20e3}, 0.55};
     One spring({"coil", coil}, {Vector3d(0, 0, 0.03), Eigen::Quaterniond::Identity()});
     EXPECT_NEAR(spring["coil.deflection"], 80, 1e-10);
@@ -65,7 +65,7 @@ TEST(ElementOutputs, OfASpringAndAStopArePositiveInCompression) {
 }
 
 // In frame axes, of which y is ground's x, z ground's y and x ground's z.
-TEST(ElementOutputs, OfABushingAreInItsOwnAxesAndPullItsSecondBodyBack) {
+TEST(ElementOutputs, BushingForceIsInItsAxesAndRestoresItsSecondBody) {
     Eigen::Matrix3d axes;
     axes.col(0) = Vector3d::UnitZ();
     axes.col(1) = Vector3d::UnitX();
@@ -95,7 +95,7 @@ TEST(ElementOutputs, OfABushingAreInItsOwnAxesAndPullItsSecondBodyBack) {
     EXPECT_NEAR(bushing["mount.displacement_y"], 1, 1e-10);
 }
 
-TEST(ElementOutputs, OfATorsionSpringAndATyreAreOneAngleAndOneHeight) {
+TEST(ElementOutputs, TorsionSpringHasOneAngleAndTyreOneDeflection) {
     Matrix6 K = Matrix6::Zero();
     K(5, 5) = 40;
     Bushing bar{{ground, Vector3d::Zero()}, {0, Vector3d::Zero()}, LinearStiffness{K}};
@@ -119,7 +119,7 @@ TEST(ElementOutputs, OfATorsionSpringAndATyreAreOneAngleAndOneHeight) {
     EXPECT_NEAR(tyre["tyre.deflection"], 15 + 10 + 15, 1e-10);
 }
 
-TEST(ElementOutputs, OfALinkIsItsAxialForcePositiveInTension) {
+TEST(ElementOutputs, LinkForceIsPositiveInTension) {
     Model model;
     model.bodies.push_back({"hook", {}});
     model.joints = {{"rod", 0, ground, {0, Vector3d::Zero()}, 0, false}};
@@ -133,7 +133,7 @@ TEST(ElementOutputs, OfALinkIsItsAxialForcePositiveInTension) {
 
 // By the definition of Formulation, a bushing with its frame on j equals one on i with exchanged
 // bodies and reversed signs. Outputs are in the axes of the scene file.
-TEST(ElementOutputs, OfABushingFramedOnItsSecondBodyAreInTheAxesItWasWrittenIn) {
+TEST(ElementOutputs, BushingFramedOnItsSecondBodyUsesTheAxesAsWritten) {
     Matrix6 K = Matrix6::Zero();
     K.diagonal() << 1e6, 2e6, 3e6, 100, 200, 300;
     Scene scene;
@@ -157,7 +157,7 @@ TEST(ElementOutputs, OfABushingFramedOnItsSecondBodyAreInTheAxesItWasWrittenIn) 
     EXPECT_NEAR(of("mount.elastic_moment_z"), 3 + 300 * std::numbers::pi / 2, 1e-9);
 }
 
-TEST(ElementOutputs, HaveNamesOfTheirOwnBesideThoseOfTheJoints) {
+TEST(ElementOutputs, NamesDifferFromThoseOfJoints) {
     for (const auto& name : support::scene_names()) {
         const Model model = compile(support::scene(name));
         auto all = channels(model);

@@ -1,5 +1,5 @@
-// Scalable scene families (tests/benchmark/families.hpp): every leg and method against closed
-// forms.
+// Scalable scene families (tests/benchmark/families.hpp): every leg and method
+// against closed forms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ std::string named(const Family& f) {
     return fmt::format("{} of {} on {}s", name(f.kind), f.bodies, name(f.hinge));
 }
 
-// A family with its branch and the results of a leg. Leg::recursive is the series, tolerance 1e-13
-// m.
+// A family with its branch and the results of a leg. Leg::recursive is the series,
+// tolerance 1e-13 m.
 struct FamilyScene {
     Family family;
     Scene scene;
@@ -40,10 +40,10 @@ struct FamilyScene {
     FamilyScene(const Family& f, const Scene& s) : family(f), scene(s), model(compile(s)) {}
 
     EquilibriumPath by(Leg leg) const {
-        const auto path =
-            walk(sides_of(model, model.branches[0]),
-                 {.leg = leg,
-                  .recursion = {.method = {"series", 0, recursive::Series{.tolerance = 1e-13}}}});
+        const auto path = solve_branch(
+            sides_of(model, model.branches[0]),
+            {.leg = leg,
+             .recursion = {.method = {"series", 0, recursive::Series{.tolerance = 1e-13}}}});
         EXPECT_EQ(path.outcome, Outcome::converged)
             << named(family) << " by " << name(leg) << ": " << path.detail;
         EXPECT_EQ(path.points.size(), 6u) << named(family) << " by " << name(leg);
@@ -142,7 +142,7 @@ const std::vector<Family> of_sixty{{Kind::chain, 60},
                                    {Kind::grid, 60, Hinge::revolute},
                                    {Kind::axle, 61, Hinge::revolute}};
 
-TEST(Families, StandWhereTheirClosedFormSaysInEveryLeg) {
+TEST(Families, EqualTheirClosedFormInEveryLeg) {
     for (const Family& family : of_fifteen) {
         const FamilyScene w(family);
         for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive})
@@ -151,7 +151,7 @@ TEST(Families, StandWhereTheirClosedFormSaysInEveryLeg) {
     }
 }
 
-TEST(Families, StandThereWithFourTimesTheBodies) {
+TEST(Families, EqualTheirClosedFormWithFourTimesTheBodies) {
     for (const Family& family : of_sixty) {
         const FamilyScene w(family);
         const auto equilibrium = w.by(Leg::equilibrium), series = w.by(Leg::recursive);
@@ -170,7 +170,7 @@ FamilyScene pushed_at_a_corner() {
     return {grid, scene};
 }
 
-TEST(Families, WithoutAClosedFormStandWhereBothReferencesSay) {
+TEST(Families, ReferencesAgreeWithoutAClosedForm) {
     std::vector<FamilyScene> all{pushed_at_a_corner()};
     for (const Family& family : {Family{Kind::tree, 12},
                                  {Kind::tree, 12, Hinge::revolute},
@@ -187,7 +187,7 @@ TEST(Families, WithoutAClosedFormStandWhereBothReferencesSay) {
     }
 }
 
-TEST(Families, OfBeamsStandWithFourTimesTheBodiesWhereEquilibriumLegAndSeriesSay) {
+TEST(Families, LargeBeamsAgreeBetweenEquilibriumLegAndSeries) {
     for (const Kind kind : {Kind::leaf_spring, Kind::ladder_frame}) {
         const FamilyScene w({kind, 60});
         EXPECT_LE(furthest_apart_mm(w.by(Leg::equilibrium), w.by(Leg::recursive)), expansions)
@@ -197,8 +197,8 @@ TEST(Families, OfBeamsStandWithFourTimesTheBodiesWhereEquilibriumLegAndSeriesSay
 
 // ---- Beams under small loads.
 
-// Rise of the probe per load, by central differences with a thousandth of the load: even orders
-// cancel.
+// Rise of the probe per load, by central differences with a thousandth of the load:
+// even orders cancel.
 double flexibility(const Family& family, Leg leg) {
     Scene scene = parse_scene(families::scene(family), named(family));
     const double F = scene.branches[0].to / 1000;
@@ -239,7 +239,7 @@ double leaf_flexibility(const families::Leaves& pack) {
     return X[0] * tip(0) - (m > 1 ? X[1] * far(0) : 0);
 }
 
-TEST(LeafSpring, SharesASmallLoadAmongItsLeavesAsBeamsDo) {
+TEST(LeafSpring, SmallLoadIsSharedAmongItsLeavesByBeamTheory) {
     for (const int n : {3, 9, 15, 30}) {
         const double known = leaf_flexibility(families::leaves(n));
         for (const Leg leg : {Leg::equilibrium, Leg::recursive})
@@ -248,8 +248,8 @@ TEST(LeafSpring, SharesASmallLoadAmongItsLeavesAsBeamsDo) {
     }
 }
 
-// Grillage: w, φ_x, φ_y at every crossing; bending about one axis and torsion about the other in
-// between.
+// Grillage: w, φ_x, φ_y at every crossing; bending about one axis and torsion about the
+// other in between.
 double frame_flexibility(const families::Frame& frame) {
     const int c = frame.cross_members;
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(6 * c, 6 * c);
@@ -287,7 +287,7 @@ double frame_flexibility(const families::Frame& frame) {
     return K.partialPivLu().solve(Eigen::VectorXd::Unit(6 * c, 3 * right(c - 1)))[3 * right(c - 1)];
 }
 
-TEST(LadderFrame, GivesWayToASmallLoadAsAGrillageDoes) {
+TEST(LadderFrame, SmallDeflectionEqualsThatOfAGrillage) {
     for (const int n : {4, 9, 15, 30}) {
         const double known = frame_flexibility(families::frame(n));
         for (const Leg leg : {Leg::equilibrium, Leg::recursive})
@@ -308,14 +308,14 @@ TEST(Families, MethodsHaveTheOrderTheyDeclare) {
     for (const Family& family : all) {
         const FamilyScene w(family);
         const bool nothing_turns = family.hinge == Hinge::revolute && family.kind != Kind::axle;
-        const bool beams =
-            !has_hinges(family.kind);  // nearly inextensible: large higher-order terms
+        // nearly inextensible: large higher-order terms
+        const bool beams = !has_hinges(family.kind);
         const Eigen::Vector3d truth = w.end(w.by(Leg::equilibrium).points.back());
         for (const auto& method : recursive::methods) {
             if (!has_steps(method)) continue;
             std::vector<Eigen::Vector3d> ends;
             for (const int refine : {20, 40, 80}) {
-                const auto path = walk(
+                const auto path = solve_branch(
                     sides_of(w.model, w.model.branches[0]),
                     {.leg = Leg::recursive, .recursion = {.method = method}, .refine = refine});
                 ASSERT_EQ(path.outcome, Outcome::converged)
@@ -341,7 +341,7 @@ TEST(Families, MethodsHaveTheOrderTheyDeclare) {
 
 // ---- Sizes.
 
-TEST(Families, HaveAsManyBodiesAsAskedAndMoveAboutAsFar) {
+TEST(Families, HaveTheRequestedNumberOfBodiesAndASimilarMovement) {
     for (const Kind kind : families::kinds)
         for (const Hinge hinge : {Hinge::bushing, Hinge::revolute}) {
             if (hinge == Hinge::revolute && !has_hinges(kind)) continue;
@@ -359,11 +359,11 @@ TEST(Families, HaveAsManyBodiesAsAskedAndMoveAboutAsFar) {
         }
 }
 
-TEST(Families, OfNoSuchSizeOrJointAreRefused) {
+TEST(Families, InvalidSizeOrJointIsRejected) {
     for (const Kind kind : families::kinds) {
         EXPECT_THROW(families::scene({kind, families::least_bodies(kind) - 1}), std::out_of_range)
             << name(kind);
-        EXPECT_THROW(families::scene({kind, families::most_bodies + 1}), std::out_of_range)
+        EXPECT_THROW(families::scene({kind, families::max_bodies + 1}), std::out_of_range)
             << name(kind);
         if (!has_hinges(kind)) {
             EXPECT_THROW(families::scene({kind, 30, Hinge::revolute}), std::invalid_argument)

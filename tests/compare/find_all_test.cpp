@@ -1,5 +1,5 @@
-// Multiple equilibria at one load: closed-form cases are found, proved, distinguished and
-// described.
+// Multiple equilibria at one load: closed-form cases are found, proved,
+// distinguished and described.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace elastocheck::compare {
 namespace {
 
-using reference::certificate::Answer;
+using reference::certificate::ProofState;
 
 // Two springs meeting at a flat apex: V(z) = 2 · ½ k (ℓ(z) - ℓ₀)² - f z, ℓ² = w² + z².
 constexpr double w = 0.3, h = 0.08, k = 100e3;
@@ -63,7 +63,7 @@ AllEquilibria all_of(const std::string& text, double a) {
     return find_equilibria(model, model.branches.front(), a);
 }
 
-TEST(FindAll, TheArchHasThreeAtALoadBelowItsLimitEachProvedAndWhereTheClosedFormHasThem) {
+TEST(FindAll, ArchBelowItsLimitHasTheThreeClosedFormEquilibriaProved) {
     for (const double load : {-120.0, -40.0, -200.0}) {
         const auto all = all_of(arch("-200"), load);
         const auto expected = heights(load);
@@ -73,7 +73,7 @@ TEST(FindAll, TheArchHasThreeAtALoadBelowItsLimitEachProvedAndWhereTheClosedForm
         EXPECT_EQ(all.stable(), 2);
         std::vector<double> found;
         for (const auto& one : all.list) {
-            EXPECT_EQ(one.proof.answer, Answer::proved) << one.proof.detail;
+            EXPECT_EQ(one.proof.state, ProofState::proved) << one.proof.detail;
             found.push_back(one.state.poses[0].r.z());
             // Stable where the force increases with the height.
             const double z = found.back(), e = 1e-6;
@@ -94,7 +94,7 @@ TEST(FindAll, TheArchHasThreeAtALoadBelowItsLimitEachProvedAndWhereTheClosedForm
 }
 
 // Near the limit point the unstable equilibrium is 0.7 mm from the stable one.
-TEST(FindAll, CloseToTheLimitPointTheUnstableOneIsFoundBesideTheStableOne) {
+TEST(FindAll, StableAndUnstableEquilibriumNearTheLimitPointAreFound) {
     const auto all = all_of(arch("-200"), -211.5);
     const auto expected = heights(-211.5);
     ASSERT_EQ(expected.size(), 3u);
@@ -106,9 +106,9 @@ TEST(FindAll, CloseToTheLimitPointTheUnstableOneIsFoundBesideTheStableOne) {
     for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(found[n], expected[n], 1e-8);
 }
 
-// The arch snaps onto a stop that is so stiff that Newton's method with deflation does not
-// converge.
-TEST(FindAll, TheOneThatAStopHoldsIsFound) {
+// The arch snaps onto a stop that is so stiff that Newton's method with deflation
+// does not converge.
+TEST(FindAll, EquilibriumHeldByAStopIsFound) {
     const auto all = all_of(R"(elastocheck: 1
 name: arch
 units: {length: m, angle: rad, force: N}
@@ -133,7 +133,7 @@ probes: {tip: {on: m, at: a}}
     EXPECT_EQ(std::ranges::count_if(all.list, [](const auto& one) { return !one.stable; }), 1);
 }
 
-TEST(FindAll, AModelThatIsTooLargeIsNotSearched) {
+TEST(FindAll, TooLargeModelIsNotSearched) {
     Model large = compile(parse_scene(arch("-200"), "scene.yaml"));
     large.bodies.resize(101, large.bodies[0]);
     const auto all = find_equilibria(large, large.branches.front(), -120);
@@ -142,7 +142,7 @@ TEST(FindAll, AModelThatIsTooLargeIsNotSearched) {
     EXPECT_FALSE(all.proved);
 }
 
-TEST(FindAll, PastTheLimitThereIsOneAndTheBranchDoesNotLeadThere) {
+TEST(FindAll, OnlyEquilibriumBeyondTheLimitPointIsOffTheBranch) {
     const auto all = all_of(arch("-1500"), -1500);
     EXPECT_NE(all.outcome, Outcome::converged);
     ASSERT_EQ(all.list.size(), 1u);
@@ -155,7 +155,7 @@ TEST(FindAll, PastTheLimitThereIsOneAndTheBranchDoesNotLeadThere) {
 
 // Flat arch with compressed springs: no branch starts, and distances are from the design position,
 // not "0 mm away".
-TEST(FindAll, WhereNoBranchBeginsDistancesAreFromTheDrawing) {
+TEST(FindAll, DistancesAreFromTheDesignPositionIfNoBranchStarts) {
     std::string flat = arch("-100");
     flat.replace(flat.find("[0, 0, 80]"), 10, "[0, 0, 0]");
     for (std::size_t at; (at = flat.find("rate: 100}")) != flat.npos;)
@@ -184,7 +184,7 @@ branches: {d: {load: v, to: 90, steps: 20}}
 probes: {head: {on: rod, at: head}}
 )";
 
-TEST(FindAll, AStraightColumnPastItsBucklingLoadHasABentOneOnEitherSide) {
+TEST(FindAll, BuckledColumnHasABentEquilibriumOnEitherSide) {
     // k θ = f sin θ
     const double f = 120;
     double theta = 1;
@@ -210,7 +210,7 @@ TEST(FindAll, AStraightColumnPastItsBucklingLoadHasABentOneOnEitherSide) {
     EXPECT_EQ(upright.turned_over, 2);
 }
 
-TEST(FindAll, LegsOnTwoBranchesAreSaidToBeAndNotToDeviate) {
+TEST(FindAll, LegsOnDifferentBranchesAreReportedAsSuch) {
     const Model model = compile(parse_scene(arch("-120"), "scene.yaml"));
     const auto comparison = compare(model);
     auto branch = comparison.branches[0];
@@ -237,20 +237,20 @@ TEST(FindAll, LegsOnTwoBranchesAreSaidToBeAndNotToDeviate) {
     EXPECT_NE(said()[0].find("the reference legs disagree on"), std::string::npos) << said()[0];
 }
 
-TEST(FindAll, ASlideOnItsHeadIsNoEquilibriumOfTheArch) {
+TEST(FindAll, SlideInTheOppositeDirectionIsNotAnEquilibrium) {
     // The constraints of the slide hold in the reversed assembly too: these states are counted.
     const auto all = all_of(arch("-200"), -120);
     EXPECT_GT(all.other_way_round, 0);
     for (const auto& one : all.list) EXPECT_LT(one.angle, 1e-6);
 }
 
-TEST(FindAll, ASuspensionHasTheOneOfItsBranch) {
+TEST(FindAll, SuspensionHasOnlyTheEquilibriumOfItsBranch) {
     const Model model = compile(support::scene("mcpherson"));
     const auto all = find_equilibria(model, model.branches.front(), 500, {.at_random = 4});
     ASSERT_FALSE(all.list.empty());
     EXPECT_TRUE(all.list[0].on_branch);
     EXPECT_TRUE(all.list[0].stable);
-    EXPECT_EQ(all.list[0].proof.answer, Answer::proved) << all.list[0].proof.detail;
+    EXPECT_EQ(all.list[0].proof.state, ProofState::proved) << all.list[0].proof.detail;
     for (const auto& one : all.list) EXPECT_EQ(one.on_branch, &one == &all.list[0]);
 }
 

@@ -25,7 +25,7 @@ std::size_t channel(const std::string& name) {
 }
 
 // As of a definition that a scene asks for and that has no value at some point of a branch.
-TEST(WorstDisagreement, IsOfTheOutputsThatAreCompared) {
+TEST(WorstDisagreement, ConsidersOnlyComparedOutputs) {
     Comparison comparison = compared();
     const auto camber = channel("camber");
     auto& branch = comparison.branches[0];
@@ -40,7 +40,7 @@ TEST(WorstDisagreement, IsOfTheOutputsThatAreCompared) {
 
 // ---- Wheel rates
 
-TEST(RateErrors, AreSaidPerBranchWithTheirSign) {
+TEST(RateErrors, AreSignedAndPerBranch) {
     // The published recursion is too soft in jounce, too stiff in rebound.
     const auto errors = rate_errors(mcpherson(), compared());
     ASSERT_EQ(errors.size(), 2u);
@@ -59,7 +59,7 @@ TEST(RateErrors, AreSaidPerBranchWithTheirSign) {
     }
 }
 
-TEST(RateErrors, RideRateIsWheelAndTyreInSeries) {
+TEST(RateErrors, RideRateIsWheelAndTyreRateInSeries) {
     Scene scene = support::scene("chrono_mcpherson");
     for (auto& branch : scene.branches) branch.steps = 10;
     for (const auto& error : rate_errors(compile(scene), compare(compile(scene)))) {
@@ -79,7 +79,7 @@ TEST(RateErrors, RideRateIsWheelAndTyreInSeries) {
 }
 
 // On the road, tyre force over road height is the ride rate, 1 / (1/k_w + 1/k_t).
-TEST(RateErrors, RideRateOnTheRoadIsThatOfWheelAndTyreInSeries) {
+TEST(RateErrors, RideRateOfAMovingRoadIsWheelAndTyreRateInSeries) {
     const Model model = compile(support::scene("tyre_on_road"));
     const auto errors = rate_errors(model, compare(model));
     ASSERT_EQ(errors.size(), 4u)
@@ -93,7 +93,7 @@ TEST(RateErrors, RideRateOnTheRoadIsThatOfWheelAndTyreInSeries) {
     }
 }
 
-TEST(RateErrors, AreNotSaidOfBranchesThatLoadAnythingElse) {
+TEST(RateErrors, AreOmittedForBranchesWithOtherLoads) {
     const auto with = [](auto&& change) {
         Scene scene = support::scene("chrono_mcpherson");
         scene.branches.resize(1);
@@ -143,7 +143,7 @@ TEST(Findings, TheWorstDeviationIsTheLargestOfAnyBranch) {
     EXPECT_FALSE(worst_deviation({}, ReadingKind::equal_parameter, Unit::mm));
 }
 
-TEST(Findings, TheGapIsTheLimitOfTheDeviation) {
+TEST(Findings, FormulationGapIsTheLimitOfTheDeviation) {
     StudyOptions options;
     options.steps = {50, 100, 200, 400, 800};
     const Study s = study(mcpherson(), options);
@@ -173,7 +173,7 @@ Points taken(std::size_t branch, double off, bool by_travel, bool named) {
     return measured;
 }
 
-TEST(Measured, PointsAreReadOnTheirBranchByParameterAndByTravel) {
+TEST(Measured, PointsAreLocatedByParameterAndByTravel) {
     for (const std::size_t branch : {0u, 1u})
         for (const bool by_travel : {false, true})
             for (const bool named : {false, true}) {
@@ -190,14 +190,14 @@ TEST(Measured, PointsAreReadOnTheirBranchByParameterAndByTravel) {
             }
 }
 
-TEST(Measured, TheLargestMissKeepsItsSign) {
+TEST(Measured, LargestMissKeepsItsSign) {
     Points measured = taken(0, 0.25, false, true);
     measured.columns[0].values[0] += 1;
     const auto found = compare_measured(mcpherson(), compared(), measured);
     EXPECT_NEAR(found.readings[0].rows[0].off[1].signed_max, -0.75, 1e-6);
 }
 
-TEST(Measured, APointIsComparedWithTheBranchItNamesAndNoOther) {
+TEST(Measured, PointIsComparedOnlyWithTheBranchItNames) {
     Points measured = taken(0, 0, true, true);
     for (auto& name : measured.branch) name = "rebound";  // out of range of the points
     const auto found = compare_measured(mcpherson(), compared(), measured);
@@ -219,7 +219,7 @@ TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
     EXPECT_EQ(compare_measured(model, both, taken(0, 0, true, true)).places[0].branch, 0);
 }
 
-TEST(Measured, AChangeCountsFromTheDesignPosition) {
+TEST(Measured, ChangeIsRelativeToTheDesignPosition) {
     // Also with a settled start: its 12 mm of travel are not the zero of a measurement.
     Scene scene = support::scene("chrono_mcpherson");
     scene.branches.resize(1);

@@ -28,7 +28,7 @@ const std::string held = "wheel_centre_x";
 
 // Conversion of `export --formulation`: every bushing except torsion springs, tyres, and bushings
 // that differ only by the order of their markers.
-TEST(Formulations, AConversionIsOfEveryBushingAndItsEffectIsTheDifferenceOfTheTwoScenes) {
+TEST(Formulations, ConversionChangesEveryBushingAndItsEffectIsTheDifference) {
     const Formulation target{.angles = Formulation::Angles::projected, .conjugate = false};
     Scene scene = support::scene("multi_link");
     const Conversion all = converted(scene, target);
@@ -62,7 +62,7 @@ TEST(Formulations, AConversionIsOfEveryBushingAndItsEffectIsTheDifferenceOfTheTw
     EXPECT_GT(most, 1e-4);
 }
 
-TEST(Formulations, SpreadIsLargestLessSmallestOfWhatTheLegSaysOfEach) {
+TEST(Formulations, SpreadIsTheLargestMinusTheSmallestResult) {
     const Scene scene = mcpherson();
     const FormulationStudy study = formulation_study(scene);
     ASSERT_TRUE(study.conclusive()) << study.inconclusive.front();
@@ -102,7 +102,7 @@ TEST(Formulations, SpreadIsLargestLessSmallestOfWhatTheLegSaysOfEach) {
     }
 }
 
-TEST(Formulations, ForSmallLoadsAllAgree) {
+TEST(Formulations, AllAgreeForSmallLoads) {
     // Formulations differ by products of deformations.
     double spread_of_one = 0;
     for (const double load : {1.0, 10.0}) {
@@ -120,7 +120,7 @@ TEST(Formulations, ForSmallLoadsAllAgree) {
     EXPECT_LT(spread_of_one, 1e-5);
 }
 
-TEST(Formulations, WhatLeavesNoChoiceKeepsItsOwn) {
+TEST(Formulations, BushingWithoutAChoiceKeepsItsFormulation) {
     Bushing bushing;
     Matrix6 K = Matrix6::Zero();
     K(2, 2) = 2e5;
@@ -137,13 +137,13 @@ TEST(Formulations, WhatLeavesNoChoiceKeepsItsOwn) {
     EXPECT_FALSE(is_reformulated({"coil", AxialSpring{}}));
 }
 
-TEST(Formulations, SceneWithoutAChoiceIsNoPass) {
+TEST(Formulations, SceneWithoutAChoiceDoesNotPass) {
     const FormulationStudy study = formulation_study(support::scene("two_spring_arch"));
     EXPECT_FALSE(study.conclusive());
     EXPECT_TRUE(study.branches.empty());
 }
 
-TEST(Formulations, OneThatIsNotSolvedIsNamedAndLeftOut) {
+TEST(Formulations, UnsolvedFormulationIsNamedAndExcluded) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches[0].to *= 2;  // past its limit point, for every formulation
     Bushing idle;
@@ -156,7 +156,7 @@ TEST(Formulations, OneThatIsNotSolvedIsNamedAndLeftOut) {
     EXPECT_EQ(study.branches[0].not_solved.size(), formulations.size());
 }
 
-TEST(Formulations, TableSetsTheSpreadBesideUncertaintyAndDeviation) {
+TEST(Formulations, TableHasSpreadUncertaintyAndDeviation) {
     const Scene scene = mcpherson();
     const Comparison comparison = compare(compile(scene));
     const FormulationStudy study = formulation_study(scene);

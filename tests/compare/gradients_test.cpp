@@ -115,7 +115,7 @@ std::vector<double> outputs_with(const std::string& file, const Setting& set, do
     BranchSide side = sides_of(model, model.branches.front(), 1).front();
     side.branch.to = a;
     side.model.branches = {side.branch};
-    const auto path = walk(side, {.leg = Leg::equilibrium});
+    const auto path = solve_branch(side, {.leg = Leg::equilibrium});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     return row_of(side.model, outputs_of(model), side, {.leg = Leg::equilibrium},
                   path.points.back())

@@ -30,7 +30,7 @@ TEST(Jobs, EveryJobRunsOnceWithAnyNumberOfThreads) {
     run_jobs({}, 3, {});
 }
 
-TEST(Jobs, TheFirstFailureIsThrownAndNoJobBeginsAfterIt) {
+TEST(Jobs, FirstFailureIsThrownAndNoFurtherJobStarts) {
     for (const int threads : {1, 3}) {
         std::atomic<int> began = 0;
         std::vector<Job> jobs;
@@ -54,7 +54,7 @@ TEST(Jobs, TheFirstFailureIsThrownAndNoJobBeginsAfterIt) {
     }
 }
 
-TEST(Jobs, ProgressIsToldByOneThreadAtATimeAndNeverFalls) {
+TEST(Jobs, ProgressIsMonotonicAndReportedByOneThreadAtATime) {
     std::vector<Job> jobs;
     for (int k = 0; k < 40; ++k) jobs.push_back({"job " + std::to_string(k), [] {}});
     std::atomic<int> inside = 0;
@@ -85,7 +85,7 @@ void run_studies(Solves& solves, int threads) {
     (void)order_study(solves, {.orders = {4, 8}, .tolerances = {1e-6}, .threads = threads});
 }
 
-TEST(Solves, TheStudiesOfAReportSolveEachRunOnce) {
+TEST(Solves, StudiesOfAReportSolveEachRunOnce) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     for (const int threads : {1, 3}) {
         Solves solves(model, 10, 4);
@@ -108,7 +108,7 @@ TEST(Solves, TheStudiesOfAReportSolveEachRunOnce) {
     }
 }
 
-TEST(Solves, ASharedStudyFindsWhatAStudyOfItsOwnFinds) {
+TEST(Solves, SharedStudyEqualsASeparateStudy) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Solves solves(model, 10, 4);
     const StudyOptions options{.steps = {20, 40, 80, 160, 320, 640}};

@@ -102,7 +102,7 @@ void expect_same(const std::string& name, const Model& required, const Model& wh
     }
 }
 
-TEST(KeepAll, EveryOutputOfEverySceneIsTheSameWithNothingLeftOut) {
+TEST(KeepAll, OmissionsDoNotChangeAnyOutputOfAnyScene) {
     Tally tally;
     std::set<std::string> smaller;  // scenes in which something is left out or condensed
     for (const auto& name : support::scene_names()) {

@@ -76,15 +76,15 @@ void expect_visited_as_kept(const std::vector<std::string>& scenes) {
     }
 }
 
-TEST(Visit, TheRecursionHandsOverThePointsThatItWouldKeep) {
+TEST(Visit, VisitedPointsOfTheRecursionEqualItsStoredPoints) {
     expect_visited_as_kept(support::small_scene_names());
 }
 
-TEST(NightlyVisit, TheRecursionHandsOverThePointsThatItWouldKeepOnEveryScene) {
+TEST(NightlyVisit, VisitedPointsOfTheRecursionEqualItsStoredPointsOnEveryScene) {
     expect_visited_as_kept(support::scene_names());
 }
 
-TEST(Visit, TheReferencesHandOverThePointsThatTheyWouldKeep) {
+TEST(Visit, VisitedPointsOfTheReferencesEqualTheirStoredPoints) {
     for (const auto& scene : support::small_scene_names()) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
@@ -116,7 +116,7 @@ Streamed streamed(const Model& model, const std::vector<BranchSide>& sides,
                   const SolverSettings& solver) {
     const auto all = channels(model);
     Streamed result;
-    result.path = walk(
+    result.path = solve_branch(
         sides, solver,
         [&](const Equilibrium& state) { return row_of(model, all, sides.front(), solver, state); },
         [&](Row row) { result.rows.push_back(std::move(row)); });
@@ -139,10 +139,10 @@ std::vector<Equilibrium> joined_by_hand(const std::vector<BranchSide>& sides,
                                         const SolverSettings& solver) {
     std::vector<Equilibrium> points;
     if (sides.size() == 2) {
-        const auto first = walk(sides[0], solver).points;
+        const auto first = solve_branch(sides[0], solver).points;
         for (std::size_t k = first.size(); k-- > 1;) points.push_back(first[k]);
     }
-    for (const auto& point : walk(sides.back(), solver).points) points.push_back(point);
+    for (const auto& point : solve_branch(sides.back(), solver).points) points.push_back(point);
     return points;
 }
 
@@ -167,7 +167,7 @@ int expect_rows_in_the_order_of_the_branch(const std::vector<std::string>& scene
                 if (found.rows.size() != points.size()) continue;
                 for (std::size_t k = 0; k < points.size(); ++k)
                     EXPECT_TRUE(same(found.rows[k], model, points[k])) << where << ", row " << k;
-                expect_same(walk(sides, solver).points, points, where);
+                expect_same(solve_branch(sides, solver).points, points, where);
                 if (found.path.outcome != Outcome::converged) continue;
                 const auto a = requested_parameters(sides, 1);
                 EXPECT_EQ(a.size(), points.size()) << where;
@@ -179,11 +179,11 @@ int expect_rows_in_the_order_of_the_branch(const std::vector<std::string>& scene
     return two_sided;
 }
 
-TEST(Rows, AreThePointsInTheOrderOfTheBranch) {
+TEST(Rows, FollowTheOrderOfTheBranch) {
     EXPECT_GE(expect_rows_in_the_order_of_the_branch({"mcpherson", "chrono_mcpherson_travel"}), 1);
 }
 
-TEST(NightlyRows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
+TEST(NightlyRows, FollowTheOrderOfTheBranchOnEveryScene) {
     EXPECT_GT(expect_rows_in_the_order_of_the_branch(support::scene_names()), 20);
 }
 
@@ -202,7 +202,7 @@ std::vector<std::size_t> picked(const std::vector<BranchSide>& sides, int every)
     return at;
 }
 
-TEST(Every, PicksTheFirstTheLastAndEveryNthOfTheSameRows) {
+TEST(Every, KeepsTheFirstTheLastAndEveryNthRow) {
     for (const auto* scene : {"bushing_pair", "double_wishbone", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
@@ -230,7 +230,7 @@ TEST(Every, PicksTheFirstTheLastAndEveryNthOfTheSameRows) {
     }
 }
 
-TEST(Every, IsWhatTheReferencesVisit) {
+TEST(Every, AppliesToTheReferences) {
     for (const auto* scene : {"chrono_mcpherson", "bushing_pair"}) {
         const Model model = compile(support::scene(scene));
         const auto all_channels = channels(model);
@@ -256,7 +256,7 @@ TEST(Every, IsWhatTheReferencesVisit) {
     }
 }
 
-TEST(Rows, ThatCameBeforeAFailureOnEitherSideAreThere) {
+TEST(Rows, PrecedingAFailureAreKeptOnBothSides) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches.resize(1);
     scene.branches[0].from = -300;  // the limit is at -211.5 N
@@ -281,7 +281,7 @@ TEST(Rows, ThatCameBeforeAFailureOnEitherSideAreThere) {
     }
 }
 
-TEST(Rows, OfTheStartAreThereOnceWhicheverWaySettles) {
+TEST(Rows, StartOccursOnceWhicheverSideSettles) {
     const Model model = compile(support::scene("bushing_pair"));
     Branch branch = model.branches[0];
     branch.from = -branch.to;
@@ -299,14 +299,14 @@ TEST(Rows, OfTheStartAreThereOnceWhicheverWaySettles) {
     }
 }
 
-TEST(Landmarks, AreTheEndsTheStartAndTheMiddleOfTheWholePath) {
+TEST(Landmarks, AreTheEndsTheStartAndTheMiddleOfThePath) {
     for (const auto* scene :
          {"bushing_pair", "double_wishbone", "chrono_mcpherson", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
             for (const int steps : {7, 8}) {
                 const auto points =
-                    walk(sides_of(model, branch, steps), {.leg = Leg::equilibrium}).points;
+                    solve_branch(sides_of(model, branch, steps), {.leg = Leg::equilibrium}).points;
                 if (points.size() != static_cast<std::size_t>(steps) + 1) continue;
                 const LegRun run = compare::run(model, branch, Leg::equilibrium, {.steps = steps});
                 const auto& [front, start, middle, back] = run.landmarks;

@@ -28,7 +28,7 @@ void expect_one(const Model& model, Leg leg, const std::string& what, double at)
 }
 
 // The arm hangs at a sin θ, k θ = -M; the tyre reaches P/k_t further down.
-TEST(LiftOff, OfATyreIsAtTheHeightOfItsHangingWheel) {
+TEST(LiftOff, TyreLiftsOffAtTheHeightOfItsHangingWheel) {
     const Model model = compile(read_scene(path_of("reference/energy/trailing_arm_rolling.yaml")));
     const double k = 70.6858347058 * 180 / std::numbers::pi,
                  hangs = 0.45 * std::sin(-1575 / k) - 3500 / 200e3;
@@ -38,7 +38,7 @@ TEST(LiftOff, OfATyreIsAtTheHeightOfItsHangingWheel) {
 
 // A block on two springs of 20 and 5 N/mm; the first presses it down by 600 N and leaves its seat
 // where it is 30 mm longer, under (20 + 5) · 30 N. By its table, and by a rate.
-TEST(LiftOff, OfASpringWithLooseSeatsIsAtItsFreeLength) {
+TEST(LiftOff, SpringWithLooseSeatsLiftsOffAtItsFreeLength) {
     std::ifstream file(path_of("compare/scenes/loose_seats.yaml"));
     const std::string by_rate(std::istreambuf_iterator<char>(file), {});
     std::string by_table = by_rate;
@@ -53,8 +53,8 @@ TEST(LiftOff, OfASpringWithLooseSeatsIsAtItsFreeLength) {
             const BranchSide side = sides_of(model, model.branches[0]).front();
             const double end = 900;
             double z = NAN;
-            walk_through(side, leg, std::span(&end, 1),
-                         [&](const Equilibrium& state) { z = state.poses[0].r.z(); });
+            solve_at(side, leg, std::span(&end, 1),
+                     [&](const Equilibrium& state) { z = state.poses[0].r.z(); });
             EXPECT_NEAR(z, (900 - 600) / 5e3, 1e-9);
         }
 }

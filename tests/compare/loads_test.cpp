@@ -132,7 +132,7 @@ wheel: {body: arm, centre: centre, contact_patch: patch, contact: carrier, spin_
     const BranchSide side = sides_of(model, model.branches[0]).front();
     std::optional<Equilibrium> state;
     const double end = 1;
-    walk_through(side, Leg::equilibrium, std::span(&end, 1), [&](const auto& s) { state = s; });
+    solve_at(side, Leg::equilibrium, std::span(&end, 1), [&](const auto& s) { state = s; });
     const auto channels = element_channels(model);
     const auto values = evaluate(model, side.branch, channels, *state);
     int compared = 0;

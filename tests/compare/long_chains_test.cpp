@@ -31,8 +31,8 @@ Model read(const std::string& text, const std::string& name) {
 }
 
 EquilibriumPath walked(const Model& model, const Branch& branch, Leg leg) {
-    return walk(sides_of(model, branch),
-                {.leg = leg, .recursion = {.method = {"series", 0, recursive::Series{}}}});
+    return solve_branch(sides_of(model, branch),
+                        {.leg = leg, .recursion = {.method = {"series", 0, recursive::Series{}}}});
 }
 
 // ---- The elastica.
@@ -77,15 +77,16 @@ RodEnd rod(Real F, Real flexibility) {  // 1/EA
     return {-root[2], -root[3]};
 }
 
-TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
+TEST(LongCantilever, EqualsItsDiscreteFormAndConvergesToTheElasticaAtOrderTwo) {
     for (const double alpha : {2., 10.})
         EXPECT_NEAR(static_cast<double>(rod(alpha * EI / (L * L), 0).y), elastica(alpha).y, 1e-12)
             << alpha;
     std::vector<double> errors;
     for (const int n : segments) {
         const Model model =
-            read(leaf(n) + fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
-                                       "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
+            read(leaf(n) + fmt::format(R"(loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}
+branches: {{push: {{load: push, to: {}, steps: 5}}}}
+)",
                                        10 * EI / (L * L)),
                  fmt::format("leaf of {} segments", n));
         const PlanarChain chain = PlanarChain::beam(n, L, EI, EA);
@@ -131,14 +132,15 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
 // ---- Euler's column.
 
 // A rod that shortens under P buckles where P (1 - P/EA) = π² EI/(4L²): length and lever decrease.
-TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
+TEST(LongColumn, BucklingLoadEqualsItsDiscreteFormAndConvergesToEulersAtOrderTwo) {
     const double euler = pi * pi * EI / (4 * L * L),
                  limit = 2 * euler / (1 + std::sqrt(1 - 4 * euler / EA));
     std::vector<double> errors;
     for (const int n : segments) {
         const Model model = read(leaf(n) +
-                                     "loads: {press: {on: tip, at: tip, force: [-1, 0, 0]}}\n"
-                                     "branches: {press: {load: press, to: 1, steps: 1}}\n",
+                                     R"(loads: {press: {on: tip, at: tip, force: [-1, 0, 0]}}
+branches: {press: {load: press, to: 1, steps: 1}}
+)",
                                  fmt::format("column of {}", n));
         const double P = critical_load(n);
         for (const Leg leg : {Leg::equilibrium, Leg::series})
@@ -218,9 +220,14 @@ struct Rope {
                 const Real W = hanging(i) + (i <= middle ? P : 0);
                 f[s] = h * ((W - at.V) * cos + at.H * sin);
                 diagonal[s] = h * ((at.V - W) * sin + at.H * cos);
-                if (i > 0) f[s] += k * (at.phi[s] - at.phi[s - 1] - kappa[s]), diagonal[s] += k;
-                if (i + 1 < n)
-                    f[s] -= k * (at.phi[s + 1] - at.phi[s] - kappa[s + 1]), diagonal[s] += k;
+                if (i > 0) {
+                    f[s] += k * (at.phi[s] - at.phi[s - 1] - kappa[s]);
+                    diagonal[s] += k;
+                }
+                if (i + 1 < n) {
+                    f[s] -= k * (at.phi[s + 1] - at.phi[s] - kappa[s + 1]);
+                    diagonal[s] += k;
+                }
                 by_H[s] = h * sin;
                 by_V[s] = -h * cos;
                 x += h * cos;
@@ -314,21 +321,24 @@ struct HangingChain {
                                 i, on, i - 1, static_cast<double>(rope.k));
         }
         joints += fmt::format(
-            "  height: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: z}}\n"
-            "  span: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: x}}\n",
+            R"(  height: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: z}}
+  span: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: x}}
+)",
             n);
         return points + bodies + joints + (rope.k > 0 ? springs : "") +
                fmt::format(
-                   "gravity: [0, 0, -10]\n"
-                   "loads: {{pull: {{on: b{0}, at: p{0}, force: [0, 0, -1]}}}}\n"
-                   "probes: {{middle: {{on: b{0}, at: p{0}}}}}\n"
-                   "branches:\n  pull: {{load: pull, to: 5, steps: 5}}\n"
-                   "  closer: {{drive: joints.span, to: -0.2, steps: 5}}\n",
+                   R"(gravity: [0, 0, -10]
+loads: {{pull: {{on: b{0}, at: p{0}, force: [0, 0, -1]}}}}
+probes: {{middle: {{on: b{0}, at: p{0}}}}}
+branches:
+  pull: {{load: pull, to: 5, steps: 5}}
+  closer: {{drive: joints.span, to: -0.2, steps: 5}}
+)",
                    n / 2);
     }
 };
 
-TEST(HangingChain, StandsOnTheDiscreteCatenaryAndFollowsItsLoadAndItsEnd) {
+TEST(HangingChain, EqualsTheDiscreteCatenaryUnderLoadAndDrivenEnd) {
     for (const int n : links) {
         const HangingChain chain(n, 1);
         const Model model = read(chain.text(), fmt::format("chain of {}", n));

@@ -74,7 +74,7 @@ Asked everything(const Model& model) {
 
 // Relative to the largest entry, at least 1e-6 m per unit (1 kN/mm); rotations times half a metre.
 // Infinite for a failed response.
-double apart(const Response& a, const Response& b) {
+double distance(const Response& a, const Response& b) {
     if (a.outcome != Outcome::converged || b.outcome != Outcome::converged) return INFINITY;
     if (a.increments.size() != b.increments.size()) return INFINITY;
     double size = 1e-6, difference = 0;
@@ -88,7 +88,7 @@ double apart(const Response& a, const Response& b) {
     return difference / size;
 }
 
-TEST(Response, TheLegsAgreeOnEverySceneWhereItBeginsAndEnds) {
+TEST(Response, LegsAgreeAtTheStartAndEndOfEveryScene) {
     int answered = 0;
     double worst = 0;
     for (const auto& name : support::scene_names()) {
@@ -107,7 +107,7 @@ TEST(Response, TheLegsAgreeOnEverySceneWhereItBeginsAndEnds) {
                             const Response response =
                                 other.linear_response(here, state, *requested);
                             if (is_not_applicable(response.outcome)) continue;
-                            const double far = apart(response, truth);
+                            const double far = distance(response, truth);
                             EXPECT_LE(far, 1e-10)
                                 << name << ", " << side_name << ", at " << a << ": " << other.name
                                 << " " << response.detail << truth.detail;
@@ -129,8 +129,8 @@ TEST(Response,
         const auto forces = everything(side.model).forces;
         for (const double a : {0.0, side.branch.to}) {
             const Equilibrium state = state_at(side, a);
-            const double far = apart(recursion("published").linear_response(side, state, forces),
-                                     by_equilibrium.linear_response(side, state, forces));
+            const double far = distance(recursion("published").linear_response(side, state, forces),
+                                        by_equilibrium.linear_response(side, state, forces));
             if (a == 0)
                 EXPECT_LE(far, 1e-12) << name;
             else
@@ -168,7 +168,7 @@ MatrixXd in_one_unit(const MatrixXd& C) {
 }
 double largest(const MatrixXd& C) { return C.cwiseAbs().maxCoeff(); }
 
-TEST(Response, ForcesAndMomentsAnswerEachOtherAlikeInEquilibriumUnderForces) {
+TEST(Response, ComplianceIsSymmetricUnderDeadForces) {
     for (const char* name :
          {"mcpherson_strut", "double_wishbone", "front_axle", "semi_trailing_arm"}) {
         const Scene scene = support::scene(name);
@@ -188,7 +188,7 @@ TEST(Response, ForcesAndMomentsAnswerEachOtherAlikeInEquilibriumUnderForces) {
 // antisymmetric part -½ m̃, so that K - Kᵀ = -m̃ there and, C being the inverse,
 //
 //   C - Cᵀ = C (Kᵀ - K) Cᵀ = C_π m̃ C_πᵀ,   C_π the responses to moments on that body
-TEST(Response, ADeadMomentThatActsIsWhatReciprocityLacks) {
+TEST(Response, AsymmetryOfComplianceIsTheTermOfTheDeadMoment) {
     const OneWay side = way_of(support::scene("double_wishbone"), "aligning", 1);
     const Equilibrium state = state_at(side, side.branch.to);
     const Vector3d m(0, 0, side.branch.to);
@@ -217,7 +217,7 @@ Response at_the_wheel(const OneWay& side, const Equilibrium& state, const Answer
     return leg.linear_response(side, state, wrenches);
 }
 
-TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
+TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotMatter) {
     const Quaterniond R(Eigen::AngleAxisd(1.1, Vector3d(1, -2, 0.5).normalized()));
     const Vector3d t(3, -1, 2);
     for (const char* name : {"chrono_mcpherson_preload", "chrono_mcpherson"}) {
@@ -234,7 +234,7 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
             for (auto& increments : back.increments)
                 for (Increment& body : increments)
                     body = {R.conjugate() * body.dr, R.conjugate() * body.dpi};
-            EXPECT_LE(apart(back, as_told), 1e-10)
+            EXPECT_LE(distance(back, as_told), 1e-10)
                 << name << ", " << leg.name << ": another ground frame";
 
             Equilibrium other_way_round = state;
@@ -242,7 +242,7 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
             back = at_the_wheel(way_of(support::reversed(scene), "jounce", 1), other_way_round, leg,
                                 Quaterniond::Identity());
             for (auto& increments : back.increments) std::ranges::reverse(increments);
-            EXPECT_LE(apart(back, as_told), 1e-10) << name << ", " << leg.name << ": reversed";
+            EXPECT_LE(distance(back, as_told), 1e-10) << name << ", " << leg.name << ": reversed";
         }
     }
     const Scene scene = support::scene("semi_trailing_arm"),
@@ -251,13 +251,13 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
     const Equilibrium state = state_at(side, side.branch.to);
     const auto forces = everything(side.model).forces;
     for (const auto& leg : three_legs())
-        EXPECT_LE(apart(leg.linear_response(other, state, forces),
-                        leg.linear_response(side, state, forces)),
+        EXPECT_LE(distance(leg.linear_response(other, state, forces),
+                           leg.linear_response(side, state, forces)),
                   1e-10)
             << leg.name;
 }
 
-TEST(Response, WhatTheEnergyLegIsNotAskedTheOthersAnswerAlike) {
+TEST(Response, OtherLegsAgreeWhereTheEnergyLegDoesNotApply) {
     for (const auto& [name, branch] :
          {std::pair("follower", "up"), std::pair("bushing_by_small_angles", "pull")}) {
         const OneWay side = way_of(support::scene(name), branch, 1);
@@ -265,8 +265,8 @@ TEST(Response, WhatTheEnergyLegIsNotAskedTheOthersAnswerAlike) {
         const auto forces = everything(side.model).forces;
         EXPECT_EQ(by_energy.linear_response(side, state, forces).outcome,
                   Outcome::not_conservative);
-        EXPECT_LE(apart(recursion("series").linear_response(side, state, forces),
-                        by_equilibrium.linear_response(side, state, forces)),
+        EXPECT_LE(distance(recursion("series").linear_response(side, state, forces),
+                           by_equilibrium.linear_response(side, state, forces)),
                   1e-12)
             << name;
     }

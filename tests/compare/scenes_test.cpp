@@ -1,5 +1,5 @@
-// Built-in suspension scenes of models/scenes/: expected behaviour of a car, and invariance
-// transforms.
+// Built-in suspension scenes of models/scenes/: expected behaviour of a car,
+// and invariance transforms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,8 +35,8 @@ struct Walk {
     }
 };
 
-Walk walk(const Model& model, const std::string& branch, Leg leg = Leg::equilibrium,
-          int steps = 8) {
+Walk solve_branch(const Model& model, const std::string& branch, Leg leg = Leg::equilibrium,
+                  int steps = 8) {
     const auto found = std::ranges::find(model.branches, branch, &Branch::name);
     if (found == model.branches.end()) throw std::logic_error("no branch " + branch);
     recursive::Options how{.steps = steps};
@@ -46,7 +46,7 @@ Walk walk(const Model& model, const std::string& branch, Leg leg = Leg::equilibr
     return {channels(model), std::move(done.curve)};
 }
 
-double apart(const std::vector<double>& a, const std::vector<double>& b, double sign = 1) {
+double distance(const std::vector<double>& a, const std::vector<double>& b, double sign = 1) {
     if (a.size() != b.size() || a.empty()) return std::numeric_limits<double>::infinity();
     double worst = 0;
     for (std::size_t k = 0; k < a.size(); ++k)
@@ -62,7 +62,7 @@ std::vector<double> backwards(std::vector<double> x) {
 
 class Family : public testing::TestWithParam<std::string> {};
 
-TEST_P(Family, IsJudgedAlongEveryBranchAndTheSeriesMeetsTheReferences) {
+TEST_P(Family, SeriesAgreesWithTheReferencesOnEveryBranch) {
     Options options;
     options.recursion.method = recursive::find_method("series").value();
     options.recursion.steps = 10;
@@ -85,14 +85,14 @@ TEST_P(Family, IsJudgedAlongEveryBranchAndTheSeriesMeetsTheReferences) {
 }
 
 // No idle modes, no redundant joints, and every branch starts at the trim conditions.
-TEST_P(Family, StandsAtTheDesignHeightWithoutIdleModesAndRedundancy) {
+TEST_P(Family, HasDesignHeightAndNeitherIdleModesNorRedundancy) {
     const Scene scene = trimmed(GetParam());
     const Model model = compile(scene);
     const auto found = recursive::diagnose(model);
     EXPECT_TRUE(found.redundant_sets.empty());
     EXPECT_TRUE(found.idle.empty());
     const std::string vertical = "vertical";
-    const Walk loaded = walk(model, vertical, Leg::equilibrium, 2);
+    const Walk loaded = solve_branch(model, vertical, Leg::equilibrium, 2);
     for (const auto& wheel : scene.wheels) {
         const std::string which = wheel.name.empty() ? "" : wheel.name + ".";
         const auto travel = loaded[which + "wheel_centre_z"];
@@ -106,11 +106,11 @@ TEST_P(Family, StandsAtTheDesignHeightWithoutIdleModesAndRedundancy) {
 
 // Over the travel of a car toe and camber change by a few degrees; the wheel rate is 15 to 40 N/mm
 // at the design height and higher at the stops.
-TEST_P(Family, MovesAsACarDoes) {
+TEST_P(Family, FiguresAreInTheRangeOfCars) {
     const Scene scene = trimmed(GetParam());
     const Model model = compile(scene);
     const std::string along = GetParam() == "front_axle" ? "parallel" : "travel";
-    const Walk moved = walk(model, along, Leg::equilibrium, 32);
+    const Walk moved = solve_branch(model, along, Leg::equilibrium, 32);
     for (const auto& wheel : scene.wheels) {
         const std::string which = wheel.name.empty() ? "" : wheel.name + ".";
         const auto z = moved[which + "wheel_centre_z"], force = moved[which + "jack.drive_force"];
@@ -205,7 +205,7 @@ void expect_same_turned(const Told& drawn, const Told& moved, const Eigen::Quate
 }
 
 // Ground frame, order of the parts, units.
-TEST_P(Family, DoesNotSeeHowItIsTold) {
+TEST_P(Family, ResultsDoNotDependOnTheDescriptionOfTheScene) {
     const Scene scene = trimmed(GetParam());
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized()));
     const Eigen::Vector3d t(3, -2, 1);
@@ -242,18 +242,18 @@ void PrintTo(const Sides& sides, std::ostream* out) { *out << sides.scene; }
 
 class Axles : public testing::TestWithParam<Sides> {};
 
-TEST_P(Axles, StaySymmetricUnderWhatIsAndAreAntisymmetricUnderWhatIsOpposite) {
+TEST_P(Axles, SymmetricLoadsGiveSymmetricAndOppositeLoadsAntisymmetricMotion) {
     const Model model = compile(trimmed(GetParam().scene));
     for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy}) {
         const double bound = leg == Leg::energy ? 1e-6 : 1e-8;  // [mm, deg]
         const auto expect = [&](const char* branch, bool opposite) {
-            const Walk both = walk(model, branch, leg, 4);
+            const Walk both = solve_branch(model, branch, leg, 4);
             for (const char* what :
                  {"toe", "camber", "wheel_centre_x", "wheel_centre_y", "wheel_centre_z"}) {
                 const auto left = both[std::string("left.") + what],
                            right = both[std::string("right.") + what];
                 const double sign = std::string_view(what).ends_with("_y") ? -1 : 1;
-                EXPECT_LE(apart(left, opposite ? backwards(right) : right, sign), bound)
+                EXPECT_LE(distance(left, opposite ? backwards(right) : right, sign), bound)
                     << name(leg) << " " << branch << " " << what;
             }
         };
@@ -275,12 +275,12 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Axles,
                                                {"opposite", "roll", "lateral", "aligning"}}),
                          [](const auto& sides) { return std::string(sides.param.scene); });
 
-// A track bar is on one side: it moves the axle sideways by the deviation of its arc from a
-// straight line, which is zero at 80 mm of jounce, where its slope is that of the design height,
-// reversed.
+// A track bar is on one side: it moves the axle sideways by the deviation of its arc from
+// a straight line, which is zero at 80 mm of jounce, where its slope is that of the
+// design height, reversed.
 TEST(Scenes, TheTrackBarMovesTheSolidAxleSideways) {
     const Model model = compile(trimmed("solid_axle"));
-    const auto y = walk(model, "travel", Leg::equilibrium, 2)["left.wheel_centre_y"];
+    const auto y = solve_branch(model, "travel", Leg::equilibrium, 2)["left.wheel_centre_y"];
     const Eigen::Vector3d bar(0, 1.220, -0.040);  // [m] from the chassis to the axle
     for (const std::size_t end : {0u, 2u}) {
         const double height = bar.z() + (end == 0 ? -0.08 : 0.08);
@@ -295,16 +295,16 @@ TEST(Scenes, TheTrackBarMovesTheSolidAxleSideways) {
 // and with rubber
 class Rigid : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-TEST_P(Rigid, WhereTheMotionIsPrescribedNeitherForcesNorRatesMoveAnything) {
+TEST_P(Rigid, PrescribedMotionDoesNotDependOnForcesOrRates) {
     const auto [rigid, rubber] = GetParam();
-    const Walk once = walk(compile(trimmed(rigid)), "travel");
+    const Walk once = solve_branch(compile(trimmed(rigid)), "travel");
     for (const char* rate : {"60e3", "120e3", "500e3"}) {
         const Model model = compile(trimmed(rigid, {{"springs.coil.rate", rate}}));
         for (const char* branch : {"travel", "cornering", "braking", "traction"}) {
-            const Walk again = walk(model, branch);
+            const Walk again = solve_branch(model, branch);
             for (const auto& channel : once.channels)
                 if (channel.kinematic()) {
-                    EXPECT_LE(apart(once[channel.name], again[channel.name]), 1e-9)
+                    EXPECT_LE(distance(once[channel.name], again[channel.name]), 1e-9)
                         << rate << " " << branch << " " << channel.name;
                 }
         }
@@ -312,18 +312,18 @@ TEST_P(Rigid, WhereTheMotionIsPrescribedNeitherForcesNorRatesMoveAnything) {
 }
 
 // Rubber of s times the rate deforms by 1/s: pure kinematics is the limit.
-TEST_P(Rigid, IsTheLimitOfStifferAndStifferRubber) {
+TEST_P(Rigid, IsTheLimitOfStiffBushings) {
     const auto [rigid, rubber] = GetParam();
-    const Walk limit = walk(compile(trimmed(rigid)), "travel");
+    const Walk limit = solve_branch(compile(trimmed(rigid)), "travel");
     std::map<double, double> off;  // [mm, deg]
     for (const double s : {1.0, 10.0, 100.0, 1000.0}) {
         Scene scene = support::scene(rubber);
         for (auto& elastic : scene.elastics)
             if (auto* bushing = std::get_if<Bushing>(&elastic.kind))
                 std::get<LinearStiffness>(bushing->law).K.topLeftCorner<3, 3>() *= s;
-        const Walk with = walk(compile(trim(scene).scene), "travel");
+        const Walk with = solve_branch(compile(trim(scene).scene), "travel");
         for (const char* what : {"toe", "camber", "wheel_centre_x", "wheel_centre_y"})
-            off[s] = std::max(off[s], apart(with[what], limit[what]));
+            off[s] = std::max(off[s], distance(with[what], limit[what]));
     }
     EXPECT_LE(off[1], 3);
     EXPECT_GE(off[1], 0.01);
@@ -340,14 +340,14 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Rigid,
 
 constexpr Leg all_legs[] = {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series};
 
-TEST(Scenes, ATyreOnARoadIsInSeriesWithTheSuspension) {
+TEST(Scenes, TyreAndSuspensionActInSeries) {
     const Model model = compile(support::scene("tyre_on_road"));
     const double k_w = 30, k_t = 200;  // [N/mm]
     const std::pair<const char*, double> branches[] = {
         {"road", k_t / (k_w + k_t)}, {"wheel", 1 / k_w}, {"standing", 1 / (k_w + k_t)}};
     for (const Leg leg : all_legs)
         for (const auto& [branch, rate] : branches) {
-            const Walk moved = walk(model, branch, leg);
+            const Walk moved = solve_branch(model, branch, leg);
             const auto travel = moved["travel"];
             for (std::size_t k = 0; k < travel.size(); ++k)
                 EXPECT_NEAR(travel[k], rate * moved.curve.a[k], 1e-8) << name(leg) << " " << branch;
@@ -355,11 +355,11 @@ TEST(Scenes, ATyreOnARoadIsInSeriesWithTheSuspension) {
         }
 }
 
-TEST(Scenes, AFollowerForceTurnsItsBarInProportion) {
+TEST(Scenes, FollowerForceRotatesItsBarInProportion) {
     const Model model = compile(support::scene("follower"));
     for (const Leg leg : {Leg::equilibrium, Leg::series})
         for (const char* branch : {"up", "down"}) {
-            const Walk turned = walk(model, branch, leg);
+            const Walk turned = solve_branch(model, branch, leg);
             for (std::size_t k = 0; k < turned.curve.a.size(); ++k) {
                 const double angle = turned.curve.a[k] * 0.5 / 400;
                 EXPECT_NEAR(turned["tip_x"][k], 500 * std::cos(angle), 1e-9) << name(leg);
@@ -369,11 +369,11 @@ TEST(Scenes, AFollowerForceTurnsItsBarInProportion) {
         }
 }
 
-TEST(Scenes, ABushingByProjectedSmallAnglesTurnsByTheMomentAlone) {
+TEST(Scenes, ProjectedAngleBushingRotatesByTheMomentAlone) {
     const Model model = compile(support::scene("bushing_by_small_angles"));
     for (const Leg leg : {Leg::equilibrium, Leg::series})
         for (const char* branch : {"pull", "push"}) {
-            const Walk turned = walk(model, branch, leg);
+            const Walk turned = solve_branch(model, branch, leg);
             for (std::size_t k = 0; k < turned.curve.a.size(); ++k) {
                 const double F = turned.curve.a[k];
                 const Eigen::Matrix2d A = Eigen::Rotation2Dd(0.02 * F / 250).toRotationMatrix();
@@ -389,17 +389,18 @@ TEST(Scenes, ABushingByProjectedSmallAnglesTurnsByTheMomentAlone) {
 
 // ---- The paper's example.
 
-TEST(Scenes, ThePapersExampleHasItsSizeAndKeepsItsToe) {
+TEST(Scenes, PapersExampleHasItsSizeAndToe) {
     const Model model = compile(support::scene("mcpherson"));
     EXPECT_EQ(model.bodies.size(), 3u);
     EXPECT_EQ(model.elastics.size(), 4u);
     double up = 0, down = 0;
     for (const char* branch : {"jounce", "rebound"}) {
-        const Walk moved = walk(model, branch, Leg::equilibrium, 60);
+        const Walk moved = solve_branch(model, branch, Leg::equilibrium, 60);
         const auto z = moved["wheel_centre_z"], toe = moved["toe"];
         for (std::size_t k = 0; k < z.size(); ++k) {
             const double travel = z[k] + 26;
-            up = std::max(up, travel), down = std::min(down, travel);
+            up = std::max(up, travel);
+            down = std::min(down, travel);
             if (std::abs(travel) <= 80) {
                 EXPECT_LE(std::abs(toe[k]), 0.5) << travel << " mm";
             }

@@ -28,7 +28,7 @@ Scene follower() {
     return scene;
 }
 
-TEST(SecondReference, IsTheSeriesWhereALoadTurnsWithItsBody) {
+TEST(SecondReference, IsTheSeriesUnderAFollowerLoad) {
     const Comparison found = compare(compile(follower()));
     const BranchComparison& branch = found.branches[0];
     EXPECT_TRUE(found.conclusive())
@@ -48,7 +48,7 @@ TEST(SecondReference, IsTheSeriesWhereALoadTurnsWithItsBody) {
     EXPECT_GT(found.compared, 100);
 }
 
-TEST(SecondReference, IsTheSeriesWhereAFormulationHasNoEnergy) {
+TEST(SecondReference, IsTheSeriesForAFormulationWithoutEnergy) {
     Scene scene = support::scene("chrono_mcpherson");
     scene.branches.resize(1);
     scene.branches[0].steps = 20;
@@ -62,7 +62,7 @@ TEST(SecondReference, IsTheSeriesWhereAFormulationHasNoEnergy) {
                                             : found.branches[0].inconclusive.worst.front().what);
 }
 
-TEST(SecondReference, StaysTheEnergyLegWhereEnergyExists) {
+TEST(SecondReference, IsTheEnergyLegWhereAnEnergyExists) {
     Scene scene = support::scene("pinned_bar");
     scene.branches.resize(1);
     const Comparison found = compare(compile(scene));
@@ -71,7 +71,7 @@ TEST(SecondReference, StaysTheEnergyLegWhereEnergyExists) {
     EXPECT_EQ(found.branches[0].runs.size(), 3u);
 }
 
-TEST(SecondReference, DisagreementWithTheSeriesIsSaid) {
+TEST(SecondReference, DisagreementWithTheSeriesIsReported) {
     const Model model = compile(follower());
     Comparison found = compare(model);
     BranchComparison& branch = found.branches[0];
@@ -83,7 +83,7 @@ TEST(SecondReference, DisagreementWithTheSeriesIsSaid) {
         << objections.worst.front().what;
 }
 
-TEST(SecondReference, StudiesTakeItToo) {
+TEST(SecondReference, IsUsedByStudies) {
     const Model model = compile(follower());
     const auto all = channels(model);
     const References known =
@@ -129,7 +129,7 @@ Residuals& witness(BranchComparison& branch) {
     return branch.runs[1].judged[static_cast<std::size_t>(Leg::energy)];
 }
 
-TEST(SecondReference, IsTheSeriesWhereTheSceneIsTooLargeAndTheEnergyLegBearsWitness) {
+TEST(SecondReference, IsTheSeriesForALargeSceneWithEnergyLegResiduals) {
     BranchComparison branch = compared_chain().branches[0];
     EXPECT_TRUE(compared_chain().conclusive())
         << (branch.inconclusive.empty() ? "" : branch.inconclusive.worst.front().what);
@@ -145,7 +145,7 @@ TEST(SecondReference, IsTheSeriesWhereTheSceneIsTooLargeAndTheEnergyLegBearsWitn
         << left.moment;
 }
 
-TEST(SecondReference, TheWitnessSeesAMicrometre) {
+TEST(SecondReference, EnergyLegResidualsShowAMicrometre) {
     BranchComparison branch = compared_chain().branches[0];
     const BranchSide side = sides_of(chain(), chain().branches[0]).front();
     Equilibrium moved = branch.runs[1].landmarks.back.value();
@@ -161,7 +161,7 @@ TEST(SecondReference, TheWitnessSeesAMicrometre) {
         << objections.worst[0].what;
 }
 
-TEST(SecondReference, AWitnessThatCannotJudgeIsNoPass) {
+TEST(SecondReference, MissingEnergyLegResidualsDoNotPass) {
     BranchComparison branch = compared_chain().branches[0];
     witness(branch).moment = std::nan("");
     EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count,
@@ -173,7 +173,7 @@ TEST(SecondReference, AWitnessThatCannotJudgeIsNoPass) {
 }
 
 // Without an energy the energy leg judges nothing.
-TEST(SecondReference, WithoutEnergyThereIsNoWitness) {
+TEST(SecondReference, SceneWithoutEnergyHasNoEnergyLegResiduals) {
     const Comparison found = compare(compile(follower()));
     EXPECT_FALSE(energy_judges_states(found.branches[0]));
 }

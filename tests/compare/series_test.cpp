@@ -53,7 +53,7 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
     }
 }
 
-TEST(OrderStudy, ErrorStaysWithinWhatWasTold) {
+TEST(OrderStudy, ErrorStaysWithinTheTolerance) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     OrderOptions options;
     options.orders = {4, 8, 12, 16};

@@ -27,23 +27,24 @@ std::string told(const StressCell& cell) {
                        name(cell.verdict), cell.why, cell.detail);
 }
 
-TEST(Transforms, AStiffenedElementBearsTheFactorAtTheSameDeformation) {
+TEST(Transforms, StiffenedElementHasTheScaledForceAtEqualDeformation) {
     Scene scene = small("single_bushing");
     Branch& branch = scene.branches.front();
     const Model a = compile(scene);
     scene.elastics.front() = stiffened(scene.elastics.front(), 8);
-    branch.from *= 8, branch.to *= 8;
+    branch.from *= 8;
+    branch.to *= 8;
     const Model b = compile(scene);
-    const auto here = walk(sides_of(a, a.branches.front()), {.leg = Leg::equilibrium}),
-               there = walk(sides_of(b, b.branches.front()), {.leg = Leg::equilibrium});
+    const auto here = solve_branch(sides_of(a, a.branches.front()), {.leg = Leg::equilibrium}),
+               there = solve_branch(sides_of(b, b.branches.front()), {.leg = Leg::equilibrium});
     ASSERT_EQ(here.points.size(), there.points.size());
     for (std::size_t p = 0; p < here.points.size(); ++p)
         EXPECT_LE((here.points[p].poses[0].r - there.points[p].poses[0].r).norm(), 1e-12);
 }
 
-TEST(Stress, AnAnswerThatTheTellingChangesIsWrong) {
-    // Declared to be the scene moved by 1 mm, but unchanged: every unchanged answer must be
-    // detected.
+TEST(Stress, ResultThatChangesUnderATransformIsWrong) {
+    // Declared to be the scene moved by 1 mm, but unchanged: every unchanged answer
+    // must be detected.
     const Scene scene = small("pendulum");
     const Trial itself{"pendulum", std::string(as_it_is), {"as it is", scene}};
     const Trial lie{
@@ -56,7 +57,7 @@ TEST(Stress, AnAnswerThatTheTellingChangesIsWrong) {
         EXPECT_EQ(cell.verdict == CellVerdict::wrong, cell.sweep == "moved") << told(cell);
 }
 
-TEST(Stress, AWrongReactionAtARightPositionIsWrong) {
+TEST(Stress, WrongReactionAtACorrectPositionIsWrong) {
     // Declared to have forces larger by a thousandth: positions are the same, reactions are not.
     const Scene scene = small("pendulum");
     const Trial itself{"pendulum", std::string(as_it_is), {"as it is", scene}};
@@ -68,7 +69,7 @@ TEST(Stress, AWrongReactionAtARightPositionIsWrong) {
             << told(cell);
 }
 
-TEST(Stress, WhoFindsWhatCannotBeIsWrong) {
+TEST(Stress, ConvergingWhereNoEquilibriumExistsIsWrong) {
     const Trial impossible{"pendulum",
                            "none",
                            {.label = "said to have none",
@@ -78,7 +79,7 @@ TEST(Stress, WhoFindsWhatCannotBeIsWrong) {
     EXPECT_EQ(survival.count(CellVerdict::wrong), static_cast<int>(survival.solvers.size()));
 }
 
-TEST(Stress, AnHonestOutcomeIsNotWrong) {
+TEST(Stress, ReportedFailureIsNotWrong) {
     // Followers have no energy.
     const Survival survival =
         stress(std::vector{Trial{"follower", "x", {"as it is", small("follower")}}});
@@ -89,7 +90,7 @@ TEST(Stress, AnHonestOutcomeIsNotWrong) {
         }
 }
 
-TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
+TEST(Stress, DigitsAreRelativeToTheMovement) {
     // The published recursion of the pendulum has a known error (closed form in the head of the
     // scene) and reports its digits.
     const Survival survival =
@@ -112,7 +113,7 @@ TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
 }
 
 // NaN in any acting quantity: no norm may drop it, no comparison may pass it.
-TEST(Stress, ANaNInWhateverActsIsNeverAnEquilibrium) {
+TEST(Stress, NaNInAnyInputNeverConverges) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const Scene scene = small("mcpherson", 4);
     std::vector<Trial> poisoned;
@@ -146,7 +147,7 @@ TEST(Stress, ANaNInWhateverActsIsNeverAnEquilibrium) {
 }
 
 // A sample of ./dev stress.
-TEST(Stress, SmallScenesSurvive) {
+TEST(Stress, SmallScenesAreNeverWrong) {
     std::vector<Trial> sample;
     for (const auto& name : {"pendulum", "parallel_springs"})
         for (auto& trial : trials(name, small(name, 8)))

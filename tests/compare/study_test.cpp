@@ -1,5 +1,5 @@
-// Error decomposition: step error, formulation gap, reference uncertainty, and attribution of the
-// gap.
+// Error decomposition: step error, formulation gap, reference uncertainty, and attribution
+// of the gap.
 #include "compare/studies/study.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(Study, SeparatesStepErrorFromFormulationGap) {
 
 // Curves with the error (1 - a) h² + h³: the coefficient of h² is zero at the end, where the values
 // fall with h³.
-TEST(Study, TheOrderIsThatOfTheLargestErrorThoughTheEndHasAnother) {
+TEST(Study, OrderIsThatOfTheLargestErrorOnTheBranch) {
     const Model model = compile(support::scene("bushing_pair"));
     const auto all = motion(model);
     const std::vector<int> steps{10, 20, 40, 80, 160, 320};
@@ -82,7 +82,7 @@ TEST(Study, TheOrderIsThatOfTheLargestErrorThoughTheEndHasAnother) {
 }
 
 // Of every converging output the printed errors fall as the printed order says.
-TEST(Study, TheErrorsThatAreShownFallByTheOrderThatIsShown) {
+TEST(Study, ShownErrorsFallAtTheShownOrder) {
     int compared = 0;
     for (const char* name : {"bushing_pair", "chrono_mcpherson"}) {
         const Study s = study(compile(support::scene(name)), options({"published", "tangent"}));
@@ -107,14 +107,14 @@ TEST(Study, TheErrorsThatAreShownFallByTheOrderThatIsShown) {
     EXPECT_GT(compared, 30);
 }
 
-TEST(Study, APublishedRecursionWithoutStoredLeversHasNoGap) {
+TEST(Study, PublishedRecursionOfASceneWithoutStoredLeversHasNoGap) {
     const Study s = study(compile(support::scene("pendulum")), options());
     for (const auto& branch : s.branches)
         for (const auto& channel : branch.methods[0].equal_parameter)
             EXPECT_LE(std::abs(channel.gap), channel.end.band + 1e-9);
 }
 
-TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
+TEST(Study, MethodsConvergeAtTheirOrderAndConsistentOnesHaveNoGap) {
     const Study s = study(compile(support::scene("bushing_pair")),
                           options({"published", "balanced", "tangent", "chord", "midpoint"}));
     const double orders[] = {1, 1, 2, 3, 3};
@@ -133,7 +133,7 @@ TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
     EXPECT_GT(std::abs(s.branches[0].methods[0].equal_parameter[2].gap), 0.05);
 }
 
-TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
+TEST(Study, ConstraintErrorOfEquation31DoesNotShowTheGap) {
     const Study s = study(compile(support::scene("chrono_mcpherson")), options());
     for (const auto& branch : s.branches) {
         const auto& m = branch.methods[0];
@@ -145,7 +145,7 @@ TEST(Study, ConstraintErrorOfEquation31IsBlindToTheGap) {
     }
 }
 
-TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
+TEST(Study, GapPartsSumToTheGapWithoutRemainder) {
     for (const char* name : {"chrono_mcpherson", "bushing_pair", "pinned_bar", "two_spring_arch"}) {
         for (const auto& branch : attribute_gap(compile(support::scene(name)))) {
             ASSERT_TRUE(branch.not_attributed.empty()) << name << ": " << branch.not_attributed;
@@ -160,7 +160,7 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
     }
 }
 
-TEST(Study, TheLoadsLeverMattersWhereItHasOne) {
+TEST(Study, LoadLeverContributesToTheGap) {
     // On the strut the load acts at the body's origin; on the bar it has a lever.
     for (const auto& share :
          attribute_gap(compile(support::scene("chrono_mcpherson")))[0].equal_parameter)
@@ -170,7 +170,7 @@ TEST(Study, TheLoadsLeverMattersWhereItHasOne) {
         1.0);
 }
 
-TEST(Study, AMethodThatDivergesIsSaidToAndGetsNoOrder) {
+TEST(Study, DivergingMethodIsReportedWithoutAnOrder) {
     Scene scene = support::scene("pendulum");
     for (auto& branch : scene.branches) branch.to *= 2;
     const Study s = study(compile(scene), options());
@@ -182,7 +182,7 @@ TEST(Study, AMethodThatDivergesIsSaidToAndGetsNoOrder) {
     EXPECT_FALSE(s.conclusive());
 }
 
-TEST(Study, WithoutReferencesNothingIsConcluded) {
+TEST(Study, MissingReferencesMakeItInconclusive) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches[0].to = -300;
     const Study s = study(compile(scene), options());
@@ -193,7 +193,7 @@ TEST(Study, WithoutReferencesNothingIsConcluded) {
     EXPECT_FALSE(study(compile(scene), options()).conclusive());
 }
 
-TEST(Study, FewerThanFiveLevelsOrUnorderedOnesAreRefused) {
+TEST(Study, FewerThanFiveOrUnorderedLevelsAreRejected) {
     const Model model = compile(support::scene("single_bushing"));
     for (const std::vector<int>& steps : {std::vector<int>{10, 20, 40, 80},
                                           {10, 20, 40, 80, 80},
@@ -205,7 +205,7 @@ TEST(Study, FewerThanFiveLevelsOrUnorderedOnesAreRefused) {
     }
 }
 
-TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
+TEST(Study, LimitDoesNotDependOnTheStepRatio) {
     const Model model = compile(support::scene("bushing_pair"));
     StudyOptions other = options();
     other.steps = {37, 61, 100, 173, 300, 555};
@@ -215,7 +215,7 @@ TEST(Study, AnyRatioOfLevelsGivesTheSameLimit) {
     EXPECT_NEAR(a.gap, b.gap, 1e-4 * std::abs(a.gap));
 }
 
-TEST(Study, OutOfBalanceAtDesignThePartsStillAddUpAndNothingIsLeft) {
+TEST(Study, GapPartsSumToTheGapForAnUnbalancedDesign) {
     // The preloaded strut settles before the branch: the remainder with all terms following is
     // within its band, and the whole is the gap of the study.
     const Model model = compile(support::scene("chrono_mcpherson_preload"));
@@ -249,7 +249,7 @@ TEST(Study, OutOfBalanceAtDesignThePartsStillAddUpAndNothingIsLeft) {
     }
 }
 
-TEST(Study, ABranchWithTwoWaysIsStudiedAsTwo) {
+TEST(Study, BranchWithTwoSidesIsStudiedAsTwo) {
     Scene scene = support::scene("bushing_pair");
     scene.branches.resize(1);
     scene.branches[0].from = -scene.branches[0].to;
@@ -265,7 +265,7 @@ TEST(Study, ABranchWithTwoWaysIsStudiedAsTwo) {
     EXPECT_TRUE(s.conclusive());
 }
 
-TEST(Study, ABranchThatMovesNothingIsNotStudied) {
+TEST(Study, BranchWithoutMovementIsNotStudied) {
     Scene scene = support::scene("pinned_bar");
     for (auto& driver : scene.branches[0].drivers)
         std::get<DeadForce>(std::get<Load>(driver.what).kind).f.setZero();

@@ -29,7 +29,7 @@ void expect_whole(const std::vector<Row>& rows, std::size_t count) {
     }
 }
 
-TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
+TEST(Table, EveryRowHasACellPerColumn) {
     const Model model = compile(support::scene("pinned_bar"));
     StudyOptions options;
     options.steps = {5, 10, 20, 40, 80};
@@ -38,7 +38,7 @@ TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
     expect_whole(step_rows(s), 2 * 2 * 3 * 5);
     expect_whole(gap_rows(s.channels, attribute_gap(model)), 2 * 2 * 3);
     TradeOptions trade_options;
-    trade_options.most_steps = 20;
+    trade_options.max_steps = 20;
     trade_options.rounds = 0;
     const Trade priced = trade(model, trade_options);
     expect_whole(trade_rows(priced), priced.points.size());
@@ -50,7 +50,7 @@ TEST(Table, RowsAreSelectedByTheirFields) {
     EXPECT_EQ(distinct(rows, &StepRow::branch), (std::vector<std::string>{"b", "c"}));
 }
 
-TEST(Table, WhatIsMissingIsToldInItsRow) {
+TEST(Table, MissingValueIsExplainedInItsRow) {
     // A level that did not converge: no numbers, and the row gives the reason.
     const Model model = compile(support::scene("pinned_bar"));
     Study s = study(model, {.steps = {5, 10, 20, 40, 80}});

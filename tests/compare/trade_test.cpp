@@ -30,8 +30,8 @@ Model shipped(const std::string& name, double load = 1) {
 
 // Errors, counts and recommendations do not depend on the timing rounds, each of which repeats the
 // whole work: only tests of times and their front ask for some.
-TradeOptions quick(Tolerance tolerance, int most_steps = 160, int rounds = 0) {
-    return {.tolerance = tolerance, .most_steps = most_steps, .rounds = rounds};
+TradeOptions quick(Tolerance tolerance, int max_steps = 160, int rounds = 0) {
+    return {.tolerance = tolerance, .max_steps = max_steps, .rounds = rounds};
 }
 
 const TradePoint* find(const Trade& trade, std::string_view method, int steps) {
@@ -80,7 +80,7 @@ Accuracy solved_anew(const Model& model, const Trade& trade) {
 
 // ---- the tolerance
 
-TEST(Tolerance, IsReadInEitherOrderAndEitherOneAlone) {
+TEST(Tolerance, PartsAreReadInAnyOrderAndAlone) {
     for (const std::string text :
          {"0.01mm,0.001deg", "0.001deg,0.01mm", " 1e-2 mm , 1e-3 deg ", "0.01 mm,.001deg"}) {
         const Tolerance tolerance = parse_tolerance(text);
@@ -93,7 +93,7 @@ TEST(Tolerance, IsReadInEitherOrderAndEitherOneAlone) {
     EXPECT_EQ(parse_tolerance("2deg").mm, infinity);
 }
 
-TEST(Tolerance, AnythingElseIsRefusedWithWhatIsAllowed) {
+TEST(Tolerance, InvalidTextIsRejectedWithTheAllowedForm) {
     for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
              {"", "missing"},           {",", "missing"},
              {"0.01mm,", "missing"},    {"0.01", "no unit"},
@@ -118,7 +118,7 @@ TEST(Tolerance, AnythingElseIsRefusedWithWhatIsAllowed) {
     }
 }
 
-TEST(Tolerance, OfForcesIsAShareUnlessGivenOtherwise) {
+TEST(Tolerance, ForcesAreJudgedByAShareByDefault) {
     EXPECT_EQ(parse_tolerance("0.01mm,0.001deg", ToleranceParts::with_shares).share, default_share);
     EXPECT_EQ(parse_tolerance("0.01mm, 5 %", ToleranceParts::with_shares).share, 0.05);
     EXPECT_EQ(parse_tolerance("2%", ToleranceParts::with_forces).mm, infinity);
@@ -129,7 +129,7 @@ TEST(Tolerance, OfForcesIsAShareUnlessGivenOtherwise) {
                  std::invalid_argument);
 }
 
-TEST(Tolerance, NoNumberIsNoShareOfIt) {
+TEST(Tolerance, ShareOfNaNIsNaN) {
     for (const Tolerance tolerance :
          {Tolerance{1, 1}, Tolerance{1, infinity}, Tolerance{infinity, 1}})
         for (const Accuracy error : {Accuracy{nan, 0}, Accuracy{0, nan}, Accuracy{nan, nan}})
@@ -141,7 +141,7 @@ TEST(Tolerance, NoNumberIsNoShareOfIt) {
 
 // ---- the front
 
-TEST(Front, HasNoDominatedMemberAndLeavesNoOtherOut) {
+TEST(Front, IsTheSetOfNondominatedMembers) {
     std::mt19937 random(20);
     for (int trial = 0; trial < 500; ++trial) {
         std::vector<WorkError> points(1 + random() % 20);
@@ -170,7 +170,7 @@ TEST(Front, HasNoDominatedMemberAndLeavesNoOtherOut) {
     }
 }
 
-TEST(Front, EqualsStandTogetherAndNoNumberIsInNobodysWay) {
+TEST(Front, EqualMembersAreKeptAndNaNDominatesNothing) {
     EXPECT_EQ(pareto_front(std::vector<WorkError>{
                   {1, 1}, {1, 1}, {2, 1}, {nan, 0}, {0, nan}, {0, infinity}}),
               (std::vector<bool>{true, true, false, false, false, false}));
@@ -179,7 +179,7 @@ TEST(Front, EqualsStandTogetherAndNoNumberIsInNobodysWay) {
 
 // ---- times
 
-TEST(Timing, JobsTakeTurns) {
+TEST(Timing, JobsAreInterleaved) {
     std::string order;
     const std::vector<std::function<void()>> jobs{[&] { order += 'a'; }, [&] { order += 'b'; },
                                                   [&] { order += 'c'; }};
@@ -189,7 +189,7 @@ TEST(Timing, JobsTakeTurns) {
     for (const auto& job : times) EXPECT_EQ(job.size(), 3u);
 }
 
-TEST(Timing, MedianAndNoiseOfAJobAgainstItself) {
+TEST(Timing, JobAgainstItselfHasRatioOneWithinNoise) {
     EXPECT_EQ(median({3, 1, 2}), 2);
     EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
     EXPECT_TRUE(std::isnan(median({})));
@@ -203,7 +203,7 @@ TEST(Timing, MedianAndNoiseOfAJobAgainstItself) {
 
 // ---- the trade
 
-TEST(Trade, RecommendationMeetsItsToleranceWhenSolvedAnewAtTenTimesThePoints) {
+TEST(Trade, RecommendationMeetsItsToleranceAtTenTimesThePoints) {
     int recommended = 0;
     for (const auto& name : {"pinned_bar", "pendulum", "two_spring_arch", "bushing_pair"})
         for (const double mm : {1.0, 1e-2, 1e-4, 1e-6}) {
@@ -246,7 +246,7 @@ TEST(Trade, RecommendationForTheMcPhersonMeetsLengthAndAngle) {
 
 // The published method meets the tolerance of positions with ten steps, but that of forces with no
 // number of steps: their error stays 39 %.
-TEST(Trade, WhatIsRecommendedHasItsForcesWithinTheTolerance) {
+TEST(Trade, RecommendationHasForcesWithinTheTolerance) {
     const Model model = shipped("chrono_mcpherson");
     const Tolerance by_positions{100, 10}, by_all{.mm = 100, .deg = 10, .share = 0.01};
     const auto of_two = [](const Tolerance& tolerance) {
@@ -280,7 +280,7 @@ const Trade& of_a_pendulum_that_diverges() {
     return result;
 }
 
-TEST(Trade, WhatDidNotConvergeIsListedAndNeverRanked) {
+TEST(Trade, UnconvergedConfigurationIsListedAndNotRanked) {
     const Trade& result = of_a_pendulum_that_diverges();
     for (const auto& method : {"published", "closed", "balanced"}) {
         const TradePoint* point = find(result, method, 640);
@@ -300,7 +300,7 @@ TEST(Trade, WhatDidNotConvergeIsListedAndNeverRanked) {
     EXPECT_GE(listed, 3);
 }
 
-TEST(Trade, AMethodThatDivergesAtMoreStepsIsNotRecommendedAtFew) {
+TEST(Trade, MethodDivergingAtMoreStepsIsNotRecommendedAtFewer) {
     const Trade& result = of_a_pendulum_that_diverges();
     EXPECT_LT(find(result, "published", 10)->error.mm, 50);  // meets the tolerance by chance
     ASSERT_TRUE(result.recommendation);
@@ -308,7 +308,7 @@ TEST(Trade, AMethodThatDivergesAtMoreStepsIsNotRecommendedAtFew) {
     for (const auto& method : {"published", "closed", "balanced"}) EXPECT_NE(chosen.method, method);
 }
 
-TEST(Trade, ErrorsThatCancelAreNotRecommended) {
+TEST(Trade, ConfigurationWithCancellingErrorsIsNotRecommended) {
     // The published method's step error compensates half of its formulation gap at ten steps, and
     // nothing at many.
     const Trade result = trade(shipped("pinned_bar"), quick({4}));
@@ -319,9 +319,9 @@ TEST(Trade, ErrorsThatCancelAreNotRecommended) {
     EXPECT_NE(result.points[result.recommendation->point].method, "closed");
 }
 
-TEST(Trade, BelowTheReferenceUncertaintyNothingIsRanked) {
-    // One bushing along its axis is linear: every method is exact, and their ranking would be
-    // noise.
+TEST(Trade, ErrorsBelowTheReferenceUncertaintyAreNotRanked) {
+    // One bushing along its axis is linear: every method is exact, and their ranking
+    // would be noise.
     const Trade linear = trade(shipped("single_bushing"), quick({0.001}, 40));
     for (const auto& point : linear.points) {
         EXPECT_FALSE(point.ranked) << describe(point) << " " << point.error.mm;
@@ -339,7 +339,7 @@ TEST(Trade, BelowTheReferenceUncertaintyNothingIsRanked) {
     }
 }
 
-TEST(Trade, NothingIsRecommendedForLessThanTheReferencesKnow) {
+TEST(Trade, ToleranceBelowTheReferenceUncertaintyHasNoRecommendation) {
     // Every method is exact here, but the references are only known to their own distance.
     const Model model = shipped("single_bushing");
     const double known = trade(model, quick({1}, 20)).uncertainty.mm;
@@ -372,7 +372,7 @@ std::optional<std::pair<Recommendation, Trade>> squeezed(const Model& model, int
     return std::nullopt;
 }
 
-TEST(Trade, WhatTheConfirmingRunRefusesIsListedAndNotRecommended) {
+TEST(Trade, ConfigurationFailingItsConfirmationIsListedAndNotRecommended) {
     // With one output point at the end, only the confirming run sees the worst error between.
     std::optional<std::pair<Recommendation, Trade>> found;
     for (const auto& name :
@@ -389,7 +389,7 @@ TEST(Trade, WhatTheConfirmingRunRefusesIsListedAndNotRecommended) {
     }
 }
 
-TEST(Trade, WhatMayLieBeyondTheToleranceAsFarAsItsRungsTellIsNotRecommended) {
+TEST(Trade, ConfigurationWhoseErrorBandExceedsTheToleranceIsNotRecommended) {
     const auto found =
         squeezed(shipped("chrono_mcpherson_preload"), 10, &Accuracy::mm, &Recommendation::high);
     ASSERT_TRUE(found);
@@ -404,7 +404,7 @@ TEST(Trade, WhatMayLieBeyondTheToleranceAsFarAsItsRungsTellIsNotRecommended) {
     }
 }
 
-TEST(Trade, ReferencesThatFailLeaveNothingToJudge) {
+TEST(Trade, FailedReferencesMakeItInconclusive) {
     // the limit is at -211.5 N
     const Trade result = trade(shipped("two_spring_arch", 1.5), quick({1}, 20));
     ASSERT_FALSE(result.inconclusive.empty());
@@ -416,10 +416,11 @@ TEST(Trade, ReferencesThatFailLeaveNothingToJudge) {
 
 // With one output point at the end, only the confirming run meets the end of the spring's table in
 // the middle of the branch, where the arch is flat.
-TEST(Trade, WithoutAReferenceForTheConfirmingRunNothingIsJudged) {
+TEST(Trade, MissingReferenceForTheConfirmationMakesItInconclusive) {
     Scene scene = support::scene("arch_driven");
     scene.branches.resize(1);
-    scene.branches[0].from = 0, scene.branches[0].to = -0.16;
+    scene.branches[0].from = 0;
+    scene.branches[0].to = -0.16;
     for (auto& elastic : scene.elastics) {
         auto& spring = std::get<AxialSpring>(elastic.kind);
         const double k = std::get<LinearRate>(spring.law).k, end = 5e-3;
@@ -448,7 +449,7 @@ TEST(Trade, ASceneWithoutAnglesIgnoresTheirTolerance) {
     EXPECT_NE(angle.inconclusive.front().find("only an angle has a tolerance"), std::string::npos);
 }
 
-TEST(Trade, WorkGrowsWithTheStepsByWhatAMethodCostsAStep) {
+TEST(Trade, WorkIsProportionalToStepsTimesCostPerStep) {
     const Trade result = trade(shipped("pinned_bar"), quick({0.01}, 80));
     // two branches, and one more each to settle at a = 0
     for (const int steps : {10, 20, 40, 80}) {
@@ -461,7 +462,7 @@ TEST(Trade, WorkGrowsWithTheStepsByWhatAMethodCostsAStep) {
     EXPECT_EQ(find(result, "published", 160), nullptr);
 }
 
-TEST(Trade, TheWorkBudgetEndsTheLadderButNeverBeforeItBegins) {
+TEST(Trade, WorkBudgetEndsTheStepCountsAfterAtLeastOne) {
     TradeOptions options = quick({0.01}, 2560);
     options.work_budget = 0;
     const Trade result = trade(shipped("pinned_bar"), options);
@@ -469,7 +470,7 @@ TEST(Trade, TheWorkBudgetEndsTheLadderButNeverBeforeItBegins) {
     EXPECT_EQ(find(result, "tangent", 20), nullptr);
 }
 
-TEST(Trade, TheEquilibriumLegIsTimedTwiceAndStandsAtOne) {
+TEST(Trade, EquilibriumLegIsTimedTwiceAndIsTheUnitOfTime) {
     const Trade result = trade(shipped("pinned_bar"), quick({0.01}, 20, 2));
     EXPECT_EQ(result.points.front().ratio, 1);
     const TradePoint& again = result.points.back();
@@ -481,7 +482,7 @@ TEST(Trade, TheEquilibriumLegIsTimedTwiceAndStandsAtOne) {
 
 // ---- the arithmetic
 
-TEST(Trade, AllButTheTimesIsTheSameInEveryRun) {
+TEST(Trade, AllButTimesIsReproducible) {
     for (const auto& name : {"chrono_mcpherson", "pinned_bar"}) {
         const Model model = shipped(name);
         std::vector<Trade> runs;
@@ -512,7 +513,7 @@ TEST(Trade, AllButTheTimesIsTheSameInEveryRun) {
     }
 }
 
-TEST(Trade, TheRecommendedToleranceOfAMethodIsTheLoosestAllowedOne) {
+TEST(Trade, RecommendedToleranceOfAMethodIsTheLargestThatSuffices) {
     // A series of high order is accurate at a tolerance of 1 mm too, by chance.
     for (const Tolerance required :
          {Tolerance{0.01, 0.001}, Tolerance{0.01}, Tolerance{infinity, 0.001}}) {
@@ -534,7 +535,7 @@ TEST(Trade, TheRecommendedToleranceOfAMethodIsTheLoosestAllowedOne) {
     }
 }
 
-TEST(Trade, ThePriceIsCountedInBackSubstitutions) {
+TEST(Trade, PriceIsInBackSubstitutions) {
     TradeOptions options = quick({0.01, 0.001}, 160);
     const Model model = shipped("chrono_mcpherson");
     const Trade result = trade(model, options);
@@ -556,7 +557,7 @@ TEST(Trade, ThePriceIsCountedInBackSubstitutions) {
     EXPECT_THROW((void)trade(model, options), std::invalid_argument);
 }
 
-TEST(Trade, ATwoWayBranchIsPricedAsItsTwoHalves) {
+TEST(Trade, BranchWithTwoSidesIsPricedAsTheirSum) {
     Scene both = support::scene("pinned_bar");
     const Scene halves = both;
     ASSERT_EQ(both.branches.size(), 2u);
@@ -566,7 +567,7 @@ TEST(Trade, ATwoWayBranchIsPricedAsItsTwoHalves) {
     options.points = 20;
     const Trade one = trade(compile(both), options);
     options.points = 10;
-    options.most_steps = 20;
+    options.max_steps = 20;
     const Trade two = trade(compile(halves), options);
     for (const auto& method : {"published", "tangent", "midpoint"}) {
         const auto *a = find(one, method, 40), *b = find(two, method, 20);
@@ -577,7 +578,7 @@ TEST(Trade, ATwoWayBranchIsPricedAsItsTwoHalves) {
     EXPECT_TRUE(one.recommendation);
 }
 
-TEST(Trade, ABranchThatMovesNothingLeavesNothingToJudge) {
+TEST(Trade, BranchWithoutMovementMakesItInconclusive) {
     Scene scene = support::scene("pinned_bar");
     for (auto& driver : scene.branches[0].drivers)
         std::get<DeadForce>(std::get<Load>(driver.what).kind).f.setZero();
@@ -587,7 +588,7 @@ TEST(Trade, ABranchThatMovesNothingLeavesNothingToJudge) {
     EXPECT_FALSE(result.recommendation);
 }
 
-TEST(Profile, EndsAtTheErrorOfItsConfigurationAndIsZeroForTheReferenceItself) {
+TEST(Profile, MaximumIsTheErrorOfItsConfigurationAndZeroForTheReference) {
     const Model model = shipped("chrono_mcpherson");
     const auto channels = compare::channels(model);
     Solves solves(model, 10, 4);

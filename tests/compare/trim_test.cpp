@@ -17,21 +17,25 @@
 namespace elastocheck::compare {
 namespace {
 
-// A block on a vertical slide and a spring of 20 N/mm, 0.4 m long in the design position, under 500
-// N.
+// A block on a vertical slide and a spring of 20 N/mm, 0.4 m long in the design position,
+// under 500 N.
 Scene block() {
     return parse_scene(
-        "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}\nbodies: {block: {origin: "
-        "high}}\n"
-        "joints: {guide: {type: translational, bodies: [block, ground], at: high, axis: z}}\n"
-        "springs:\n"
-        "  coil: {bodies: [block, ground], from: high, to: low, rate: 20e3}\n"
-        "  second: {bodies: [block, ground], from: high, to: low, rate: 10e3}\n"
-        "  across: {bodies: [block, ground], from: high, to: aside, rate: 0.001}\n"
-        "static_loads: {weight: {on: block, at: high, force: [0, 0, -500]}}\n"
-        "loads: {up: {on: block, at: high, force: [0, 0, 1]}}\n"
-        "branches: {up: {load: up, to: 100, steps: 4}}\nprobes: {top: {on: block, at: high}}\n",
+        R"(elastocheck: 1
+name: block
+units: {length: m, angle: rad, force: N}
+points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}
+bodies: {block: {origin: high}}
+joints: {guide: {type: translational, bodies: [block, ground], at: high, axis: z}}
+springs:
+  coil: {bodies: [block, ground], from: high, to: low, rate: 20e3}
+  second: {bodies: [block, ground], from: high, to: low, rate: 10e3}
+  across: {bodies: [block, ground], from: high, to: aside, rate: 0.001}
+static_loads: {weight: {on: block, at: high, force: [0, 0, -500]}}
+loads: {up: {on: block, at: high, force: [0, 0, 1]}}
+branches: {up: {load: up, to: 100, steps: 4}}
+probes: {top: {on: block, at: high}}
+)",
         "block.yaml");
 }
 
@@ -91,7 +95,7 @@ TEST(Trim, PreloadOfASpringUnderABlockIsItsWeight) {
     EXPECT_FALSE(found.scene.trim) << "trimmed once";
 }
 
-TEST(Trim, ConditionMayAskForAnotherHeight) {
+TEST(Trim, ConditionMayStateAnotherHeight) {
     Scene scene = block();
     scene.elastics.resize(1);
     scene.trim = Trim{{preload(scene, "coil")}, {height(-0.03)}};
@@ -101,7 +105,7 @@ TEST(Trim, ConditionMayAskForAnotherHeight) {
     EXPECT_NEAR(found.record->conditions[0].target, -30, 1e-12);
 }
 
-TEST(Trim, LeavesTheWheelAtRestWhereItWasDrawnOnEveryBranchAndByBothReferences) {
+TEST(Trim, WheelRestsAtItsDesignPositionOnEveryBranchAndInBothReferences) {
     const Trimmed found = trim(mcpherson());
     ASSERT_TRUE(found.record->reached()) << found.record->detail;
     EXPECT_GT(found.record->adjusted[0].by, 3000);
@@ -122,7 +126,7 @@ TEST(Trim, LeavesTheWheelAtRestWhereItWasDrawnOnEveryBranchAndByBothReferences) 
     EXPECT_LE(std::abs(found.record->conditions[0].confirmed), 1e-6);
 }
 
-TEST(Trim, SceneWithoutOneIsAsItWas) {
+TEST(Trim, SceneWithoutATrimIsUnchanged) {
     const Trimmed found = trim(block());
     EXPECT_FALSE(found.record);
     EXPECT_EQ(std::get<AxialSpring>(found.scene.elastics[0].kind).free_length, 0.4);
@@ -130,7 +134,7 @@ TEST(Trim, SceneWithoutOneIsAsItWas) {
 
 // The series alone, from the design and from the trim of a similar scene: the same trim, the second
 // by less work; and from a start that leads nowhere.
-TEST(Trim, BySeriesFromAnyStartIsThatOfTheReferences) {
+TEST(Trim, SeriesFromAnyStartGivesTheTrimOfTheReferences) {
     for (const char* name : {"double_wishbone", "front_axle"}) {
         const Scene scene = support::scene(name);
         Scene similar = scene;
@@ -140,7 +144,8 @@ TEST(Trim, BySeriesFromAnyStartIsThatOfTheReferences) {
         TrimStart start;
         ASSERT_TRUE(trim_by_series(similar, &start).record->reached());
         TrimStart far = start;
-        far.p *= -40, far.J *= -1;
+        far.p *= -40;
+        far.J *= -1;
         for (TrimStart* from : {static_cast<TrimStart*>(nullptr), &start, &far}) {
             const Trimmed by_series = trim_by_series(scene, from);
             ASSERT_TRUE(by_series.record && by_series.record->reached()) << name;
@@ -156,7 +161,7 @@ TEST(Trim, BySeriesFromAnyStartIsThatOfTheReferences) {
     }
 }
 
-TEST(Trim, AsManyAdjustmentsAsConditionsAreNeeded) {
+TEST(Trim, NumberOfAdjustmentsMustEqualThatOfConditions) {
     Scene scene = block();
     scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")}, {height()}};
     EXPECT_TRUE(contains(complaint(scene),
@@ -165,14 +170,14 @@ TEST(Trim, AsManyAdjustmentsAsConditionsAreNeeded) {
     EXPECT_TRUE(contains(complaint(scene), "their numbers must be equal"));
 }
 
-TEST(Trim, AdjustmentThatMovesNothingIsNamed) {
+TEST(Trim, AdjustmentWithoutInfluenceIsNamed) {
     Scene scene = block();  // perpendicular to the slide of the block
     scene.trim = Trim{{preload(scene, "across")}, {height()}};
     const std::string said = complaint(scene);
     EXPECT_TRUE(contains(said, "'springs.across.preload' has no influence on top.z")) << said;
 }
 
-TEST(Trim, AdjustmentsThatDoTheSameAreNamed) {
+TEST(Trim, DependentAdjustmentsAreNamed) {
     Scene scene = block();
     scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")},
                       {height(), {"top.z again", ProbeCoordinate{0, 2}, 0.01}}};
@@ -183,7 +188,7 @@ TEST(Trim, AdjustmentsThatDoTheSameAreNamed) {
         << said;
 }
 
-TEST(Trim, ConditionThatNothingMovesIsNamed) {
+TEST(Trim, ConditionThatNoAdjustmentChangesIsNamed) {
     Scene scene = block();
     scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")},
                       {height(), {"top.x", ProbeCoordinate{0, 0}, std::nullopt}}};
@@ -191,7 +196,7 @@ TEST(Trim, ConditionThatNothingMovesIsNamed) {
     EXPECT_TRUE(contains(said, "no adjustment changes 'top.x'")) << said;
 }
 
-TEST(Trim, WhatHoldsByChanceIsStillAskedWhetherItIsDetermined) {
+TEST(Trim, ConditionsMetByChanceAreCheckedForDeterminacy) {
     // at rest in the design position for any load sharing of the two springs
     Scene scene = block();
     scene.static_loads.clear();
@@ -200,7 +205,7 @@ TEST(Trim, WhatHoldsByChanceIsStillAskedWhetherItIsDetermined) {
     EXPECT_TRUE(contains(complaint(scene), "ambiguous")) << complaint(scene);
 }
 
-TEST(Trim, WhatCannotBeReachedIsSaidAndChangesNothing) {
+TEST(Trim, UnreachableConditionIsReportedAndTheSceneUnchanged) {
     Scene scene = mcpherson();
     scene.trim->until[0].value = 2;  // [m]: longer than any strut
     const Trimmed found = trim(scene);
@@ -210,7 +215,7 @@ TEST(Trim, WhatCannotBeReachedIsSaidAndChangesNothing) {
     EXPECT_TRUE(found.scene.trim) << "the scene is the one given";
 }
 
-TEST(Trim, SidesOfASymmetricPairGetTheSame) {
+TEST(Trim, SymmetricSidesGetEqualAdjustments) {
     // Two independent blocks.
     Scene scene = block();
     scene.elastics.resize(1);
@@ -221,7 +226,8 @@ TEST(Trim, SidesOfASymmetricPairGetTheSame) {
         return p;
     };
     auto guide = std::get<Translational>(one.joints[0].kind);
-    guide.i = other(guide.i), guide.axis_i.body = 1;
+    guide.i = other(guide.i);
+    guide.axis_i.body = 1;
     scene.joints.push_back({"other guide", guide});
     auto coil = std::get<AxialSpring>(one.elastics[0].kind);
     coil.i = other(coil.i);
@@ -278,7 +284,7 @@ TEST(Trim, BalancedBushingsAreFoundOnASoftSubframe) {
     EXPECT_TRUE(found.record->reached()) << found.record->detail;
 }
 
-TEST(Trim, BalancedBushingsHaveNoOtherPositionThanTheDrawnOne) {
+TEST(Trim, BalancedBushingsRejectAConditionOffTheDesignPosition) {
     Scene scene = support::scene("double_wishbone");
     scene.trim->bushings = Trim::Bushings::balanced;
     scene.trim->until[0].value = 0.01;

@@ -24,7 +24,7 @@ VariantFigure figure_at(const std::string& output, const std::string& branch, do
 // Positions, reactions, forces of elements and characteristics of variants are those of the series leg
 // alone, of scenes with one-sided branches, with two-sided ones, and with parts that are active on
 // some branches only.
-TEST(VariantSolver, FindsTheFiguresOfEveryVariantAsAloneAndAsTheReference) {
+TEST(VariantSolver, FiguresEqualThoseOfEachVariantAloneAndOfTheReference) {
     const struct {
         std::string scene, number;
         std::vector<VariantFigure> figures;
@@ -103,11 +103,12 @@ TEST(VariantSolver, FindsExtremesOverABranchOfBothSides) {
     double least = 1e9, largest = -1e9;
     for (BranchSide side : sides) {
         side.branch.steps = solver.points();
-        for (const auto& point : walk(side, {.leg = Leg::equilibrium}).points) {
+        for (const auto& point : solve_branch(side, {.leg = Leg::equilibrium}).points) {
             const auto all = channels(design);
             const double toe =
                 evaluate(design, point)[static_cast<std::size_t>(find_channel(all, "toe"))];
-            least = std::min(least, toe), largest = std::max(largest, toe);
+            least = std::min(least, toe);
+            largest = std::max(largest, toe);
         }
     }
     EXPECT_NEAR(found.values[0], least, 1e-9);
@@ -115,7 +116,7 @@ TEST(VariantSolver, FindsExtremesOverABranchOfBothSides) {
     EXPECT_GT(largest - least, 1);
 }
 
-TEST(VariantSolver, SaysWhyABranchEndsAndLeavesTheOtherFigures) {
+TEST(VariantSolver, EndOfABranchIsExplainedAndOtherFiguresAreKept) {
     const std::string file = ELASTOCHECK_SCENES "/two_spring_arch.yaml";
     Scene scene = read_scene(file);
     const Model design = compile(scene);
@@ -155,7 +156,7 @@ TEST(VariantSolver, FallsBackToTheEquilibriumLegWhereSeriesDeclines) {
     EXPECT_EQ(found.values, solver.solve_alone(design, Leg::equilibrium).values);
 }
 
-TEST(VariantSolver, RefusesWhatTheModelHasNot) {
+TEST(VariantSolver, UnknownFiguresAreRejected) {
     const Model design = compile(read_scene(ELASTOCHECK_SCENES "/mcpherson.yaml"));
     const auto make = [&](const VariantFigure& figure) { return VariantSolver(design, {figure}); };
     EXPECT_THROW(make(figure_at("to", "jounce", 0)), std::invalid_argument);

@@ -259,14 +259,14 @@ Books books(const BranchSide& side, const std::vector<Channel>& channels, const 
     return b;
 }
 
-struct Apart {
+struct Difference {
     double mm = 0, deg = 0;
     std::string where_mm, where_deg;
 };
 // Distance of two legs over all positions and angles.
-Apart apart(const BranchSide& side, const std::vector<Channel>& channels,
-            const std::vector<Equilibrium>& x, const std::vector<Equilibrium>& y) {
-    Apart worst;
+Difference difference(const BranchSide& side, const std::vector<Channel>& channels,
+                      const std::vector<Equilibrium>& x, const std::vector<Equilibrium>& y) {
+    Difference worst;
     for (std::size_t k = 0; k < x.size(); ++k) {
         const auto of_x = evaluate(side.model, channels, x[k]),
                    of_y = evaluate(side.model, channels, y[k]);
@@ -287,7 +287,7 @@ Apart apart(const BranchSide& side, const std::vector<Channel>& channels,
 
 class EveryScene : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryScene, StoresTheWorkDoneOnItInEveryLegAndTheLegsAreWhereTheOthersAre) {
+TEST_P(EveryScene, StoredEnergyEqualsTheWorkDoneInEveryLeg) {
     const auto trimmed = trim(support::scene(GetParam()));
     ASSERT_TRUE(!trimmed.record || trimmed.record->reached()) << trimmed.record->detail;
     const Model model = compile(trimmed.scene);
@@ -320,7 +320,7 @@ TEST_P(EveryScene, StoresTheWorkDoneOnItInEveryLegAndTheLegsAreWhereTheOthersAre
                     side.name, name(leg), b.work, b.gained, b.gap(), b.turned_over);
             }
             const auto expect = [&](Leg leg, const std::vector<Equilibrium>& states, double bound) {
-                const Apart off = apart(side, all, equilibrium.points, states);
+                const Difference off = difference(side, all, equilibrium.points, states);
                 EXPECT_TRUE(off.mm <= bound)
                     << side.name << ", " << name(leg) << ": " << off.mm << " mm, " << off.where_mm;
                 EXPECT_TRUE(off.deg <= bound) << side.name << ", " << name(leg) << ": " << off.deg

@@ -18,7 +18,7 @@ void use(const Scene& scene) {
     for (const auto detail : {Detail::required, Detail::everything}) {
         const Model model = compile(scene, detail);
         for (const auto& branch : model.branches)
-            for (const auto& way : ways(branch))
+            for (const auto& way : branch_sides(branch))
                 if (!std::isfinite(way.from) || !std::isfinite(way.to) || way.steps < 1)
                     throw Fault("branch '" + branch.name + "' leads nowhere");
     }

@@ -1,5 +1,5 @@
-// Scenes with a closed-form solution, at every point of every branch. The scene files contain the
-// derivations.
+// Scenes with a closed-form solution, at every point of every branch. The scene files
+// contain the derivations.
 #include "elastocheck/compile.hpp"
 #include "tests/legs/legs.hpp"
 #include "tests/support/scenes.hpp"
@@ -13,7 +13,7 @@ struct ClosedForms : LegTest {
                 const std::function<std::vector<Vector3d>(double)>& expected) const {
         const Model model = compile(scene);
         for (const auto& branch : model.branches)
-            for (const auto& side : ways(branch)) {
+            for (const auto& side : branch_sides(branch)) {
                 Worst worst;
                 for (const auto& state :
                      solved(leg(), {on_branch(model, side), side}, steps).points) {
@@ -133,7 +133,7 @@ TEST_P(ClosedForms, ArchDriven) {
 }
 
 // A pendulum without any element, held by its weight: tan θ = F / W. Its spin is idle.
-TEST_P(ClosedForms, AHangingPendulumIsHeldByItsWeight) {
+TEST_P(ClosedForms, HangingPendulumIsStabilisedByItsWeight) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "loads an idle mode as drawn";
     Scene s;
     s.bodies = {{"bob", {-0.5 * Z}}};
@@ -160,7 +160,7 @@ Scene on_a_ball(const Vector3d& k_R, const Quaterniond& axes, bool swapped = fal
 
 // k_R θ = M about a fixed axis: of equal rates up to nearly half a turn, for a frame on either
 // body; of unequal ones about a principal axis.
-TEST_P(ClosedForms, ADeadMomentTurnsByMOverK) {
+TEST_P(ClosedForms, DeadMomentRotatesByMOverK) {
     Random random;
     for (int trial = 0; trial < 10; ++trial) {
         const Vector3d axis = random.unit();
@@ -181,7 +181,7 @@ TEST_P(ClosedForms, ADeadMomentTurnsByMOverK) {
 
 // A dead moment on unequal rates turns a body by θ with J⁻ᵀ(-θ) K_R θ = Aᵀ m. The test chooses the
 // rotation, computes the holding moment by differences of the energy, and solves for the rotation.
-TEST_P(ClosedForms, ADeadMomentTurnsABodyByTheExactFiniteRotation) {
+TEST_P(ClosedForms, DeadMomentGivesTheExactFiniteRotation) {
     Random random;
     const Vector3d K_R(300, 600, 900);
     const auto U = [&](const Quaterniond& p) {
@@ -207,7 +207,7 @@ TEST_P(ClosedForms, ADeadMomentTurnsABodyByTheExactFiniteRotation) {
 
 // A force that stays perpendicular to the bar turns it by θ = F L / k (a dead force: F L cos θ =
 // k θ); a couple that turns with an isotropic bushing has a constant axis in the body and in ground.
-TEST_P(ClosedForms, FollowersTurnByTheirMomentOverK) {
+TEST_P(ClosedForms, FollowerMomentRotatesByMOverK) {
     if (leg().needs_energy()) GTEST_SKIP() << "a follower has no energy";
     const double k = 150, L = 0.4;
     Scene bar = hinged_bar(L * X, Y, k);
@@ -234,7 +234,7 @@ TEST_P(ClosedForms, FollowersTurnByTheirMomentOverK) {
 
 // Without rotational rates the rotation of a bushing is unlimited: with a soft pull of 10 N/m
 // towards (2, 0, 0) and a lift F the tip at 0.3 (cos φ, 0, sin φ) balances -20 z + F x = 0.
-TEST_P(ClosedForms, ABushingWithoutRotationalRatesMayTurnFreely) {
+TEST_P(ClosedForms, BushingWithoutRotationalRatesRotatesFreely) {
     Scene s = hinged_bar(0.3 * X, Y, 0);
     s.elastics = {
         {"pull", bushing({ground, 2 * X}, {0, 0.3 * X}, Vector3d::Constant(10), Vector3d::Zero())}};

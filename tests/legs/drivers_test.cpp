@@ -60,7 +60,7 @@ struct SliderCrank {
 };
 
 // The moment on the crank balances a force F on the slider by virtual work: M da + F dx = 0.
-TEST_P(Drivers, ASliderCrankFollowsItsGeometryAndItsMomentIsVirtualWork) {
+TEST_P(Drivers, SliderCrankFollowsItsGeometryWithTheMomentOfVirtualWork) {
     const SliderCrank crank;
     const double F = 300;
     for (const double to : {2 * pi, -2 * pi, 6 * pi})
@@ -120,7 +120,7 @@ TEST_P(Drivers, AFourBarFollowsItsGeometryThroughAFullTurn) {
 }
 
 // l² = 0.5² + 0.3² + 2·0.5·0.3 sin φ, and the strut's force has the lever 0.5·0.3 cos φ / l.
-TEST_P(Drivers, ABarOnAGrowingStrutIsLiftedByItsTriangle) {
+TEST_P(Drivers, DrivenStrutLengthLiftsABarByTrigonometry) {
     const double l_0 = std::hypot(0.5, 0.3);
     Scene s = hinged_bar(0.5 * X, Y, 100);
     s.joints.push_back({"strut", Distance{{0, 0.5 * X}, {ground, -0.3 * Z}, l_0}});
@@ -139,7 +139,7 @@ TEST_P(Drivers, ABarOnAGrowingStrutIsLiftedByItsTriangle) {
 
 // ---- Values held at a = 0 are settled first.
 
-TEST_P(Drivers, AHeldAngleIsSettledHoweverFarItIsFromTheDrawing) {
+TEST_P(Drivers, HeldAngleSettlesFromAnyDesignAngle) {
     const SliderCrank crank;
     for (const double start : {-9., -2.9, -2., -0.5, 0.5, 1.7, 3., 7.}) {
         const OneWay side =
@@ -155,7 +155,7 @@ TEST_P(Drivers, AHeldAngleIsSettledHoweverFarItIsFromTheDrawing) {
     }
 }
 
-TEST_P(Drivers, ARodOfAnotherLengthThanDrawnIsSettledToItsOwn) {
+TEST_P(Drivers, RodSettlesToItsStatedLength) {
     const SliderCrank crank;
     for (const double rod : {0.07, 0.1, 0.2, 0.5}) {
         Scene scene = crank.scene();
@@ -179,7 +179,7 @@ TEST_P(Drivers, ARodOfAnotherLengthThanDrawnIsSettledToItsOwn) {
 }
 
 // A hinge drawn beside its axis, held at an angle, and a bar that is drawn 10 mm too short.
-TEST_P(Drivers, JointsDrawnOpenAreClosed) {
+TEST_P(Drivers, GapsOfJointsInTheDesignPositionAreClosed) {
     Scene scene;
     scene.bodies = {{"crank", {}}};
     const Vector3d at(0.01, -0.02, 0.03);
@@ -204,7 +204,7 @@ TEST_P(Drivers, JointsDrawnOpenAreClosed) {
 
 // The jack's force at the height z of the apex is the arch's load there, past both limit points of
 // ∓ 211.5166 N, and its work is the energy stored.
-TEST_P(Drivers, AJackTakesTheArchThroughBothItsLimitPoints) {
+TEST_P(Drivers, JackDrivesTheArchThroughBothLimitPoints) {
     const double b = 0.3, h = 0.08, k = 1e5, l_0 = std::hypot(b, h), limit = 211.5166;
     Scene s = support::scene("two_spring_arch");
     s.joints.push_back({"jack", InPlane{{0}, {ground}, ground_z, h}, true});
@@ -218,7 +218,8 @@ TEST_P(Drivers, AJackTakesTheArchThroughBothItsLimitPoints) {
             worst.see((jack.force - F * Z).norm() / limit, z);
             worst.see((state.poses[0].r - z * Z).norm() / b, z);
             if (z < -h) continue;
-            least = std::min(least, jack.force.z()), most = std::max(most, jack.force.z());
+            least = std::min(least, jack.force.z());
+            most = std::max(most, jack.force.z());
         }
         EXPECT_TRUE(within(worst, leg().kind == Leg::equilibrium ? 1e-12
                                   : leg().exact()                ? 1e-9
@@ -230,7 +231,7 @@ TEST_P(Drivers, AJackTakesTheArchThroughBothItsLimitPoints) {
     }
 }
 
-TEST_P(Drivers, TravelAndLoadMeetAtTheSameStates) {
+TEST_P(Drivers, DrivenTravelAndDrivenLoadGiveTheSameStates) {
     const Scene s = with_jack(support::scene("chrono_mcpherson"));
     for (const double to : {0.08, -0.08}) {
         const OneWay travel = driven(s, {motion_of(s, "jack", 1)}, to);
@@ -253,7 +254,7 @@ TEST_P(Drivers, TravelAndLoadMeetAtTheSameStates) {
 // ---- Elements. That the work of a driver is the energy stored: tests/compare/virtual_work_test.cpp.
 
 // Two springs in line under a weight: k₁ (z - a) + k₂ z = -W.
-TEST_P(Drivers, AFreeLengthShiftsABlockByItsShareOfTheRates) {
+TEST_P(Drivers, DrivenFreeLengthShiftsABlockByTheRatioOfTheRates) {
     const double k_1 = 30e3, k_2 = 12e3, W = 500, start = 0.01, rate = 2;
     Scene s = block({});
     s.elastics = {{"lower", AxialSpring{{ground, -0.3 * Z}, {0}, LinearRate{k_1}, 0.3}},
@@ -307,7 +308,7 @@ TEST_P(Drivers, AHeldRackIsGround) {
 
 // The rack follows its drive at every held height of the wheel; its force is the tie rod's
 // component along it.
-TEST_P(Drivers, ARackSweepAtEachOfThreeHeights) {
+TEST_P(Drivers, RackSweepAgreesAtThreeHeldHeights) {
     const Scene s = with_jack(with_rack(support::scene("chrono_mcpherson")));
     const auto& tie = std::get<Distance>(s.joints[2].kind);
     for (const double height : {-0.05, 0., 0.05})
@@ -379,7 +380,7 @@ TEST_P(Drivers, DriversOfOneJointAddUp) {
 // ---- Judgements and failures.
 
 // The sine of an angle is zero in the opposite direction too; the residuals tell them apart.
-TEST_P(Drivers, AnOppositeDirectionIsNotTheAngle) {
+TEST_P(Drivers, OppositeDirectionDoesNotSatisfyAnAngle) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "its residuals do not tell them apart";
     const SliderCrank crank{.e = 0};
     const OneWay side = crank.turned(1);
@@ -391,8 +392,8 @@ TEST_P(Drivers, AnOppositeDirectionIsNotTheAngle) {
     EXPECT_GE(left.direction, 1);
 }
 
-// A rod that is too short to close over the full turn, and a state that is out of reach from the
-// start.
+// A rod that is too short to close over the full turn, and a state that is out of reach
+// from the start.
 TEST_P(Drivers, JointsThatCannotBeClosedEndTheBranch) {
     SliderCrank crank{.l = 0.03};
     Scene s = crank.scene();
@@ -412,7 +413,7 @@ TEST_P(Drivers, JointsThatCannotBeClosedEndTheBranch) {
     EXPECT_TRUE(held.points.empty());
 }
 
-TEST_P(Drivers, DrivingWhatAnotherJointHoldsIsAContradiction) {
+TEST_P(Drivers, DrivingACoordinateHeldByAnotherJointIsInconsistent) {
     const SliderCrank crank;
     Scene s = crank.scene();
     s.joints.push_back({"lock", Distance{{0, crank.r * X}, {ground, {crank.r, -0.1, 0}}, 0.1}});
@@ -446,7 +447,7 @@ TEST_P(Drivers, ALengthDrivenBelowZeroOrOutOfReachIsInconsistent) {
     EXPECT_TRUE(contains(negative.detail, "'rod'")) << negative.detail;
 }
 
-TEST_P(Drivers, AModelThatDoesNotFitTheBranchIsMisuse) {
+TEST_P(Drivers, BranchOfAnotherModelIsRejected) {
     Scene s = with_jack(support::scene("chrono_mcpherson"));
     s.branches.push_back(branch_of({motion_of(s, "jack", 1)}, 0.1, ParameterUnit::metre));
     const Model with = compile(s), plain = compile(support::scene("chrono_mcpherson"));
@@ -468,7 +469,7 @@ TEST_P(Drivers, AModelThatDoesNotFitTheBranchIsMisuse) {
     }
 }
 
-TEST_P(Drivers, ADriverThatIsNotFiniteNeverConverges) {
+TEST_P(Drivers, NonFiniteDriverNeverConverges) {
     const Scene strut = with_jack(support::scene("chrono_mcpherson"));
     for (const double bad : {std::nan(""), double(INFINITY)}) {
         const Driver drivers[] = {

@@ -259,7 +259,7 @@ TEST_P(Elements, ForceOfABushingIsTheNegativeGradientOfItsEnergy) {
             }
 }
 
-TEST_P(Elements, ForcesWithoutEnergyAreAsStated) {
+TEST_P(Elements, NonconservativeForcesEqualTheirDefinition) {
     if (leg().needs_energy()) GTEST_SKIP() << "no energy";
     Random random;
     for (const Angles angles : {Angles::rotation_vector, Angles::cardan, Angles::projected})
@@ -293,7 +293,7 @@ TEST_P(Elements, ForcesWithoutEnergyAreAsStated) {
 
 // B = R_x(0.2) R_y(0.3) by hand: z of j in the axes of i is (sin 0.3, -sin 0.2 cos 0.3, cos 0.2
 // cos 0.3), x of j is (cos 0.3, sin 0.2 sin 0.3, -cos 0.2 sin 0.3).
-TEST_P(Elements, TheCommercialLawIsItsFormula) {
+TEST_P(Elements, ProjectedAngleBushingEqualsItsFormula) {
     if (leg().needs_energy()) GTEST_SKIP() << "no energy";
     Bushing b = bushing({0, 0.1 * X}, {1}, {1e5, 2e5, 3e5}, {100, 200, 300});
     b.preload << 10, 20, 30, 1, 2, 3;
@@ -310,7 +310,7 @@ TEST_P(Elements, TheCommercialLawIsItsFormula) {
 }
 
 // A bushing that is drawn deformed settles where its force is zero.
-TEST_P(Elements, ABushingSettlesToItsUndeformedOffset) {
+TEST_P(Elements, BushingSettlesToItsUndeformedOffset) {
     for (const Frame frame : {Frame::on_i, Frame::middle}) {
         Scene s;
         s.bodies = {{"body", {}}};

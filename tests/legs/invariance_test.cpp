@@ -113,8 +113,8 @@ class Invariance : public testing::TestWithParam<LegAndMethod> {
         }
     }
 
-    // Outputs rotate with the frame: displacements and reactions are rotated back and compared as
-    // vectors.
+    // Outputs rotate with the frame: displacements and reactions are rotated back and
+    // compared as vectors.
     void expect_moved(const Scene& scene, const Eigen::Quaterniond& R, const Vector3d& t,
                       double bound) {
         const Model a = compile(scene), b = compile(support::moved(scene, R, t));
@@ -150,16 +150,16 @@ class Invariance : public testing::TestWithParam<LegAndMethod> {
 const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
 double unchanged(const Channel&) { return 1; }
 
-TEST_P(Invariance, OfTheOrderOfBodiesAndJoints) {
+TEST_P(Invariance, OrderOfBodiesAndJointsDoesNotMatter) {
     for (const Scene& scene : scenes()) expect_same(scene, support::reversed(scene), unchanged);
 }
 
-TEST_P(Invariance, OfTheAxesInWhichABodyIsDescribed) {
+TEST_P(Invariance, AxesOfTheBodyFrameDoNotMatter) {
     for (const Scene& scene : scenes())
         expect_same(scene, support::with_body_axes(scene, {R, R.conjugate()}), unchanged);
 }
 
-TEST_P(Invariance, OfTheSideOfTheVehicle) {
+TEST_P(Invariance, MirroredSceneGivesTheMirroredStates) {
     for (const Scene& scene : scenes())
         expect_same(scene, support::mirrored(scene), [](const Channel& channel) {
             const bool moment = channel.name.find(".moment") != channel.name.npos;
@@ -169,13 +169,13 @@ TEST_P(Invariance, OfTheSideOfTheVehicle) {
         });
 }
 
-TEST_P(Invariance, OfTheGroundFrame) {
+TEST_P(Invariance, GroundFrameDoesNotMatter) {
     for (const Scene& scene : scenes()) expect_moved(scene, R, {3, -2, 1}, bound());
 }
 
 // A double resolves 2e-12 m at 10 km and 9e-10 m at 7000 km. The recursion, which moves the origin to the
 // model, is the same to some dozens of these.
-TEST_P(Invariance, OfTheDistanceFromTheOrigin) {
+TEST_P(Invariance, DistanceFromTheOriginDoesNotMatter) {
     for (const char* name : {"four_bar", "chrono_mcpherson_preload"})
         for (const double far : {1e4, 7e6}) {
             if (far > 1e6 && GetParam().leg != Leg::recursive) continue;
@@ -185,7 +185,7 @@ TEST_P(Invariance, OfTheDistanceFromTheOrigin) {
 }
 
 // The tolerance of the series is a length in metres, and its truncation error with it.
-TEST_P(Invariance, OfTheUnitsOfLengthAndForce) {
+TEST_P(Invariance, UnitsOfLengthAndForceDoNotMatter) {
     const double wider = GetParam().leg == Leg::recursive ? 10 : 1;
     for (const Scene& scene : scenes())
         for (const auto& [length, force] : {std::pair{1e3, 1e-3}, {1 / 39.37, 1.}}) {
@@ -200,7 +200,7 @@ TEST_P(Invariance, OfTheUnitsOfLengthAndForce) {
 }
 
 // An exact leg reaches the same end in any number of steps, and every leg the same bits again.
-TEST_P(Invariance, OfTheNumberOfPointsAndOfTheRun) {
+TEST_P(Invariance, NumberOfPointsAndRepetitionDoNotMatter) {
     for (const Scene& scene : {support::rich_scene(), driven_scene()}) {
         const Model model = compile(scene);
         const auto list = channels(model);

@@ -65,7 +65,7 @@ Response linear_response(const Leg& leg, const OneWay& side, const Equilibrium& 
 }
 
 OneWay side_of(const Model& model, std::size_t n) {
-    const Branch side = ways(model.branches.at(n)).back();
+    const Branch side = branch_sides(model.branches.at(n)).back();
     return {on_branch(model, side), side};
 }
 OneWay side_of(const Scene& scene, std::size_t n) { return side_of(compile(scene), n); }

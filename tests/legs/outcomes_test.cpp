@@ -41,7 +41,7 @@ struct Arch {
     }
 };
 
-TEST_P(Outcomes, AnArchEndsAtItsLimitPointInAnyNumberOfSteps) {
+TEST_P(Outcomes, ArchEndsAtItsLimitPointInAnyNumberOfSteps) {
     EXPECT_NEAR(Arch{}.limit(), -211.5166, 1e-4);
     for (const double h : {0.08, 0.005}) {
         const Arch arch{.h = h};
@@ -84,7 +84,7 @@ TEST_P(Outcomes, AnArchIsFollowedToItsLimitPoint) {
 }
 
 // A long soft spring pulls the apex down by 150 or 300 N before the branch starts.
-TEST_P(Outcomes, APreloadBeyondTheLimitPointIsNotSettled) {
+TEST_P(Outcomes, PreloadBeyondTheLimitPointDoesNotSettle) {
     for (const double pull : {150.0, 300.0}) {
         Scene scene = Arch{}.scene();
         scene.elastics.push_back(
@@ -104,7 +104,7 @@ TEST_P(Outcomes, APreloadBeyondTheLimitPointIsNotSettled) {
 // ---- Settling.
 
 // A pendulum settles hanging down from every design position, also from above its hinge.
-TEST_P(Outcomes, APendulumSettlesWhereverItIsDrawn) {
+TEST_P(Outcomes, PendulumSettlesFromAnyDesignAngle) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion starts where it is drawn";
     for (const double angle : {-1.4, -0.5, 0.0, 0.6, 1.5, 1.9}) {  // [rad] from straight down
         Scene s;
@@ -121,7 +121,7 @@ TEST_P(Outcomes, APendulumSettlesWhereverItIsDrawn) {
 }
 
 // Forward, back and to the other side, in one list.
-TEST_P(Outcomes, ABranchMayBeVisitedInAnyOrder) {
+TEST_P(Outcomes, PointsOfABranchMayBeRequestedInAnyOrder) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion has no list of points";
     const OneWay side = side_of(support::scene("chrono_mcpherson"));
     const double loads[] = {0, 1000, 1000, 3000, 0, -3000, 500, 2000};
@@ -138,7 +138,7 @@ TEST_P(Outcomes, ABranchMayBeVisitedInAnyOrder) {
 
 // θ = M / k ends at half a turn, where the rotation vector is undefined; Cardan angles end at a
 // quarter turn. The branch ends there and never continues with the opposite angle.
-TEST_P(Outcomes, ABushingAtTheEndOfItsAnglesEndsTheBranch) {
+TEST_P(Outcomes, BranchEndsWhereBushingAnglesAreUndefined) {
     const double k = 100;
     for (const auto& [angles, end] : {std::pair{Formulation::Angles::rotation_vector, M_PI},
                                       {Formulation::Angles::cardan, M_PI / 2}}) {
@@ -163,7 +163,7 @@ TEST_P(Outcomes, ABushingAtTheEndOfItsAnglesEndsTheBranch) {
     }
 }
 
-TEST_P(Outcomes, ABushingDrawnHalfATurnRoundIsDeclined) {
+TEST_P(Outcomes, BushingRotatedByHalfATurnInTheDesignPositionIsRejected) {
     if (!leg().exact()) GTEST_SKIP() << "adaptive steps follow it from 1e-9 rad on";
     for (const double short_of : {0.0, 1e-15, 1e-9}) {
         Scene s = support::scene("pendulum");
@@ -177,7 +177,7 @@ TEST_P(Outcomes, ABushingDrawnHalfATurnRoundIsDeclined) {
 }
 
 // A spring of no length has no direction; a branch through that point ends for any range.
-TEST_P(EveryMethod, ASpringOfNoLengthEndsTheBranch) {
+TEST_P(EveryMethod, SpringOfZeroLengthEndsTheBranch) {
     Scene s = support::scene("two_spring_arch");
     std::get<AxialSpring>(s.elastics[0].kind).j.s_local = 0.08 * Z;
     EXPECT_NE(solve(leg(), side_of(s), 40).outcome, Outcome::converged);
@@ -188,7 +188,7 @@ TEST_P(EveryMethod, ASpringOfNoLengthEndsTheBranch) {
 
 // ---- Idle modes.
 
-TEST_P(EveryMethod, ALoadOnAnIdleModeIsNamed) {
+TEST_P(EveryMethod, LoadOnAnIdleModeIsReported) {
     Scene strut = support::scene("chrono_mcpherson");
     for (const double moment : {1., 1e-3}) {
         strut.branches = {load_branch(DeadMoment{2, {0.04 * moment, 0.07 * moment, -moment}}, 10)};
@@ -215,7 +215,7 @@ TEST_P(EveryMethod, ALoadOnAnIdleModeIsNamed) {
 
 // A bar on a cylindrical guide and a bushing without a rate about it: a preload about the guide,
 // as drawn or driven, has no equilibrium; about another axis the guide carries it.
-TEST_P(EveryMethod, APreloadOnAnIdleModeIsAnError) {
+TEST_P(EveryMethod, PreloadOnAnIdleModeIsReported) {
     Scene s = hinged_bar(X, X, 0);
     s.joints = {{"guide", Cylindrical{{0}, {ground}, {0, X}, ground_x}}};
     s.elastics = {{"k", bushing({0}, {ground}, Vector3d::Constant(1000), {0, 10, 10})}};
@@ -234,7 +234,7 @@ TEST_P(EveryMethod, APreloadOnAnIdleModeIsAnError) {
 }
 
 // The same bar on a spring: its free spin changes nothing.
-TEST_P(EveryMethod, AnIdleModeWithoutALoadChangesNothing) {
+TEST_P(EveryMethod, UnloadedIdleModeDoesNotChangeTheResult) {
     Scene s = hinged_bar(X, X, 0);
     s.elastics = {{"spring", AxialSpring{{0}, {ground, X}, LinearRate{1000}, 1}}};
     s.branches = {load_branch(DeadForce{{0, X}, X}, 100)};
@@ -250,7 +250,7 @@ TEST_P(EveryMethod, AnIdleModeWithoutALoadChangesNothing) {
 
 // ---- Redundant and inconsistent joints.
 
-TEST_P(EveryMethod, RedundantJointsThatAgreeChangeNothing) {
+TEST_P(EveryMethod, ConsistentRedundantJointsDoNotChangeTheResult) {
     Scene once = support::scene("pinned_bar"), twice = once;
     twice.joints.push_back(
         {"second hinge", Revolute{{0, 0.7 * Y}, {ground, 0.7 * Y}, {0, Y}, ground_y}});
@@ -260,7 +260,7 @@ TEST_P(EveryMethod, RedundantJointsThatAgreeChangeNothing) {
 }
 
 // Every joint of the strut twice: reactions of minimum norm share the load equally.
-TEST_P(Outcomes, EveryJointTwiceSharesTheReactions) {
+TEST_P(Outcomes, DuplicatedJointsShareTheReactions) {
     const Scene plain = support::scene("chrono_mcpherson");
     Scene doubled = plain;
     for (const auto& joint : plain.joints)
@@ -280,7 +280,7 @@ TEST_P(Outcomes, EveryJointTwiceSharesTheReactions) {
 }
 
 // Two bars of different length between the same points, and a bar that cannot reach.
-TEST_P(EveryMethod, JointsThatContradictEachOtherAreNamed) {
+TEST_P(EveryMethod, InconsistentJointsAreReported) {
     for (const double error : {0.1, 1e-3, 1e-6}) {
         Scene s = support::scene("parallel_springs");
         for (const double length : {0.3, 0.3 + error})
@@ -305,7 +305,7 @@ TEST_P(EveryMethod, JointsThatContradictEachOtherAreNamed) {
 
 // ---- Values that are not finite.
 
-TEST_P(EveryMethod, ANumberThatIsNotFiniteNeverConverges) {
+TEST_P(EveryMethod, NonFiniteInputNeverConverges) {
     using Spoil = std::function<void(Scene&, double)>;
     const auto load_of = [](Scene& s) -> DeadForce& {
         return std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind);
@@ -370,7 +370,7 @@ TEST_P(Outcomes, ExtremeRatesGiveAnEquilibriumOrAReportedFailure) {
 }
 
 // Two hinges whose axes meet at 1e-6 rad allow no motion and are not redundant.
-TEST_P(Outcomes, HingesWhoseAxesMeetAtAMillionthOfARadianHold) {
+TEST_P(Outcomes, HingesWithAxesAMillionthOfARadianApartConstrainTheBody) {
     const auto file =
         std::filesystem::path(ELASTOCHECK_SCENES).parent_path() / "extremes" / "two_hinges.yaml";
     const auto opened = [&](const char* skew) {  // [mm] in 1000
@@ -390,7 +390,7 @@ TEST_P(Outcomes, HingesWhoseAxesMeetAtAMillionthOfARadianHold) {
     EXPECT_FALSE(beyond.detail.empty());
 }
 
-TEST_P(EveryMethod, NothingToSolveIsSolved) {
+TEST_P(EveryMethod, SceneWithoutUnknownsConverges) {
     if (leg().kind != Leg::recursive) {
         Model model;
         EXPECT_EQ(solved(leg(), {model, branch_of({}, 1)}, 1).points.size(), 2u);
@@ -428,7 +428,7 @@ OneWay shortened_rod(double by) {
 }
 
 // Φ of a length is also zero where the length is negative: on the mirrored side.
-TEST_P(EveryMethod, ALengthThatVanishesEndsTheBranch) {
+TEST_P(EveryMethod, DrivenLengthThatVanishesEndsTheBranch) {
     for (const double by : {0.11, 0.15, 0.21, 0.5})
         for (const int steps : {1, 10, 20}) {
             const auto path = solve(leg(), shortened_rod(by), steps);
@@ -440,7 +440,7 @@ TEST_P(EveryMethod, ALengthThatVanishesEndsTheBranch) {
     EXPECT_EQ(solve(leg(), shortened_rod(0.09), 60).outcome, Outcome::converged);
 }
 
-TEST_P(EveryMethod, AStateOnTheMirroredSideHasAResidual) {
+TEST_P(EveryMethod, MirroredStateHasAResidual) {
     const OneWay side = shortened_rod(0.15);
     Equilibrium mirrored = solve({Leg::equilibrium}, shortened_rod(0.05), 1).points.back();
     mirrored.load = -0.15;
@@ -450,7 +450,7 @@ TEST_P(EveryMethod, AStateOnTheMirroredSideHasAResidual) {
 }
 
 // The force of a spring jumps where its length is zero: 500 N at the end.
-TEST_P(Outcomes, ASpringThroughZeroLengthIsFollowedOrReported) {
+TEST_P(Outcomes, SpringThroughZeroLengthIsFollowedOrReported) {
     const OneWay side = found("spring-through-zero-length");
     for (const int steps : {1, 2, 7, 40}) {
         const auto path = solve(leg(), side, steps);
@@ -466,13 +466,13 @@ TEST_P(Outcomes, ASpringThroughZeroLengthIsFollowedOrReported) {
 }
 
 // Of two settled states one is unstable under the static moments.
-TEST_P(Outcomes, TheStableOfTwoSettledStatesIsFound) {
+TEST_P(Outcomes, StableOneOfTwoSettledStatesIsFound) {
     const auto path = solve(leg(), found("two-settled-states"), 20);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     EXPECT_NEAR(path.points.back().poses[0].r.x(), -0.4106611, 1e-6);
 }
 
-TEST_P(Outcomes, SmallForcesAndSeveralKnotsAtTheStartAreNoEnd) {
+TEST_P(Outcomes, SeveralKnotsAtTheStartDoNotEndTheBranch) {
     for (const char* name : {"tiny-forces", "knots-at-the-start"}) {
         const auto path = solve(leg(), found(name), 20);
         EXPECT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
@@ -481,7 +481,7 @@ TEST_P(Outcomes, SmallForcesAndSeveralKnotsAtTheStartAreNoEnd) {
 
 // The load is perpendicular to a direction fifteen decades softer than others to nine digits: the
 // rest moves the tip by 2.8e-7 m.
-TEST_P(Outcomes, AMotionFarSofterThanOthersIsFollowedOrReported) {
+TEST_P(Outcomes, MuchSofterMotionIsFollowedOrReported) {
     const auto path = solve(leg(), found("soft-beside-stiff"), 4);
     if (path.outcome == Outcome::converged) {
         EXPECT_NEAR(path.points.back().poses[0].r.norm(), 2.838e-7, 1e-9);

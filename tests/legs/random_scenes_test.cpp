@@ -39,7 +39,7 @@ std::vector<std::pair<std::uint64_t, OneWay>> random_sides(std::uint64_t count) 
 struct RandomMechanisms : LegTest {};
 ELASTOCHECK_FOR(accurate_legs, RandomMechanisms);
 
-TEST_P(RandomMechanisms, EndAlikeInOneStepAndInTwenty) {
+TEST_P(RandomMechanisms, OutcomeDoesNotDependOnTheNumberOfSteps) {
     int solved = 0;
     for (const auto& [seed, side] : random_sides(150)) {
         const auto fine = solve(leg(), side, 20);

@@ -24,7 +24,7 @@ Scene swapped_joint(Scene s, std::size_t j) {
 
 // A turned block welded to ground carries a force at p and a moment: the weld exerts the opposite
 // of both, about its own point, on its body i, which may be the block or ground.
-TEST_P(Reactions, AWeldExertsTheOppositeForceAndMoment) {
+TEST_P(Reactions, WeldExertsTheOppositeForceAndMoment) {
     Random random;
     for (int trial = 0; trial < 4; ++trial) {
         const Vector3d r(1, 2, 3), weld(0.2, -0.1, 0.4), p(-0.3, 0.5, 0.1), f(100, -200, 300),
@@ -51,7 +51,7 @@ TEST_P(Reactions, AWeldExertsTheOppositeForceAndMoment) {
 }
 
 // A bracket welded to a block on a bushing: the wrench is about the displaced weld.
-TEST_P(Reactions, AWeldOnABodyThatMovesActsWhereItIsNow) {
+TEST_P(Reactions, WeldOnAMovingBodyActsAtItsPresentPosition) {
     const Vector3d at(0.2, 0.1, 0), p(0.3, -0.2, 0.3), f = 400 * Vector3d(0.36, 0.48, 0.8);
     Scene s;
     s.bodies = {{"block", {}}, {"bracket", {0.2 * X}}};
@@ -68,7 +68,7 @@ TEST_P(Reactions, AWeldOnABodyThatMovesActsWhereItIsNow) {
 
 // A jib hinged at the origin about y, held at 2 m by a stay to a point 1.5 m above the hinge, loaded
 // at 3 m: the stay by Σ M_y = 0, the hinge by Σ F = 0.
-TEST_P(Reactions, OfACraneFollowFromStatics) {
+TEST_P(Reactions, CraneReactionsFollowFromStatics) {
     const Vector3d foot(2, 0, 0), head(0, 0, 1.5), hook(3, 0.4, 0);
     Scene s = hinged_bar(hook, Y, 0);
     s.elastics.clear();
@@ -91,7 +91,7 @@ TEST_P(Reactions, OfACraneFollowFromStatics) {
 
 // The pin of the pinned bar carries the bushing's force, k times the tip's displacement, and the
 // load; the guide of the plate the moment of an eccentric load, whose force the springs carry.
-TEST_P(Reactions, OfThePinnedBarAndOfAGuideCarryTheRest) {
+TEST_P(Reactions, PinnedBarAndGuideCarryTheRemainingLoad) {
     const Scene bar = support::scene("pinned_bar");
     for (const double sign : {1., -1.})
         for (const auto& state :
@@ -117,7 +117,7 @@ TEST_P(Reactions, OfThePinnedBarAndOfAGuideCarryTheRest) {
 
 // Every kind of joint between two bodies on bushings, in both orders: in balance, with wrenches that
 // it can transmit, as judged by the leg's residuals in solved().
-TEST_P(Reactions, OfEveryKindOfJointAreInBalance) {
+TEST_P(Reactions, EveryKindOfJointIsInBalance) {
     Random random;
     const Vector3d at(0.2, 0.1, -0.1), far(0.35, 0.2, 0.15);
     for (const bool swapped : {false, true}) {
@@ -164,7 +164,7 @@ TEST_P(Reactions, OfEveryKindOfJointAreInBalance) {
 
 // Free-body diagram of the McPherson wheel: four joints, the coil and the load; and members carry
 // only what their kind can.
-TEST_P(Reactions, OfTheMcPhersonWheelAreInBalance) {
+TEST_P(Reactions, McPhersonWheelIsInBalance) {
     const Scene scene = support::scene("chrono_mcpherson");
     const auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);
     for (std::size_t n = 0; n < scene.branches.size(); ++n) {
@@ -229,13 +229,13 @@ struct Residual : LegTest {
 };
 ELASTOCHECK_FOR(exact_legs, Residual);
 
-TEST_P(Residual, OfAnEquilibriumIsRounding) {
+TEST_P(Residual, EquilibriumHasAResidualOfRounding) {
     const Residuals r = judged([](Equilibrium&) {});
     EXPECT_LE(std::max(r.length, r.direction), 1e-14);
     EXPECT_LE(std::max(r.force, r.moment), 1e-8);
 }
 
-TEST_P(Residual, ShowsAMicronewtonOfAWrongLoad) {
+TEST_P(Residual, WrongLoadOfAMicronewtonIsVisible) {
     OneWay pair = side_of(support::scene("bushing_pair"));
     Equilibrium at = solved(leg(), pair, 1).points.back();
     at.load += 1e-6;
@@ -244,7 +244,7 @@ TEST_P(Residual, ShowsAMicronewtonOfAWrongLoad) {
               10 * judged([](Equilibrium&) {}).force);
 }
 
-TEST_P(Residual, ShowsEveryMisplacedBody) {
+TEST_P(Residual, EveryMisplacedBodyIsVisible) {
     for (std::size_t b = 0; b < side.model.bodies.size(); ++b) {
         const Residuals shifted = judged([&](Equilibrium& s) { s.poses[b].r[0] += 1e-6; });
         EXPECT_TRUE(shifted.length > 1e-8 || shifted.force > 1e-3) << b;
@@ -256,7 +256,7 @@ TEST_P(Residual, ShowsEveryMisplacedBody) {
     EXPECT_NEAR(judged([](Equilibrium& s) { s.poses[0].r.y() += 1e-6; }).length, 1e-6, 1e-12);
 }
 
-TEST_P(Residual, ShowsEveryWrongReaction) {
+TEST_P(Residual, EveryWrongReactionIsVisible) {
     if (!reads_reactions()) GTEST_SKIP();
     for (std::size_t n = 0; n < side.model.joints.size(); ++n)
         for (int k = 0; k < 3; ++k) {
@@ -269,7 +269,7 @@ TEST_P(Residual, ShowsEveryWrongReaction) {
 
 // Two joints between one body and ground can exchange a moment without an imbalance; a ball joint
 // and the axis of a hinge cannot carry it.
-TEST_P(Residual, ShowsAWrenchThatTheJointCannotTransmit) {
+TEST_P(Residual, WrenchThatAJointCannotTransmitIsVisible) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion does not judge this";
     if (!reads_reactions()) GTEST_SKIP();
     Scene s = hinged_bar(0.5 * X, Y, 100);
@@ -288,7 +288,7 @@ TEST_P(Residual, ShowsAWrenchThatTheJointCannotTransmit) {
     }
 }
 
-TEST_P(Residual, ReadsAQuaternionWithEitherSignAndNoneOffTheUnitSphere) {
+TEST_P(Residual, QuaternionSignDoesNotMatterAndANonUnitOneIsVisible) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion does not judge this";
     EXPECT_NEAR(judged([](Equilibrium& s) { s.poses[1].p.coeffs() *= 1.001; }).direction, 1e-3,
                 2e-6);
@@ -298,7 +298,7 @@ TEST_P(Residual, ReadsAQuaternionWithEitherSignAndNoneOffTheUnitSphere) {
     EXPECT_LE(r.force, 2e-8);
 }
 
-TEST_P(Residual, NeverPassesAStateThatIsNotFiniteOrNotOfTheModel) {
+TEST_P(Residual, NonFiniteOrForeignStateNeverPasses) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion does not judge this";
     EXPECT_TRUE(finite(judged([](Equilibrium&) {})));
     for (const double bad : {std::nan(""), double(INFINITY)}) {

@@ -31,7 +31,7 @@ OneWay way_of(const char* scene, const char* branch, double to) {
     return support::way_of(support::scene(scene), branch, to);
 }
 
-TEST_P(LinearResponse, IsTheSlopeOfTheLegsOwnSolutionFarFromTheDesignPosition) {
+TEST_P(LinearResponse, EqualsTheDerivativeOfTheLegsSolutionFarFromDesign) {
     const struct {
         const char *scene, *branch;
         double to;
@@ -48,7 +48,7 @@ TEST_P(LinearResponse, IsTheSlopeOfTheLegsOwnSolutionFarFromTheDesignPosition) {
     }
 }
 
-TEST_P(LinearResponse, IsTheSlopeOverADrivenOffset) {
+TEST_P(LinearResponse, EqualsTheDerivativeByADrivenOffset) {
     const char* all[][2] = {{"double_wishbone", "steering"},
                             {"semi_trailing_arm", "travel"},
                             {"front_axle", "parallel"}};
@@ -64,7 +64,7 @@ TEST_P(LinearResponse, IsTheSlopeOverADrivenOffset) {
 
 // Dead moments have no potential where bodies rotate; followers and formulations without energy
 // have none at all.
-TEST_P(LinearResponse, IsTheSlopeWhereForcesHaveNoPotential) {
+TEST_P(LinearResponse, EqualsTheDerivativeUnderNonconservativeForces) {
     Scene twisted = support::scene("single_bushing");
     twisted.branches = {load_branch(DeadMoment{0, {200, -150, 120}}, 1)};
     for (int k = 0; k < 3; ++k)
@@ -91,29 +91,29 @@ TEST_P(LinearResponse, IsTheSlopeWhereForcesHaveNoPotential) {
 
 // tan θ = F/(k L); stiffness V'' = k L² cos θ + F L sin θ = k L² / cos θ. A force acts by its
 // moment about the pin.
-TEST_P(LinearResponse, OfThePinnedBar) {
+TEST_P(LinearResponse, PinnedBarEqualsItsClosedForm) {
     const OneWay side = way_of("pinned_bar", "up", 1);
     const double k = 20e3, L = 0.5, theta = std::atan(side.branch.to / (k * L));
     const Vector3d tip = L * Vector3d(std::cos(theta), 0, std::sin(theta)), f(0.7, -2, 1.3),
                    m(4, -3, 1);
     VectorXd expected = VectorXd::Zero(6);
     expected[4] = (tip.cross(f) + m).y() * std::cos(theta) / (k * L * L);
-    EXPECT_LE(apart(one(side, end_of(side), UnitWrench{{0, {L, 0, 0}}, f, m}), expected), 1e-11);
+    EXPECT_LE(distance(one(side, end_of(side), UnitWrench{{0, {L, 0, 0}}, f, m}), expected), 1e-11);
 }
 
 // At rest: dr of the mount's centre is f/k, dπ = (s × f + m)/k_R.
-TEST_P(LinearResponse, OfABushingAtAnOffset) {
+TEST_P(LinearResponse, OffsetBushingEqualsItsClosedForm) {
     const OneWay side = way_of("single_bushing", "pull", 1);
     const Equilibrium state{0, {side.model.bodies[0].design}, {}, 0};
     const Vector3d s(0.2, -0.1, 0.3), f(0.7, -2, 1.3), m(0.4, -0.3, 0.1);
     VectorXd expected(6);
     expected << f.cwiseQuotient(Vector3d(2e5, 3e5, 5e5)),
         (s.cross(f) + m).cwiseQuotient(Vector3d(400, 500, 700));
-    EXPECT_LE(apart(one(side, state, UnitWrench{{0, s}, f, m}), expected), 1e-13);
+    EXPECT_LE(distance(one(side, state, UnitWrench{{0, s}, f, m}), expected), 1e-13);
 }
 
 // θ in the plane of the bar: V'' = k_R + F L sin θ at k_R θ = F L cos θ.
-TEST_P(LinearResponse, OfThePendulum) {
+TEST_P(LinearResponse, PendulumEqualsItsClosedForm) {
     const OneWay side = way_of("pendulum", "up", 1);
     const double k_R = 600, L = 0.4, F = side.branch.to;
     double theta = 0.5;
@@ -123,11 +123,11 @@ TEST_P(LinearResponse, OfThePendulum) {
     const Vector3d along(0.8, 0.6, 0);
     VectorXd expected(6);
     expected << turn * L * (-std::sin(theta) * along + std::cos(theta) * Z), turn * along.cross(Z);
-    EXPECT_LE(apart(one(side, end_of(side), UnitWrench{{0}, Z}), expected), 1e-11);
+    EXPECT_LE(distance(one(side, end_of(side), UnitWrench{{0}, Z}), expected), 1e-11);
 }
 
 // A slider between a spring along its guide and a taut one across it: its stiffness is k + T/l.
-TEST_P(LinearResponse, ATautSpringIsStiffAcross) {
+TEST_P(LinearResponse, TautSpringHasLateralStiffness) {
     const double k = 2000, l = 0.25, T = 900, rate = 5e4;
     Scene s;
     s.bodies = {{"slider", {}}};
@@ -143,7 +143,7 @@ TEST_P(LinearResponse, ATautSpringIsStiffAcross) {
 
 // Both ends of the coupler have equal velocity along it: ω c·e = a·e, with a and c the velocities
 // of B and C at unit rates.
-TEST_P(LinearResponse, OfAFourBarsCrank) {
+TEST_P(LinearResponse, FourBarCrankEqualsItsClosedForm) {
     const OneWay side = way_of("four_bar", "turn", 1);
     const auto path = solved(leg(), side, 9);
     for (const auto& state : path.points) {
@@ -153,8 +153,9 @@ TEST_P(LinearResponse, OfAFourBarsCrank) {
         VectorXd expected = VectorXd::Zero(12);
         expected[4] = 1;
         expected[10] = Y.cross(B).dot(C - B) / Y.cross(Vector3d(C - D)).dot(C - B);
-        EXPECT_LE(apart(one(side, state, std::get<Motion>(side.branch.drivers[0].what)), expected),
-                  1e-11)
+        EXPECT_LE(
+            distance(one(side, state, std::get<Motion>(side.branch.drivers[0].what)), expected),
+            1e-11)
             << state.load;
     }
 }
@@ -171,7 +172,7 @@ TEST_P(LinearResponse, ReadsOnlyThePosesAndTheParameterOfAState) {
     EXPECT_EQ(stacked(without.increments.at(0)), with);
 }
 
-TEST_P(LinearResponse, ALoadOnAnIdleModeIsRefusedAndNamed) {
+TEST_P(LinearResponse, LoadOnAnIdleModeIsReported) {
     const OneWay side = way_of("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(side);
     for (std::size_t b = 0; b < side.model.bodies.size(); ++b) {
@@ -185,7 +186,7 @@ TEST_P(LinearResponse, ALoadOnAnIdleModeIsRefusedAndNamed) {
     }
 }
 
-TEST_P(LinearResponse, ThereIsNoneAtALimitPoint) {
+TEST_P(LinearResponse, LimitPointHasNoResponse) {
     const OneWay side = way_of("two_spring_arch", "down", -1);
     const double b = 0.3, l_0 = std::hypot(b, 0.08), l = std::cbrt(l_0 * b * b),
                  z = std::sqrt(l * l - b * b);
@@ -196,7 +197,7 @@ TEST_P(LinearResponse, ThereIsNoneAtALimitPoint) {
     EXPECT_TRUE(response.increments.empty());
 }
 
-TEST_P(LinearResponse, AnOffsetThatASecondJointHoldsIsInconsistent) {
+TEST_P(LinearResponse, OffsetHeldByASecondJointIsInconsistent) {
     Scene s = hinged_bar(0.8 * X, Y, 0);
     s.elastics.clear();
     s.joints.push_back({"jack", InPlane{{0, {0.8, 0, 0}}, {ground}, ground_z}});
@@ -208,16 +209,16 @@ TEST_P(LinearResponse, AnOffsetThatASecondJointHoldsIsInconsistent) {
     EXPECT_TRUE(contains(response.detail, "moving 'jack'")) << response.detail;
 }
 
-TEST_P(LinearResponse, RedundantJointsThatAgreeChangeNothing) {
+TEST_P(LinearResponse, ConsistentRedundantJointsDoNotChangeIt) {
     Scene once = support::scene("pinned_bar"), twice = once;
     twice.joints.push_back(
         {"second hinge", Revolute{{0, 0.3 * Y}, {ground, 0.3 * Y}, {0, Y}, ground_y}});
     const Equilibrium state = end_of(side_of(once));
     const UnitWrench lift{{0, 0.8 * X}, {0.2, 1, 1}, {1, 2, 3}};
-    EXPECT_LE(apart(one(side_of(twice), state, lift), one(side_of(once), state, lift)), 1e-12);
+    EXPECT_LE(distance(one(side_of(twice), state, lift), one(side_of(once), state, lift)), 1e-12);
 }
 
-TEST_P(LinearResponse, WhatIsNotFiniteOrNotOfTheModelIsRefused) {
+TEST_P(LinearResponse, NonFiniteOrForeignInputIsRejected) {
     const OneWay side = way_of("double_wishbone", "vertical", 1);
     Equilibrium state = end_of(side);
     std::vector<Disturbance> wrong{UnitWrench{{ground}, X}, UnitWrench{{99}, X}, Motion{99},

@@ -66,23 +66,22 @@ Quaterniond turned(double angle, const Vector3d& axis) {
 Corner arm(const std::string& name, const Vector3d& pivot, const Vector3d& along,
            const Vector3d& spin) {
     const Vector3d a = along.normalized(), e = spin.normalized(), c(0, 0.75, 0);
-    return {
-        name,
-        fmt::format(
-            "points: {{pivot: {}, w: {}, p: [0, 0.75, -0.32]}}\n"
-            "bodies: {{arm: {{origin: w}}}}\n"
-            "joints: {{pivot: {{type: revolute, bodies: [arm, ground], at: pivot, axis: {}}}}}\n"
-            "wheel: {{body: arm, centre: w, contact_patch: p, spin_axis: {}, side: left, "
-            "contact: rolling}}\n",
-            list(pivot), list(c), list(a), list(e)),
-        c,
-        {0, 0.75, -0.32},
-        a,
-        [=](double alpha) {
-            const Quaterniond by = turned(alpha, a);
-            const Vector3d now = pivot + by * (c - pivot), e_now = by * e;
-            return Place{now, e_now, a.cross(now - pivot), a.cross(e_now), a};
-        }};
+    return {name,
+            fmt::format(
+                R"(points: {{pivot: {}, w: {}, p: [0, 0.75, -0.32]}}
+bodies: {{arm: {{origin: w}}}}
+joints: {{pivot: {{type: revolute, bodies: [arm, ground], at: pivot, axis: {}}}}}
+wheel: {{body: arm, centre: w, contact_patch: p, spin_axis: {}, side: left, contact: rolling}}
+)",
+                list(pivot), list(c), list(a), list(e)),
+            c,
+            {0, 0.75, -0.32},
+            a,
+            [=](double alpha) {
+                const Quaterniond by = turned(alpha, a);
+                const Vector3d now = pivot + by * (c - pivot), e_now = by * e;
+                return Place{now, e_now, a.cross(now - pivot), a.cross(e_now), a};
+            }};
 }
 
 // A four-bar linkage in the plane x = 0: a lower arm from A to B turned by α, a link of fixed length
@@ -93,14 +92,14 @@ Corner four_bar() {
     const auto angle = [](const Vector3d& v) { return std::atan2(v.z(), v.y()); };
     return {
         "four_bar",
-        fmt::format("points: {{A: {}, B: {}, C: {}, D: {}, w: {}, p: {}}}\n"
-                    "bodies: {{arm: {{origin: B}}, carrier: {{origin: w}}}}\n"
-                    "joints:\n"
-                    "  pivot: {{type: revolute, bodies: [arm, ground], at: A, axis: x}}\n"
-                    "  hinge: {{type: revolute, bodies: [carrier, arm], at: B, axis: x}}\n"
-                    "  link: {{type: distance, bodies: [carrier, ground], from: C, to: D}}\n"
-                    "wheel: {{body: carrier, centre: w, contact_patch: p, spin_axis: {}, "
-                    "side: left, contact: rolling}}\n",
+        fmt::format(R"(points: {{A: {}, B: {}, C: {}, D: {}, w: {}, p: {}}}
+bodies: {{arm: {{origin: B}}, carrier: {{origin: w}}}}
+joints:
+  pivot: {{type: revolute, bodies: [arm, ground], at: A, axis: x}}
+  hinge: {{type: revolute, bodies: [carrier, arm], at: B, axis: x}}
+  link: {{type: distance, bodies: [carrier, ground], from: C, to: D}}
+wheel: {{body: carrier, centre: w, contact_patch: p, spin_axis: {}, side: left, contact: rolling}}
+)",
                     list(A), list(B), list(C), list(D), list(c), list(patch), list(e)),
         c,
         patch,
@@ -156,7 +155,7 @@ struct RollingWheel : LegTest {
                 const std::function<double(double, double)>& effort = {}) const {
         const double M_0 = corner.free(0, weight * Z);
         const Model model = compile(scene_of(corner, branch));
-        for (const Branch& side : ways(model.branches[0])) {
+        for (const Branch& side : branch_sides(model.branches[0])) {
             const OneWay one{on_branch(model, side), side};
             Worst places, forces;
             for (const Equilibrium& state : solved(leg(), one, 20, 1e-6).points) {
@@ -194,7 +193,7 @@ TEST_P(RollingWheel, CarriesDeadForcesAtItsLowestPoint) {
                    [&](double F, double alpha) { return corner.free(alpha, weight * Z + F * f); });
 }
 
-TEST_P(RollingWheel, IsHeldToItsCarrierByTheBrake) {
+TEST_P(RollingWheel, BrakeHoldsItToItsCarrier) {
     for (const Corner& corner : corners())
         expect(corner, "{load: brake, from: -1500, to: 3000, steps: 40}",
                [&](double F, double alpha) {
@@ -219,7 +218,7 @@ TEST_P(RollingWheel, IsLiftedByAJackUnderItsLowestPoint) {
 }
 
 // Down to where the tyre leaves the road, and the corner hangs on its spring: α = -M_0 / k.
-TEST_P(RollingWheel, StandsOnATyreThatOnlyPushes) {
+TEST_P(RollingWheel, TyreUnderItOnlyPushes) {
     for (const Corner& corner : corners())
         expect(corner, "{drive: tyres.t.road, from: -0.25, to: 0.1, steps: 40}",
                [&](double h, double alpha) {

@@ -26,7 +26,8 @@ struct Stability : LegTest {
             long least = 0, most = 0;
             for (int k = 0; k <= steps; ++k) {
                 const double a = std::abs(side.branch.to * k / steps / at);
-                least += a < 1 - margin, most += a < 1 + margin;
+                least += a < 1 - margin;
+                most += a < 1 + margin;
             }
             const auto points = static_cast<long>(path.points.size());
             EXPECT_TRUE(least <= points && points <= most) << where << ": " << points;
@@ -73,7 +74,7 @@ struct Arch {
 
 // A mast on a ball joint, pressed from above by more than its rotational rates bear, on a carriage
 // that stays where it is, beside a block that a load moves: the mast falls, and is named.
-TEST_P(Stability, AnUnstableStartNamesTheBodyThatMovesInTheUnstableMode) {
+TEST_P(Stability, UnstableStartNamesTheBodyOfTheUnstableMode) {
     if (leg().kind == Leg::energy) GTEST_SKIP() << "says that there is no minimum, not where to";
     constexpr double rate = 100, height = 0.5;
     Scene s;
@@ -94,7 +95,7 @@ TEST_P(Stability, AnUnstableStartNamesTheBodyThatMovesInTheUnstableMode) {
         << path.detail;
 }
 
-TEST_P(Stability, AnUnstableStretchEndsTheBranchWhereverThePointsFall) {
+TEST_P(Stability, UnstableStretchEndsTheBranchForAnyOutputPoints) {
     const Arch arch;
     for (const double z_c : {0.05, 0.02, 0.0053, 0.0021}) {
         const auto what = fmt::format("|z| < {}", z_c);
@@ -105,7 +106,7 @@ TEST_P(Stability, AnUnstableStretchEndsTheBranchWhereverThePointsFall) {
     }
 }
 
-TEST_P(Stability, AnArchThatNeverLeavesItsPlaneGoesThrough) {
+TEST_P(Stability, ArchWithoutLateralBucklingIsPassed) {
     const Arch arch;
     for (const double part : {1.5, 1.05, 1.01, 1.002})
         for (const bool driven : {true, false})
@@ -156,7 +157,7 @@ ELASTOCHECK_FOR(legs_by_every_method, UnstableStretch);
 
 // Arches with unstable stretches of 0.2 to 20 % of the way, in 1 to 20 steps, adaptive in up to 80;
 // golden ratio fractions instead of random numbers.
-TEST_P(UnstableStretch, OfADrivenArchIsNotPassed) {
+TEST_P(UnstableStretch, DrivenArchEndsAtIt) {
     const auto share = [](int k, double by) { return std::fmod(by * k, 1.); };
     for (int k = 1; k <= 1025; ++k) {
         UnequalArch arch{0.2 + 0.2 * share(k, 0.618034), 0.02 + 0.1 * share(k, 0.754878), 0};
@@ -188,7 +189,7 @@ Scene pressed(Scene scene, double to) {
 
 // P = k_R / L. Free to lean in two planes with equal stiffness, both eigenvalues cross zero
 // together and the determinant keeps its sign.
-TEST_P(Stability, AStraightColumnEndsAtItsBucklingLoad) {
+TEST_P(Stability, StraightColumnEndsAtItsBucklingLoad) {
     for (const bool two_planes : {false, true})
         for (const double to : {2020., 3929.4, 60000.})
             expect_lost(pressed(column(1000, two_planes), to), 1000 / 0.5, fmt::format("{} N", to));
@@ -207,14 +208,14 @@ Scene two_bars(const LoadKind& load, double to) {
 }
 
 // c (2θ₁ - θ₂) = P L θ₁, c (θ₂ - θ₁) = P L θ₂, hence P L / c = (3 - √5) / 2; the second is 5236 N.
-TEST_P(Stability, AColumnOfTwoBarsEndsAtItsLowestBucklingLoad) {
+TEST_P(Stability, TwoBarColumnEndsAtItsLowestBucklingLoad) {
     for (const double to : {1969.1, 8000.})
         expect_lost(two_bars(DeadForce{{1, 0.5 * Z}, -Z}, to), 2000 * (3 - std::sqrt(5)) / 2);
 }
 
 // A force along the upper bar (Ziegler's column): det [2c - P L, -c + P L; -c, c] = c² at any load.
 // Where only part of the force follows, M = k - D L reaches zero under the dead weight D.
-TEST_P(Stability, AColumnUnderAFollowerForceNeverDiverges) {
+TEST_P(Stability, ColumnUnderAFollowerForceAloneHasNoDivergence) {
     if (leg().needs_energy()) GTEST_SKIP() << "a follower has no energy";
     expect_passed(two_bars(FollowerForce{{1, 0.5 * Z}, -Z}, 20e3));
     Scene s = pressed(column(1000), 3929.4);
@@ -222,7 +223,7 @@ TEST_P(Stability, AColumnUnderAFollowerForceNeverDiverges) {
     expect_lost(s, 2000, "beside a follower");
 }
 
-TEST_P(Stability, AnUnstableStartIsReported) {
+TEST_P(Stability, UnstableStartIsReported) {
     Scene s = column(1000);
     s.static_loads = {{"weight", DeadForce{{0, 0.5 * Z}, -2100 * Z}}};
     for (const double to : {500., -500.}) {
@@ -234,7 +235,7 @@ TEST_P(Stability, AnUnstableStartIsReported) {
 
 // A column on a ball joint beyond its buckling load with a lever of 1e-7 m, which alone determines
 // the direction of buckling.
-TEST_P(Stability, AMinuteLeverDeterminesTheDirectionOfBuckling) {
+TEST_P(Stability, MinuteOffsetDeterminesTheBucklingDirection) {
     Scene s = column(1000, true);
     s.branches = {load_branch(DeadForce{{0, {1e-7, 0, 0.5}}, -Z}, 6100)};
     const auto path = solve(leg(), side_of(s), 20);
@@ -253,7 +254,7 @@ TEST_P(Stability, AMinuteLeverDeterminesTheDirectionOfBuckling) {
 //
 // is its singularity: under compression, Euler's load for n elements; under tension, never below
 // N = k_y ℓ = 12 EI / ℓ², where the beam theory does not apply.
-TEST_P(Stability, AStraightChainEndsAtItsLoadInCompressionAndInTension) {
+TEST_P(Stability, StraightChainEndsAtItsCriticalLoadInCompressionAndTension) {
     constexpr double L = 1, EI = 100, EI_y = 400, GJ = 150, EA = 4e6;
     for (const int n : {1, 2, 4}) {
         const double l = L / n, k_x = EA / l, k_y = 12 * EI / (l * l * l), k_r = EI / l,
@@ -285,7 +286,7 @@ TEST_P(Stability, AStraightChainEndsAtItsLoadInCompressionAndInTension) {
 
 // A block driven up by z, laterally free on k_y, under a strut whose force is zero, then within 15
 // mm so large that the block buckles laterally, then permanently smaller.
-TEST_P(Stability, AStretchThatNothingAnnouncesIsSeen) {
+TEST_P(Stability, InstabilityBetweenTwoStableEndsOfAStepIsDetected) {
     const double k_y = 1e4, l = 0.5;
     for (const double at : {0.02, 0.05, 0.083, 0.15}) {
         const double most = -1.2 * k_y * (l + at), left = -0.7 * k_y * (l + at);

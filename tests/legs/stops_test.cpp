@@ -1,5 +1,5 @@
-// Laws with knots: stops, tabulated curves, flat or falling pieces, independent of the requested
-// points.
+// Laws with knots: stops, tabulated curves, flat or falling pieces, independent of
+// the requested points.
 #include "elastocheck/compile.hpp"
 #include "tests/legs/legs.hpp"
 #include "tests/support/scenes.hpp"
@@ -26,7 +26,7 @@ constexpr int step_counts[] = {1, 2, 3, 7, 40};
 
 // z = F / k up to the clearance, then both springs share: F = k z + k_s (z - c). Soft to rigid
 // stops, any number of steps; 400 and -600 N are the loads at the knots.
-TEST_P(Stops, AStopBearsWhatTheSpringDoesNot) {
+TEST_P(Stops, StopCarriesTheLoadBeyondTheSpring) {
     const double k = 20e3, c = 0.02, back = -0.03;
     for (const double k_s : {5e3, 300e3, 2e7, 2e9})
         for (const double to : {800., -1500., 400., -600., 3000., 1e5})
@@ -40,7 +40,7 @@ TEST_P(Stops, AStopBearsWhatTheSpringDoesNot) {
 }
 
 // The design position is on the knot; the branch leaves it to either side.
-TEST_P(Stops, AStopWithoutClearanceOpensAndCloses) {
+TEST_P(Stops, StopWithoutClearanceOpensAndCloses) {
     const double k = 20e3, k_s = 300e3;
     for (const double to : {1000., -1000.})
         for (const int steps : step_counts)
@@ -49,7 +49,7 @@ TEST_P(Stops, AStopWithoutClearanceOpensAndCloses) {
 }
 
 // An open stop alone resists nothing.
-TEST_P(Stops, AnOpenStopAloneIsAnIdleMode) {
+TEST_P(Stops, OpenStopAloneIsAnIdleMode) {
     OneWay side = side_of(block({stop(0.03, 300e3)}));
     side.branch.to = 3000;
     side.model.branches = {side.branch};
@@ -57,7 +57,7 @@ TEST_P(Stops, AnOpenStopAloneIsAnIdleMode) {
 }
 
 // Cubics between unevenly spaced knots with slopes that jump: f(z) = F.
-TEST_P(Stops, ASpringFollowsItsCurve) {
+TEST_P(Stops, SpringForceEqualsItsCurve) {
     Random random;
     for (int trial = 0; trial < 6; ++trial) {
         std::vector<double> x{-0.05}, f{-2000}, slope{40e3};
@@ -89,7 +89,7 @@ TEST_P(Stops, ASpringFollowsItsCurve) {
 // A bar is turned by its drive; a stop between its tip and a point on ground is longest, r + d,
 // where the bar points away. The clearance ends exactly there, or before; the effort of the drive is
 // f · ∂ℓ/∂α, with ℓ² = r² + d² - 2 r d cos α.
-TEST_P(Stops, AStopThatJustTouchesOrClosesAndOpensAgainIsPassed) {
+TEST_P(Stops, StopThatTouchesOrReopensIsPassed) {
     const double r = 0.3, d = 0.5, k = 1e5;
     for (const double short_of : {0., 1e-15, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2})
         for (const int steps : {2, 5, 30}) {
@@ -110,7 +110,7 @@ TEST_P(Stops, AStopThatJustTouchesOrClosesAndOpensAgainIsPassed) {
 }
 
 // In parallel with a regular spring a law may be flat or fall; alone it ends the branch.
-TEST_P(Stops, AFlatOrFallingPieceIsPassedWhereTheRestHoldsAndEndsTheBranchAlone) {
+TEST_P(Stops, SofteningLawIsPassedBesideASpringAndEndsTheBranchAlone) {
     const double k = 20e3, k_t = 60e3, c = 0.01;
     for (const double after : {0., -15e3}) {
         const Curve tired{{c}, {{k_t * c, k_t, 0, 0}, {k_t * c, after, 0, 0}}};
@@ -131,7 +131,7 @@ TEST_P(Stops, AFlatOrFallingPieceIsPassedWhereTheRestHoldsAndEndsTheBranchAlone)
 }
 
 // A McPherson strut on a bump stop and a rebound stop: the ends do not depend on the points.
-TEST_P(Stops, AStrutOnItsStopsDoesNotDependOnThePoints) {
+TEST_P(Stops, StrutOnStopsDoesNotDependOnTheOutputPoints) {
     const Scene free = support::scene("mcpherson");
     Scene s = free;
     for (const auto& elastic : free.elastics)
@@ -155,7 +155,7 @@ TEST_P(Stops, AStrutOnItsStopsDoesNotDependOnThePoints) {
 
 // Wherever the points lie: a point may be predicted almost on the knot, and the next step must end
 // on it all the same.
-TEST_P(Stops, AnyNumberOfPointsPassesTheKnots) {
+TEST_P(Stops, KnotsArePassedWithAnyNumberOfPoints) {
     const Scene s = support::scene("mcpherson_strut");
     for (const std::size_t n : {0u, 1u}) {
         const OneWay side = side_of(s, n);

@@ -72,7 +72,7 @@ Vector6 tip_motion(const Scene& scene, const Vector6& wrench) {
 }
 
 // Przemieniecki's 12×12 beam matrix, with x along the beam.
-TEST(Beam, OneSegmentIsTheTimoshenkoBeam) {
+TEST(Beam, OneSegmentHasTheTimoshenkoStiffnessMatrix) {
     const Scene scene = parse_scene(cantilever("through: [root, bend], segments: 1, " + section +
                                                ", shear_y: 0.5, shear_z: 0.7, up: z"),
                                     "b.yaml");
@@ -107,7 +107,7 @@ TEST(Beam, OneSegmentIsTheTimoshenkoBeam) {
 
 // Small loads on a cantilever with a corner: bending of both legs, torsion of the first. Exact for
 // any number of segments.
-TEST(Beam, AnyNumberOfSegmentsBendsAndTwistsLikeTheWholeBeam) {
+TEST(Beam, StiffnessDoesNotDependOnTheNumberOfSegments) {
     const double a = 3, b = 2, EI_y = 14, EI_z = 22, EA = 10, GJ = 39;
     for (const int n : {2, 3, 5, 12, 40}) {
         const Scene scene =
@@ -126,7 +126,7 @@ TEST(Beam, AnyNumberOfSegmentsBendsAndTwistsLikeTheWholeBeam) {
     }
 }
 
-TEST(Beam, ADiameterIsTheRoundSection) {
+TEST(Beam, DiameterGivesTheRoundSection) {
     const Scene rod =
         parse_scene(cantilever("through: [root, bend], segments: 1, E: 2000, G: 800, diameter: 20",
                                "length: mm, angle: deg, force: kN"),
@@ -167,7 +167,7 @@ TEST(Beam, UnitsOfTheSectionAreThoseOfTheScene) {
     EXPECT_TRUE(noted);
 }
 
-TEST(Beam, SegmentsAreSharedOutByLengthWithOneALegAtLeast) {
+TEST(Beam, SegmentsAreDistributedByLengthWithAtLeastOnePerLeg) {
     const auto nodes = [](int n) {
         const Scene scene =
             parse_scene(cantilever(fmt::format(
@@ -184,7 +184,7 @@ TEST(Beam, SegmentsAreSharedOutByLengthWithOneALegAtLeast) {
     EXPECT_EQ(nodes(5), "bar.1 1,0  bar.2 2,0  bar.3 3,0  bar.4 3,1  ");
 }
 
-TEST(Beam, ANodeIsABodyForTheRestOfTheScene) {
+TEST(Beam, NodeCanBeUsedAsABody) {
     const std::string text =
         cantilever("through: [root, bend, tip], segments: 5, " + section + ", up: z") +
         "bushings: {clamp: {bodies: [bar.bend, ground], at: bend, rates: [1, 1, 1]}, "
@@ -198,7 +198,7 @@ TEST(Beam, ANodeIsABodyForTheRestOfTheScene) {
     EXPECT_EQ(scene.bodies.at(static_cast<std::size_t>(other.j.body)).name, "bar.4");
 }
 
-TEST(Beam, ARingBeginsAndEndsOnOneBody) {
+TEST(Beam, RingStartsAndEndsOnTheSameBody) {
     const Scene scene = parse_scene(
         replaced(
             cantilever("through: [root, bend, tip, root], segments: 9, " + section + ", up: z"),
@@ -226,7 +226,7 @@ Vector3d place(const Scene& scene, const Marker& m) {
                             : scene.bodies.at(static_cast<std::size_t>(m.body)).design.r);
 }
 
-TEST(BeamMirror, NodesOfASharedBeamAreEachOthersTwins) {
+TEST(BeamMirror, NodesOfASharedBeamAreMirrorImages) {
     const Scene scene = parse_scene(axle, "axle.yaml");
     int of_the_beam = 0;
     for (const Body& body : scene.bodies) of_the_beam += body.name.starts_with("antiroll.");
@@ -257,7 +257,7 @@ TEST(BeamMirror, NodesOfASharedBeamAreEachOthersTwins) {
     }
 }
 
-TEST(BeamMirror, ABeamOfOneSideHasATwinWithBodiesOfItsOwn) {
+TEST(BeamMirror, BeamOfOneSideIsMirroredWithItsNodes) {
     const Scene scene = parse_scene(axle, "axle.yaml");
     for (int k = 1; k <= 3; ++k) {
         const auto& l = std::get<Bushing>(named(scene, fmt::format("torsion_left.{}", k)).kind);

@@ -59,7 +59,8 @@ Matrix6& K_of(Bushing& b) { return std::get<LinearStiffness>(b.law).K; }
 Bushing& bushing(Scene& scene, const std::string& name, BodyId i, BodyId j, double k) {
     const auto [p_i, p_j] = at_origin_of_i(scene, i, j);
     Bushing b;
-    b.i = {i, p_i.s_local}, b.j = {j, p_j.s_local};
+    b.i = {i, p_i.s_local};
+    b.j = {j, p_j.s_local};
     K_of(b).diagonal().setConstant(k);
     scene.elastics.push_back({name, b});
     return std::get<Bushing>(scene.elastics.back().kind);
@@ -75,7 +76,9 @@ Load twist(const std::string& name, BodyId on, double m = 1) {
 Branch branch(const std::string& name, const std::vector<Load>& loads, double to = 1,
               int steps = 1) {
     Branch result;
-    result.name = name, result.to = to, result.steps = steps;
+    result.name = name;
+    result.to = to;
+    result.steps = steps;
     for (const Load& load : loads) result.drivers.push_back({.what = load, .start = 0, .rate = 1});
     return result;
 }
@@ -122,7 +125,7 @@ const std::string with_its_body = "a body that it connects is left out";
 // ---- Removed parts.
 
 // Two of the shipped scenes contain removable parts, as an assembly does; the others contain none.
-TEST(Compile, LeavesOutOfTheShippedScenesWhatTwoOfThemHaveTooMuch) {
+TEST(Compile, OmissionsOfTheShippedScenesAreAsListed) {
     struct Fewer {
         std::size_t bodies = 0, joints = 0;
     };
@@ -147,7 +150,7 @@ TEST(Compile, LeavesOutOfTheShippedScenesWhatTwoOfThemHaveTooMuch) {
     }
 }
 
-TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
+TEST(Compile, PartsWithoutConnectionToAnOutputAreOmitted) {
     Scene scene = bodies(4);
     ball(scene, "ab", 1, 0);
     spring(scene, "b_ground", 1, ground, 1e3, 50);
@@ -167,7 +170,7 @@ TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
     EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
-TEST(Compile, DoesNotConnectThroughAZeroElement) {
+TEST(Compile, ZeroElementIsNoConnection) {
     Scene scene = bodies(3);
     spring(scene, "ab", 0, 1, 0);
     bushing(scene, "ac", 0, 2, 0);
@@ -182,7 +185,7 @@ TEST(Compile, DoesNotConnectThroughAZeroElement) {
                                   {"element 'b_ground'", with_its_body}}));
 }
 
-TEST(Compile, LeavesOutAFreeChainFromItsLooseEndInwards) {
+TEST(Compile, FreeChainIsOmittedFromItsLooseEndInwards) {
     for (int count = 2; count <= 26; ++count) {
         const Model model = compile(chain(count));
         EXPECT_EQ(kept(model), "a");
@@ -255,7 +258,7 @@ const Reason reasons_to_stay[] = {
 
 // In a chain a-b-c-d with a reason to keep c, d is still removed, c and the bodies before it stay;
 // and a link between two balls stays a body.
-TEST(Compile, KeepsAFollowerOrALinkThatHasSomethingToSay) {
+TEST(Compile, LoadedFollowerAndLinkAreKept) {
     for (const auto& [name, give] : reasons_to_stay) {
         Scene scene = chain(4);
         give(scene, 2, 1);
@@ -274,7 +277,7 @@ TEST(Compile, KeepsAFollowerOrALinkThatHasSomethingToSay) {
     }
 }
 
-TEST(Compile, LeavesOutAFollowerWhoseLoadIsZero) {
+TEST(Compile, UnloadedFollowerIsOmitted) {
     Scene scene = chain(2);
     scene.static_loads = {push("nothing", 1, 0)};
     scene.branches = {branch("up", {push("load", 0), twist("none", 1, 0)})};
@@ -287,7 +290,7 @@ TEST(Compile, LeavesOutAFollowerWhoseLoadIsZero) {
     EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
-TEST(Compile, IsQuickForThousandsOfBodies) {
+TEST(Compile, ThousandsOfBodiesAreCompiledQuickly) {
     const int count = 20'000;
     Scene forwards = chain(count), backwards = bodies(count), star = bodies(count);
     ball(backwards, "root", 0, ground);
@@ -350,7 +353,7 @@ TEST(Compile, LeavesOutAJackThatNoBranchDrives) {
     EXPECT_EQ(kept(compile(held)), "abc") << "what stands always, holds always";
 }
 
-TEST(Compile, KeepsAFollowerBetweenWhichAndItsNeighbourADriverMoves) {
+TEST(Compile, FollowerJoinedByADriverIsKept) {
     Scene scene = chain(3);
     spring(scene, "coil", 2, 1, 1e3);
     scene.branches = {driven("trim", FreeLength{0})};
@@ -373,7 +376,7 @@ TEST(Compile, KeepsAFollowerBetweenWhichAndItsNeighbourADriverMoves) {
     EXPECT_EQ(kept(compile(rod)), "ab") << "another length than drawn moves something";
 }
 
-TEST(Compile, RenumbersWhatDriversSpeakOf) {
+TEST(Compile, DriversReferToTheRenumberedParts) {
     Scene scene = bodies(3);
     ball(scene, "gone", 2, ground);  // c is unconnected
     spring(scene, "gone_too", 2, ground, 1e3);
@@ -396,7 +399,7 @@ TEST(Compile, RenumbersWhatDriversSpeakOf) {
     EXPECT_EQ(preload.direction, Vector6(Vector6::Unit(4)));
 }
 
-TEST(Compile, NamesABranchOfWhichNothingIsLeft) {
+TEST(Compile, BranchWithoutRemainingDriversIsNamed) {
     Scene scene = bodies(2);
     ball(scene, "a_ground", 0, ground);
     ball(scene, "b_ground", 1, ground);
@@ -478,7 +481,8 @@ struct RandomScene {
             } else {
                 // Both markers at the origin of ground: unloaded unless preloaded.
                 Bushing b;
-                b.i = {i, -origin(scene, i)}, b.j = {j, -origin(scene, j)};
+                b.i = {i, -origin(scene, i)};
+                b.j = {j, -origin(scene, j)};
                 if (!one_in(4)) K_of(b).diagonal().setConstant(1e3);
                 if (one_in(4)) b.preload[0] = 1;
                 scene.elastics.push_back({fmt::format("bushing_{}", n), b});
@@ -581,7 +585,7 @@ TEST(Compile, RefersToTheSameBodiesAsTheScene) {
     }
 }
 
-TEST(Compile, AccountsForEveryPartOfTheScene) {
+TEST(Compile, EveryPartOfTheSceneIsKeptOrListedAsOmitted) {
     RandomScene random{std::mt19937(43)};
     for (int n = 0; n < scenes; ++n) {
         const Scene scene = random.scene();
@@ -613,8 +617,8 @@ TEST(Compile, AccountsForEveryPartOfTheScene) {
     }
 }
 
-// Independent implementation of the reduction rule: removes bodies one at a time as long as
-// possible.
+// Independent implementation of the reduction rule: removes bodies one at a time as
+// long as possible.
 std::string kept_by_the_rule(const Scene& scene) {
     struct Edge {
         BodyId i, j;
@@ -682,7 +686,7 @@ std::string kept_by_the_rule(const Scene& scene) {
     return names;
 }
 
-TEST(Compile, KeepsWhatTheRuleKeeps) {
+TEST(Compile, KeptPartsEqualThoseOfTheRuleOnRandomScenes) {
     RandomScene random{std::mt19937(44)};
     std::size_t left_out_bodies = 0;
     for (int n = 0; n < scenes; ++n) {
@@ -696,7 +700,7 @@ TEST(Compile, KeepsWhatTheRuleKeeps) {
 
 // ---- Reactions.
 
-TEST(ModelJoint, ReportsAtItsPointOrAtTheOriginOfItsFirstBody) {
+TEST(ModelJoint, ReactionActsAtItsPointOrAtTheOriginOfItsFirstBody) {
     Scene scene = bodies(2);
     scene.joints = {
         {"rod", Distance{{0, Vector3d(1, 2, 3)}, {1, Vector3d(4, 5, 6)}, 1}},

@@ -54,7 +54,7 @@ double largest_force(const Points& points) {
 }
 
 // The slope of a cubic is least at an end or where its second derivative is zero.
-TEST(Interpolant, PassesThroughEveryPointWithOneSlopeAndNeverFalls) {
+TEST(Interpolant, IsContinuouslyDifferentiableAndMonotone) {
     for (const Points& points : tables()) {
         const Curve curve = interpolant(points);
         ASSERT_EQ(curve.knots.size(), points.size());
@@ -77,7 +77,7 @@ TEST(Interpolant, PassesThroughEveryPointWithOneSlopeAndNeverFalls) {
     }
 }
 
-TEST(Polygon, IsStraightBetweenThePointsAndBeyondThem) {
+TEST(Polygon, IsLinearBetweenThePointsAndBeyondThem) {
     for (const Points& points : tables()) {
         const Curve curve = reader::polygon(points);
         ASSERT_EQ(curve.knots.size(), points.size());
@@ -107,7 +107,7 @@ TEST(Interpolant, HasTheSlopesOfFritschAndButland) {
     EXPECT_DOUBLE_EQ(curve.pieces[3][1], 8.0 / 3);
 }
 
-TEST(Interpolant, IsStraightWhereThePointsAre) {
+TEST(Interpolant, CollinearPointsGiveAStraightLine) {
     const Curve line = interpolant({{-2, -6}, {-1, -3}, {0.5, 1.5}, {4, 12}});
     for (const double x : {-9.0, -2.0, -1.3, 0.0, 0.5, 3.0, 4.0, 11.0})
         EXPECT_NEAR(force(line, x), 3 * x, 1e-14);
@@ -136,14 +136,16 @@ std::vector<double> positions() {
 void expect_equal(const Curve& a, const std::function<double(double)>& b, double tolerance) {
     double worst = 0, where = 0;
     for (const double x : positions())
-        if (const double gap = std::abs(force(a, x) - b(x)); !(gap <= worst))
-            worst = gap, where = x;
+        if (const double gap = std::abs(force(a, x) - b(x)); !(gap <= worst)) {
+            worst = gap;
+            where = x;
+        }
     EXPECT_TRUE(std::isfinite(worst) && worst <= tolerance) << worst << " N at " << where << " m";
 }
 
 const std::string one_sided = "table: [[0, 0], [10, 900], [20, 4000], [35, 4000], [50, 9500]]";
 
-TEST(Curve, IsInSi) {
+TEST(Curve, ValuesAreConvertedToSi) {
     const Curve curve = curve_of("table: [[-50, -900], [0, 0], [50, 1400]]");
     EXPECT_EQ(curve.knots, (std::vector<double>{-0.05, 0, 0.05}));
     EXPECT_EQ(force(curve, -0.05), -900);
@@ -151,7 +153,7 @@ TEST(Curve, IsInSi) {
     EXPECT_TRUE(curve.known_outside);
 }
 
-TEST(Curve, OutsideGoesOnWithTheSlopeOfItsEnd) {
+TEST(Curve, ExtrapolationHasTheSlopeOfTheEnd) {
     const Curve curve = curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: linear");
     for (const double x : {0.05, 0.2, 3.0}) {
         EXPECT_NEAR(force(curve, x), 1400 + curve.pieces.back()[1] * (x - 0.05), 1e-9);
@@ -162,7 +164,7 @@ TEST(Curve, OutsideGoesOnWithTheSlopeOfItsEnd) {
         curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown").known_outside);
 }
 
-TEST(Curve, InterpolationIsMonotoneUnlessItSaysLinear) {
+TEST(Curve, InterpolationIsMonotoneByDefault) {
     const std::string table = "table: [[-50, -900], [0, 0], [50, 1400]]";
     const Curve straight = curve_of(table + ", interpolation: linear");
     for (const double x : {-0.05, -0.02, 0.0, 0.01, 0.04, 0.2})
@@ -176,7 +178,7 @@ TEST(Curve, InterpolationIsMonotoneUnlessItSaysLinear) {
     EXPECT_NEAR(force(odd, -0.035), -1000, 1e-9);
 }
 
-TEST(Curve, SymmetricIsOdd) {
+TEST(Curve, SymmetricTableGivesAnOddFunction) {
     const Curve curve = curve_of(one_sided + ", symmetric: true");
     expect_equal(
         curve, [&](double x) { return -force(curve, -x); }, 2e-12);
@@ -195,7 +197,7 @@ TEST(Curve, SymmetricIsOdd) {
 }
 
 // f(x) = scale · t(x - offset)
-TEST(Curve, ScaleMultipliesTheForceAndOffsetMovesTheTable) {
+TEST(Curve, ScaleMultipliesTheForceAndOffsetShiftsTheTable) {
     for (const char* symmetric : {"true", "false"}) {
         const std::string table = one_sided + ", symmetric: " + symmetric;
         const Curve t = curve_of(table), f = curve_of(table + ", scale: 1.1, offset: 2");
@@ -215,13 +217,24 @@ struct Beside {
     }
 };
 
-TEST(CurveFile, IsTheTableBesideTheScene) {
+TEST(CurveFile, TableBesideTheSceneIsRead) {
     const Curve table = curve_of(one_sided);
     for (const std::string csv :
          {"0,0\n10,900\n20,4000\n35,4000\n50,9500\n", "0, 0\n10,\t900\n20 ,4e3\n+35,4000\n50,9500",
           "deflection [mm], force [N]\n0,0\n10,900\n20,4000\n35,4000\n50,9500\n",
-          "# measured\n\n  # twice\nx,f\n0,0\n10,900\n\n20,4000\n# the end "
-          "stop\n35,4000\n50,9500\n\n",
+          R"(# measured
+
+  # twice
+x,f
+0,0
+10,900
+
+20,4000
+# the end stop
+35,4000
+50,9500
+
+)",
           "x,f\r\n0,0\r\n10,900\r\n20,4000\r\n35,4000\r\n50,9500\r\n",
           "x,f\r0,0\r10,900\r20,4000\r35,4000\r50,9500\r",
           "\xEF\xBB\xBF"
@@ -243,14 +256,14 @@ TEST(CurveFile, MayBeInAFolderBelow) {
 }
 
 // Numbers of the file are not numbers of the scene; scale and offset vary the table.
-TEST(CurveFile, HasNoNumbersThatCanBeSet) {
+TEST(CurveFile, NumbersOfAFileCannotBeSet) {
     const Beside beside("0,0\n10,900\n");
     const Scene scene = read_scene(beside.folder.path / "scene.yaml");
     for (const Number& number : scene.numbers)
         EXPECT_EQ(number.path.find("curve"), std::string::npos) << number.path;
 }
 
-TEST(CurveFile, IsRefusedWithItsOwnLine) {
+TEST(CurveFile, ErrorGivesTheLineInTheFile) {
     const auto folder = std::filesystem::path(ELASTOCHECK_FIXTURES) / "tables";
     support::expect_refusals(
         folder / "coil.mistakes", support::text_of(folder / "coil.csv"), "coil.csv",
@@ -266,7 +279,7 @@ TEST(CurveFile, IsRefusedWithItsOwnLine) {
 }
 
 // A pipe is rejected without blocking, and a symbolic link must not lead out of the scene's folder.
-TEST(CurveFile, IsARegularFileInTheFolderOfTheScene) {
+TEST(CurveFile, PathOutsideTheFolderOfTheSceneIsRejected) {
     const auto refusal = [](const Beside& beside) {
         try {
             read_scene(beside.folder.path / "scene.yaml");
@@ -300,7 +313,7 @@ TEST(CurveFile, IsARegularFileInTheFolderOfTheScene) {
         << said;
 }
 
-TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
+TEST(CurveFile, UnreadableFileIsRejectedAtItsLineInTheScene) {
     std::string rows;
     for (int n = 0; n <= 10000; ++n) rows += fmt::format("{},{}\n", n, n);
     const std::tuple<std::string, std::string, std::string> cases[] = {
@@ -344,7 +357,7 @@ double design_force(const AxialSpring& spring) {
     return force(spring.law, 0.4 - spring.free_length);
 }
 
-TEST(SpringCurve, AFreeLengthOrNoneCountsTheDeflectionFromThere) {
+TEST(SpringCurve, DeflectionCountsFromTheFreeLengthOrTheDesignLength) {
     const std::string curve = "curve: {table: [[-50, -900], [0, 10], [50, 1400]]}";
     EXPECT_DOUBLE_EQ(element<AxialSpring>(laws(spring_with(curve)), "coil").free_length, 0.4);
     EXPECT_DOUBLE_EQ(design_force(element<AxialSpring>(laws(spring_with(curve)), "coil")), 10);
@@ -356,7 +369,7 @@ TEST(SpringCurve, AFreeLengthOrNoneCountsTheDeflectionFromThere) {
         -900, 1e-9);
 }
 
-TEST(SpringCurve, APreloadIsMetWhereverTheCurveHasIt) {
+TEST(SpringCurve, PreloadDeterminesTheDeflectionAtDesign) {
     for (const char* table : {"[[-80, -6000], [-50, -900], [-10, -10], [0, 0], [50, 1400]]",
                               "[[-50, -900], [0, 0]]", "[[-100, -9000], [-40, -2000], [5, 30]]"})
         for (const double preload :

@@ -16,8 +16,8 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Two bodies, all kinds of driven joints, elements, a wheel. `branches` is the text of one or more
-// branches.
+// Two bodies, all kinds of driven joints, elements, a wheel. `branches` is the text of one
+// or more branches.
 std::string rig(const std::string& branches) {
     return replaced(fixture("rig"), "  up: {drive: travel, to: 1, steps: 1}", branches);
 }
@@ -67,21 +67,22 @@ TEST(Driven, PatchTravelIsAJackUnderTheContactPatch) {
     EXPECT_EQ(jack.j.s_local, Vector3d(0.1, 0.02, -0.3));
 }
 
-TEST(Driven, BranchesShareAJack) {
-    const Scene scene = parsed(
-        rig("  a: {drive: travel, to: 100, steps: 1}\n  b: {drive: travel, to: -100, steps: 1}\n"
-            "  c: {drive: patch_travel, to: 100, steps: 1, hold: {joints.slide: 2}}"));
+TEST(Driven, BranchesOfOneWheelShareItsJack) {
+    const Scene scene = parsed(rig(R"(  a: {drive: travel, to: 100, steps: 1}
+  b: {drive: travel, to: -100, steps: 1}
+  c: {drive: patch_travel, to: 100, steps: 1, hold: {joints.slide: 2}})"));
     EXPECT_EQ(scene.joints.size(), 6U + 3U);
     EXPECT_EQ(joint_of(scene, scene.branches[0].drivers[0]).name,
               joint_of(scene, scene.branches[1].drivers[0]).name);
 }
 
-TEST(Driven, WheelsHaveJacksOfTheirOwnNames) {
+TEST(Driven, EachWheelHasItsOwnJack) {
     std::string text = rig("  up: {drive: [left.travel, right.patch_travel], to: 100, steps: 1}");
     text.replace(text.find("wheel: {body"), std::string::npos,
-                 "wheels:\n  left: {body: hub, centre: a, contact_patch: patch, contact: carrier, "
-                 "spin_axis: y, side: left}\n"
-                 "  right: {body: arm, centre: o, spin_axis: -y, side: right}\n");
+                 R"(wheels:
+  left: {body: hub, centre: a, contact_patch: patch, contact: carrier, spin_axis: y, side: left}
+  right: {body: arm, centre: o, spin_axis: -y, side: right}
+)");
     const Scene scene = parsed(text);
     ASSERT_EQ(scene.wheels.size(), 2U);
     EXPECT_EQ(scene.wheels[0].name, "left");
@@ -103,8 +104,8 @@ TEST(Driven, DisplacementOfASlideIsThatOfItsFirstBodyAlongTheAxis) {
     EXPECT_NEAR((drive.normal_j.u_local - Vector3d(0, 0.6, 0.8)).norm(), 0, 1e-16);
 }
 
-// u_i · (cos α y_j - sin α x_j) = 0 holds after rotating body i by α about the axis as written,
-// right-handed.
+// u_i · (cos α y_j - sin α x_j) = 0 holds after rotating body i by α about the axis
+// as written, right-handed.
 TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
     const std::pair<const char*, Vector3d> joints[] = {{"hinge", Vector3d(1, 2, -2) / 3},
                                                        {"tube", {0, 0, -1}}};
@@ -132,7 +133,7 @@ TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
     }
 }
 
-TEST(Driven, RodsAndPlanesAreDrivenThemselves) {
+TEST(Driven, RodLengthsAndPlaneOffsetsAreDrivenDirectly) {
     const Scene scene =
         parsed(rig("  out: {drive: {joints.rod: 1, joints.plane: -0.5}, to: 30, steps: 3}"));
     EXPECT_EQ(scene.joints.size(), 6U);
@@ -143,7 +144,7 @@ TEST(Driven, RodsAndPlanesAreDrivenThemselves) {
     EXPECT_EQ(drivers[1].rate, -0.5);
 }
 
-TEST(Driven, HeldJointsStandOnEveryBranchAndMayBeDriven) {
+TEST(Driven, HeldJointsAreActiveOnEveryBranchAndCanBeDriven) {
     std::string text =
         rig("  up: {load: push, to: 100, steps: 1}\n  out: {drive: joints.slide, to: 9, steps: 3}");
     text.replace(text.find("axis: [0, 3, 4]"), 15, "axis: [0, 3, 4], held: true");
@@ -154,12 +155,11 @@ TEST(Driven, HeldJointsStandOnEveryBranchAndMayBeDriven) {
     EXPECT_EQ(std::get<Motion>(scene.branches.at(1).drivers.at(0).what).joint, 6);
 }
 
-TEST(Driven, ElementsMoveByTheirFreeLengthOrPreload) {
+TEST(Driven, ElementsAreDrivenByFreeLengthOrPreload) {
     const Scene scene = parsed(rig(
-        "  length: {drive: springs.coil.free_length, to: 20, steps: 1}\n"
-        "  force: {drive: springs.coil.preload, to: 200, steps: 1}\n"
-        "  rubber: {drive: {bushings.mount.preload.y: 2, bushings.mount.preload_moment.z: 3}, to: "
-        "10, steps: 1}"));
+        R"(  length: {drive: springs.coil.free_length, to: 20, steps: 1}
+  force: {drive: springs.coil.preload, to: 200, steps: 1}
+  rubber: {drive: {bushings.mount.preload.y: 2, bushings.mount.preload_moment.z: 3}, to: 10, steps: 1})"));
     const auto& b = scene.branches;
     EXPECT_EQ(std::get<FreeLength>(b[0].drivers[0].what).elastic, 0);
     EXPECT_EQ(b[0].to, 0.02);
@@ -190,7 +190,7 @@ TEST(Driven, TheFirstQuantityGivesTheParameterItsUnit) {
     EXPECT_DOUBLE_EQ(branch.drivers[1].rate * branch.to, 0.045);
 }
 
-TEST(Driven, WhatIsHeldIsThereAtTheBeginning) {
+TEST(Driven, HeldValuesAreStartValuesOfTheBranch) {
     const Scene scene = parsed(
         rig("  up: {drive: travel, to: 50, steps: 1, hold: {joints.slide: -12, joints.hinge: 90, "
             "springs.coil.preload: 400}, static_loads: {brake: 500, twist: 3000}}"));
@@ -223,8 +223,12 @@ TEST(Driven, LoadsHaveWeights) {
 
 TEST(Limits, TooManyPositionsAreRefused) {
     std::string text =
-        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
-        "0]}\nbodies:\n";
+        R"(elastocheck: 1
+name: chain
+units: {length: m, angle: rad, force: N}
+points: {o: [0, 0, 0]}
+bodies:
+)";
     const auto chain = [&](int count, int steps) {
         std::string result = text;
         for (int n = 0; n < count; ++n) result += fmt::format("  b{}: {{origin: o}}\n", n);
@@ -246,7 +250,7 @@ TEST(Limits, TooManyPositionsAreRefused) {
               "rig.yaml:5: bodies: 10001 bodies; allowed: at most 10000");
 }
 
-TEST(Branch, LoadsThatNoneUsesAreNamed) {
+TEST(Branch, UnusedLoadsAreNamed) {
     const Scene scene =
         parsed(replaced(fixture("two_parts"), "load: push,", "load: push, static_loads: [lost],"));
     ASSERT_EQ(scene.omitted.size(), 1U);
@@ -257,12 +261,14 @@ TEST(Branch, LoadsThatNoneUsesAreNamed) {
 
 // ---- The model on a branch.
 
-TEST(Ways, ShareOutTheStepsAndKeepTheirNumber) {
+TEST(BranchSides, DivideTheStepsAndKeepTheirNumber) {
     for (int steps = 2; steps < 40; ++steps)
         for (const double to : {0.001, 0.5, 1.0, 2.5, 70.0}) {
             Branch branch;
-            branch.from = -1, branch.to = to, branch.steps = steps;
-            const auto both = ways(branch);
+            branch.from = -1;
+            branch.to = to;
+            branch.steps = steps;
+            const auto both = branch_sides(branch);
             ASSERT_EQ(both.size(), 2U);
             EXPECT_EQ(both[0].from, 0);
             EXPECT_EQ(both[0].to, -1);
@@ -275,19 +281,20 @@ TEST(Ways, ShareOutTheStepsAndKeepTheirNumber) {
         }
 }
 
-TEST(Ways, OfAOneWayBranchAreOne) {
+TEST(BranchSides, BranchFromZeroHasOneSide) {
     Branch branch;
-    branch.to = -3, branch.steps = 7;
-    ASSERT_EQ(ways(branch).size(), 1U);
-    EXPECT_EQ(ways(branch)[0].to, -3);
+    branch.to = -3;
+    branch.steps = 7;
+    ASSERT_EQ(branch_sides(branch).size(), 1U);
+    EXPECT_EQ(branch_sides(branch)[0].to, -3);
     std::swap(branch.from, branch.to);
-    ASSERT_EQ(ways(branch).size(), 1U);
-    EXPECT_EQ(ways(branch)[0].from, 0);
-    EXPECT_EQ(ways(branch)[0].to, -3);
-    EXPECT_EQ(ways(branch)[0].steps, 7);
+    ASSERT_EQ(branch_sides(branch).size(), 1U);
+    EXPECT_EQ(branch_sides(branch)[0].from, 0);
+    EXPECT_EQ(branch_sides(branch)[0].to, -3);
+    EXPECT_EQ(branch_sides(branch)[0].steps, 7);
 }
 
-TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
+TEST(OnBranch, JackIsActiveOnlyWhereItIsDriven) {
     const Scene scene = parsed(
         rig("  load: {load: push, to: 9, steps: 1}\n  jack: {drive: travel, to: 9, steps: 1}\n"
             // in parallel with an inactive jack
@@ -326,11 +333,11 @@ TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
     }
 }
 
-TEST(OnBranch, ATwoWayBranchIsNoneThatALegWalks) {
+TEST(OnBranch, BranchWithTwoSidesIsRejectedByTheLegs) {
     const Scene scene = parsed(rig("  up: {drive: travel, from: -9, to: 9, steps: 2}"));
     const Model model = compile(scene);
     EXPECT_FALSE(stands_on(model, model.branches[0]));
-    for (const Branch& way : ways(model.branches[0]))
+    for (const Branch& way : branch_sides(model.branches[0]))
         EXPECT_TRUE(stands_on(on_branch(model, way), way));
 }
 

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 const std::string scene_text = fixture("weights");
 
-TEST(Gravity, EveryBodyWithAMassHangsOnItsCentreOfGravity) {
+TEST(Gravity, WeightActsAtTheCentreOfGravityOfEachBody) {
     const Scene scene = parse_scene(scene_text, "scene.yaml");
     struct Weight {
         const char *name, *body;
@@ -38,7 +38,7 @@ TEST(Gravity, EveryBodyWithAMassHangsOnItsCentreOfGravity) {
     EXPECT_EQ(compile(scene).static_loads.size(), std::size(weights));
 }
 
-TEST(Gravity, AMassWithoutGravityIsNamed) {
+TEST(Gravity, MassWithoutGravityIsReported) {
     const Scene scene =
         parse_scene(replaced(scene_text, "gravity: [1, 0, -9.81]\n", ""), "scene.yaml");
     EXPECT_TRUE(scene.static_loads.empty());

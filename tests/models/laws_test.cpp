@@ -25,7 +25,7 @@ double force_as_drawn(const AxialSpring& spring) {
 
 // ---- Stops: a force over ℓ - 400 mm, the length at the design position.
 
-TEST(Stops, ActBeyondTheirClearanceAlone) {
+TEST(Stops, ActOnlyBeyondTheirClearance) {
     const Scene scene = laws(
         spring_with("rate: 30, preload: 3000, bump_stop: {clearance: 30, rate: 300}, rebound_stop: "
                     "{clearance: 50, rate: 200}"));
@@ -47,7 +47,7 @@ TEST(Stops, ActBeyondTheirClearanceAlone) {
     }
 }
 
-TEST(Stops, StandBetweenAnyTwoPoints) {
+TEST(Stops, CanActBetweenAnyTwoPoints) {
     const Scene inside = laws(spring_with(
         "rate: 30, bump_stop: {clearance: 30, rate: 300}, rebound_stop: {clearance: 50, "
         "curve: {table: [[0, 0], [5, 70]]}}"));
@@ -67,7 +67,7 @@ TEST(Stops, StandBetweenAnyTwoPoints) {
 }
 
 // The law equals a spring's with the same table over the penetration.
-TEST(Stops, HaveCurvesOfPenetration) {
+TEST(Stops, CurveIsAFunctionOfThePenetration) {
     const std::string table =
         "curve: {table: [[0, 0], [10, 900], [20, 4000], [25, 9000]], scale: 1.5}";
     const auto g = curve_of(laws(spring_with(table)), "coil");
@@ -91,7 +91,7 @@ TEST(Stops, MayBeClosedAtTheDesignPosition) {
 
 // The law of fixed seats where that pushes, else none. Tables that cross zero between their rows, at
 // a row, on a flat part, outside the rows, or never.
-TEST(LooseSeats, PushAndDoNotPull) {
+TEST(LooseSeats, ForceIsNeverTensile) {
     for (const char* law : {"rate: 30", "rate: 0", "curve: {table: [[-50, -900], [30, 400]]}",
                             "curve: {table: [[-50, -900], [0, 0], [50, 1400]]}",
                             "curve: {table: [[-50, -900], [-9, 0], [9, 0], [50, 1400]]}",
@@ -119,7 +119,7 @@ TEST(LooseSeats, PushAndDoNotPull) {
 }
 
 // The open range of a stop is unbounded even if its closed range is bounded.
-TEST(Stops, AreKnownWhereTheyAreOpen) {
+TEST(Stops, OpenRangeIsKnown) {
     const std::string curve =
         ", curve: {table: [[0, 0], [10, 900], [20, 4000]], outside: unknown}}";
     const Scene scene = laws(spring_with("rate: 30, bump_stop: {clearance: 8" + curve +
@@ -139,14 +139,11 @@ TEST(Stops, AreKnownWhereTheyAreOpen) {
 
 // ---- Torsion springs.
 
-TEST(TorsionSpring, ResistsRotationAboutItsAxisAlone) {
+TEST(TorsionSpring, ResistsOnlyRotationAboutItsAxis) {
     const Scene scene = laws(
-        "torsion_springs:\n  bar: {bodies: [arm, ground], at: p, axis: [1, 2, -2], rate: 40, "
-        "preload_moment: "
-        "3000}\n"
-        "  rubber: {bodies: [ground, arm], at: t, axis: [p, t], curve: {table: [[0, 0], [10, 700], "
-        "[20, "
-        "3000]], symmetric: true}}");
+        R"(torsion_springs:
+  bar: {bodies: [arm, ground], at: p, axis: [1, 2, -2], rate: 40, preload_moment: 3000}
+  rubber: {bodies: [ground, arm], at: t, axis: [p, t], curve: {table: [[0, 0], [10, 700], [20, 3000]], symmetric: true}})");
     const auto bar = element<Bushing>(scene, "bar"), rubber = element<Bushing>(scene, "rubber");
     EXPECT_LE((bar.i.A_local * Vector3d::UnitZ() - Vector3d(1, 2, -2) / 3).norm(), 1e-15);
     EXPECT_NEAR(bar.i.A_local.norm(), 1, 1e-15);
@@ -181,7 +178,7 @@ std::string bushing_with(const std::string& fields) {
     return "bushings:\n  mount: {bodies: [arm, ground], at: p, " + fields + "}";
 }
 
-TEST(BushingCurves, StandInPlaceOfTheRatesOfTheirAxes) {
+TEST(BushingCurves, ReplaceTheRatesOfTheirAxes) {
     const Scene scene = laws(bushing_with(
         "rates: [1, 2, 3], rotational_rates: [4, 5, 6], curves: {x: {table: [[-1, -70], "
         "[2, 90]], outside: unknown}, "
@@ -202,7 +199,7 @@ TEST(BushingCurves, NeedNoRates) {
     for (const std::size_t k : {0, 2, 3, 4, 5}) EXPECT_EQ(std::get<LinearRate>(law[k]).k, 0);
 }
 
-TEST(BushingFormulation, IsThePapersUnlessItSaysOtherwise) {
+TEST(BushingFormulation, DefaultIsThatOfThePaper) {
     using Frame = Formulation::Frame;
     using Angles = Formulation::Angles;
     const auto read = [](const std::string& fields) {
@@ -226,7 +223,7 @@ TEST(BushingFormulation, IsThePapersUnlessItSaysOtherwise) {
                 }
 }
 
-TEST(BushingUndeformed, IsAnOffsetOfSix) {
+TEST(BushingUndeformed, IsAnOffsetOfThreeLengthsAndThreeAngles) {
     const auto mount = element<Bushing>(
         laws(
             bushing_with("rates: [1, 1, 1], undeformed: [1, 2, 3], undeformed_angles: [0, 0, 90]")),
@@ -244,14 +241,15 @@ TEST(BushingFrame, OfOneAxisMayHaveCurvesAlongIt) {
 
 // ---- Followers.
 
-TEST(Followers, HaveTheComponentsOfTheDesignPosition) {
-    const Scene scene = parse_scene(
-        laws_scene("static_loads:\n  drag: {on: arm, at: p, force: [1, 2, 3], follows: true}\n"
-                   "  twist: {on: arm, moment: [1000, 0, 2000], follows: true}\n"
-                   "  dead: {on: arm, at: p, force: [1, 2, 3], follows: false}",
-                   "length: mm, angle: deg, force: N",
-                   "load: {push: 1}, static_loads: [push], to: 10, steps: 1"),
-        "laws.yaml");
+TEST(Followers, ComponentsAreThoseInTheDesignPosition) {
+    const Scene scene =
+        parse_scene(laws_scene(R"(static_loads:
+  drag: {on: arm, at: p, force: [1, 2, 3], follows: true}
+  twist: {on: arm, moment: [1000, 0, 2000], follows: true}
+  dead: {on: arm, at: p, force: [1, 2, 3], follows: false})",
+                               "length: mm, angle: deg, force: N",
+                               "load: {push: 1}, static_loads: [push], to: 10, steps: 1"),
+                    "laws.yaml");
     const auto drag = std::get<FollowerForce>(scene.static_loads.at(0).kind);
     EXPECT_EQ(drag.at.s_local, Vector3d(0.05, 0, 0));
     EXPECT_EQ(drag.f_local, Vector3d(1, 2, 3));
@@ -297,7 +295,7 @@ Vector6 force_in_ground(const Bushing& b, const Vector6& ground_e) {
     return result;
 }
 
-TEST(MirroredLaws, AreThoseWrittenByHand) {
+TEST(MirroredLaws, EqualTheTwinWrittenByHand) {
     const Scene mirrored = mirrored_axle(), by_hand = axle_by_hand();
     for (const char* name : {"coil_right", "coil_right.bump_stop", "axle_right.rebound"}) {
         const auto a = element<AxialSpring>(mirrored, name),
@@ -333,7 +331,7 @@ TEST(MirroredLaws, AreThoseWrittenByHand) {
 
 // Equal driver values are a symmetric motion, so they preload the twin like an entry with a
 // mirrored axis.
-TEST(MirroredLaws, AreDrivenAsThoseWrittenByHand) {
+TEST(MirroredLaws, DriversEqualThoseOfTheTwinWrittenByHand) {
     const auto moment = [](const Scene& scene) -> Vector3d {
         const Driver& driver = scene.branches.at(0).drivers.back();
         const auto bar = element<Bushing>(scene, "bar_right");
@@ -345,13 +343,13 @@ TEST(MirroredLaws, AreDrivenAsThoseWrittenByHand) {
 
 // ---- Names and numbers.
 
-TEST(LawNumbers, OfTablesHaveTheirPlaces) {
+TEST(LawNumbers, TableEntriesHaveTheirPlaces) {
     const std::string three = laws_scene(
         spring_with("curve: {table: [[-50, -900], [0, 0], [50, 1400]], offset: 2, scale: 3}, "
                     "bump_stop: {clearance: 9, curve: {table: [[0, 0], [5, 70]]}}") +
-        "\ntorsion_springs: {bar: {bodies: [arm, ground], at: p, axis: x, rate: 4, preload_moment: "
-        "6}}\n" +
-        bushing_with("undeformed_angles: [1, 2, 3], curves: {rx: {table: [[0, 0], [5, 70]]}}"));
+        R"(
+torsion_springs: {bar: {bodies: [arm, ground], at: p, axis: x, rate: 4, preload_moment: 6}}
+)" + bushing_with("undeformed_angles: [1, 2, 3], curves: {rx: {table: [[0, 0], [5, 70]]}}"));
     const Scene scene = parse_scene(three, "laws.yaml");
     const auto number = [&](const std::string& path) {
         const auto found = std::ranges::find(scene.numbers, path, &Number::path);
@@ -404,7 +402,7 @@ std::size_t bodies_kept(const std::string& elements) {
     return compile(parse_scene(text, "laws.yaml")).bodies.size();
 }
 
-TEST(CompileLaws, KeepsABodyThatACurveLoadsAtTheDesignPosition) {
+TEST(CompileLaws, BodyLoadedByACurveAtDesignIsKept) {
     const auto spring = [](const std::string& fields) {
         return "springs:\n  coil: {bodies: [loose, arm], from: p, to: t, " + fields +
                "}\nbushings:";

@@ -169,7 +169,7 @@ void sweep(Check check) {
     }
 }
 
-TEST(Lowering, GivesEachJointIndependentRowsThatHoldAtTheDesignPose) {
+TEST(Lowering, RowsOfEachJointAreIndependentAndSatisfiedAtDesign) {
     std::vector<bool> seen(std::variant_size_v<JointKind>, false);
     sweep([&](const Place& place, const Lowered& joint, const auto& constraints,
               const Poses& design) {
@@ -206,7 +206,7 @@ TEST(Lowering, GivesEachJointIndependentRowsThatHoldAtTheDesignPose) {
     EXPECT_EQ(seen, std::vector<bool>(seen.size(), true)) << "every kind of joint";
 }
 
-TEST(Lowering, AllowsTheJointsOwnMotionsHoweverLarge) {
+TEST(Lowering, RowsVanishUnderLargeMotionsThatTheJointAllows) {
     Random random;
     sweep([&](const Place& place, const Lowered& joint, const auto& constraints,
               const Poses& design) {

@@ -31,7 +31,7 @@ bool is_gauge(const std::string& what) {
     return what.find(".drive.") != std::string::npos && what.find("u_local") != std::string::npos;
 }
 
-TEST(Mirror, MakesTheTwinThatIsWrittenByHand) {
+TEST(Mirror, EqualsTheTwinWrittenByHand) {
     const auto mirrored = numbers(parsed_axle(axle_scene)), by_hand = numbers(parsed_axle(whole));
     ASSERT_EQ(mirrored.size(), by_hand.size());
     std::string worst;
@@ -41,8 +41,10 @@ TEST(Mirror, MakesTheTwinThatIsWrittenByHand) {
         const double a = mirrored[k].second, b = by_hand[k].second;
         ASSERT_TRUE(std::isfinite(a) && std::isfinite(b)) << mirrored[k].first;
         const double difference = std::abs(a - b) / std::max(1.0, std::abs(b));
-        if (!is_gauge(mirrored[k].first) && difference > largest)
-            largest = difference, worst = mirrored[k].first;
+        if (!is_gauge(mirrored[k].first) && difference > largest) {
+            largest = difference;
+            worst = mirrored[k].first;
+        }
     }
     EXPECT_LE(largest, 4e-16) << worst;
     const Scene scene = parsed_axle(axle_scene);
@@ -52,7 +54,7 @@ TEST(Mirror, MakesTheTwinThatIsWrittenByHand) {
 
 // Equal angles on both sides are a symmetric motion: a point p of the left arm rotated about the
 // left axis is the mirror image of S p rotated by the same angle about the right one.
-TEST(Mirror, EqualDrivesAreASymmetricMotion) {
+TEST(Mirror, EqualDrivesGiveASymmetricMotion) {
     const Scene scene = parsed_axle(axle_scene);
     const auto axis = [&](const char* name) {
         return std::get<Revolute>(named(scene.joints, name).kind).axis_j.u_local;
@@ -99,14 +101,14 @@ TEST(Mirror, ReflectsABushingInGroundAxes) {
     }
 }
 
-TEST(Mirror, ASettingMovesBothSides) {
+TEST(Mirror, SettingChangesBothSides) {
     const Setting lower{"points.ball_left.z", "-200"};
     const Scene scene = parse_scene(axle_scene, "axle.yaml", {&lower, 1});
     EXPECT_EQ(named(scene.bodies, "arm_left").design.r, Vector3d(-0.021, 0.94, -0.2));
     EXPECT_EQ(named(scene.bodies, "arm_right").design.r, Vector3d(-0.021, -0.94, -0.2));
 }
 
-TEST(Mirror, TurnsWholeWordsOnly) {
+TEST(Mirror, ReplacesWholeWordsOnly) {
     std::string text = axle_scene;
     for (std::size_t at = 0; (at = text.find("rack", at)) != std::string::npos; at += 4)
         if (text.substr(at - 1, 1) != "\n") text.replace(at, 4, "leftover");

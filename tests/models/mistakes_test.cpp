@@ -27,7 +27,7 @@ TEST(Mistakes, AreRefusedWithTheirPlaceAndWhatIsAllowed) {
     EXPECT_GT(files, 10);
 }
 
-TEST(Mistakes, ThatAreTooLongToWriteDown) {
+TEST(Mistakes, GeneratedTextsAreRefusedWithTheirPlace) {
     std::string nested;
     for (int n = 0; n < 100'000; ++n) nested += "- ";
     EXPECT_EQ(refusal(nested, "a.yaml"), "a.yaml:1: nested more than 16 levels deep");

@@ -48,7 +48,7 @@ std::vector<double> as_drawn(const Scene& scene) {
     return all;
 }
 
-TEST(OneSide, HardpointOfOneSideMovesThatSideAlone) {
+TEST(OneSide, HardpointOfOneSideMovesOnlyThatSide) {
     const Scene drawn = axle({}), right = axle({{"points.tie_rod_inner_left.z@right", "0.011"}});
     EXPECT_EQ(point(right, "tie_rod_inner_left").z(), 0.001);
     EXPECT_EQ(point(right, "tie_rod_inner_right").z(), 0.011);
@@ -62,7 +62,7 @@ TEST(OneSide, HardpointOfOneSideMovesThatSideAlone) {
     EXPECT_EQ(length(right, "tie_rod_right"), length(left, "tie_rod_left")) << "the mirror image";
 }
 
-TEST(OneSide, BothSidesTogetherAreTheNumberOfBoth) {
+TEST(OneSide, ChangingBothSidesEqualsChangingTheSharedNumber) {
     for (const auto& [path, value] : std::vector<std::pair<std::string, std::string>>{
              {"points.lower_ball_left.y", "0.905"},
              {"points.bar_end_left.z", "-0.07"},
@@ -75,7 +75,7 @@ TEST(OneSide, BothSidesTogetherAreTheNumberOfBoth) {
     }
 }
 
-TEST(OneSide, ElementsStopsAndSectionOfTheFileFollow) {
+TEST(OneSide, ElementsStopsAndFileSectionsFollowTheSide) {
     const Scene scene = axle(
         {{"springs.coil_left.rate@left", "80e3"}, {"springs.coil_left.preload@right", "5000"}});
     EXPECT_EQ(rate(scene, "coil_left"), 80e3);
@@ -99,7 +99,7 @@ TEST(OneSide, ElementsStopsAndSectionOfTheFileFollow) {
     EXPECT_EQ(rate(parse_scene(again, "axle.yaml"), "coil_right"), 60e3);
 }
 
-TEST(OneSide, ManyReadingsAreTheSameAsOne) {
+TEST(OneSide, VariedSceneEqualsReadingItWithSettings) {
     const std::string text = reader::read_text(file, reader::Pipes::allowed).text;
     const reader::ParsedScene parsed(text, "axle.yaml", std::nullopt);
     reader::VariedScene varied(parsed,
@@ -115,7 +115,7 @@ TEST(OneSide, ManyReadingsAreTheSameAsOne) {
     }
 }
 
-TEST(OneSide, WhatHasNoSideSaysSo) {
+TEST(OneSide, NumberWithoutASideIsRejectedWithAMessage) {
     const auto says = [](const Setting& setting, const std::string& what,
                          const std::string& scene) {
         try {

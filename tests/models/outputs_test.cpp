@@ -23,7 +23,7 @@ Vector3d drawn(const Scene& scene, const Point& p) {
                             : scene.bodies.at(static_cast<std::size_t>(p.body)).design.r);
 }
 
-TEST(SteeringAxis, HasEachEndOnTheBodyWhereItSits) {
+TEST(SteeringAxis, EachEndIsOnItsOwnBody) {
     const Scene scene = parsed(strut);
     const auto& axis = scene.wheels.at(0).steering_axis;
     ASSERT_TRUE(axis.has_value());
@@ -41,7 +41,7 @@ TEST(SteeringAxis, HasEachEndOnTheBodyWhereItSits) {
 }
 
 // A force at the patch acts on the rolling wheel; along x it is a brake's unless the car holds it.
-TEST(Wheel, RollsWherePatchIsDrawnBelowItsCentre) {
+TEST(Wheel, RollsIfThePatchIsBelowItsCentre) {
     const std::string loads =
         "loads: {push: {on: hub, at: hub, force: [0, 0, 1]}, up: {on: hub, at: patch, force: [0, "
         "1, "
@@ -76,7 +76,7 @@ TEST(Wheel, RollsWherePatchIsDrawnBelowItsCentre) {
     EXPECT_FALSE(parsed(aside).wheels.at(0).rolls());
 }
 
-TEST(Damper, IsTwoPoints) {
+TEST(Damper, IsDefinedByTwoPoints) {
     const Scene scene = parsed(strut);
     const Damper& damper = scene.dampers.at(0);
     EXPECT_EQ(damper.name, "damper");
@@ -102,7 +102,7 @@ TEST(Vehicle, IsInTheUnitsOfTheScene) {
 }
 
 // Numbers of outputs can be set like all others.
-TEST(Outputs, TheirNumbersCanBeSet) {
+TEST(Outputs, NumbersOfOutputsCanBeSet) {
     const Scene scene = parsed(strut);
     for (const char* path :
          {"vehicle.wheelbase", "vehicle.cg_height", "vehicle.brake_share", "vehicle.drive_share"})
@@ -118,7 +118,7 @@ TEST(Outputs, TheirNumbersCanBeSet) {
     EXPECT_DOUBLE_EQ(set.dampers.at(0).j.s_local.z(), 0.95);
 }
 
-TEST(Outputs, OfAModelAreThoseOfItsScene) {
+TEST(Outputs, ModelHasTheOutputsOfItsScene) {
     for (const Detail detail : {Detail::required, Detail::everything}) {
         const Model model = compile(parsed(strut), detail);
         ASSERT_TRUE(model.wheels.at(0).steering_axis.has_value());
@@ -129,7 +129,7 @@ TEST(Outputs, OfAModelAreThoseOfItsScene) {
 }
 
 // A damper's end on a body merged into ground is on ground, and does not prevent the merge.
-TEST(Outputs, AnEndOfADamperDoesNotKeepABodyFromBeingGround) {
+TEST(Outputs, BodyFixedToGroundIsMergedDespiteADamperOnIt) {
     const Scene scene = parsed(replaced(
         replaced(
             replaced(strut, "rod: {origin: top}}", "rod: {origin: top}, frame: {origin: top}}"),
@@ -142,7 +142,7 @@ TEST(Outputs, AnEndOfADamperDoesNotKeepABodyFromBeingGround) {
     EXPECT_LE((model.dampers.at(0).j.s_local - Vector3d(-0.03, 0.58, 0.9)).norm(), 1e-15);
 }
 
-TEST(Outputs, KnowWhatTheirElementsWereWrittenAs) {
+TEST(Outputs, ElementsKeepTheKindTheyWereWrittenAs) {
     const Scene scene = parsed(strut);
     const auto of = [&](const char* name) {
         return std::ranges::find(scene.elastics, name, &Elastic::name)->written_as;

@@ -69,7 +69,9 @@ Load push(const Scene& s, const std::string& name, BodyId on, const Vector3d& p)
 }
 Branch pushing(const Load& load) {
     Branch branch;
-    branch.name = "up", branch.to = 1, branch.steps = 1;
+    branch.name = "up";
+    branch.to = 1;
+    branch.steps = 1;
     branch.drivers.push_back({.what = load, .start = 0, .rate = 1});
     return branch;
 }
@@ -145,8 +147,8 @@ std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
     return result;
 }
 
-// All kinds of parts on bodies b and c, which a chain of Fixed joints connects to each other and to
-// d.
+// All kinds of parts on bodies b and c, which a chain of Fixed joints connects to each other
+// and to d.
 Scene welded() {
     Scene s = bodies(5);
     const Vector3d p(0.3, -0.2, 0.5), q(1, 0.4, 0.2), n(1, 1, 3);
@@ -175,7 +177,7 @@ Scene welded() {
     return s;
 }
 
-TEST(Weld, BodiesFixedToEachOtherAreOne) {
+TEST(Weld, BodiesFixedToEachOtherAreMerged) {
     Scene scene = welded();
     const auto before = places(scene);
     reduce::weld(scene);
@@ -204,7 +206,7 @@ TEST(Weld, BodiesFixedToEachOtherAreOne) {
     RecordProperty("worst_moved", fmt::format("{:g}", worst));
 }
 
-TEST(Weld, ToGroundTakesTheBodyAndItsLoads) {
+TEST(Weld, BodyFixedToGroundIsRemovedWithItsLoads) {
     Scene s = bodies(3);
     s.joints = {{"root", hinge(s, 0, 1, Vector3d(0, 0, 1), Vector3d(1, 0, 0))},
                 {"weld", fixed(s, 1, 2, Vector3d(1, 1, 1))},
@@ -228,7 +230,7 @@ TEST(Weld, ToGroundTakesTheBodyAndItsLoads) {
     EXPECT_LE((coil.j.s_local - Vector3d(0, 0, 1)).norm(), 1e-15);
 }
 
-TEST(Weld, LeavesWhatIsNotDrawnTogetherAndOutputsOnGround) {
+TEST(Weld, OpenJointsAndOutputsOnGroundAreKept) {
     Scene apart = bodies(2);
     Fixed weld = fixed(apart, 0, 1, Vector3d(1, 1, 1));
     weld.j.s_local.x() += 1e-9;
@@ -254,7 +256,7 @@ TEST(Weld, LeavesWhatIsNotDrawnTogetherAndOutputsOnGround) {
 
 // ---- Within one body.
 
-TEST(WithinOneBody, WhatCannotMoveOrDeformGoes) {
+TEST(WithinOneBody, JointsAndElementsWithoutEffectAreRemoved) {
     Scene s = bodies(3);
     const Vector3d o(0, 0, 0), p(0, 0, 1);
     s.joints = {{"weld", fixed(s, 1, 2, p)},
@@ -275,7 +277,7 @@ TEST(WithinOneBody, WhatCannotMoveOrDeformGoes) {
     EXPECT_EQ(reasons.at("element 'rubber'"), "both its ends are on ground");
 }
 
-TEST(WithinOneBody, WhatIsStrainedOrDrivenOrTurnsStays) {
+TEST(WithinOneBody, StrainedDrivenOrFollowerPartsAreKept) {
     const Vector3d o(0, 0, 0), p(0, 0, 1);
     const auto scene = [&] {
         Scene s = bodies(2);
@@ -318,7 +320,7 @@ Scene linked() {
     return s;
 }
 
-TEST(Link, WithTwoBallsIsADistanceOfItsName) {
+TEST(Link, BodyWithTwoBallJointsBecomesADistance) {
     const Model model = compile(linked());
     EXPECT_EQ(names(model.bodies), "a");
     EXPECT_EQ(names(model.joints), "b root");
@@ -340,15 +342,15 @@ TEST(Link, WithTwoBallsIsADistanceOfItsName) {
     EXPECT_EQ(model.as_solved, (Size{1, 2, 1, 1 + 5}));
 }
 
-// Whatever else keeps a body keeps a link: Compile.KeepsAFollowerOrALinkThatHasSomethingToSay.
-TEST(Link, WithAnotherJointOrItsBallsAtOnePointStays) {
+// Whatever else keeps a body keeps a link: Compile.LoadedFollowerAndLinkAreKept.
+TEST(Link, BodyWithAnotherJointOrCoincidentBallsIsKept) {
     Scene hinged = linked(), short_link = linked();
     hinged.joints[0].kind = hinge(hinged, 0, 1, Vector3d(0.1, 0, 0), Vector3d(0.2, 0.1, 0));
     short_link.joints[1].kind = ball(short_link, 1, ground, Vector3d(0.1, 0, 0));
     for (const Scene& scene : {hinged, short_link}) EXPECT_EQ(names(compile(scene).bodies), "a b");
 }
 
-TEST(Link, TakesANameThatIsFree) {
+TEST(Link, DistanceTakesAFreeName) {
     Scene own = linked();
     own.joints[0].name = "b";  // name of the removed link
     const Model model = compile(own);
@@ -359,7 +361,7 @@ TEST(Link, TakesANameThatIsFree) {
     EXPECT_EQ(names(compile(taken).joints), "b.link b");
 }
 
-TEST(Link, OfTwoOnEndOneStays) {
+TEST(Link, OneOfTwoLinksInSeriesIsKept) {
     for (const bool outer_first : {true, false}) {
         Scene s = linked();
         s.bodies.push_back({"c", {Vector3d(1, 2, 3), Quaterniond::Identity()}});
@@ -377,13 +379,13 @@ TEST(Link, OfTwoOnEndOneStays) {
     }
 }
 
-TEST(Link, WithADoubledBallIsADistanceToo) {
+TEST(Link, DuplicatedBallJointDoesNotPreventADistance) {
     Scene s = linked();
     s.joints.push_back({"again", s.joints[0].kind});
     EXPECT_EQ(names(compile(s).joints), "b root");
 }
 
-TEST(Link, BetweenWeldedBodiesAndOthersKeepsItsEnds) {
+TEST(Link, EndsOnWeldedBodiesAreKept) {
     Scene s = linked();
     s.bodies.push_back({"c", {Vector3d(1, 2, 3), Quaterniond(AngleAxisd(1, Vector3d::UnitX()))}});
     s.joints[1].kind = ball(s, 1, 2, Vector3d(0.1, -0.4, 0.3));
@@ -408,7 +410,7 @@ std::string kept(JointKind (*first)(const Scene&), JointKind (*second)(const Sce
     return names(s.joints);
 }
 
-TEST(Duplicate, HoldsNothingThatAnotherDoesNot) {
+TEST(Duplicate, JointThatAnotherImpliesIsRemoved) {
     static const Vector3d p(0.1, 0.2, 0.3), q(0.5, 0.2, 0.1), n(1, 2, 3);
     using J = JointKind;
     const auto a_ball = [](const Scene& s) -> J { return ball(s, 0, 1, p); };
@@ -452,7 +454,7 @@ TEST(Duplicate, HoldsNothingThatAnotherDoesNot) {
                   "joint 'one' imposes the same constraint and carries the whole reaction"}}));
 }
 
-TEST(Duplicate, ThatIsDrivenOrNotAlwaysThereIsNone) {
+TEST(Duplicate, DrivenOrTemporaryJointIsKept) {
     Scene s = bodies(2);
     const Vector3d p(0, 0, 0), q(0, 0, 1);
     const Distance rod{at(s, 0, p), at(s, 1, q), 1};
@@ -469,7 +471,7 @@ TEST(Duplicate, ThatIsDrivenOrNotAlwaysThereIsNone) {
 
 // ---- All passes together.
 
-TEST(Detail, EverythingKeepsAllThatIsWritten) {
+TEST(Detail, EverythingKeepsTheSceneAsWritten) {
     Scene scene = linked();
     scene.joints.push_back({"again", ball(scene, 0, 1, Vector3d(0.1, 0, 0))});
     scene.elastics.push_back(
@@ -485,7 +487,7 @@ TEST(Detail, EverythingKeepsAllThatIsWritten) {
     EXPECT_EQ(model.as_solved.rows, constraint_rows(model));
 }
 
-TEST(Detail, WhatIsNotInTheSmallerModelIsNamed) {
+TEST(Detail, RemovedPartsAreNamed) {
     std::vector<Scene> scenes{linked(), welded()};
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES))
         if (entry.path().extension() == ".yaml") scenes.push_back(read_scene(entry.path()));
@@ -518,7 +520,7 @@ TEST(Detail, WhatIsNotInTheSmallerModelIsNamed) {
     }
 }
 
-TEST(Detail, DriversSpeakOfTheSamePartsAfterAllPasses) {
+TEST(Detail, DriversReferToTheSamePartsAfterAllPasses) {
     Scene s = welded();
     s.elastics[1].kind = [&] {
         Bushing b = std::get<Bushing>(s.elastics[1].kind);
@@ -549,7 +551,7 @@ TEST(Detail, DriversSpeakOfTheSamePartsAfterAllPasses) {
     }
 }
 
-TEST(Detail, WhatIsSmallAlreadyStaysAsItIs) {
+TEST(Detail, MinimalModelIsUnchanged) {
     for (Scene scene : {linked(), welded()}) {
         const auto reduced = [](Scene s) {
             reduce::drop_what_does_nothing(s), reduce::drop_what_never_stands(s), reduce::weld(s);
@@ -563,7 +565,7 @@ TEST(Detail, WhatIsSmallAlreadyStaysAsItIs) {
     }
 }
 
-TEST(Detail, ATyreUnderNoBranchIsLeftOut) {
+TEST(Detail, TyreWithoutABranchIsOmitted) {
     Scene s = linked();
     s.elastics.push_back({"tyre", bushing(s, ground, 0, Vector3d(0, 0, 0)), true});
     EXPECT_EQ(omitted(compile(s)).at("element 'tyre'"), "no branch drives it");
@@ -571,7 +573,7 @@ TEST(Detail, ATyreUnderNoBranchIsLeftOut) {
     EXPECT_EQ(names(compile(s).elastics), "coil tyre");
 }
 
-TEST(Detail, WhatTheTrimAdjustsIsDriven) {
+TEST(Detail, QuantitiesAdjustedByTheTrimCountAsDriven) {
     Scene s = bodies(2);
     s.joints = {{"root", hinge(s, 0, ground, Vector3d(0, 0, 0), Vector3d(1, 0, 0))},
                 {"joint", hinge(s, 1, 0, Vector3d(0, 0, 1), Vector3d(1, 0, 0))}};

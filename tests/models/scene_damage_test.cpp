@@ -58,14 +58,14 @@ void report(const Tally& tally) {
     testing::Test::RecordProperty("errors", tally.errors);
 }
 
-TEST(DamagedScene, IsSoundToBeginWith) {
+TEST(DamagedScene, UndamagedSceneIsValid) {
     Tally tally;
     for (const std::string& text : sound_texts()) read_damaged(text, tally);
     EXPECT_EQ(tally.errors, 0);
 }
 
 // Every text with one line or byte missing or repeated, or cut at any byte.
-TEST(DamagedScene, AtAnyOnePlace) {
+TEST(DamagedScene, DamageAtAnyPlaceIsRejectedOrHarmless) {
     using Text = const std::string&;
     const auto end_of_line = [](Text text, std::size_t at) {
         return std::min(text.find('\n', at), text.size());
@@ -116,7 +116,7 @@ std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& t
     return places;
 }
 
-TEST(DamagedScene, WithAnyOneNumberThatIsNoneOrBeyondRangeIsRefusedAtItsLine) {
+TEST(DamagedScene, NonNumericOrOutOfRangeValueIsRejectedAtItsLine) {
     int refused = 0;
     for (const std::string& text : sound_texts())
         for (const auto& [first, length] : numbers_in(text))
@@ -137,7 +137,7 @@ TEST(DamagedScene, WithAnyOneNumberThatIsNoneOrBeyondRangeIsRefusedAtItsLine) {
     EXPECT_GT(refused, 3000);
 }
 
-TEST(DamagedScene, WithAnyOneNumberAtTheEndOfItsRange) {
+TEST(DamagedScene, NumberAtTheEndOfItsRangeIsAcceptedOrRejectedWithAMessage) {
     Tally tally;
     for (const std::string& text : sound_texts())
         for (const auto& [first, length] : numbers_in(text))
@@ -146,7 +146,7 @@ TEST(DamagedScene, WithAnyOneNumberAtTheEndOfItsRange) {
     report(tally);
 }
 
-TEST(DamagedScene, OfNothingButOneToken) {
+TEST(DamagedScene, SingleTokenIsRejected) {
     Tally tally;
     for (const char* token : {"[",       "{",   "- ",    "? ", "a: ", "[a, ", "{a: ",  "&a [*a, ",
                               "\"",      "'",   "|",     "!",  "*",   "&",    "%",     "x: [",

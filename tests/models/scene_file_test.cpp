@@ -69,7 +69,7 @@ void expect_same(const Scene& a, const Scene& b, double tolerance) {
 
 // ---- The shipped scenes.
 
-TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
+TEST(ShippedScene, McPhersonHasThePapersValuesInSi) {
     const Scene scene = shipped("chrono_mcpherson");
     ASSERT_EQ(scene.bodies.size(), 3U);
     ASSERT_EQ(scene.joints.size(), 4U);
@@ -115,7 +115,7 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
     expect_near(scene.wheels.at(0).contact.s_local, Vector3d(0, 0, -0.32), 1e-16);
 }
 
-TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed) {
+TEST(ShippedScene, EachOneLoadsWithClosedJointsAndUnrotatedBodies) {
     int count = 0;
     for (const auto& entry : fs::directory_iterator(ELASTOCHECK_SCENES)) {
         if (entry.path().extension() != ".yaml") continue;
@@ -145,7 +145,7 @@ TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed)
     EXPECT_GE(count, 7);
 }
 
-TEST(Readme, ItsExampleIsAScene) {
+TEST(Readme, ExampleIsAValidScene) {
     std::ifstream file(fs::path(ELASTOCHECK_SCENES) / "README.md");
     std::string text, line;
     while (std::getline(file, line) && line != "```yaml") continue;
@@ -157,7 +157,7 @@ TEST(Readme, ItsExampleIsAScene) {
 }
 
 // Later examples replace or extend sections of the first.
-TEST(Readme, ItsExamplesOfLawsFitIntoTheFirst) {
+TEST(Readme, ExamplesOfLawsAreValidInTheFirstExample) {
     std::ifstream file(fs::path(ELASTOCHECK_SCENES) / "README.md");
     std::vector<std::string> blocks;
     for (std::string line; std::getline(file, line);) {
@@ -211,7 +211,7 @@ std::string scene_in(const std::string& length, const std::string& angle,
     return text;
 }
 
-TEST(Units, TheSameSceneInAnyUnitsIsTheSameScene) {
+TEST(Units, SceneDoesNotDependOnItsUnits) {
     const Scene si = parsed(scene_in("m", "rad"));
     for (const char* length : {"m", "mm"})
         for (const char* angle : {"rad", "deg"}) {
@@ -224,7 +224,7 @@ TEST(Units, TheSameSceneInAnyUnitsIsTheSameScene) {
         }
 }
 
-TEST(Units, OneMomentServesBothKindsOfBranch) {
+TEST(Units, MomentHasTheSameUnitOnBothKindsOfBranch) {
     const auto with = [](const std::string& length, double arm, double to) {
         return parsed(
             fmt::format("{{elastocheck: 1, name: n, units: {{length: {}, angle: rad, force: N}}, "
@@ -309,7 +309,7 @@ TEST(Numbers, DoNotDependOnTheLocale) {
               "above zero");
 }
 
-TEST(Direction, AllWaysToWriteOneAgree) {
+TEST(Direction, AllSpellingsOfADirectionAgree) {
     const std::pair<const char*, Vector3d> ways[] = {
         {"y", {0, 1, 0}},
         {"-y", {0, -1, 0}},
@@ -330,7 +330,7 @@ TEST(Direction, AllWaysToWriteOneAgree) {
     }
 }
 
-TEST(Direction, PerpendicularAxesArePerpendicularToTheLastDigit) {
+TEST(Direction, PerpendicularAxesAreOrthogonalToRounding) {
     for (int n = -10; n <= 10; ++n) {
         const Scene scene = parsed(replaced(
             bench_scene, "axis_j: y", fmt::format("axis_j: [{:.17g}, 0.8, 0.6]", n * 0.99e-10)));
@@ -415,7 +415,7 @@ TEST(Frame, OneAxisInAnyDirectionIsCompletedRightHanded) {
         }
 }
 
-TEST(Frame, NoneMeansGroundAxes) {
+TEST(Frame, DefaultIsGroundAxes) {
     const Scene scene = parsed(replaced(bench_scene, "frame: {x: [middle, front]}, ", ""));
     EXPECT_EQ(element<Bushing>(scene, "mount").i.A_local.coeffs(), Eigen::Vector4d(0, 0, 0, 1));
 }
@@ -474,7 +474,7 @@ std::string bench_with(const Matrix6& K, const UnitsOfText& units) {
 
 // V Vᵀ with V [6 × rank], like a bushing matrix computed elsewhere. Its zero eigenvalues are
 // ±1e-16. The same 6×6 is accepted or rejected in all units.
-TEST(Stiffness, IsJudgedAlikeInAllUnits) {
+TEST(Stiffness, DefinitenessDoesNotDependOnUnits) {
     std::mt19937 random(6);
     std::normal_distribution<double> normal;
     for (int n = 0; n < 100; ++n) {
@@ -493,7 +493,7 @@ TEST(Stiffness, IsJudgedAlikeInAllUnits) {
 // The congruence with D = diag(√N/mm ..., √N·mm/deg ...) has √(N/mm · N·mm/deg) = N/√deg in its
 // off-diagonal blocks, where N/deg is written: converting deg to rad increases the coupling
 // relative to the diagonal by √57.3.
-TEST(Stiffness, ThatIsIndefiniteOnlyInSiUnitsIsRefusedInAll) {
+TEST(Stiffness, MatrixIndefiniteInSiIsRejectedInAllUnits) {
     Matrix6 K = Matrix6::Identity();
     K.topLeftCorner<3, 3>() *= 1e6;
     K.bottomRightCorner<3, 3>() *= 1e2;
@@ -542,20 +542,20 @@ TEST(Sections, TheirOrderDoesNotMatter) {
     expect_same(parsed(bench_scene), parsed(backwards), 0);
 }
 
-TEST(Sections, ASectionLeftEmptyHasNoEntries) {
+TEST(Sections, EmptySectionHasNoEntries) {
     const std::string weight =
         "static_loads:\n  weight: {on: hub, at: front, force: [0, 0, -300]}\n";
     const Scene scene = parsed(replaced(bench_scene, weight, "static_loads:\n"));
     EXPECT_TRUE(scene.static_loads.empty());
 }
 
-TEST(Text, LineEndsAndByteOrderMarkMakeNoDifference) {
+TEST(Text, LineEndsAndByteOrderMarkDoNotMatter) {
     std::string windows = "\xEF\xBB\xBF";
     for (const char c : bench_scene) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
     expect_same(parsed(bench_scene), parsed(windows), 0);
 }
 
-TEST(Text, IsUtf8AndNothingElse) {
+TEST(Text, OnlyUtf8IsAccepted) {
     const auto is_read = [](const std::string& bytes) {
         try {
             return parsed(replaced(bench_scene, "name: Bench", "name: Ben" + bytes + "ch")).name ==
@@ -604,7 +604,7 @@ struct TemporaryFile {
     ~TemporaryFile() { fs::remove(path); }
 };
 
-TEST(File, ThatCannotBeReadIsNamed) {
+TEST(File, UnreadableFileIsNamed) {
     EXPECT_EQ(complaint_about("no/such/scene.yaml"), "no/such/scene.yaml: no such file");
     EXPECT_EQ(complaint_about(""), ": no such file");
     const std::string directory = fs::path(testing::TempDir()).string();
@@ -613,7 +613,7 @@ TEST(File, ThatCannotBeReadIsNamed) {
     EXPECT_EQ(complaint_about(too_long), too_long + ": cannot be read");
 }
 
-TEST(File, IsReadLikeItsText) {
+TEST(File, GivesTheSameSceneAsItsText) {
     const TemporaryFile file(bench_scene);
     const Scene scene = read_scene(file.path);
     EXPECT_EQ(scene.source, file.path.string());
@@ -621,7 +621,7 @@ TEST(File, IsReadLikeItsText) {
     expect_same(scene, parsed(bench_scene), 0);
 }
 
-TEST(File, OfOneMebibyteIsReadAndALargerOneIsNot) {
+TEST(File, LimitOfOneMebibyteIsEnforced) {
     std::string text = bench_scene + "# ";
     text.resize((std::size_t{1} << 20) - 1, '.');
     text += "\n";
@@ -631,7 +631,7 @@ TEST(File, OfOneMebibyteIsReadAndALargerOneIsNot) {
               larger.path.string() + ": larger than 1 MiB, the limit for a scene");
 }
 
-TEST(File, WithoutEndIsLargerThanAScene) {
+TEST(File, EndlessStreamIsRejectedByItsSize) {
     if (!fs::exists("/dev/zero")) GTEST_SKIP() << "no /dev/zero here";
     EXPECT_EQ(complaint_about("/dev/zero"), "/dev/zero: larger than 1 MiB, the limit for a scene");
 }

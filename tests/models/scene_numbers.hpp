@@ -111,11 +111,14 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.add("p", body.design.p.coeffs());
     }
     for (const auto& joint : scene.joints) {
-        n.where = "joint " + joint.name, add_members(n, joint.kind);
+        n.where = "joint " + joint.name;
+        add_members(n, joint.kind);
         n.add("only_where_driven", joint.active_only_where_driven);
     }
-    for (const auto& elastic : scene.elastics)
-        n.where = "element " + elastic.name, add_members(n, elastic.kind);
+    for (const auto& elastic : scene.elastics) {
+        n.where = "element " + elastic.name;
+        add_members(n, elastic.kind);
+    }
     n.where = "static loads";
     for (const auto& load : scene.static_loads) add_load(n, load);
     for (const auto& branch : scene.branches) {
@@ -137,9 +140,15 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.add("steering_axis.lower", wheel.steering_axis->lower);
         n.add("steering_axis.upper", wheel.steering_axis->upper);
     }
-    for (const auto& probe : scene.probes) n.where = "probe " + probe.name, n.add("at", probe.at);
-    for (const auto& damper : scene.dampers)
-        n.where = "damper " + damper.name, n.add("i", damper.i), n.add("j", damper.j);
+    for (const auto& probe : scene.probes) {
+        n.where = "probe " + probe.name;
+        n.add("at", probe.at);
+    }
+    for (const auto& damper : scene.dampers) {
+        n.where = "damper " + damper.name;
+        n.add("i", damper.i);
+        n.add("j", damper.j);
+    }
     if (const auto& vehicle = scene.vehicle) {
         n.where = "vehicle";
         n.add("wheelbase", vehicle->wheelbase);

@@ -29,7 +29,7 @@ std::string complaint_about(const std::vector<Setting>& settings) {
 
 void expect_equal(const Scene& a, const Scene& b) { EXPECT_EQ(numbers(a), numbers(b)); }
 
-TEST(Settings, AreAsIfTheyStoodInTheFile) {
+TEST(Settings, EqualTheSameValuesWrittenInTheFile) {
     const std::tuple<const char*, const char*, const char*, const char*> cases[] = {
         {"points.front.x", "90.5", "front: [100,", "front: [90.5,"},
         {"points.front.y", "1", "front: [100, 0,", "front: [100, 1,"},
@@ -47,7 +47,7 @@ TEST(Settings, AreAsIfTheyStoodInTheFile) {
     }
 }
 
-TEST(Settings, AHardpointMovesAllThatRefersToItOnce) {
+TEST(Settings, HardpointMovesEveryReferenceToItOnce) {
     const Scene moved = with({{"points.front.z", "12"}});
     EXPECT_EQ(moved.bodies[1].design.r, Eigen::Vector3d(0.1, 0, 0.012));
     EXPECT_EQ(std::get<Spherical>(moved.joints[0].kind).i.s_local, Eigen::Vector3d(0.1, 0, 0.012));
@@ -76,9 +76,9 @@ TEST(Settings, NamesMayHaveDots) {
     EXPECT_NO_THROW(with({{"probes.t.i.p.at", "side"}}, text));
 }
 
-// Each listed number can be set to its own value, and to another value that then appears in the
-// scene.
-TEST(Settings, ReachEveryNumberThatASceneLists) {
+// Each listed number can be set to its own value, and to another value that then appears
+// in the scene.
+TEST(Settings, EveryListedNumberCanBeSet) {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES))
         if (entry.path().extension() == ".yaml") files.push_back(entry.path());
@@ -97,7 +97,7 @@ TEST(Settings, ReachEveryNumberThatASceneLists) {
     }
 }
 
-TEST(Numbers, CarryTheirNamesAndUnits) {
+TEST(Numbers, HaveNamesAndUnits) {
     const Scene scene = with({{"points.top.z", "101"}});
     const auto number = [&](const std::string& path) {
         const auto found = std::ranges::find(scene.numbers, path, &Number::path);
@@ -120,7 +120,7 @@ TEST(Numbers, CarryTheirNamesAndUnits) {
     EXPECT_EQ(std::ranges::adjacent_find(paths), paths.end()) << "one number, one name";
 }
 
-TEST(Settings, ThatLeadNowhereAreRefused) {
+TEST(Settings, UnknownNamesAreRejected) {
     const std::string hardpoints = "there: middle, front, side, top, again";
     EXPECT_EQ(
         complaint_about({{"points.frnt.z", "1"}}),
@@ -152,7 +152,7 @@ TEST(Settings, ThatLeadNowhereAreRefused) {
               "bench.yaml:22: springs.coil.rate: set twice");
 }
 
-TEST(Settings, ThatAreNoValuesAreRefusedAsSuch) {
+TEST(Settings, InvalidValuesAreRejected) {
     EXPECT_EQ(complaint_about({{"points.front.z", "high"}}),
               "bench.yaml:7: points.front: expected a number, found 'high' (as set)");
     EXPECT_EQ(
@@ -197,7 +197,7 @@ points:
 springs: {coil: {rate: "30e3", law: 'x # y', free: 4}}
 last: 7)";
 
-TEST(RewriteScene, ChangesTheValuesAndNothingElse) {
+TEST(RewriteScene, ChangesOnlyTheValues) {
     const std::vector<Setting> settings{{"points.a.z", "0.25"},     {"points.a.x", "-1"},
                                         {"points.b.at.z", "3.5"},   {"points.b.at.y", "2.5"},
                                         {"springs.coil.rate", "1"}, {"last", "8"}};
@@ -240,7 +240,7 @@ TEST(RewriteScene, FindsEveryNumberOfTheBuiltInScenes) {
     EXPECT_GT(compared, 500);
 }
 
-TEST(RewriteScene, RefusesWhatCannotBeSetOrIsNotWrittenAsOneWord) {
+TEST(RewriteScene, NumbersNotWrittenAsOneWordAreRejected) {
     const auto complaint = [](const char* text, const Setting& setting) -> std::string {
         try {
             (void)rewrite_scene(text, "a.yaml", {&setting, 1});

@@ -18,7 +18,7 @@ Scene with(const std::string& right, const std::string& wrong) {
     return parse_scene(replaced(scene_text, right, wrong), "scene.yaml");
 }
 
-TEST(Trim, AdjustsWhatABranchWouldDrive) {
+TEST(Trim, AdjustmentsAreTheQuantitiesThatBranchesDrive) {
     const Scene scene = parse_scene(scene_text, "scene.yaml");
     ASSERT_TRUE(scene.trim.has_value());
     const Trim& trim = *scene.trim;
@@ -53,7 +53,7 @@ TEST(Trim, ConditionsAreInTheUnitsOfTheScene) {
     EXPECT_TRUE(std::holds_alternative<WheelCamber>(angles.trim->until.at(1).what));
 }
 
-TEST(Trim, AListOfConditionsMeansAsDrawn) {
+TEST(Trim, ListedConditionsKeepTheDesignValues) {
     for (const char* list : {"[travel, toe]", "[toe, tip.x]"}) {
         const Scene scene = with("{travel: 5, tip.y: -7}", list);
         for (const auto& condition : scene.trim->until)
@@ -74,7 +74,7 @@ TEST(Trim, ItsLoadsAreHeldOnEveryBranch) {
         Vector3d(0, 0, 1000));
 }
 
-TEST(Trim, IsOneOfSeveralWheelsByName) {
+TEST(Trim, ConditionNamesOneOfSeveralWheels) {
     std::string text = replaced(scene_text, "wheel: {body: hub,", "wheels:\n  front: {body: hub,");
     text = replaced(replaced(text, "{travel: 5, tip.y: -7}", "[front.travel, front.toe]"),
                     "{tyre: {rate", "{tyre: {wheel: front, rate");

@@ -29,8 +29,8 @@ const Curve& law_of(const Bushing& b) {
     return std::get<Curve>(std::get<PerAxis>(b.law).axis.at(2));
 }
 
-// Upward force of the tyre for a rise z of the patch and h of the road, on a branch that drives the
-// road.
+// Upward force of the tyre for a rise z of the patch and h of the road, on a branch that
+// drives the road.
 double push(const Scene& scene, const Driver& driver, double z, double h) {
     const auto& road = std::get<FreeLength>(driver.what);
     const auto& b =
@@ -52,7 +52,7 @@ TEST(Tyre, PushesTheWheelUpByItsPreloadAndItsRateTimesTheHeightOfTheRoad) {
     EXPECT_DOUBLE_EQ(scene.branches.at(0).to, 0.05);
 }
 
-TEST(Tyre, StandsUnderTheContactPatchOfItsWheel) {
+TEST(Tyre, ActsAtTheContactPatchOfItsWheel) {
     const Scene scene = parse_scene(axle, "scene.yaml");
     for (const double side : {+1.0, -1.0}) {
         const Bushing& b = tyre(scene, side > 0 ? "tyre_left" : "tyre_right");
@@ -67,7 +67,7 @@ TEST(Tyre, StandsUnderTheContactPatchOfItsWheel) {
     EXPECT_EQ(tyre(one, "tyre").i.s_local, Vector3d(0, 0.7, 0.3));
 }
 
-TEST(Tyre, StandsOnlyOnTheBranchesThatMoveItsRoad) {
+TEST(Tyre, IsActiveOnlyOnBranchesThatMoveItsRoad) {
     const Model model = compile(parse_scene(axle, "scene.yaml"));
     for (const Branch& branch : model.branches) {
         const Model here = on_branch(model, branch);
@@ -79,7 +79,7 @@ TEST(Tyre, StandsOnlyOnTheBranchesThatMoveItsRoad) {
     }
 }
 
-TEST(Tyre, StandsOnARoadThatIsHeldWhereItIs) {
+TEST(Tyre, IsActiveOnABranchThatHoldsItsRoad) {
     const Scene scene = parse_scene(
         replaced(single, "branches: {bump: {drive: tyres.tyre.road, to: 0.05, steps: 5}}",
                  "loads: {push: {on: hub, at: hub, force: [0, 0, 1]}}\n"

@@ -63,16 +63,16 @@ std::map<long, Seen> solved(const Model& model, Leg leg) {
     const auto outputs = channels(model);
     const Branch& branch = model.branches.front();
     std::map<long, Seen> path;
-    const PathCurve curve =
-        walk(model, outputs, branch, sides_of(model, branch), {.leg = leg},
-             [&](const Equilibrium& state, const WheelResponse*) {
-                 Seen seen;
-                 const auto values = evaluate(model, outputs, state);
-                 for (std::size_t c = 0; c < outputs.size(); ++c)
-                     seen.output[outputs[c].name] = values[c];
-                 seen.poses = state.poses;
-                 path[std::lround(1e6 * parameter_in(unit_of(branch.unit), state.load))] = seen;
-             });
+    const PathCurve curve = solve_branch(
+        model, outputs, branch, sides_of(model, branch), {.leg = leg},
+        [&](const Equilibrium& state, const WheelResponse*) {
+            Seen seen;
+            const auto values = evaluate(model, outputs, state);
+            for (std::size_t c = 0; c < outputs.size(); ++c)
+                seen.output[outputs[c].name] = values[c];
+            seen.poses = state.poses;
+            path[std::lround(1e6 * parameter_in(unit_of(branch.unit), state.load))] = seen;
+        });
     EXPECT_EQ(curve.outcome, Outcome::converged) << name(leg) << ": " << curve.detail;
     return path;
 }
@@ -343,12 +343,12 @@ std::vector<Row> listing() {
     const auto sides = sides_of(model, model.branches.front());
     for (const Leg leg : {Leg::energy, Leg::equilibrium}) {
         double found = NAN;
-        (void)walk(model, rates, model.branches.front(), sides, {.leg = leg},
-                   [&](const Equilibrium& at, const WheelResponse*) {
-                       if (at.load == 0)
-                           found =
-                               row_of(model, rates, sides.front(), {.leg = leg}, at).values[height];
-                   });
+        (void)solve_branch(
+            model, rates, model.branches.front(), sides, {.leg = leg},
+            [&](const Equilibrium& at, const WheelResponse*) {
+                if (at.load == 0)
+                    found = row_of(model, rates, sides.front(), {.leg = leg}, at).values[height];
+            });
         EXPECT_NEAR(found, 293.58, 0.005) << name(leg) << ": by the motion of the patch";
         if (leg == Leg::equilibrium)
             add("roll centre [mm]", 293.64, found,

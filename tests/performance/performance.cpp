@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     const Model model =
         compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/" + job.scene + ".yaml"));
     for (std::size_t k = 0; k < job.branches; ++k) {
-        const Branch side = ways(model.branches.at(k)).front();
+        const Branch side = branch_sides(model.branches.at(k)).front();
         const Model part = on_branch(model, side);
         if (counted(job, part, side, recursive::analyse(part)) != Outcome::converged) return 3;
     }

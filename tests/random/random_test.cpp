@@ -197,8 +197,8 @@ TEST(RandomScenes, SettleByBothReferences) {
     for (const std::uint64_t seed : {48, 77, 129, 289, 337, 284, 703, 917}) {
         const Model model = compile(parse_scene(random_scene(seed), "random.yaml"));
         const BranchSide way = sides_of(model, model.branches.back()).front();
-        const auto one = walk(way, {.leg = Leg::equilibrium}),
-                   other = walk(way, {.leg = Leg::energy});
+        const auto one = solve_branch(way, {.leg = Leg::equilibrium}),
+                   other = solve_branch(way, {.leg = Leg::energy});
         ASSERT_EQ(one.outcome, Outcome::converged) << seed << ": " << one.detail;
         ASSERT_EQ(other.outcome, Outcome::converged) << seed << ": " << other.detail;
         for (std::size_t k = 0; k < one.points.size(); ++k)
@@ -214,11 +214,12 @@ TEST(RandomScenes, SettleByTheRecursionWhereReleasedBodiesTurnBack) {
     for (const std::uint64_t seed : {100020, 100052, 100076, 100178, 100317, 100318}) {
         const Model model = compile(parse_scene(random_scene(seed, Family::driven), "random.yaml"));
         const BranchSide way = sides_of(model, model.branches.back()).front();
-        const auto truth = walk(way, {.leg = Leg::equilibrium});
+        const auto truth = solve_branch(way, {.leg = Leg::equilibrium});
         ASSERT_FALSE(truth.points.empty()) << seed << ": " << truth.detail;
         for (const char* name : {"series", "adaptive"}) {
             const auto method = recursive::find_method(name).value();
-            const auto path = walk(way, {.leg = Leg::recursive, .recursion = {.method = method}});
+            const auto path =
+                solve_branch(way, {.leg = Leg::recursive, .recursion = {.method = method}});
             ASSERT_FALSE(path.points.empty()) << seed << " " << name << ": " << path.detail;
             for (std::size_t b = 0; b < model.bodies.size(); ++b)
                 EXPECT_LE((path.points[0].poses[b].r - truth.points[0].poses[b].r).norm(), 1e-8)

@@ -60,7 +60,7 @@ Scene with_curves(Scene scene) {
 }
 
 // Whether the points are recorded at the end only, or visited.
-TEST(Allocation, NoStepOfAnyMethodAllocates) {
+TEST(Allocation, StepsOfNoMethodAllocate) {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const char* name :
          {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "two_spring_arch"})
@@ -93,7 +93,7 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
     }
 }
 
-TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
+TEST(Allocation, ExpansionsOfTheSeriesReuseTheirCoefficients) {
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         SteppingState s(model, branch, analyse(model));

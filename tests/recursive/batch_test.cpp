@@ -69,7 +69,7 @@ double difference(const EquilibriumPath& a, const EquilibriumPath& b) {
 // The scene's branch as two branches, one to each side, with what is active on it.
 Model on_sides(const Model& model, std::size_t branch) {
     Model result = on_branch(model, model.branches.at(branch));
-    result.branches = ways(model.branches[branch]);
+    result.branches = branch_sides(model.branches[branch]);
     return result;
 }
 
@@ -129,15 +129,15 @@ struct Case {
 constexpr Case cases[] = {
     {"chrono_mcpherson", 0}, {"mcpherson_strut", 1}, {"double_wishbone", 1}, {"front_axle", 1}};
 
-TEST(Batch, EveryVariantIsAsAlone) {
+TEST(Batch, EachVariantEqualsItsScalarSolution) {
     for (const auto& [scene, branch] : cases) expect_as_alone(scene, branch, 20);
 }
-TEST(NightlyBatch, AThousandVariantsAreAsAlone) {
+TEST(NightlyBatch, ThousandVariantsEqualTheirScalarSolutions) {
     for (const auto& [scene, branch] : cases) expect_as_alone(scene, branch, 1000);
 }
 
 // The first scene is at rest, the second settles under a preload, the third has curves.
-TEST(Sides, ShareTheirStartAndAreAsAlone) {
+TEST(Sides, SharedStartGivesTheSolutionOfEachSideAlone) {
     for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "double_wishbone"}) {
         Model model = compile(support::scene(name));
         std::vector<Branch> sides = model.branches;
@@ -165,7 +165,7 @@ TEST(Sides, ShareTheirStartAndAreAsAlone) {
 
 // A start settles under a preload, one over curves; a branch with other values at load factor 0 does
 // not use it, and the last rests on what is kept.
-TEST(Start, ThatIsKeptServesItsBranchesAlone) {
+TEST(Start, KeptStartIsUsedOnlyByBranchesThatBeginThere) {
     for (const char* name : {"chrono_mcpherson_preload", "double_wishbone"}) {
         const Model model = on_sides(compile(support::scene(name)), 0);
         const Analysis analysis = analyse(model);
@@ -250,7 +250,7 @@ void expect_no_neighbour_affected(const Model& design, std::vector<Model> varian
         }
 }
 
-TEST(Batch, AVariantThatIsNotANumberIsReportedForItself) {
+TEST(Batch, NonFiniteVariantFailsWithoutAffectingTheOthers) {
     const Model design = mcpherson();
     for (std::size_t odd = 0; odd < 4; ++odd) {
         Model broken = design;
@@ -262,7 +262,7 @@ TEST(Batch, AVariantThatIsNotANumberIsReportedForItself) {
     }
 }
 
-TEST(Batch, AVariantOfAnotherStructureIsReportedForItself) {
+TEST(Batch, VariantOfAnotherStructureFailsWithoutAffectingTheOthers) {
     const Model design = mcpherson();
     Model other = design;
     other.elastics.pop_back();
@@ -278,7 +278,7 @@ TEST(Batch, AVariantOfAnotherStructureIsReportedForItself) {
 }
 
 // Without the coil the strut has one more motion that nothing resists.
-TEST(Batch, AVariantWithAnIdleModeOfItsOwnIsReportedForItself) {
+TEST(Batch, VariantWithAnotherIdleModeFailsWithoutAffectingTheOthers) {
     const Model design = mcpherson();
     Model loose = design;
     std::get<LinearRate>(coil(loose).law).k = 0;
@@ -291,12 +291,12 @@ TEST(Batch, AVariantWithAnIdleModeOfItsOwnIsReportedForItself) {
     expect_no_neighbour_affected(design, several(design, 6), 5, held);
 }
 
-TEST(Batch, AVariantWithALimitPointIsReportedForItself) {
+TEST(Batch, VariantWithALimitPointFailsWithoutAffectingTheOthers) {
     const Model arch = compile(support::scene("two_spring_arch"));
     Model design = arch;
     design.branches.clear();
     for (const Branch& branch : arch.branches)
-        for (const Branch& side : ways(branch)) design.branches.push_back(side);
+        for (const Branch& side : branch_sides(branch)) design.branches.push_back(side);
     for (Branch& branch : design.branches) branch.to *= 0.2;
     std::vector<Model> variants(4, design);
     Model far = design;
@@ -308,7 +308,7 @@ TEST(Batch, AVariantWithALimitPointIsReportedForItself) {
     expect_no_neighbour_affected(design, variants, 2, far);
 }
 
-TEST(Batch, WithoutWrenchesThePosesAreTheSame) {
+TEST(Batch, PosesDoNotDependOnWhetherWrenchesAreRecorded) {
     const Model design = mcpherson();
     const std::vector<Model> variants = several(design, 7);
     const Paths with = in_batch(design, variants, {}),
@@ -325,7 +325,7 @@ TEST(Batch, WithoutWrenchesThePosesAreTheSame) {
 }
 
 // On a processor without AVX2 both runs are the same.
-TEST(Batch, TheInstructionsOfTheProcessorDoNotMatter) {
+TEST(Batch, ResultsDoNotDependOnTheInstructionSet) {
     const std::string file = std::string(ELASTOCHECK_SCENES) + "/front_axle.yaml";
     const Scene scene = read_scene(file);
     Random random;
@@ -340,7 +340,7 @@ TEST(Batch, TheInstructionsOfTheProcessorDoNotMatter) {
             EXPECT_EQ(difference(paths[b], baseline.at(k)[b]), 0) << "variant " << k;
 }
 
-TEST(Batch, RefusesWhatItCannotRecord) {
+TEST(Batch, UnsupportedRecordingsAreRejected) {
     const Model design = mcpherson();
     const auto ignore = [](std::size_t, std::size_t, const EquilibriumPath&) {};
     const std::vector<Model> variants{design};
@@ -349,7 +349,7 @@ TEST(Batch, RefusesWhatItCannotRecord) {
                  std::invalid_argument);
 }
 
-TEST(Batch, LanesAreIndependentAndAsDoubles) {
+TEST(Batch, LaneArithmeticEqualsThatOfDoubles) {
     Random random;
     for (int trial = 0; trial < 1000; ++trial) {
         std::array<double, 4> a{}, b{};
@@ -372,7 +372,7 @@ TEST(Batch, LanesAreIndependentAndAsDoubles) {
 }
 
 // A variant whose driven length vanishes before the end of the branch.
-TEST(Batch, AnImpossibleVariantIsReported) {
+TEST(Batch, VariantWithInconsistentJointsIsReported) {
     const Model design = compile(parse_scene(R"(elastocheck: 1
 name: rod
 units: {length: mm, angle: deg, force: N}

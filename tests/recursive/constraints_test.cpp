@@ -67,7 +67,7 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
     }
 }
 
-TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
+TEST(Constraints, RigidMotionOfAllBodiesKeepsValuesAndJacobian) {
     Random random;
     for (int trial = 0; trial < 20; ++trial) {
         for (const auto& joint : every_joint(0, 1, random)) {
@@ -79,8 +79,8 @@ TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
             for (auto& pose : poses) pose = {move.r + move.p * pose.r, move.p * pose.p};
             const Vector<double> after = constraint_values<double>(
                 model, inputs_as_drawn<double>(model), state_of<double>(poses));
-            // Coincidence is written in ground axes: its three rows rotate, their norm is
-            // unchanged.
+            // Coincidence is written in ground axes: its three rows rotate, their
+            // norm is unchanged.
             if (std::holds_alternative<CoincidentPoints>(model.constraints.front().kind))
                 EXPECT_NEAR(before.head<3>().norm(), after.head<3>().norm(), 1e-13);
             else
@@ -90,7 +90,7 @@ TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
     }
 }
 
-TEST(State, IncrementTurnsByTheExponentialMapInGroundAxes) {
+TEST(State, RotationIncrementIsTheExponentialMapInGroundAxes) {
     Random random;
     for (const double angle : {0.0, 1e-300, 1e-12, 1e-3, 1.0, 3.0}) {
         State<double> q = random.state(1);

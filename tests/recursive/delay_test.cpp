@@ -16,7 +16,7 @@ namespace {
 // θ tan θ = 1, F = k_R θ / (L cos θ): where F L sin θ is k_R (models/scenes/pendulum.yaml).
 const double pendulum_limit = 600 * 0.8603335890193797 / (0.4 * std::cos(0.8603335890193797));
 
-TEST(Delay, LimitOfThePendulumIsWhereTheLoadTurnsStifferThanTheBushing) {
+TEST(Delay, PendulumLimitIsWhereGeometricStiffnessExceedsTheBushings) {
     Model model = compile(support::scene("pendulum"));
     const Analysis analysis = analyse(model);
     for (auto& branch : model.branches) {  // below the limit there is none; else wherever it ends
@@ -42,7 +42,7 @@ TEST(Delay, LimitOfThePendulumIsWhereTheLoadTurnsStifferThanTheBushing) {
 }
 
 // A stable equilibrium that no number of steps reaches.
-TEST(Delay, ThePublishedMethodDivergesBeyondItsLimitAndSaysSo) {
+TEST(Delay, PublishedMethodReportsDivergenceBeyondItsStabilityLimit) {
     Model model = compile(support::scene("pendulum"));
     for (auto& branch : model.branches) {
         branch.to *= 2;
@@ -56,10 +56,10 @@ TEST(Delay, ThePublishedMethodDivergesBeyondItsLimitAndSaysSo) {
     }
 }
 
-// A bar hanging from its hinge on a torsion spring, with its weight P at L: T K_G = P L / k. With
-// the hinge away from the body's origin, the curvature of the joint and its reaction give the same
-// value.
-TEST(Delay, AHangingBarHasTheShareOfItsWeight) {
+// A bar hanging from its hinge on a torsion spring, with its weight P at L: T K_G = P L / k.
+// With the hinge away from the body's origin, the curvature of the joint and its reaction give
+// the same value.
+TEST(Delay, HangingBarHasDelayedShareWeightTimesLengthOverStiffness) {
     for (const bool hinge_at_origin : {true, false}) {
         Model model = model_of("bar", {{"points.head.z", "-0.5"},
                                        {"points.o.x", hinge_at_origin ? "0" : "0.1"},
@@ -77,14 +77,14 @@ TEST(Delay, AHangingBarHasTheShareOfItsWeight) {
         const auto limit = stability_limit(model, model.branches[0], methods[0], analysis);
         ASSERT_TRUE(limit.has_value());
         EXPECT_NEAR(*limit, 200, 1e-6);
-        // Under compression the delayed stiffness is negative: the branch ends, the method is
-        // stable.
+        // Under compression the delayed stiffness is negative: the branch ends, the
+        // method is stable.
         EXPECT_FALSE(stability_limit(model, model.branches[1], methods[0], analysis).has_value());
     }
 }
 
 // The lever and axis parts of an element's geometric tangent add up to the whole.
-TEST(Delay, LeversAndAxesTogetherAreEverything) {
+TEST(Delay, LeverAndAxisTermsAddUpToTheGeometricTangent) {
     const Model model = compile(support::scene("chrono_mcpherson_preload"));
     const Branch& branch = model.branches[0];
     const Analysis analysis = analyse(model);

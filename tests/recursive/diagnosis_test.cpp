@@ -26,16 +26,18 @@ namespace {
 // A bar from the origin to (1, 0, 0), with the given joints, elements and loads.
 Scene bar(const std::string& rest) {
     return parse_scene(
-        "elastocheck: 1\nname: bar\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\n"
-        "bodies: {bar: {origin: a}}\n"
-        "branches: {out: {load: load, to: 100, steps: 10}}\n"
-        "probes: {tip: {on: bar, at: b}}\n" +
-            rest,
+        R"(elastocheck: 1
+name: bar
+units: {length: m, angle: rad, force: N}
+points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}
+bodies: {bar: {origin: a}}
+branches: {out: {load: load, to: 100, steps: 10}}
+probes: {tip: {on: bar, at: b}}
+)" + rest,
         "bar");
 }
 
-TEST(Diagnosis, CountsThePapersMcPhersonAndNamesTheSpinOfItsStrut) {
+TEST(Diagnosis, PapersMcPhersonHasItsRankAndTheSpinOfItsStrut) {
     const auto d = diagnose(compile(support::scene("chrono_mcpherson")));
     EXPECT_EQ(d.coordinates, 18);
     EXPECT_EQ(d.rows, 9);
@@ -51,7 +53,7 @@ TEST(Diagnosis, CountsThePapersMcPhersonAndNamesTheSpinOfItsStrut) {
 }
 
 // Two links between ball joints carry a sliding block: their spins are reported together.
-TEST(Diagnosis, LinksThatSpinAboutThemselvesAreToldTogether) {
+TEST(Diagnosis, SpinsOfLinksAreDescribedInOneMessage) {
     const auto silent = diagnose(model_of("spinning_links", {}, Detail::everything));
     ASSERT_EQ(silent.idle.size(), 2u);
     EXPECT_EQ(idle_modes(silent),
@@ -65,7 +67,7 @@ TEST(Diagnosis, LinksThatSpinAboutThemselvesAreToldTogether) {
         EXPECT_NE(idle_modes(seen).find(said), std::string::npos) << idle_modes(seen);
 }
 
-TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
+TEST(Diagnosis, IdleModesDoNotDependOnTheSizeOfRates) {
     for (const double factor : {1e-9, 1e-3, 1.0, 1e3, 1e6, 1e9}) {
         Scene scene = support::scene("chrono_mcpherson");
         for (auto& elastic : scene.elastics) {
@@ -80,32 +82,35 @@ TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
 }
 
 TEST(Diagnosis, ThreeIdleModesOfABodyAreAllFound) {
-    // A spherical joint alone leaves three rotations; the spring along the bar resists none of
-    // them.
+    // A spherical joint alone leaves three rotations; the spring along the bar resists
+    // none of them.
     const auto d =
-        diagnose(compile(bar("joints: {pin: {type: spherical, bodies: [bar, ground], at: a}}\n"
-                             "springs: {s: {bodies: [bar, ground], from: b, to: a, rate: 1000}}\n"
-                             "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n")));
+        diagnose(compile(bar(R"(joints: {pin: {type: spherical, bodies: [bar, ground], at: a}}
+springs: {s: {bodies: [bar, ground], from: b, to: a, rate: 1000}}
+loads: {load: {on: bar, at: b, force: [1, 0, 0]}}
+)")));
     EXPECT_EQ(d.idle.size(), 3u);
     for (const auto& mode : d.idle)
         EXPECT_NE(mode.description.find("bar: rotation"), std::string::npos) << mode.description;
 }
 
 TEST(Diagnosis, TranslationIsNamedWithItsDirection) {
-    const auto d = diagnose(compile(
-        bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n"
-            "loads: {load: {on: bar, at: b, force: [0, 1, 0]}}\n")));
+    const auto d = diagnose(
+        compile(bar(R"(joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}
+loads: {load: {on: bar, at: b, force: [0, 1, 0]}}
+)")));
     ASSERT_EQ(d.idle.size(), 1u);
     EXPECT_EQ(d.idle[0].description, "bar: translation along (1.000, 0.000, 0.000)");
 }
 
 // Two bars on one ground: the first on two hinges of one line, the second on one.
-TEST(Diagnosis, RedundantConstraintsAreCountedAndOnlyTheirJointsAreUndetermined) {
-    Scene scene =
-        bar("joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
-            "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
-            "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
-            "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n");
+TEST(Diagnosis, OnlyReactionsOfRedundantJointsAreUndetermined) {
+    Scene scene = bar(R"(joints:
+  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}
+  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}
+bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}
+loads: {load: {on: bar, at: c, force: [0, 0, 1]}}
+)");
     scene.bodies.push_back({"other", {{0, 1, 0}, Eigen::Quaterniond::Identity()}});
     const Direction x{ground, Eigen::Vector3d::UnitX()}, own_x{1, Eigen::Vector3d::UnitX()};
     scene.joints.push_back(
@@ -124,7 +129,7 @@ TEST(Diagnosis, RedundantConstraintsAreCountedAndOnlyTheirJointsAreUndetermined)
     EXPECT_EQ(d.redundant_sets, (std::vector<std::vector<int>>{{0, 1}}));
 }
 
-TEST(Diagnosis, ASoftDirectionIsNotIdleInATurnedFrame) {
+TEST(Diagnosis, SoftDirectionOfARotatedBushingIsNotIdle) {
     // Rates of 1e12 beside 100, at an angle to the ground and to the body, as a diagonal of the
     // rotated frame and as a full matrix of the unrotated one.
     const Eigen::Matrix3d R(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()));
@@ -160,7 +165,7 @@ TEST(Diagnosis, EquilibratedConditionDoesNotDependOnTheUnitsOfTheStiffness) {
     EXPECT_LT(plain, 100);
 }
 
-TEST(Diagnosis, ImbalanceAtTheDesignPositionIsSeen) {
+TEST(Diagnosis, ImbalanceAtTheDesignPositionIsReported) {
     Scene scene = support::scene("parallel_springs");
     EXPECT_LE(diagnose(compile(scene)).imbalance, 1e-9);
     std::get<DeadForce>(scene.static_loads[0].kind).f.z() -= 50;
@@ -168,7 +173,7 @@ TEST(Diagnosis, ImbalanceAtTheDesignPositionIsSeen) {
 }
 
 // With a NaN in the model no rank is computed; the methods report the failure.
-TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
+TEST(Diagnosis, NonFiniteDesignValueIsTheOnlyMessage) {
     const double none[] = {std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity(), 1e300};  // its square overflows
     for (const double bad : none) {
@@ -302,7 +307,7 @@ void expect_as_dense(const Model& model, const Diagnosis& d, const std::string& 
     }
 }
 
-TEST(Diagnosis, IsTheDenseOneOnEveryBuiltInScene) {
+TEST(Diagnosis, SparseRankEqualsDenseRankOnEveryBuiltInScene) {
     for (const auto& name : support::scene_names())
         for (const Detail detail : {Detail::required, Detail::everything}) {
             const Model model = compile(support::scene(name), detail);
@@ -310,7 +315,7 @@ TEST(Diagnosis, IsTheDenseOneOnEveryBuiltInScene) {
         }
 }
 
-TEST(Conditioning, IsThatOfTheDenseSingularValuesOnEveryBuiltInScene) {
+TEST(Conditioning, SparseEstimateEqualsDenseSingularValuesOnEveryBuiltInScene) {
     // In long double: an unscaled condition number of 1e15 leaves the smallest singular value no
     // digit in double.
     using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
@@ -409,9 +414,9 @@ TEST(Diagnosis, AChainOfTwoThousandBushingsHasNoIdleMode) {
         << d.idle[0].description;
 }
 
-TEST(Diagnosis, TheJointThatClosesALoopOfTwoThousandIsTheOneThatRepeats) {
-    // In a plane three of the five rows of the last hinge are dependent; out of the plane they are
-    // independent.
+TEST(Diagnosis, LastJointOfALoopOfTwoThousandIsRedundant) {
+    // In a plane three of the five rows of the last hinge are dependent; out of the plane
+    // they are independent.
     for (const double tilt : {0.0, 1e-6}) {
         Scene scene = chain_of_hinges(2000, true);
         const Vector3d end = place(scene, 1999) + Vector3d(0.1, 0.05, 0);
@@ -453,7 +458,7 @@ Scene tower(int loops) {
     return scene;
 }
 
-TEST(Diagnosis, EveryLoopOfATowerHasItsOwnCulpritAndItsOwnSet) {
+TEST(Diagnosis, EachLoopOfATowerHasItsOwnRedundantSet) {
     const Model few = compile(tower(4), Detail::everything);
     expect_as_dense(few, diagnose(few), "four loops");
     const Model model = compile(tower(500), Detail::everything);
@@ -469,7 +474,7 @@ TEST(Diagnosis, EveryLoopOfATowerHasItsOwnCulpritAndItsOwnSet) {
     EXPECT_TRUE(d.idle.empty());
 }
 
-TEST(Diagnosis, AGridOfBallsHasTheJointThatIsThereTwice) {
+TEST(Diagnosis, DuplicatedJointOfAGridIsFound) {
     const int side = 20;
     Scene scene = row_of_bodies(side * side, [&](int k) -> Vector3d {
         return {0.1 * (k % side), 0.1 * (k / side), 0.01 * ((k * k) % 7)};
@@ -492,7 +497,7 @@ TEST(Diagnosis, AGridOfBallsHasTheJointThatIsThereTwice) {
     EXPECT_EQ(d.redundant_sets, (std::vector<std::vector<int>>{{120, 300}}));
 }
 
-TEST(Diagnosis, AThousandLinksThatSpinAreAModeOfOneBodyEach) {
+TEST(Diagnosis, ThousandSpinningLinksAreModesOfOneBodyEach) {
     // A body with a thousand others on it.
     Scene scene = row_of_bodies(1001, [](int k) -> Vector3d {
         return {0.01 * k, 0.5, 0.001 * (k % 7)};
@@ -515,7 +520,7 @@ TEST(Diagnosis, AThousandLinksThatSpinAreAModeOfOneBodyEach) {
     EXPECT_TRUE(d.redundant.empty());
 }
 
-TEST(Diagnosis, AModelWithoutBodiesIsAnErrorThatSaysSo) {
+TEST(Diagnosis, ModelWithoutBodiesIsRejectedWithAMessage) {
     const auto message = [](auto&& call) -> std::string {
         try {
             call();

@@ -92,12 +92,13 @@ branches: {{b: {{{}, steps: 4}}}}
 }
 
 // Largest difference of joint forces, and of moments over 0.3 m, and the largest such value [N].
-struct Apart {
+struct Difference {
     double most = 0, of = 0;
 };
-Apart apart(const std::vector<Equilibrium>& found, const std::vector<Equilibrium>& truth) {
+Difference difference(const std::vector<Equilibrium>& found,
+                      const std::vector<Equilibrium>& truth) {
     constexpr double lever = 0.3;
-    Apart all;
+    Difference all;
     for (std::size_t k = 0; k < truth.size(); ++k)
         for (std::size_t j = 0; j < truth[k].reactions.size(); ++j) {
             const Wrench &one = found[k].reactions[j], &other = truth[k].reactions[j];
@@ -120,7 +121,7 @@ constexpr Rung rungs[] = {{"tangent", 400, 2e-5},
                           {"adaptive", 4, 1e-6},
                           {"series", 4, 1e-10}};
 
-TEST(Driver, EveryKindByEveryMethodMeetsTheReactionsOfTheEquilibriumLeg) {
+TEST(Driver, ReactionsUnderEveryDriverEqualThoseOfTheEquilibriumLeg) {
     for (const Kind& kind : kinds) {
         const Model whole = driven(kind);
         const Branch& branch = whole.branches[0];
@@ -136,7 +137,7 @@ TEST(Driver, EveryKindByEveryMethodMeetsTheReactionsOfTheEquilibriumLeg) {
                 solve(model, branch, {.method = method, .steps = rung.steps, .record = 4});
             ASSERT_EQ(path.outcome, Outcome::converged)
                 << kind.name << ", " << rung.name << ": " << path.detail;
-            const Apart off = apart(path.points, truth.points);
+            const Difference off = difference(path.points, truth.points);
             EXPECT_GE(off.of, 1000) << kind.name;
             EXPECT_LE(off.most, rung.share * off.of) << kind.name << ", " << rung.name;
         }

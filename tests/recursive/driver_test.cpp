@@ -38,7 +38,7 @@ double worst_slider(const EquilibriumPath& path) {
     return worst;
 }
 
-TEST(Driver, MethodsFollowASliderCrankWithTheOrderOfOneStep) {
+TEST(Driver, SliderCrankIsFollowedAtTheOrderOfEachMethod) {
     const OneWay d = slider_crank();
     // The error at a point is that of the method's last step: the order of one step.
     for (const auto& [name, order] :
@@ -52,7 +52,7 @@ TEST(Driver, MethodsFollowASliderCrankWithTheOrderOfOneStep) {
     }
 }
 
-TEST(Driver, AStepOfHalfATurnOrAWholeOneIsNotTakenForNone) {
+TEST(Driver, StepOfHalfOrAWholeTurnIsRejected) {
     for (const double to : {full_turn / 2, full_turn, -full_turn / 2}) {
         OneWay d = slider_crank();
         d.branch.to = to;
@@ -64,7 +64,7 @@ TEST(Driver, AStepOfHalfATurnOrAWholeOneIsNotTakenForNone) {
     }
 }
 
-TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
+TEST(Driver, PublishedMethodHasFirstOrderConstraintErrorOnASliderCrank) {
     const OneWay d = slider_crank();
     // Over a whole turn the leading term vanishes, so the worst point of the branch is tested.
     const auto error = [&](int steps) {
@@ -80,7 +80,7 @@ TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
 // ---- An arch on a jack: the limit of the published sum past both limit points is
 // ∫ 2k ζ²/(b² + ζ²) dζ, with the spring axes of each step.
 
-TEST(Driver, ThePublishedForceOfAJackIsItsOwnLimit) {
+TEST(Driver, PublishedJackForceConvergesToTheLimitOfTheFormulation) {
     Scene scene = support::scene("two_spring_arch");
     constexpr double k = 1e5, b = 0.3, h = 0.08;
     scene.joints.push_back(
@@ -100,7 +100,7 @@ TEST(Driver, ThePublishedForceOfAJackIsItsOwnLimit) {
 
 // ---- Regression scenes.
 
-TEST(Found, WhatEndsOrLosesItsStabilityIsSaidSoWhateverTheSteps) {
+TEST(Found, EndOfABranchIsReportedAtAnyNumberOfSteps) {
     for (const char* name :
          {"adaptive-segfault-arch", "adaptive-segfault-five-links", "arch-past-its-limit",
           "straight-column-one-body", "straight-column-two-bodies"}) {
@@ -131,7 +131,7 @@ double bubble_begins(double k_y) {
     return 20 * (z - 80) + 200 * (1 - drawn / length) * z;
 }
 
-TEST(Watch, AStretchOfInstabilityEndsEveryMethodWithStepsWhereItBegins) {
+TEST(Watch, SteppingMethodsEndWhereAnUnstableStretchBegins) {
     for (const double k_y : {6.5, 6.8, 6.9, 6.95, 6.97, 6.98, 6.985, 6.988})
         for (const double to : {-3200., -2500., -2100., -4100., -8000.}) {
             const Model model = bubble(k_y, to);
@@ -148,7 +148,7 @@ TEST(Watch, AStretchOfInstabilityEndsEveryMethodWithStepsWhereItBegins) {
     }
 }
 
-TEST(Watch, AStretchThatStaysStableIsNoEvent) {
+TEST(Watch, StableBranchHasNoEvent) {
     for (const double k_y : {6.99, 7.0, 7.1, 7.5})
         for (const double to : {-3200., -2500., -8000.}) {
             const Model model = bubble(k_y, to);
@@ -156,7 +156,7 @@ TEST(Watch, AStretchThatStaysStableIsNoEvent) {
         }
 }
 
-TEST(Start, ThatIsUnstableIsNamedByEveryMethod) {
+TEST(Start, UnstableStartIsReportedByEveryMethod) {
     for (const bool unstable : {false, true})
         for (const bool at_rest : {false, true}) {
             const Model model =
@@ -183,9 +183,9 @@ TEST(Start, ThatIsUnstableIsNamedByEveryMethod) {
         }
 }
 
-// What is soft beside stiff elements, and a thrust that follows, which has no energy, are not called
-// unstable.
-TEST(Start, ThatIsSoftOrUnderAFollowerIsNotCalledUnstable) {
+// What is soft beside stiff elements, and a thrust that follows, which has no energy, are
+// not called unstable.
+TEST(Start, SoftStartOrFollowerLoadIsNotReportedUnstable) {
     for (const char* scene : {"soft_beside_stiff", "ziegler"})
         expect_of_every_method(model_of(scene), {Outcome::converged});
 }

@@ -157,7 +157,7 @@ TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
     }
 }
 
-TEST(ElasticForce, IsRegularWhereTheRotationVanishes) {
+TEST(ElasticForce, IsRegularAtZeroRotation) {
     Random random;
     Bushing bushing = random_bushing(0, 1, random);
     const State<double> together = assembled(bushing, random);

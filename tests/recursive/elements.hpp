@@ -7,8 +7,8 @@ namespace elastocheck::recursive {
 
 using support::stop;
 
-// Continuous curve with five knots within ± reach, a kink at each of them, and forces of the size
-// `force`.
+// Continuous curve with five knots within ± reach, a kink at each of them, and forces of
+// the size `force`.
 inline Curve random_curve(Random& random, double reach, double force) {
     Curve f;
     for (int k = 0; k < 5; ++k) f.knots.push_back(reach * (-1 + 0.4 * k + random(0.05, 0.35)));

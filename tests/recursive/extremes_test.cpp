@@ -13,7 +13,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-TEST(Extremes, ARankThatCannotBeToldIsSaid) {
+TEST(Extremes, UndecidableRankIsReported) {
     for (const double skew : {0.0, 1e-15, 1e-12, 3e-10, 1e-6}) {
         const Model model = model_of("door", {setting("points.skew.x", skew)});
         for (const Method& method : methods) {
@@ -30,7 +30,7 @@ TEST(Extremes, ARankThatCannotBeToldIsSaid) {
     }
 }
 
-TEST(Extremes, JointsThatContradictEachOtherAreRefusedFromNineDigitsOn) {
+TEST(Extremes, JointsInconsistentByMoreThanNineDigitsAreRejected) {
     for (const double apart : {0.0, 1e-13, -1e-8, 1e-8, 1e-6, 1e-3}) {
         SCOPED_TRACE(apart);
         expect_of_every_method(
@@ -41,7 +41,7 @@ TEST(Extremes, JointsThatContradictEachOtherAreRefusedFromNineDigitsOn) {
 
 // The lever of models/extremes/over_centre has its limit point at 63.3413 N. The expansions before
 // it are short, and rounding of the load exceeds the range of some.
-TEST(Extremes, NoPointOfASeriesIsMissingNextToALimitPoint) {
+TEST(Extremes, SeriesReachesEveryPointUpToALimitPoint) {
     int converged = 0;
     for (int k = 0; k < 40; ++k) {
         const Model model = model_of("lever", {setting("branches.pull.to", 63.3 + 0.001 * k)});
@@ -54,7 +54,7 @@ TEST(Extremes, NoPointOfASeriesIsMissingNextToALimitPoint) {
 }
 
 // A row without moving bodies forms a loop of its own.
-TEST(Extremes, ALinkBetweenWhatIsFixedIsHeldAtItsLengthAndAtNoOther) {
+TEST(Extremes, LinkBetweenFixedPointsIsConsistentOnlyAtItsOwnLength) {
     const Model model = model_of("fixed_link");
     ASSERT_EQ(model.bodies.size(), 1u);  // the block is ground
     for (const int row : loops(model)) EXPECT_GE(row, 0);
@@ -72,7 +72,7 @@ Model rod(double weight, double to) {
         "rod", {setting("static_loads.weight.force.x", weight), setting("branches.along.to", to)});
 }
 
-TEST(Extremes, ARodThatIsPushedAlongItselfDoesNotStayAndOneThatIsPulledDoes) {
+TEST(Extremes, CompressedRodIsUnstableAndTensionedRodIsStable) {
     for (const Method& method : methods) {
         const Model pulled = rod(0, 500), pushed = rod(0, -500);
         EXPECT_EQ(solve(pulled, pulled.branches[0], {.method = method}).outcome, Outcome::converged)
@@ -83,7 +83,7 @@ TEST(Extremes, ARodThatIsPushedAlongItselfDoesNotStayAndOneThatIsPulledDoes) {
     }
 }
 
-TEST(Extremes, WhatStandsOnABallUnderItsWeightBeginsUnstable) {
+TEST(Extremes, BodyBalancedOnABallJointStartsUnstable) {
     for (const Method& method : methods) {
         const Model hangs = rod(50, 100), stands = rod(-50, 10), falls = rod(50, -100);
         const auto path = solve(hangs, hangs.branches[0], {.method = method});
@@ -103,7 +103,7 @@ TEST(Extremes, WhatStandsOnABallUnderItsWeightBeginsUnstable) {
 
 // Two modes that become unstable at once leave the sign of the determinant unchanged: a bar on a
 // ball joint, with the same torsional rate in both directions.
-TEST(Extremes, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
+TEST(Extremes, AxisymmetricColumnEndsAtItsBucklingLoad) {
     const Model model = model_of("column");
     const Branch& branch = model.branches[0];
     for (const Method& method : methods) {

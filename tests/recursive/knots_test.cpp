@@ -108,7 +108,7 @@ const Arm with_curve{
 
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
-TEST(Knots, StopsAreHitInOneStepOfFirstOrderAndLeaveTheRungsTheirOwnBehind) {
+TEST(Knots, StopCostsOneFirstOrderStepAndLaterStepsKeepTheOrderOfTheMethod) {
     // Without a knot each method has the order in the table of recursive_method.hpp ...
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
@@ -129,7 +129,7 @@ TEST(Knots, StopsAreHitInOneStepOfFirstOrderAndLeaveTheRungsTheirOwnBehind) {
     }
 }
 
-TEST(Knots, OfACurveLeaveOneStepOfSecondOrderAndThirdWhereItIsCorrected) {
+TEST(Knots, KnotOfATableCostsOneStepOfSecondOrderOrThirdWithACorrection) {
     for (const auto& [name, behind] : {std::pair{"tangent", 2}, {"midpoint", 2}, {"chord", 3}}) {
         const Method method = method_called(name);
         const Errors coarse = errors_near(with_curve, method, 400),
@@ -139,7 +139,7 @@ TEST(Knots, OfACurveLeaveOneStepOfSecondOrderAndThirdWhereItIsCorrected) {
     }
 }
 
-TEST(Knots, AdaptiveLandsOnThemAndHoldsTheToleranceInFewSteps) {
+TEST(Knots, AdaptiveStepsEndOnKnotsAndKeepTheTolerance) {
     for (const auto& [name, arm, most] :
          {std::tuple{"stop", with_stop, 16}, {"curve", with_curve, 50}})
         for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7}) {
@@ -156,9 +156,9 @@ TEST(Knots, AdaptiveLandsOnThemAndHoldsTheToleranceInFewSteps) {
         }
 }
 
-TEST(Knots, AdaptiveWalksATableOfManyPoints) {
-    // f = 1000 sinh(20 x) as a Hermite table every 10 mm with exact slopes: C1, and its curvature
-    // jumps.
+TEST(Knots, AdaptiveFollowsATableOfManyPoints) {
+    // f = 1000 sinh(20 x) as a Hermite table every 10 mm with exact slopes: C1, and
+    // its curvature jumps.
     const auto at = [](double x) { return 1e3 * std::sinh(20 * x); };
     const auto slope = [](double x) { return 2e4 * std::cosh(20 * x); };
     Curve f;
@@ -184,7 +184,7 @@ TEST(Knots, AdaptiveWalksATableOfManyPoints) {
     EXPECT_LE(path.counts.factorisations, 20 + 12 * knots) << knots << " knots";
 }
 
-TEST(Knots, AreNoMatterWhereTheBranchBegins) {
+TEST(Knots, KnotAtTheStartOfABranchIsPassed) {
     // A stop without clearance: the design position is on the knot. Or the weight acts as drawn: the
     // stop closes while settling.
     for (const auto& method : methods) {
@@ -206,9 +206,9 @@ TEST(Knots, AreNoMatterWhereTheBranchBegins) {
     }
 }
 
-TEST(Knots, WhereThePathTurnsBackEndIt) {
-    // Beyond 20 mm the curve falls more steeply than the spring rises: the load has its maximum
-    // there.
+TEST(Knots, PathThatTurnsBackAtAKnotEndsThere) {
+    // Beyond 20 mm the curve falls more steeply than the spring rises: the load has
+    // its maximum there.
     const Arm arm{reversed(stop(0.02, -100e3))};
     const Model model = arm.model();
     const double phi = std::asin(0.02 / Arm::out);  // nearly: the spring leans a little
@@ -225,7 +225,7 @@ TEST(Knots, WhereThePathTurnsBackEndIt) {
 
 // ---- Followers and formulations.
 
-TEST(Follower, ThatABranchDrivesMustBeInTheModelThatWasAnalysed) {
+TEST(Follower, DrivenFollowerMissingFromTheAnalysedModelIsRejected) {
     Scene scene;  // a block on a spring: nothing but the follower couples force and rotation
     scene.bodies = {{"block", {}}};
     scene.elastics = {{"spring", AxialSpring{{ground, Vector3d::UnitX()}, {0}, LinearRate{1}, 1}}};
@@ -236,7 +236,7 @@ TEST(Follower, ThatABranchDrivesMustBeInTheModelThatWasAnalysed) {
     EXPECT_THROW((void)solve(model, branch, {}, analyse(model)), std::invalid_argument);
 }
 
-TEST(Formulation, OfEveryKindLeavesTheRungsTheirOrder) {
+TEST(Formulation, MethodsKeepTheirOrderUnderEveryBushingFormulation) {
     // A block on one bushing, pushed and turned by followers: large offsets and angles at once.
     for (const Formulation& formulation : every_formulation()) {
         Scene scene;

@@ -30,18 +30,25 @@ Scene springs_in_series(int n) {
             "300]}}\n",
             i, i, i == 1 ? std::string("ground") : fmt::format("b{}", i - 1), i - 1, k);
     }
-    return parse_scene(
-        fmt::format(
-            "elastocheck: 1\nname: springs in series\n"
-            "units: {{length: m, angle: rad, force: N}}\npoints:\n{}bodies:\n{}bushings:\n{}"
-            "loads:\n  pull: {{on: b{}, at: p{}, force: [1, 0, 0]}}\n"
-            "branches:\n  pull: {{load: pull, to: {}, steps: 5}}\n"
-            "probes:\n  end: {{on: b{}, at: p{}}}\n",
-            points, bodies, bushings, n, n, F, n, n),
-        "springs");
+    return parse_scene(fmt::format(
+                           R"(elastocheck: 1
+name: springs in series
+units: {{length: m, angle: rad, force: N}}
+points:
+{}bodies:
+{}bushings:
+{}loads:
+  pull: {{on: b{}, at: p{}, force: [1, 0, 0]}}
+branches:
+  pull: {{load: pull, to: {}, steps: 5}}
+probes:
+  end: {{on: b{}, at: p{}}}
+)",
+                           points, bodies, bushings, n, n, F, n, n),
+                       "springs");
 }
 
-TEST(Large, SpringsInSeriesAddUpTheirCompliancesByEveryMethod) {
+TEST(Large, CompliancesOfSpringsInSeriesAddUpInEveryMethod) {
     for (const int n : {2, 30, 300}) {
         const Model model = compile(springs_in_series(n));
         ASSERT_EQ(model.bodies.size(), static_cast<std::size_t>(n));
@@ -64,12 +71,13 @@ TEST(Large, SpringsInSeriesAddUpTheirCompliancesByEveryMethod) {
 
 // The rounded matrix solves to 1e-12 only. Without residual correction of the coefficients the
 // expansions would become arbitrarily short.
-TEST(Large, ALongLeafIsBentInFewExpansions) {
+TEST(Large, LongLeafSpringNeedsFewExpansions) {
     using namespace support;
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: leaf\nunits: {length: m, angle: rad, force: N}\n" + leaf(100) +
-            fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
-                        "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
+            fmt::format(R"(loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}
+branches: {{push: {{load: push, to: {}, steps: 5}}}}
+)",
                         10 * EI / (L * L)),
         "leaf"));
     const series::Path path = series::follow(model, model.branches[0], {}, analyse(model));
@@ -77,7 +85,7 @@ TEST(Large, ALongLeafIsBentInFewExpansions) {
     EXPECT_LE(path.expansions.size(), 40u);
 }
 
-TEST(Large, MemoryOfTheFactorsGrowsAsTheChain) {
+TEST(Large, FillOfTheFactorsIsLinearInTheLengthOfAChain) {
     const auto entries = [](int n) {
         const Analysis analysis = analyse(compile(springs_in_series(n)));
         const auto& system = analysis.system;
@@ -111,17 +119,25 @@ Scene carriers_and_rods(int n) {
         joints +=
             fmt::format("  b{}: {{type: spherical, bodies: [rod{}, c{}], at: e{}}}\n", i, i, i, i);
     }
-    return parse_scene(
-        fmt::format("elastocheck: 1\nname: carriers and rods\n"
-                    "units: {{length: m, angle: rad, force: N}}\npoints:\n{}bodies:\n{}joints:\n{}"
-                    "bushings:\n{}loads:\n  push: {{on: c0, at: p0, force: [0.3, 1, 0.2]}}\n"
-                    "branches:\n  push: {{load: push, to: 500, steps: 5}}\n"
-                    "probes:\n  end: {{on: c{}, at: p{}}}\n",
-                    points, bodies, joints, bushings, n - 1, n - 1),
-        "rods");
+    return parse_scene(fmt::format(R"(elastocheck: 1
+name: carriers and rods
+units: {{length: m, angle: rad, force: N}}
+points:
+{}bodies:
+{}joints:
+{}bushings:
+{}loads:
+  push: {{on: c0, at: p0, force: [0.3, 1, 0.2]}}
+branches:
+  push: {{load: push, to: 500, steps: 5}}
+probes:
+  end: {{on: c{}, at: p{}}}
+)",
+                                   points, bodies, joints, bushings, n - 1, n - 1),
+                       "rods");
 }
 
-TEST(Large, RodsThatSpinAreHeldEachOnItsOwnBodyAndMoveNothingElse) {
+TEST(Large, BorderOfEachSpinningRodInvolvesOnlyItsBody) {
     const int n = 25;
     const Scene scene = carriers_and_rods(n);
     const Model rods = compile(scene, Detail::everything), distances = compile(scene);
@@ -151,12 +167,13 @@ TEST(Large, RodsThatSpinAreHeldEachOnItsOwnBodyAndMoveNothingElse) {
 // A link on two collinear hinges: the five rows of the second are redundant.
 std::string stiff_link(int at) {
     return fmt::format(
-        "  l{}: {{type: revolute, bodies: [link{}, ground], at: q{}, axis: y}}\n"
-        "  r{}: {{type: revolute, bodies: [link{}, ground], at: r{}, axis: y}}\n",
+        R"(  l{}: {{type: revolute, bodies: [link{}, ground], at: q{}, axis: y}}
+  r{}: {{type: revolute, bodies: [link{}, ground], at: r{}, axis: y}}
+)",
         at, at, at, at, at, at);
 }
 
-TEST(Large, JointsThatRepeatEachOtherAreHeldLoopByLoop) {
+TEST(Large, BorderOfRedundantJointsInvolvesOnlyTheirLoop) {
     const int n = 12;
     std::string points, bodies, joints;
     for (int i = 0; i < n; ++i) {
@@ -164,17 +181,24 @@ TEST(Large, JointsThatRepeatEachOtherAreHeldLoopByLoop) {
         bodies += fmt::format("  link{}: {{origin: q{}}}\n", i, i);
         joints += stiff_link(i);
     }
-    const Model model = compile(
-        parse_scene(fmt::format("elastocheck: 1\nname: repeated hinges\nunits: {{length: m, angle: "
-                                "rad, force: N}}\n"
-                                "points:\n{}bodies:\n{}joints:\n{}torsion_springs:\n"
-                                "  t: {{bodies: [link0, ground], at: q0, axis: y, rate: 50}}\n"
-                                "loads:\n  push: {{on: link0, at: r0, force: [1, 0, 0]}}\n"
-                                "branches:\n  push: {{load: push, to: 1, steps: 2}}\n"
-                                "probes:\n  end: {{on: link0, at: r0}}\n",
-                                points, bodies, joints),
-                    "hinges"),
-        Detail::everything);
+    const Model model = compile(parse_scene(fmt::format(R"(elastocheck: 1
+name: repeated hinges
+units: {{length: m, angle: rad, force: N}}
+points:
+{}bodies:
+{}joints:
+{}torsion_springs:
+  t: {{bodies: [link0, ground], at: q0, axis: y, rate: 50}}
+loads:
+  push: {{on: link0, at: r0, force: [1, 0, 0]}}
+branches:
+  push: {{load: push, to: 1, steps: 2}}
+probes:
+  end: {{on: link0, at: r0}}
+)",
+                                                        points, bodies, joints),
+                                            "hinges"),
+                                Detail::everything);
     const std::vector<int> loop = loops(model);
     ASSERT_EQ(loop.size(), static_cast<std::size_t>(10 * n));
     for (std::size_t row = 0; row < loop.size(); ++row)
@@ -185,7 +209,7 @@ TEST(Large, JointsThatRepeatEachOtherAreHeldLoopByLoop) {
     for (int c = held.idle; c < held.size(); ++c) EXPECT_EQ(held.end(c) - held.begin(c), 10);
 }
 
-TEST(Large, LoopsAreWhatNoSingleBodyDivides) {
+TEST(Large, LoopsAreTheBiconnectedComponentsOfTheJointGraph) {
     const Model model = model_of("loops", {}, Detail::everything);
     const std::vector<int> loop = loops(model);
     ASSERT_EQ(model.joints.size(), 8u);

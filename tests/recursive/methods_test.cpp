@@ -42,7 +42,7 @@ EquilibriumPath truth(const Model& model, const Branch& branch, int record = 10)
     return path;
 }
 
-TEST(Methods, EachRungHasItsOrderToTheTruth) {
+TEST(Methods, EachMethodConvergesToTheEquilibriumAtItsFormalOrder) {
     for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar",
                              "bushing_pair", "two_spring_arch"}) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
@@ -72,7 +72,7 @@ TEST(Methods, EachRungHasItsOrderToTheTruth) {
 }
 
 // Eq. (31): |Φ| falls as 1/N, and where the constraints are closed as 1/N².
-TEST(Methods, ClosingTheConstraintsMakesTheirErrorFallTwiceAsFast) {
+TEST(Methods, ConstraintErrorIsSecondOrderWhereConstraintsAreClosed) {
     for (const auto& [model, branch] : one_ways(compile(support::scene("chrono_mcpherson"))))
         for (const auto& [name, order] : {std::pair{"published", 1}, {"closed", 2}}) {
             const auto Phi = [&](int steps) {
@@ -85,7 +85,7 @@ TEST(Methods, ClosingTheConstraintsMakesTheirErrorFallTwiceAsFast) {
         }
 }
 
-TEST(Methods, RecordedPointsAreThoseOfTheFullRun) {
+TEST(Methods, RecordingFewerPointsDoesNotChangeThem) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
@@ -120,16 +120,16 @@ TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
 TEST(Methods, AdaptiveTakesFewSolvesForHundredsOfPoints) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     for (const auto& branch : model.branches) {
-        const auto path =
-            solve(model, branch, {.method = rung("adaptive"), .steps = 300});  // 0.01 mm, 0.001 deg
+        // 0.01 mm, 0.001 deg
+        const auto path = solve(model, branch, {.method = rung("adaptive"), .steps = 300});
         EXPECT_EQ(path.points.size(), 301u);
         EXPECT_LE(path.counts.factorisations, 20);
     }
 }
 
-TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
-    // Gap attribution starts from the published sum; with all three terms its limit is the true
-    // equilibrium.
+TEST(Methods, PublishedSumWithAllTermsConvergesToTheEquilibrium) {
+    // Gap attribution starts from the published sum; with all three terms its limit is
+    // the true equilibrium.
     const Model model = compile(support::scene("bushing_pair"));
     const auto exact = truth(model, model.branches[0]);
     Method method;
@@ -141,7 +141,7 @@ TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
     EXPECT_NEAR(std::log2(between(model, coarse, exact) / between(model, fine, exact)), 1, 0.1);
 }
 
-TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
+TEST(Methods, FewStepsGiveABoundedErrorOrAReportedFailure) {
     // With very few steps a method may be inaccurate or fail. Methods with the true residual reject
     // errors above half the motion; the others cannot detect it, but stay within twice the motion.
     double worst_share = 0;
@@ -170,7 +170,7 @@ TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
     EXPECT_GT(worst_share, 0.1);  // inaccurate results did occur: not everything was rejected
 }
 
-TEST(Methods, TooFewStepsAreNamedAsSuch) {
+TEST(Methods, DivergenceFromTooFewStepsIsReported) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     for (const char* name : {"tangent", "chord", "midpoint"}) {
         const auto path = solve(model, model.branches[1], {.method = rung(name), .steps = 3});

@@ -17,7 +17,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-TEST(Paper, TheSweepIsItsLoopOnEveryScene) {
+TEST(Paper, PublishedMethodEqualsThePapersLoopOnEveryScene) {
     constexpr int N = 30;
     double worst = 0;
     int compared = 0;
@@ -69,7 +69,7 @@ double end_error(const Model& model, const Branch& branch, int N) {
     return static_cast<double>(std::sqrt(sum));
 }
 
-TEST(Paper, RoundOffEndsTheConvergenceOfFloatAndNotThatOfLongDouble) {
+TEST(Paper, ConvergenceEndsAtRoundOffInFloatAndContinuesInLongDouble) {
     const Model model = compile(support::scene("mcpherson"));
     const Branch& branch = model.branches[0];
     double least = 1, last = 0, before = 0;

@@ -84,7 +84,7 @@ std::vector<OwnLimit> own_limits() {
     return limits;
 }
 
-TEST(Recursion, ConvergesToItsOwnClosedFormLimitAtFirstOrder) {
+TEST(Recursion, ConvergesToItsClosedFormLimitAtFirstOrder) {
     for (const auto& limit : own_limits()) {
         const Model model = compile(support::scene(limit.scene));
         const auto branch = std::ranges::find(model.branches, limit.load, &Branch::to);
@@ -129,7 +129,7 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
     return path;
 }
 
-TEST(Recursion, Equation29IsEquation28AlsoWhereTheLeverOfTheLoadMoves) {
+TEST(Recursion, Equation29EqualsEquation28ForAMovingLoadLever) {
     for (const char* name : {"pinned_bar", "bushing_pair", "pendulum", "two_spring_arch",
                              "single_bushing", "parallel_springs"}) {
         const Model model = compile(support::scene(name));
@@ -145,7 +145,7 @@ TEST(Recursion, Equation29IsEquation28AlsoWhereTheLeverOfTheLoadMoves) {
     }
 }
 
-TEST(Recursion, SixHundredStepsMeanThreeHundredOfTenNewtonEachWay) {
+TEST(Recursion, PapersSixHundredStepsAreThreeHundredOfTenNewtonPerSide) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     ASSERT_EQ(model.branches.size(), 2u);
     for (const auto& branch : model.branches) {
@@ -157,7 +157,7 @@ TEST(Recursion, SixHundredStepsMeanThreeHundredOfTenNewtonEachWay) {
 }
 
 // A scene in balance starts where it is drawn, from its reactions, not from zero; another settles.
-TEST(Recursion, StartsFromItsReactionsOrSettlesAtLoadFactorZero) {
+TEST(Recursion, BalancedSceneStartsFromItsReactionsAndAnotherSettlesFirst) {
     for (const double more : {0., 75.}) {  // [N] on 75 N/mm
         Scene scene = support::scene("parallel_springs");
         auto& weight = std::get<DeadForce>(scene.static_loads[0].kind).f;
@@ -181,7 +181,7 @@ TEST(Recursion, StartsFromItsReactionsOrSettlesAtLoadFactorZero) {
 
 // ---- One test per outcome
 
-TEST(Outcome, APreloadThatTurnsOntoAnIdleModeIsAnErrorOfEveryMethod) {
+TEST(Outcome, PreloadRotatedOntoAnIdleModeIsReportedByEveryMethod) {
     Model model = model_of("constant_force");
     Curve& pull = std::get<Curve>(std::get<AxialSpring>(model.elastics.at(0).kind).law);
     for (auto& piece : pull.pieces) piece = {};
@@ -201,7 +201,7 @@ Model free_play(double to) {
     model.branches[0].to = to;
     return model;
 }
-TEST(Outcome, FreePlayThatHoldsNothingIsIdleUntilItCloses) {
+TEST(Outcome, UnloadedFreePlayIsIdleUntilItCloses) {
     const Model open = free_play(40), closes = free_play(100);
     ASSERT_EQ(diagnose(open).idle.size(), 1u);
     for (const auto& method : methods) {
@@ -220,13 +220,13 @@ TEST(Outcome, FreePlayThatHoldsNothingIsIdleUntilItCloses) {
                 << method.name << path.detail;
         }
 }
-TEST(Outcome, FreePlayThatIsPushedIsALoadedIdleMode) {
+TEST(Outcome, LoadedFreePlayIsALoadedIdleMode) {
     Model model = free_play(10);
     std::get<DeadForce>(std::get<Load>(model.branches[0].drivers[0].what).kind).at.body = 0;
     expect_of_every_method(model, {Outcome::loaded_idle_mode});
 }
 
-TEST(Outcome, ForcesWithoutEnergyOnAnIdleModeAreAnErrorOfEveryMethod) {
+TEST(Outcome, NonconservativeForceOnAnIdleModeIsReportedByEveryMethod) {
     // No rate about the marker's x, Cardan angles: after a rotation about z by θ_z, a motion about
     // B e_x does not change the other two angles. But the moment (0, M'_y, M'_z) in the axes of i
     // has a component along it.
@@ -237,7 +237,7 @@ TEST(Outcome, ForcesWithoutEnergyOnAnIdleModeAreAnErrorOfEveryMethod) {
             << method.name;
 }
 
-TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
+TEST(Outcome, IdleModeThatGainsStiffnessIsReported) {
     const Model model = model_of("dead_centre");
     ASSERT_EQ(diagnose(model).idle.size(), 1u);
     const auto path = solve(model, model.branches[0]);

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using support::apart, support::at_wheel, support::bare, support::OneWay, support::stacked,
+using support::distance, support::at_wheel, support::bare, support::OneWay, support::stacked,
     support::way_of;
 
 Method rung(const char* name) { return find_method(name).value(); }
@@ -38,7 +38,7 @@ VectorXd one(const OneWay& way, const Equilibrium& state, const Disturbance& dis
                                            : VectorXd::Constant(6, std::nan(""));
 }
 // The paper's first step is the response of K to the load, for any size of the load.
-TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
+TEST(Respond, PublishedResponseEqualsTheFirstStepOfThePublishedSweep) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const auto& load = std::get<DeadForce>(std::get<Load>(way.branch.drivers[0].what).kind);
     const auto path = solve(way.model, way.branch);
@@ -54,7 +54,7 @@ TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
     }
 }
 
-TEST(Respond, MethodsWithOneMatrixAnswerAlike) {
+TEST(Respond, MethodsWithTheSameMatrixGiveTheSameResponse) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
@@ -64,12 +64,12 @@ TEST(Respond, MethodsWithOneMatrixAnswerAlike) {
         EXPECT_EQ(one(way, state, side, method),
                   std::holds_alternative<Linear>(method.kind) ? linear : consistent)
             << method.name;
-    EXPECT_GT(apart(linear, consistent), 1e-3);
+    EXPECT_GT(distance(linear, consistent), 1e-3);
 }
 
 // The orders that a state leaves serve the next one: the same response, and no search for an order
 // where the neighbours are near.
-TEST(Respond, NextStateBeginsWithTheOrdersOfTheLast) {
+TEST(Respond, PivotOrdersAreReusedAtTheNextState) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     const auto path = solve(way.model, way.branch, {.method = rung("series"), .steps = 8});
     ASSERT_EQ(path.points.size(), 9u);
@@ -83,13 +83,13 @@ TEST(Respond, NextStateBeginsWithTheOrdersOfTheLast) {
             linear_response(way.model, way.branch, bare(state), {&side, 1}, rung("series"), kept);
         ASSERT_EQ(response.outcome, Outcome::converged) << response.detail;
         searches += before != orders();
-        EXPECT_LE(apart(stacked(response.increments[0]), one(way, state, side)), 1e-10);
+        EXPECT_LE(distance(stacked(response.increments[0]), one(way, state, side)), 1e-10);
     }
     EXPECT_GE(searches, 1) << "the first state leaves its own";
     EXPECT_LE(searches, 3);
 }
 
-TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
+TEST(Respond, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
     const OneWay way = way_of("front_axle", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Point at{way.model.wheels[0].body, way.model.wheels[0].centre_local};
@@ -99,12 +99,12 @@ TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
     const auto response = linear_response(way.model, way.branch, state, both, rung("series"));
     ASSERT_EQ(response.increments.size(), 3u) << response.detail;
     EXPECT_EQ(stacked(response.increments[0]), one(way, state, both[0]));
-    EXPECT_LE(apart(stacked(response.increments[0]) + stacked(response.increments[1]),
-                    stacked(response.increments[2])),
+    EXPECT_LE(distance(stacked(response.increments[0]) + stacked(response.increments[1]),
+                       stacked(response.increments[2])),
               1e-13);
 }
 
-TEST(Respond, WhatLeavesTheIdleModeAloneIsAnsweredWithTheLeastOfIt) {
+TEST(Respond, ResponseHasNoPartAlongAnUnloadedIdleMode) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());

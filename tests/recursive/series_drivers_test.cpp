@@ -25,7 +25,7 @@ void expect_balance(const OneWay& w, const Equilibrium& point) {
     EXPECT_LE(left.length, 1e-12) << point.load;
 }
 
-TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
+TEST(SeriesDrivers, HeldValuesAreSettledBeforeTheBranch) {
     // Combined: the jack held 30 mm up, a preload in a bushing, a free length 20 mm longer, a
     // rearward load; then the travel changes.
     Scene scene = support::scene("chrono_mcpherson");
@@ -66,7 +66,7 @@ TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
 
 // ---- Regression scenes: the result is right, or the outcome is a failure.
 
-TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
+TEST(SeriesFound, ConvergedPointsAreEquilibriaOfTheSameBranch) {
     for (const char* name : {"adaptive-segfault-arch", "adaptive-segfault-five-links"}) {
         const Model model = found(name);
         for (const auto& branch : model.branches) {
@@ -85,7 +85,7 @@ TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
 
 // ---- One analysis shared by branches; tests/threads shares models between threads.
 
-TEST(Analysis, OfAnotherModelIsRefused) {
+TEST(Analysis, AnalysisOfAnotherModelIsRejected) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     EXPECT_THROW(
         follow(model, model.branches[0], {}, analyse(compile(support::scene("pinned_bar")))),
@@ -131,13 +131,13 @@ Coverage coverage(const Model& model, Random& random) {
     return result;
 }
 
-TEST(Pattern, HoldsAllThatIsNotZero) {
+TEST(Pattern, CoversEveryNonzeroEntry) {
     Random random;
     for (const auto& name : support::small_scene_names())
         EXPECT_EQ(coverage(compile(support::scene(name)), random).missed, 0) << name;
 }
 
-TEST(Pattern, OfASuspensionIsAtMostATwentiethMoreThanThat) {
+TEST(Pattern, HasAtMostFivePercentStructuralZerosOnASuspension) {
     // Planar mechanisms are excluded: their pattern includes the third dimension.
     Random random;
     for (const char* name :

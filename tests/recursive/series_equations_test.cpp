@@ -236,7 +236,7 @@ TEST(SeriesEquations, HoldForFollowers) {
     }
 }
 
-TEST(SeriesEquations, HoldForStaticLoadsAndForWhatABranchDrives) {
+TEST(SeriesEquations, HoldForStaticAndDrivenLoads) {
     Random random;
     for (BodyId body = 0; body < bodies; ++body) {
         Case c = anywhere(random);
@@ -249,7 +249,7 @@ TEST(SeriesEquations, HoldForStaticLoadsAndForWhatABranchDrives) {
     }
 }
 
-TEST(SeriesEquations, HoldForEveryOffsetThatMoves) {
+TEST(SeriesEquations, HoldForEveryDrivenOffset) {
     Random random;
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 10; ++trial) {
@@ -271,7 +271,7 @@ TEST(SeriesEquations, HoldForEveryOffsetThatMoves) {
         }
 }
 
-TEST(SeriesEquations, HoldForFreeLengthsAndPreloadsThatMove) {
+TEST(SeriesEquations, HoldForDrivenFreeLengthsAndPreloads) {
     Random random;
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 10; ++trial) {

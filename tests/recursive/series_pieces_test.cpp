@@ -68,7 +68,7 @@ Curve rising() {
 
 // An expansion ends where the knot is, and each knot crossed is counted once; the one at the start is
 // not. That a body moves by the inverse of its curve is tested in tests/legs (Stops).
-TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
+TEST(SeriesPieces, ExpansionEndsAtTheKnot) {
     for (const double to : {6000.0, -4000.0}) {
         const OneWay w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(to, {push(0, 1)}));
@@ -88,7 +88,7 @@ TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
     }
 }
 
-TEST(SeriesPieces, TwoStopsThatCloseAtOnceArePassedAtOnce) {
+TEST(SeriesPieces, TwoStopsClosingTogetherAreCrossedTogether) {
     // ... two knots at the same place within rounding.
     for (const double apart : {-1e-17, 0.0, 1e-17, 1e-15, 1e-12, 1e-9}) {
         const OneWay w = walked(on_the_x_axis({along_x("spring", LinearRate{20e3}),
@@ -105,7 +105,7 @@ TEST(SeriesPieces, TwoStopsThatCloseAtOnceArePassedAtOnce) {
     }
 }
 
-TEST(SeriesPieces, FromAKnotTheMotionGoesIntoItsOwnPiece) {
+TEST(SeriesPieces, MotionFromAKnotUsesThePieceItEnters) {
     // A curve with its kink at the design position, or within rounding of it.
     for (const double drawn : {0.0, 1e-17, -1e-17, 1e-16, -1e-16})
         for (const double to : {500.0, -500.0})
@@ -122,7 +122,7 @@ TEST(SeriesPieces, FromAKnotTheMotionGoesIntoItsOwnPiece) {
             }
 }
 
-TEST(SeriesPieces, ManyKnotsAtTheStartAgreeOnTheirPieces) {
+TEST(SeriesPieces, PiecesOfManyKnotsAtTheStartAreConsistent) {
     // Sixty curves that all start at a knot; the sign of each deflection depends on the pieces of
     // all others.
     Random random;
@@ -178,7 +178,7 @@ Branch jacked(double to) {
     return branch;
 }
 
-TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
+TEST(SeriesPieces, GrazedKnotIsNotCrossed) {
     // The spring is shortest at x = 0, where its stretch is h - ℓ₀ = `deep` beyond the knot at 0.
     const double h = 0.1;
     for (const double deep : {0.0, 1e-17, -1e-17, 1e-16, -1e-16, 1e-14, -1e-14, 5e-14, -1e-13,
@@ -194,8 +194,8 @@ TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
         EXPECT_LE(path.expansions.size(), 9u) << deep;
         for (const auto& point : sample(w.model, path, w.branch, 240).points) {
             const double x = -0.06 + point.load, l = std::hypot(h, x);
-            const double force =
-                support::stated_force(f, l - free_length) * x / l;  // of the jack along x
+            // of the jack along x
+            const double force = support::stated_force(f, l - free_length) * x / l;
             EXPECT_NEAR(point.reactions[1].force.x(), force, 2e-8) << deep << " " << x;
         }
     }
@@ -204,7 +204,7 @@ TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
 // ---- A non-monotone curve: f rises to 100 N at 10 mm, falls to 50 at 20 mm, rises again.
 Curve falling() { return {{0.01, 0.02}, {{100, 1e4, 0, 0}, {100, -5e3, 0, 0}, {50, 1e4, 0, 0}}}; }
 
-TEST(SeriesPieces, ArcLengthGoesOnThroughTheTurnsOfACurve) {
+TEST(SeriesPieces, ArcLengthPassesTurningPointsOfACurve) {
     const OneWay w =
         walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
     const Path path = follow(w.model, w.branch, {.arc_length = true});
@@ -218,7 +218,7 @@ TEST(SeriesPieces, ArcLengthGoesOnThroughTheTurnsOfACurve) {
     EXPECT_NEAR(sampled.points.back().load, 200, 1e-9);
 }
 
-TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
+TEST(SeriesPieces, SettlingCrossesKnots) {
     for (const double held : {700.0, 3000.0, -900.0}) {
         const OneWay w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(1500, {push(held, 1)}));

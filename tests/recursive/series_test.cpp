@@ -56,7 +56,7 @@ struct PinnedBar {
     }
 };
 
-TEST(Series, CoefficientsAreThoseOfTheClosedForm) {
+TEST(Series, CoefficientsEqualTheClosedForm) {
     const Model model = compile(support::scene("pinned_bar"));
     const Branch& branch = model.branches[0];
     const int p = 20;
@@ -76,9 +76,9 @@ TEST(Series, CoefficientsAreThoseOfTheClosedForm) {
     EXPECT_NEAR(first.singularity.angle, std::acos(-1) / 2, 0.01);
 }
 
-TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
-    // Orders 1 to 3 by central differences of the other leg, at two step sizes that must agree as
-    // h².
+TEST(Series, CoefficientsEqualDerivativesOfTheEquilibriumLeg) {
+    // Orders 1 to 3 by central differences of the other leg, at two step sizes that must
+    // agree as h².
     for (const char* name :
          {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "pendulum"}) {
         const Model model = compile(support::scene(name));
@@ -115,7 +115,7 @@ TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
 }
 
 // Positions to 1e-9 mm, reactions, and the full equations of the other leg.
-TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
+TEST(Series, EqualsTheEquilibriumLegAtEveryLoad) {
     std::mt19937 random(3);
     for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
@@ -135,7 +135,7 @@ TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
                 ASSERT_TRUE(place) << name << " " << loads[k];
                 const Equilibrium point = evaluate(model, branch, path, *place);
                 EXPECT_NEAR(point.load, loads[k], 1e-9);
-                worst = std::max(worst, apart(model, point, reference.points[k]));
+                worst = std::max(worst, distance(model, point, reference.points[k]));
                 for (std::size_t j = 0; j < point.reactions.size(); ++j)
                     force = std::max(
                         force,
@@ -157,7 +157,7 @@ TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
     }
 }
 
-TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
+TEST(Series, TruncationErrorIsOfOrderPPlusOne) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     const Branch& branch = model.branches[0];
     const Path exact = follow(model, branch, {.order = 24});
@@ -166,8 +166,8 @@ TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
             follow(model, branch, {.order = p, .tolerance = 1e-4, .expansions = 2000});
         ASSERT_FALSE(path.expansions.empty());
         const auto error = [&](double tau) {
-            return apart(model, evaluate(model, branch, path, {0, tau}),
-                         evaluate(model, branch, exact, {0, tau}));
+            return distance(model, evaluate(model, branch, path, {0, tau}),
+                            evaluate(model, branch, exact, {0, tau}));
         };
         const double tau = path.expansions.front().reach;
         const double order = std::log2(error(tau) / error(tau / 2));
@@ -175,7 +175,7 @@ TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
     }
 }
 
-TEST(Series, RatesAreTheDerivativesOfWhatItEvaluates) {
+TEST(Series, RatesAreTheDerivativesOfItsStates) {
     for (const char* name : {"chrono_mcpherson", "pendulum", "chrono_mcpherson_preload"}) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];
@@ -209,7 +209,7 @@ double limit_of_the_arch() {
     return 2 * k * (l - l_0) * z / l;
 }
 
-TEST(Series, FindsWhereThePathEnds) {
+TEST(Series, LimitPointsAreLocated) {
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];
     for (const double to : {-250.0, -400.0, -3000.0})
@@ -225,7 +225,7 @@ TEST(Series, FindsWhereThePathEnds) {
         }
 }
 
-TEST(Series, GoesThroughLimitPointsByArcLength) {
+TEST(Series, ArcLengthPassesLimitPoints) {
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];
     branch.to = -400;
@@ -246,7 +246,7 @@ TEST(Series, GoesThroughLimitPointsByArcLength) {
     }
 }
 
-TEST(Series, EveryTurnIsRecordedOnceWhereverTheExpansionsMeet) {
+TEST(Series, EachTurningPointIsRecordedOnce) {
     // Many tolerances, so that some expansions end near a limit point and some are shortened.
     const Model model = compile(support::scene("two_spring_arch"));
     Branch branch = model.branches[0];
@@ -265,7 +265,7 @@ TEST(Series, EveryTurnIsRecordedOnceWhereverTheExpansionsMeet) {
     EXPECT_GT(rejected, 0);
 }
 
-TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
+TEST(Series, ArcLengthAndLoadParametersGiveTheSameBranch) {
     for (const char* name :
          {"chrono_mcpherson", "pinned_bar", "pendulum", "chrono_mcpherson_preload"}) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
@@ -276,8 +276,8 @@ TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
             for (int k = 0; k <= 16; ++k) {
                 const double load = branch.to * k / 16;
                 ASSERT_TRUE(find(by_arc, load)) << name << " " << load;
-                EXPECT_LE(apart(model, evaluate(model, branch, by_load, *find(by_load, load)),
-                                evaluate(model, branch, by_arc, *find(by_arc, load))),
+                EXPECT_LE(distance(model, evaluate(model, branch, by_load, *find(by_load, load)),
+                                   evaluate(model, branch, by_arc, *find(by_arc, load))),
                           2e-12)
                     << name << " " << load;
             }
@@ -285,7 +285,7 @@ TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
     }
 }
 
-TEST(Series, KeepsTheToleranceItIsTold) {
+TEST(Series, ErrorStaysWithinTheRequestedTolerance) {
     for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             const Path exact = follow(model, branch, {.order = 20});
@@ -298,8 +298,8 @@ TEST(Series, KeepsTheToleranceItIsTold) {
                     for (int k = 0; k <= 97; ++k) {
                         const double load = branch.to * k / 97;
                         worst = std::max(
-                            worst, apart(model, evaluate(model, branch, path, *find(path, load)),
-                                         evaluate(model, branch, exact, *find(exact, load))));
+                            worst, distance(model, evaluate(model, branch, path, *find(path, load)),
+                                            evaluate(model, branch, exact, *find(exact, load))));
                     }
                     EXPECT_LE(worst, tolerance)
                         << name << " " << branch.name << " " << order << " " << tolerance;
@@ -310,7 +310,7 @@ TEST(Series, KeepsTheToleranceItIsTold) {
     }
 }
 
-TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
+TEST(Series, ReachingTheExpansionLimitIsReported) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     const Path path = follow(model, model.branches[0], {.order = 2, .expansions = 5});
     EXPECT_EQ(path.outcome, Outcome::iteration_limit);
@@ -321,9 +321,9 @@ TEST(Series, SaysWhenTheExpansionsWereNotEnough) {
     EXPECT_NE(first_order.detail.find("200 expansions were not enough"), std::string::npos);
 }
 
-TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
-    // The second pass, linear in x_k, against the matrix of the solve: G_k with x_k inserted must
-    // vanish.
+TEST(Series, ChangePassEqualsTheTangentTimesTheCoefficient) {
+    // The second pass, linear in x_k, against the matrix of the solve: G_k with x_k
+    // inserted must vanish.
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         SteppingState s(model, branch, analyse(model));
@@ -355,7 +355,7 @@ TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
     }
 }
 
-TEST(Series, LogarithmFunctionsAreRegularAtZeroAndRightElsewhere) {
+TEST(Series, LogarithmFunctionsAreAccurateAtAndAwayFromZero) {
     for (const double s_0 : {0.0, 1e-30, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 1.0, 3.0, 30.0}) {
         std::vector<double> f1(13), f3(13);
         taylor_of_F(1, s_0, f1);

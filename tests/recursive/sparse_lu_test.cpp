@@ -77,8 +77,10 @@ Matrix<double> sparse_saddle_point(std::mt19937& random, int n, int m) {
     std::uniform_real_distribution<double> value(-1, 1);
     Matrix<double> M = Matrix<double>::Zero(n + m, n + m);
     const auto tie = [&](int i, int j, double k) {
-        M(i, i) += k, M(j, j) += k;
-        M(i, j) -= k, M(j, i) -= k;
+        M(i, i) += k;
+        M(j, j) += k;
+        M(i, j) -= k;
+        M(j, i) -= k;
     };
     for (int i = 0; i < n; ++i) M(i, i) = 1;
     for (int i = 1; i < n; ++i) tie(i, i - 1, 1 + value(random));
@@ -98,7 +100,7 @@ std::size_t fill_in(const SparseLU<double>& lu) {
     return lu.order.nonzeros - lu.order.pattern.entries();
 }
 
-TEST(SparseLU, FillsInNothingWhereNothingNeedBeOfAnySize) {
+TEST(SparseLU, ChainAndArrowMatricesHaveNoFillAtAnySize) {
     for (const int n : {3, 10, 59, 60, 61, 200, 1000}) {
         Matrix<double> chain = Matrix<double>::Zero(n, n), arrow = Matrix<double>::Zero(n, n);
         for (int i = 0; i < n; ++i) {
@@ -120,7 +122,7 @@ TEST(SparseLU, FillsInNothingWhereNothingNeedBeOfAnySize) {
     }
 }
 
-TEST(SparseLU, OfALargeMatrixAFewColumnsFindNearlyTheOrderThatAllEntriesDo) {
+TEST(SparseLU, PivotSearchInFewColumnsHasTheFillOfAFullSearch) {
     std::mt19937 random(11);
     for (const auto& [n, m] : {std::pair{40, 12}, {100, 30}, {200, 60}}) {
         const Matrix<double> M = sparse_saddle_point(random, n, m);
@@ -138,7 +140,7 @@ TEST(SparseLU, OfALargeMatrixAFewColumnsFindNearlyTheOrderThatAllEntriesDo) {
     }
 }
 
-TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
+TEST(SparseLU, SolutionEqualsThatOfDenseFactors) {
     std::mt19937 random(12);
     for (int n = 1; n <= 20; ++n)
         for (int m = 0; m <= n / 2; ++m) expect_as_dense(random_saddle_point(random, n, m), 5);
@@ -146,7 +148,7 @@ TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
         expect_as_dense(sparse_saddle_point(random, n, m), 3);
 }
 
-TEST(SparseLU, TheUnknownsThatAreWantedAreThoseOfTheWholeSolution) {
+TEST(SparseLU, PartialSolutionEqualsTheFullSolution) {
     std::mt19937 random(13);
     for (const auto& [n, m] : {std::pair{8, 3}, {200, 60}}) {
         const Matrix<double> M = sparse_saddle_point(random, n, m);
@@ -168,7 +170,7 @@ TEST(SparseLU, TheUnknownsThatAreWantedAreThoseOfTheWholeSolution) {
     }
 }
 
-TEST(SparseLU, WhatStaysInOnePlaceIsSoughtThereAlone) {
+TEST(SparseLU, PartialSolutionVisitsOnlyReachableRows) {
     // A thousand 2×2 blocks coupled only by negligible entries.
     const int n = 2000;
     Matrix<double> A = Matrix<double>::Zero(n, n);
@@ -186,7 +188,7 @@ TEST(SparseLU, WhatStaysInOnePlaceIsSoughtThereAlone) {
     EXPECT_LE(lu.reached.size(), 10u);
 }
 
-TEST(SparseLU, ALargeOrderIsChosenAnewWhenAPivotShrinks) {
+TEST(SparseLU, LargeMatrixIsReorderedWhenAPivotShrinks) {
     std::mt19937 random(14);
     const int n = 300, m = 90;
     const Matrix<double> M = sparse_saddle_point(random, n, m);
@@ -205,11 +207,11 @@ TEST(SparseLU, ALargeOrderIsChosenAnewWhenAPivotShrinks) {
     EXPECT_GT(lu.orders, 10);
 }
 
-TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
+TEST(SparseLU, FactorsAfterASingularMatrixAreCorrect) {
     for (const int n : {3, 100}) {
         Matrix<double> A = 4 * Matrix<double>::Identity(
-                                   // arrow matrix: its first row fills in everything if eliminated
-                                   // first
+                                   // arrow matrix: its first row fills in everything
+                                   // if eliminated first
                                    n, n);
         A.row(0).tail(n - 1).setOnes();
         A.col(0).tail(n - 1).setOnes();
@@ -228,7 +230,7 @@ TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
     }
 }
 
-TEST(SparseLU, ChoosesAnewWhenAPivotShrinks) {
+TEST(SparseLU, MatrixIsReorderedWhenAPivotShrinks) {
     Matrix<double> A(3, 3);
     A << 4, 1, 0, -1, 3, 1, 0, -1, 2;  // regular for any non-negative diagonal with one zero
     SparseLU<double> lu;
@@ -247,7 +249,7 @@ TEST(SparseLU, ChoosesAnewWhenAPivotShrinks) {
     EXPECT_GT(lu.orders, 1);
 }
 
-TEST(SparseLU, KeepsItsOrderWhileItServes) {
+TEST(SparseLU, OrderIsKeptWhileMultipliersAreBounded) {
     std::mt19937 random(2);
     const Matrix<double> M = random_saddle_point(random, 12, 5);
     SparseLU<double> lu;
@@ -256,7 +258,7 @@ TEST(SparseLU, KeepsItsOrderWhileItServes) {
     EXPECT_EQ(lu.orders, 1);
 }
 
-TEST(SparseLU, SaysSingularAndNotFinite) {
+TEST(SparseLU, SingularAndNonFiniteMatricesAreReported) {
     Matrix<double> A(3, 3);
     A << 1, 2, 0, 2, 4, 0, 0, 0, 1;
     SparseLU<double> lu;
@@ -273,7 +275,7 @@ TEST(SparseLU, SaysSingularAndNotFinite) {
     EXPECT_GT(factorise_dense(lu, A), 0.01);
 }
 
-TEST(SparseLU, AnOrderServesOtherArithmetics) {
+TEST(SparseLU, OrderOfDoublesServesOtherNumberTypes) {
     std::mt19937 random(5);
     const Matrix<double> M = random_saddle_point(random, 14, 6);
     SparseLU<double> lu;

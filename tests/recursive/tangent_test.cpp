@@ -126,7 +126,7 @@ void expect_derivative(const Case& c, const std::string& what, double limit = 1e
         << what << ": double is not the same as long double";
 }
 
-TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
+TEST(Tangent, SpringTangentIsTheDerivativeOfItsForce) {
     Random random;
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 20; ++trial) {
@@ -144,7 +144,7 @@ TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
         }
 }
 
-TEST(Tangent, OfEveryLawAndFormulationIsTheDerivativeOfItsForce) {
+TEST(Tangent, BushingTangentIsTheDerivativeOfItsForceForEveryLawAndFormulation) {
     const double at_switch = std::sqrt(1e-3);  // upper end of the small-angle series
     Random random;
     for (const Formulation& formulation : every_formulation())
@@ -174,7 +174,7 @@ TEST(Tangent, OfEveryLawAndFormulationIsTheDerivativeOfItsForce) {
                 }
 }
 
-TEST(Tangent, OfASpringWithACurveIsTheDerivativeOfItsForceOnEveryPieceEvenPastItsEnds) {
+TEST(Tangent, CurveTangentIsTheDerivativeOnEveryPieceAndBeyondItsEnds) {
     Random random;
     for (Piece piece = wherever; piece < 6; ++piece) {
         Case c = anywhere(random);
@@ -198,7 +198,7 @@ TEST(Tangent, OfASpringWithACurveIsTheDerivativeOfItsForceOnEveryPieceEvenPastIt
 }
 
 // As static loads and as drivers: forces that stay, with their moments, and forces that follow.
-TEST(Tangent, OfLoadsIsTheDerivativeOfTheirForces) {
+TEST(Tangent, LoadTangentIsTheDerivativeOfTheForce) {
     Random random;
     for (BodyId body = 0; body < bodies; ++body)
         for (const double a : {0.0, 0.7, -3000.0})
@@ -221,7 +221,7 @@ TEST(Tangent, OfLoadsIsTheDerivativeOfTheirForces) {
             }
 }
 
-TEST(Tangent, OfEveryConstraintIsTheDerivativeOfItsForce) {
+TEST(Tangent, ConstraintTangentIsTheDerivativeOfTheReaction) {
     Random random;
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 10; ++trial) {
@@ -263,7 +263,7 @@ Case everything_at_once(Random& random) {
     return c;
 }
 
-TEST(Tangent, OfEverythingTogetherIsTheDerivativeOfTheResidual) {
+TEST(Tangent, AssembledTangentIsTheDerivativeOfTheResidual) {
     Random random;
     for (int trial = 0; trial < 10; ++trial)
         expect_derivative(everything_at_once(random), fmt::format("trial {}", trial), 1e-10);
@@ -285,7 +285,7 @@ double asymmetry(const Case& c) {
 // of two rotations, so that T - Tᵀ = blockdiag(0, G̃_π) with G_π = ∂V/∂π, which is zero in
 // equilibrium. No finite differences are involved. Cardan and projected angles amplify rounding near
 // gimbal lock, which random poses approach.
-TEST(Tangent, IsSymmetricUpToTheMomentLeftOverWhereverThereIsAnEnergyAndNotWithoutOne) {
+TEST(Tangent, AsymmetryIsTheUnbalancedMomentWhereForcesHaveAnEnergy) {
     Random random;
     for (const Formulation& formulation : every_formulation()) {
         double worst = 0;
@@ -306,7 +306,7 @@ TEST(Tangent, IsSymmetricUpToTheMomentLeftOverWhereverThereIsAnEnergyAndNotWitho
     }
 }
 
-TEST(Tangent, WithNothingStoredIsTheStiffnessOfThePaper) {
+TEST(Tangent, UnloadedTangentIsThePapersStiffness) {
     Random random;
     for (const auto& [i, j] : sides) {
         Case c = anywhere(random);

@@ -25,7 +25,7 @@ struct OneWay {
 inline std::vector<OneWay> one_ways(const Model& model) {
     std::vector<OneWay> all;
     for (const auto& branch : model.branches)
-        for (const auto& way : ways(branch)) all.push_back({on_branch(model, way), way});
+        for (const auto& way : branch_sides(branch)) all.push_back({on_branch(model, way), way});
     return all;
 }
 
@@ -70,7 +70,7 @@ inline std::vector<bool> idle_bodies(const Model& model, const Diagnosis& diagno
 
 // Largest distance of origins, and of points 0.1 m beside them [m]; for bodies with idle rotation
 // origins only.
-inline double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
+inline double distance(const Model& model, const Equilibrium& a, const Equilibrium& b) {
     const auto idle = idle_bodies(model, diagnose(model));
     double worst = 0;
     for (std::size_t body = 0; body < idle.size(); ++body)

@@ -156,10 +156,10 @@ TEST(Limits, StandInTheReadmeAsInTheCode) {
          {grouped(reader::largest_text >> 20U) + " MiB; " + grouped(reader::deepest_nesting) +
               " levels of nesting",
           "names of " + grouped(reader::longest_name) + " bytes",
-          grouped(reader::most_bodies) + " bodies", grouped(reader::most_segments) + " segments",
-          grouped(reader::most_rows) + " rows",
-          "of a branch " + grouped(reader::most_steps) + " steps",
-          grouped(reader::most_poses) + " steps times bodies",
+          grouped(reader::max_bodies) + " bodies", grouped(reader::max_segments) + " segments",
+          grouped(reader::max_rows) + " rows",
+          "of a branch " + grouped(reader::max_steps) + " steps",
+          grouped(reader::max_poses) + " steps times bodies",
           grouped(largest_file >> 20U) + " MiB; " + grouped(deepest_json) + " levels of nesting; " +
               grouped(1e-9 * largest_json) + " GB in memory",
           "| a baseline | " + grouped(largest_baseline >> 20U) + " MiB",

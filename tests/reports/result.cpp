@@ -38,7 +38,7 @@ const SceneAnalyses& sample_scene(const std::string& name) {
     compare::StudyOptions study_options;
     study_options.steps = {10, 20, 40, 80, 160};
     scene.study = compare::study(scene.model, study_options);
-    scene.trade = compare::trade(scene.model, {.most_steps = 80, .rounds = 1});
+    scene.trade = compare::trade(scene.model, {.max_steps = 80, .rounds = 1});
     scene.judgement =
         compare::assess(scene.model, scene.comparison, compare::default_tolerance, false);
     return made[name] = std::move(scene);

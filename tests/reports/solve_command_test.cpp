@@ -31,7 +31,7 @@ std::string csv_of_kept_points(const Model& model, const compare::SolverSettings
     std::string csv = reports::curves_header(channels);
     for (const auto& branch : model.branches) {
         const auto ways = compare::sides_of(model, branch, steps);
-        for (const auto& point : walk(ways, solver).points)
+        for (const auto& point : solve_branch(ways, solver).points)
             csv +=
                 reports::curves_row(branch.name, solver.leg, compare::unit_of(branch.unit),
                                     compare::row_of(model, channels, ways.front(), solver, point));

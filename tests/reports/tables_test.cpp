@@ -138,7 +138,7 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     for (auto& branch : scene.branches) branch.to *= 2;  // large enough for a diverging row
     const Model model = compile(scene);
     const auto trade =
-        compare::trade(model, {.tolerance = {0.01, 0.001}, .most_steps = 640, .rounds = 2});
+        compare::trade(model, {.tolerance = {0.01, 0.001}, .max_steps = 640, .rounds = 2});
     ASSERT_TRUE(trade.recommendation);
     const auto result = result_of(model, trade);
     const std::string said = text(result);
@@ -156,7 +156,7 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     EXPECT_TRUE(document["tables"]["accuracies"]["rows"][0][2].is_null()) << "of angles";
     EXPECT_EQ(document["verdict"]["compared"], trade.recommendation->confirmed_numbers);
 
-    const auto none = compare::trade(model, {.tolerance = {1e-15}, .most_steps = 10, .rounds = 0});
+    const auto none = compare::trade(model, {.tolerance = {1e-15}, .max_steps = 10, .rounds = 0});
     const std::string unreached = text(result_of(model, none));
     expect_parts(unreached, {"no method reaches it"});
     EXPECT_FALSE(contains(unreached, "ratio\n")) << "no time was taken";

@@ -22,7 +22,7 @@ struct OneWay {
 inline OneWay way_of(const Scene& scene, const std::string& name, double to) {
     const Model model = compile(scene);
     for (const auto& branch : model.branches)
-        for (const auto& way : ways(branch))
+        for (const auto& way : branch_sides(branch))
             if (way.name.starts_with(name) && way.to * to > 0) return {on_branch(model, way), way};
     throw std::logic_error("no branch " + name);
 }
@@ -41,7 +41,7 @@ inline Eigen::VectorXd stacked(const std::vector<Increment>& increments) {
 }
 
 // Of the largest entry of b; infinite where they are not alike.
-inline double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+inline double distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return a.size() == b.size() ? (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff()
                                 : INFINITY;
 }
@@ -88,11 +88,11 @@ inline void expect_slope(const Eigen::VectorXd& answer, const OneWay& way,
                           fine = slope(way, disturbance, h / 2, solve);
     // What is of second order falls to a quarter, where it is more than rounding, and without it what is left is of
     // fourth.
-    const double missed = apart(coarse, answer);
+    const double missed = distance(coarse, answer);
     if (missed > 1e-5) {
-        EXPECT_NEAR(missed / apart(fine, answer), 4, 0.5) << where;
+        EXPECT_NEAR(missed / distance(fine, answer), 4, 0.5) << where;
     }
-    EXPECT_LE(apart((4 * fine - coarse) / 3, answer), missed * missed + 1e-6) << where;
+    EXPECT_LE(distance((4 * fine - coarse) / 3, answer), missed * missed + 1e-6) << where;
 }
 
 }  // namespace elastocheck::support

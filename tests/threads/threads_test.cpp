@@ -75,7 +75,7 @@ void expect_undisturbed(const char* scene, const Solve& solve) {
     std::vector<Model> models;
     std::vector<Bits> alone;
     for (const Branch& branch : model.branches)
-        for (const Branch& way : ways(branch)) models.push_back(on_branch(model, way));
+        for (const Branch& way : branch_sides(branch)) models.push_back(on_branch(model, way));
     for (const Model& each : models) alone.push_back(solve(each, each.branches.front()));
 
     std::vector<std::vector<Bits>> together(threads, std::vector<Bits>(models.size()));

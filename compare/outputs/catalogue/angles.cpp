@@ -144,7 +144,8 @@ void add_position(std::vector<Entry>& all, Owner owner, const std::string& stem,
                     Unit::mm, "position of " + of + ", " + axis_words(k),
                     "",       {},
                     is[a]};
-        entry.axis = k, entry.point = point;
+        entry.axis = k;
+        entry.point = point;
         all.push_back(std::move(entry));
     }
 }

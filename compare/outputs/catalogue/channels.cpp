@@ -130,8 +130,8 @@ void add_effort(std::vector<Channel>& list, const Model& model, int k) {
     const ModelJoint& joint = joint_of(model, k);
     if (joint.driven < 0) return;
     const bool turns = is_angle(model.constraints[static_cast<std::size_t>(joint.driven)].kind);
-    // The driver of joint `rack` is a separate joint, `rack.drive`; its effort is reported for the
-    // rack.
+    // The driver of joint `rack` is a separate joint, `rack.drive`; its effort is reported
+    // for the rack.
     const std::string stem =
         joint.name.ends_with(".drive") ? joint.name.substr(0, joint.name.size() - 6) : joint.name;
     list.push_back(
@@ -292,7 +292,10 @@ int default_abscissa(std::span<const Channel> channels, const Curve& curve) {
         const auto [low, high] =
             y.empty() ? std::pair(0., 0.) : std::pair(std::ranges::min(y), std::ranges::max(y));
         const double range = high - low;
-        if (range > farthest) farthest = range, best = static_cast<int>(c);
+        if (range > farthest) {
+            farthest = range;
+            best = static_cast<int>(c);
+        }
     }
     return best;
 }

@@ -14,7 +14,10 @@ constexpr auto no_roll_centre = "no finite roll centre";
 Motions rolled_towards(const Subject& x) {
     Motions roll = rolled(x);
     const double half = std::abs(x.of(0).patch().at.y() - x.of(1).patch().at.y()) / 2 * x.side();
-    for (auto& motion : roll) motion.dr *= half, motion.dpi *= half;
+    for (auto& motion : roll) {
+        motion.dr *= half;
+        motion.dpi *= half;
+    }
     return roll;
 }
 double in_roll(const Subject& x, double (Subject::*angle)(const Motions&) const) {

@@ -45,7 +45,8 @@ std::optional<Vector3d> axis_between(const Subject& x, BodyId body, BodyId other
                                       if (c.i.u_local == first->i.u_local) axis = x.direction(c.i);
                                       if (c.j.u_local == first->j.u_local) axis = x.direction(c.j);
                                   }
-                                  first = c, of_first = constraint.joint;
+                                  first = c;
+                                  of_first = constraint.joint;
                               },
                               [](const auto&) {}},
                    constraint.kind);

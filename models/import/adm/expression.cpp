@@ -14,7 +14,7 @@ namespace elastocheck::importer::adm {
 namespace {
 
 constexpr int deepest = 100;
-constexpr std::size_t most_terms = 1000;
+constexpr std::size_t max_terms = 1000;
 constexpr std::size_t longest_function = 1 << 16;  // [bytes]
 
 Value unknown(std::string why) { return {.unknown = std::move(why)}; }
@@ -48,7 +48,7 @@ Value sum(Value a, const Value& b) {
         if ((a.linear[measure] += k) == 0) a.linear.erase(measure);
     a.curves.insert(a.curves.end(), b.curves.begin(), b.curves.end());
     inherit(a, b);
-    if (a.linear.size() + a.curves.size() > most_terms) return unknown("too many terms");
+    if (a.linear.size() + a.curves.size() > max_terms) return unknown("too many terms");
     return a;
 }
 

@@ -72,7 +72,7 @@ Course read_course(const Cursor& at, const Definitions& defs) {
 
     const int legs = static_cast<int>(lengths.size());
     const Cursor segments = at.require("segments");
-    const int n = segments.whole_number(1, most_segments);
+    const int n = segments.whole_number(1, max_segments);
     if (n < legs)
         segments.fail(
             fmt::format("{} segments for {} straight parts; allowed: at least one per part",
@@ -144,9 +144,9 @@ void add_bodies(const Cursor& at, const std::string& name, const Course& course,
         defs.bodies.push_back(
             {numbered(name, k), {.r = course.nodes[k], .p = Quaternion::Identity()}});
     }
-    if (defs.bodies.size() > most_bodies)
+    if (defs.bodies.size() > max_bodies)
         at.fail(fmt::format("{} bodies including its nodes; allowed: at most {}",
-                            defs.bodies.size(), most_bodies));
+                            defs.bodies.size(), max_bodies));
 }
 
 Course image(Course course, const Mirror& mirror) {

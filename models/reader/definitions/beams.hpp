@@ -5,10 +5,10 @@
 // A straight beam of length L along x, its ends fixed to bodies i and j: small displacements u,
 // rotations θ of the ends. In the plane xy a Timoshenko beam without loads between its ends has two
 // deformation modes:
+//
 //   constant moment   κ = θ_jz - θ_iz, pure bending                     ½ (EI_z/L) κ²
 //   constant shear    δ = u_jy - u_iy - ½ L (θ_iz + θ_jz), the rise     ½ 12EI_z/(L³(1 + φ_y)) δ²
 //                     of the chord minus the mean of the end slopes     φ_y = 12EI_z/(G A_y L²)
-//                     the chord minus the mean of the end slopes           φ_y = 12EI_z/(G A_y L²)
 //
 // (the shear force V bends both halves like cantilevers of L/2, δ = V (2 (L/2)³/(3EI_z) + L/(G
 // A_y)), and the two modes are orthogonal: in the second the moment is odd about the middle, in the
@@ -23,10 +23,10 @@
 // ∂²U/∂θ_iz² = EI_z/L + (L/2)² 12EI_z/(L³(1 + φ_y)) = (4 + φ_y) EI_z/((1 + φ_y) L).
 //
 // For finite motions its frame is halfway between both ends (Formulation::Frame::middle), which
-// treats both ends alike. It has an energy, and a rigid motion costs none. The error is of higher
-// order in κ and δ and falls as 1/n² with n segments. Under an end moment M each segment rotates by
-// κ = M L/(EI), exactly, and the nodes lie on a circle of radius ½ L / tan(½ κ), too small by
-// κ²/12.
+// treats both ends alike. It has an energy, and a rigid motion costs none. The error is of
+// higher order in κ and δ and falls as 1/n² with n segments. Under an end moment M each segment
+// rotates by κ = M L/(EI), exactly, and the nodes lie on a circle of radius ½ L / tan(½ κ), too
+// small by κ²/12.
 //
 // An axial force N pulls the ends of the arms towards each other's line. To second order in the
 // ends' angles in the plane xy, with φ = ½ (θ_iz + θ_jz) their mean and without the stretch energy

@@ -83,9 +83,8 @@ void read_bodies(const Cursor& section, Definitions& defs) {
         defs.body_ids[*twin] = defs.twin_of[b];
         defs.bodies.push_back({*twin, {.r = reflected(body.design.r), .p = body.design.p}});
     }
-    if (defs.bodies.size() > most_bodies)
-        section.fail(
-            fmt::format("{} bodies; allowed: at most {}", defs.bodies.size(), most_bodies));
+    if (defs.bodies.size() > max_bodies)
+        section.fail(fmt::format("{} bodies; allowed: at most {}", defs.bodies.size(), max_bodies));
 }
 
 // x, y, z or -x, -y, -z

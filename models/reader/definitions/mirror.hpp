@@ -17,8 +17,8 @@
 
 namespace elastocheck::reader {
 
-// An entry with the word `from` in its name has a twin with `to` in its place. All others are
-// shared.
+// An entry with the word `from` in its name has a twin with `to` in its place. All
+// others are shared.
 struct Mirror {
     std::string from, to;  // "left", "right"
 };
@@ -26,8 +26,8 @@ struct Mirror {
 // Reads `left -> right`; some name of the scene must contain the first word.
 Mirror read_mirror(const Cursor& at, const Cursor& scene);
 
-// The name with every word `from` replaced, or none if it has none. "arm_left" -> "arm_right", not
-// "leftover".
+// The name with every word `from` replaced, or none if it has none. "arm_left" ->
+// "arm_right", not "leftover".
 std::optional<std::string> turned(const Mirror& mirror, std::string_view name);
 
 // Whether the name has the word `to`, so that it is of a twin.
@@ -43,9 +43,9 @@ void require_both_sides(const Cursor& section, const Definitions& defs);
 
 // ---- Twins, on the twins of the bodies.
 //
-// Driven quantities are mirrored: equal values on both sides are a symmetric motion. So the axis of
-// a revolute or cylindrical joint, about which its angle is measured, is mirrored as an axial
-// vector.
+// Driven quantities are mirrored: equal values on both sides are a symmetric motion. So the
+// axis of a revolute or cylindrical joint, about which its angle is measured, is mirrored as
+// an axial vector.
 Vector3 reflected(const Vector3& v);  // S v
 Vector6 reflected(const Vector6& v);  // P v
 JointKind twin(const JointKind& joint, const Definitions& defs);

@@ -16,7 +16,7 @@ namespace elastocheck::reader {
 namespace {
 
 // Range of non-zero numbers: no conversion, product or quotient then leaves the range of double.
-constexpr double least_size = 1e-30, largest_size = 1e30;
+constexpr double min_size = 1e-30, largest_size = 1e30;
 
 // Letters of any language, digits, _ and, not first, - + . and inner spaces: safe in file names,
 // column heads and command lines.
@@ -47,7 +47,7 @@ std::string Cursor::path_of(std::string_view key) const {
 
 std::string Cursor::found() const {
     switch (value->kind) {
-        case Value::Kind::nothing: return "nothing";
+        case Value::Kind::empty: return "nothing";
         case Value::Kind::scalar: return quote(value->text);
         case Value::Kind::list: return fmt::format("a list of {}", value->items.size());
         case Value::Kind::map: return "a map";
@@ -80,7 +80,7 @@ Cursor Cursor::require(const std::string& key) const {
 }
 
 std::vector<Cursor::Named> Cursor::entries(Keys keys) const {
-    if (value->kind != Value::Kind::map && value->kind != Value::Kind::nothing)
+    if (value->kind != Value::Kind::map && value->kind != Value::Kind::empty)
         fail(fmt::format("expected a map of names, found {}", found()));
     std::vector<Named> entries;
     for (std::size_t k = 0; k < value->keys.size(); ++k) {
@@ -129,16 +129,20 @@ double Cursor::number(const std::string& unit) const {
     double x = 0;
     const char* const end = digits.data() + digits.size();
     auto [stop, error] = read_decimal(digits.data(), end, x);
-    if (value->number) x = *value->number, stop = end, error = {};
+    if (value->number) {
+        x = *value->number;
+        stop = end;
+        error = {};
+    }
     if (value->kind != Value::Kind::scalar || stop != end || error == std::errc::invalid_argument ||
         std::isnan(x))
         fail(fmt::format("expected a number, found {}", found()));
     if (value->is_string)
         fail(fmt::format("expected a number, found the string \"{}\"", value->text));
     const double size = std::abs(x);
-    if (error != std::errc() || (size != 0 && !(size >= least_size && size <= largest_size)))
+    if (error != std::errc() || (size != 0 && !(size >= min_size && size <= largest_size)))
         fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(),
-                         least_size, largest_size));
+                         min_size, largest_size));
     numbers->push_back({path + item, x, unit});
     return x;
 }
@@ -151,8 +155,10 @@ int Cursor::whole_number(int least, int most) const {
     int n = 0;
     const char* const end = digits.data() + digits.size();
     auto [stop, error] = std::from_chars(digits.data(), end, n);
-    if (value->number)
-        n = static_cast<int>(*value->number), stop = n == *value->number ? end : nullptr;
+    if (value->number) {
+        n = static_cast<int>(*value->number);
+        stop = n == *value->number ? end : nullptr;
+    }
     if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < least ||
         n > most)
         fail(fmt::format("expected a whole number from {} to {}, found {}", least, most, found()));

@@ -116,8 +116,8 @@ class TreeBuilder final : public YAML::EventHandler {
     }
 
     void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
-        const bool is_own =
-            tag.empty() || tag == "?" || tag == "!";  // yaml-cpp's marks for plain and quoted
+        // yaml-cpp's marks for plain and quoted
+        const bool is_own = tag.empty() || tag == "?" || tag == "!";
         if (!is_own)
             fail_at(mark, fmt::format("tags ({}) are not part of the scene format", quote(tag)));
     }

@@ -9,8 +9,8 @@
 namespace elastocheck::reader {
 
 struct Value {
-    enum class Kind { nothing, scalar, list, map };
-    Kind kind = Kind::nothing;
+    enum class Kind { empty, scalar, list, map };
+    Kind kind = Kind::empty;
     std::string text{};               // of a scalar, as written
     std::vector<Value> items{};       // of a list or a map, in file order
     std::vector<std::string> keys{};  // of a map: one per item, all different
@@ -27,8 +27,8 @@ struct Value {
 // UTF-8, more than 1 MiB. Throws SceneError.
 Value parse_yaml(std::string_view text, const std::string& file);
 
-// Name of a list entry in paths, "y" or "4": vectors have x, y, z, all other lists positions from
-// 1.
+// Name of a list entry in paths, "y" or "4": vectors have x, y, z, all other lists
+// positions from 1.
 std::string place_in(const Value& list, std::size_t k);
 
 // Throws SceneError "file:line: field: what"; line 0 or an empty field are omitted.

@@ -131,11 +131,11 @@ void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies
                         from->found()));
     const Cursor steps = at.require("steps");
     // at least one per side
-    branch.steps = steps.whole_number(branch.from == 0 ? 1 : 2, most_steps);
-    if (branch.steps * static_cast<double>(bodies) > most_poses)
+    branch.steps = steps.whole_number(branch.from == 0 ? 1 : 2, max_steps);
+    if (branch.steps * static_cast<double>(bodies) > max_poses)
         steps.fail(fmt::format(
             "{} steps of {} bodies are too many positions to store; allowed: {:.0f} steps",
-            branch.steps, bodies, std::floor(most_poses / static_cast<double>(bodies))));
+            branch.steps, bodies, std::floor(max_poses / static_cast<double>(bodies))));
 }
 
 Branch read_branch(const std::string& name, const Cursor& at, const Units& units,
@@ -186,7 +186,7 @@ std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
 
 // Points at a distance cannot come closer than zero, on either side of the branch.
 void require_lengths(const Cursor& branch, const Model& model, std::size_t b) {
-    for (const Branch& side : ways(model.branches[b])) {
+    for (const Branch& side : branch_sides(model.branches[b])) {
         const auto gone = vanishing_length(model, side);
         if (!gone) continue;
         const Cursor place = gone->at == 0

@@ -16,7 +16,7 @@ namespace elastocheck::reader {
 namespace {
 
 constexpr double round_off = 1e-12;  // relative, of numbers that should be equal
-constexpr double least_sine = 1e-6;  // sine of the angle below which axes count as parallel
+constexpr double min_sine = 1e-6;    // sine of the angle below which axes count as parallel
 
 Vector3 rates(const Cursor& at, const Unit& unit) {
     const auto items = at.list(3, "rates");
@@ -59,7 +59,7 @@ FrameField read_frame(const Cursor& at, const Definitions& defs) {
     const int b = keys[1][0] - 'x';
     const Vector3 d_b = direction(at.require(keys[1]), defs);
     const Vector3 across = d_b - d_b.dot(e_a) * e_a;
-    if (!(across.norm() > least_sine))
+    if (!(across.norm() > min_sine))
         at.fail(fmt::format("axes {} and {} are parallel; two different directions are needed",
                             keys[0], keys[1]));
     return {completed(a, e_a, b, across.normalized()), std::nullopt};

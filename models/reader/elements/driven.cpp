@@ -59,8 +59,8 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
     }
 }
 
-// P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is converted to a free
-// length.
+// P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is converted to
+// a free length.
 void add_spring(int k, const std::string& name, const ScalarLaw& law, const Units& units,
                 Drivables& result) {
     const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {

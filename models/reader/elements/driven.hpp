@@ -20,8 +20,8 @@ struct Drivable {
     std::optional<Joint> joint;  // created when it is first driven
 };
 
-// All such quantities by their names in the file, and why other joints and elements cannot be
-// driven.
+// All such quantities by their names in the file, and why other joints and elements
+// cannot be driven.
 struct Drivables {
     std::map<std::string, Drivable> table;
     std::map<std::string, std::string> not_driven;
@@ -47,8 +47,8 @@ using NamedElements = std::map<int, NamedElement>;
 Drivables drivables(const Scene& scene, const Units& units, const std::map<int, int>& drives,
                     const NamedElements& elements);
 
-// The quantity called `name`; creates its joint if needed. `at` is its position in the file, for
-// errors.
+// The quantity called `name`; creates its joint if needed. `at` is its position in the
+// file, for errors.
 const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& drivables,
                          Scene& scene);
 

@@ -28,8 +28,8 @@ struct JointFields {
     Direction axis_j(const char* key) const { return {bodies.j, direction(at.require(key), defs)}; }
 };
 
-// `axis_i` and `axis_j`, perpendicular as written within 1e-9; axis_j is then made exactly
-// perpendicular.
+// `axis_i` and `axis_j`, perpendicular as written within 1e-9; axis_j is then
+// made exactly perpendicular.
 std::pair<Direction, Direction> perpendicular_axes(const JointFields& f) {
     const Direction i = f.axis_i("axis_i");
     Direction j = f.axis_j("axis_j");

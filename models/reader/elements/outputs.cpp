@@ -52,8 +52,8 @@ BodyId add_rolling_wheel(const std::string& name, const Vector3& centre, Definit
     };
     const BodyId wheel = add(of_wheel, centre);
     if (const auto twin = defs.mirror ? turned(*defs.mirror, of_wheel) : std::nullopt) {
-        const BodyId other =
-            add(*twin, reflected(centre));  // before references: it may move the list
+        // before references: it may move the list
+        const BodyId other = add(*twin, reflected(centre));
         std::swap(defs.twin_of[static_cast<std::size_t>(wheel)],
                   defs.twin_of[static_cast<std::size_t>(other)]);
     }

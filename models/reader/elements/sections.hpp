@@ -36,12 +36,12 @@ Vehicle read_vehicle(const Cursor& at, const Definitions& defs);
 // `gravity`, and the masses of bodies: one static load "gravity.BODY" for each.
 void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result);
 
-// `tyres`: elements between ground and wheel, and the drivers of their road. Pre: the wheels are
-// read.
+// `tyres`: elements between ground and wheel, and the drivers of their road. Pre: the
+// wheels are read.
 void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivables, Scene& result);
 
-// `trim`. Pre: adjustable quantities, wheels and probes are read. Its loads are added to the static
-// loads.
+// `trim`. Pre: adjustable quantities, wheels and probes are read. Its loads are added to
+// the static loads.
 void read_trim(const Cursor& scene, const Units& units, const std::map<std::string, Load>& loads,
                Drivables& drivables, Scene& result);
 

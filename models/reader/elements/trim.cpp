@@ -13,8 +13,8 @@ namespace {
 
 // ---- Adjustments.
 
-// Whether it is active only on the branches that drive it: a jack, the drive of a joint not held, a
-// tyre.
+// Whether it is active only on the branches that drive it: a jack, the drive of a joint not
+// held, a tyre.
 bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
     const int element = driven_element(quantity.what);
     return quantity.joint.has_value() ||

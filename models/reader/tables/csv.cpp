@@ -34,7 +34,7 @@ std::vector<std::string_view> CsvLines::cells() const {
     for (std::string_view line = line_;;) {
         const auto comma = end_of_cell(line);
         cells.push_back(unquoted(trimmed(line.substr(0, comma))));
-        if (comma == line.npos || cells.size() > most_cells) return cells;
+        if (comma == line.npos || cells.size() > max_cells) return cells;
         line.remove_prefix(comma + 1);
     }
 }

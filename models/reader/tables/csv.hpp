@@ -11,7 +11,7 @@ namespace elastocheck::reader {
 // Reads a CSV text line by line. A byte-order mark and lines without content are skipped.
 class CsvLines {
   public:
-    static constexpr std::size_t most_cells = 10'000;
+    static constexpr std::size_t max_cells = 10'000;
 
     explicit CsvLines(std::string_view text);
 
@@ -21,7 +21,7 @@ class CsvLines {
     int number() const { return lines_.number(); }    // of the line, from 1
     std::string_view whole() const { return line_; }  // the line, trimmed
     std::vector<std::string_view> cells() const;      // trimmed, without the quotes around one; at
-                                                      // most `most_cells` + 1 of them
+                                                      // most `max_cells` + 1 of them
 
   private:
     Lines lines_;

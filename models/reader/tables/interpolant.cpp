@@ -56,8 +56,8 @@ Curve interpolant(const std::vector<TablePoint>& points) {
 Curve polygon(const std::vector<TablePoint>& points) {
     Curve curve;
     for (std::size_t k = 0; k < points.size(); ++k) {
-        const std::size_t next =
-            std::min(k + 1, points.size() - 1);  // the last piece continues the one before it
+        // the last piece continues the one before it
+        const std::size_t next = std::min(k + 1, points.size() - 1);
         const double slope =
             (points[next].f - points[next - 1].f) / (points[next].x - points[next - 1].x);
         if (k == 0) curve.pieces.push_back({points[0].f, slope, 0, 0});

@@ -15,7 +15,7 @@
 namespace elastocheck::reader {
 namespace {
 
-constexpr std::size_t most_property_rows = 100'000;
+constexpr std::size_t max_property_rows = 100'000;
 
 // Splits at blanks; text in single quotes is one word, without its padding.
 std::vector<std::string> words(std::string_view line) {
@@ -93,9 +93,15 @@ void read_units(PropertyFile& file) {
     bool has_length = false, has_force = false;
     for (std::size_t k = 0; k < units->values.size(); ++k) {
         const std::string& name = units->values[k].first;
-        if (name == "LENGTH") file.length = unit(file, *units, k, lengths), has_length = true;
+        if (name == "LENGTH") {
+            file.length = unit(file, *units, k, lengths);
+            has_length = true;
+        }
         if (name == "ANGLE") file.angle = unit(file, *units, k, angles);
-        if (name == "FORCE") file.force = unit(file, *units, k, forces), has_force = true;
+        if (name == "FORCE") {
+            file.force = unit(file, *units, k, forces);
+            has_force = true;
+        }
     }
     if (!has_length) fail(file.file, units->line, "UNITS.LENGTH", "missing");
     if (!has_force) fail(file.file, units->line, "UNITS.FORCE", "missing");
@@ -158,8 +164,7 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
         if (row.size() != block.table.columns.size())
             wrong(fmt::format("{} values in a table of {} columns", row.size(),
                               block.table.columns.size()));
-        if (++rows > most_property_rows)
-            wrong(fmt::format("more than {} rows", most_property_rows));
+        if (++rows > max_property_rows) wrong(fmt::format("more than {} rows", max_property_rows));
         block.table.rows.push_back(std::move(row));
         block.table.lines.push_back(lines.number());
     }

@@ -26,8 +26,8 @@ std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
     if (!at.is_list() || rows.size() < 2)
         at.fail(
             fmt::format("expected at least two rows [deflection, force], found {}", at.found()));
-    if (rows.size() > most_rows)
-        at.fail(fmt::format("{} rows; allowed: at most {}", rows.size(), most_rows));
+    if (rows.size() > max_rows)
+        at.fail(fmt::format("{} rows; allowed: at most {}", rows.size(), max_rows));
     std::vector<TablePoint> points;
     for (std::size_t n = 0; n < rows.size(); ++n) {
         const auto cells = rows[n].items();

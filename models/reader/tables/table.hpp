@@ -14,15 +14,15 @@ namespace elastocheck::reader {
 // Units of a law's deflection, force and rate.
 struct LawUnits {
     Unit deflection, force, rate;
-    bool of_spring =
-        false;  // a property file (.spr) then has compression and pushing force as positive
+    // a property file (.spr) then has compression and pushing force as positive
+    bool of_spring = false;
 };
 LawUnits of_springs(const Units& units);  // of lengths
 LawUnits of_lengths(const Units& units);  // length, force, force/length
 LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
 
-// Rows of `table` or `file` of a curve [SI]: at least two, deflections ascending, forces
-// non-decreasing.
+// Rows of `table` or `file` of a curve [SI]: at least two, deflections
+// ascending, forces non-decreasing.
 std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
                                    const Definitions& defs);
 

@@ -46,7 +46,9 @@ inline bool bounded(const Interval& a) {
 inline bool is_zero(const Interval& a) { return a.lo == 0 && a.hi == 0; }
 inline bool contains(const Interval& a, double x) { return a.lo <= x && x <= a.hi; }
 inline bool inside(const Interval& a, const Interval& b) { return b.lo <= a.lo && a.hi <= b.hi; }
-inline bool apart(const Interval& a, const Interval& b) { return a.hi < b.lo || b.hi < a.lo; }
+inline bool are_disjoint(const Interval& a, const Interval& b) {
+    return a.hi < b.lo || b.hi < a.lo;
+}
 
 // Largest and least absolute value; infinite and 0 for an unbounded interval.
 inline double mag(const Interval& a) {

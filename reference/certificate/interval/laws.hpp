@@ -39,7 +39,7 @@ inline bool is_zero(const ScalarLaw& law) {
 // ∂u/∂e of e = (d, θ), without the separated axes
 template <class T>
 std::array<T, 6> force(const SpatialLaw& law, const std::array<T, 6>& e,
-                       const std::array<bool, 6>& apart) {
+                       const std::array<bool, 6>& separated) {
     std::array<T, 6> f;
     f.fill(constant<T>(0.));
     if (const auto* linear = std::get_if<LinearStiffness>(&law)) {
@@ -53,7 +53,7 @@ std::array<T, 6> force(const SpatialLaw& law, const std::array<T, 6>& e,
     }
     const auto& axis = std::get<PerAxis>(law).axis;
     for (std::size_t k = 0; k < 6; ++k)
-        if (!is_zero(axis[k]) && !apart[k]) f[k] = force(axis[k], e[k]);
+        if (!is_zero(axis[k]) && !separated[k]) f[k] = force(axis[k], e[k]);
     return f;
 }
 

@@ -80,7 +80,7 @@ T constant(const Interval& x) {
 }
 // "Not defined here."
 template <class T>
-T nothing() {
+T undefined() {
     if constexpr (std::is_same_v<T, double>)
         return std::numeric_limits<double>::quiet_NaN();
     else

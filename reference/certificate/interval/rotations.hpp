@@ -92,7 +92,7 @@ Quat<T> half_of(const Quat<T>& q) {
 template <class T>
 Quat<T> short_way(const Quat<T>& q) {
     Quat<T> way = mid(range(q.w)) < 0 ? Quat<T>{-q.w, -q.v} : q;
-    if (!(range(way.w).lo > 0)) way.w = nothing<T>();
+    if (!(range(way.w).lo > 0)) way.w = undefined<T>();
     return way;
 }
 

@@ -3,11 +3,11 @@
 namespace elastocheck::reference::certificate {
 namespace {
 
-constexpr int most_terms = 64;
+constexpr int max_terms = 64;
 
 template <class B>
 struct Coefficients {
-    std::array<B, most_terms + 1> turn, bend;
+    std::array<B, max_terms + 1> turn, bend;
     Coefficients() {
         turn[0] = B(1.);
         for (std::size_t n = 0; n < turn.size(); ++n) {
@@ -34,13 +34,13 @@ double choose(int n, int j) {
 // Number of terms that makes the remainder less than rounding.
 int terms(double x, int count) {
     int n = count + 2;
-    for (double power = x * x; power > 1e-19 && n < most_terms; power *= x) ++n;
+    for (double power = x * x; power > 1e-19 && n < max_terms; power *= x) ++n;
     return n;
 }
 
 // Σ κ_n C(n, j) xⁿ⁻ʲ, n = j ... N - 1
 template <class B>
-B partial(const std::array<B, most_terms + 1>& kappa, const B& x, int N, int j) {
+B partial(const std::array<B, max_terms + 1>& kappa, const B& x, int N, int j) {
     B sum = B(0.);
     for (int n = N - 1; n >= j; --n)
         sum = sum * x + kappa[static_cast<std::size_t>(n)] * B(choose(n, j));

@@ -43,7 +43,8 @@ Equilibrated equilibrated(const MatrixXd& A) {
                 r[at.row()] = std::max(r[at.row()], size);
                 c[j] = std::max(c[j], size);
             }
-        r = r.unaryExpr(scale), c = c.unaryExpr(scale);
+        r = r.unaryExpr(scale);
+        c = c.unaryExpr(scale);
         for (Index j = 0; j < A.cols(); ++j)
             for (Sparse::InnerIterator at(of.A, j); at; ++at)
                 at.valueRef() = r[at.row()] * at.value() * c[j];
@@ -54,11 +55,11 @@ Equilibrated equilibrated(const MatrixXd& A) {
 }
 
 // Null space of A: orthonormal columns x with A x = 0, up to `nothing`.
-MatrixXd null_space(const MatrixXd& A, double nothing) {
+MatrixXd null_space(const MatrixXd& A, double zero_tolerance) {
     const Index n = A.cols();
     if (A.size() == 0) return MatrixXd::Identity(n, n);
     Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
-    qr.setThreshold(nothing / std::max(nothing, A.rowwise().norm().maxCoeff()));
+    qr.setThreshold(zero_tolerance / std::max(zero_tolerance, A.rowwise().norm().maxCoeff()));
     return matrix_Q(qr).rightCols(n - qr.rank());
 }
 // Scales the rows to size one and returns the factors.
@@ -175,7 +176,7 @@ VectorXd rounding_of_equations(const System& system, const VectorXd& z, double a
     return rounding_is_nothing(system) * size;
 }
 
-Border border_at(const System& system, const VectorXd& z, double a, double nothing) {
+Border border_at(const System& system, const VectorXd& z, double a, double zero_tolerance) {
     const Index nb = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
     Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
     const auto at = evaluate(system, doubles(z), a, Slopes::yes);
@@ -183,15 +184,15 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
     if (!J.allFinite() || nb == 0) return border;
     // The condition estimate is meaningless for a matrix with a pivot that is rounding.
     const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(equilibrated(J).A));
-    if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > nothing &&
-        lu.rcond() > surely_regular * nothing)
+    if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > zero_tolerance &&
+        lu.rcond() > surely_regular * zero_tolerance)
         return border;
 
     // Redundant rows, yᵀ Φ_q = 0: the reactions y are self-equilibrated.
     const MatrixXd T = tangent(system, z);
     MatrixXd G = J.block(nb, 0, m, poses) * T;
     const VectorXd scale = normalise(G);
-    MatrixXd y = scale.asDiagonal() * null_space(G.transpose(), nothing);
+    MatrixXd y = scale.asDiagonal() * null_space(G.transpose(), zero_tolerance);
     clean(y);
 
     // Z: motions without deformation. v = Z N: those of them that keep all forces in balance.
@@ -203,7 +204,7 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
         G.conservativeResize(G.rows() + rows.rows(), nb);
         G.bottomRows(rows.rows()) = rows;
     }
-    const MatrixXd Z = null_space(G, nothing);
+    const MatrixXd Z = null_space(G, zero_tolerance);
     const Geometry fixed = geometry(system, doubles(z), a);
     const double most = *std::ranges::max_element(fixed.acts);
     VectorXd acts(nb), in_forces(nb);  // moments over L
@@ -216,8 +217,9 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
     MatrixXd turned = weight.asDiagonal() * square(fixed.J, n).topLeftCorner(nb, poses) * T * Z;
     MatrixXd C = (weight.asDiagonal() * J.block(0, poses, nb, m)).transpose();
     normalise(C);
-    turned = null_space(C, nothing).transpose() * turned;  // part outside the range of reactions
-    const MatrixXd v = Z * null_space(turned, nothing);
+    // part outside the range of reactions
+    turned = null_space(C, zero_tolerance).transpose() * turned;
+    const MatrixXd v = Z * null_space(turned, zero_tolerance);
 
     const Index k = y.cols(), i = v.cols();
     border.redundant = static_cast<int>(k);
@@ -235,10 +237,11 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
     const Eigen::Map<const VectorXd> E(at.E.data(), n);
     const VectorXd work = v.transpose() * (in_forces.asDiagonal() * E.head(nb)),
                    of = v.cwiseAbs().transpose() * acts;
-    border.pushed = (work.array().abs() > nothing * of.array()).any();
+    border.pushed = (work.array().abs() > zero_tolerance * of.array()).any();
     const VectorXd gap = y.transpose() * E.segment(nb, m);
     const VectorXd size = constraint_sizes(system);
-    border.open = (gap.array().abs() > nothing * (y.cwiseAbs().transpose() * size).array()).any();
+    border.open =
+        (gap.array().abs() > zero_tolerance * (y.cwiseAbs().transpose() * size).array()).any();
     return border;
 }
 
@@ -391,9 +394,9 @@ MatrixXd inverse(const MatrixXd& J) { return inverted(J).Y; }
 // not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
 // point this is rounding.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
-    constexpr int most = 12, last = 2, most_anew = 3;
+    constexpr int most = 12, last = 2, max_anew = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
-    const double rounding = problem.system.apart.empty() ? 1e-13 : 1e-15;
+    const double rounding = problem.system.separated.empty() ? 1e-13 : 1e-15;
     Approximate at{from, {}};
     const auto size_of = [&](const VectorXd& step) {
         double size = 0;
@@ -411,7 +414,9 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
             evaluate(problem, doubles(at.y), a, share ? Slopes::no : Slopes::yes);
         if (!share) {
             Inverted inverse = inverted(square(of.J, problem.size()));
-            at.Y = std::move(inverse.Y), at.rcond = inverse.rcond, at.since = 0;
+            at.Y = std::move(inverse.Y);
+            at.rcond = inverse.rcond;
+            at.since = 0;
         }
         const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
         if (!dy.allFinite()) return {at.y, at.Y, false};
@@ -420,17 +425,19 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         at.since += size;
         at.settled = at.settled || size < close;
         shared += share ? 1 : 0;
-        const bool other_side =
-            share && !(size < before / 4 || size < rounding) && anew < most_anew;
+        const bool other_side = share && !(size < before / 4 || size < rounding) && anew < max_anew;
         share = at.settled && !other_side;
-        if (other_side) shared = 0, ++anew;
+        if (other_side) {
+            shared = 0;
+            ++anew;
+        }
         before = size;
     }
     at.settled = at.settled && size_of(at.y - from) <= near;
     return at;
 }
 
-Worth worth(const Problem& problem, const VectorXd& y, double a) {
+BorderCheck check_border(const Problem& problem, const VectorXd& y, double a) {
     const System& system = problem.system;
     const Border there = border_at(system, y.head(system.n()), a, rounding_is_nothing(system));
     const bool alike =
@@ -438,33 +445,33 @@ Worth worth(const Problem& problem, const VectorXd& y, double a) {
     return {alike && !there.pushed && !there.open, alike && there.pushed, alike && there.open};
 }
 
-Approach approach(const System& system, const VectorXd& z, double a) {
+NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double a) {
     const double rounding = rounding_is_nothing(system);
-    const auto from = [&](const VectorXd& start, double nothing) {
-        Problem problem{system, border_at(system, start, a, nothing), z, false, {}, {}};
+    const auto from = [&](const VectorXd& start, double zero_tolerance) {
+        Problem problem{system, border_at(system, start, a, zero_tolerance), z, false, {}, {}};
         VectorXd y = VectorXd::Zero(problem.size());
         y.head(system.n()) = start;
         Approximate found = newton(problem, y, a);
         // Without a border the inverse shows that J is regular, also after the steps since.
-        Worth there;
+        BorderCheck there;
         if (found.settled && found.y.allFinite())
             there = problem.border.count() == 0 &&
                             found.rcond > surely_regular * std::max(rounding, found.since)
-                        ? Worth{true}
-                        : worth(problem, found.y, a);
-        return Approach{std::move(problem), std::move(found), there};
+                        ? BorderCheck{true}
+                        : check_border(problem, found.y, a);
+        return NearEquilibrium{std::move(problem), std::move(found), there};
     };
     // Whether the border at the end is that of the start.
-    const auto arrives = [](const Worth& there) {
+    const auto arrives = [](const BorderCheck& there) {
         return there.sound || there.pushed || there.open;
     };
-    Approach first = from(z, rounding);
+    NearEquilibrium first = from(z, rounding);
     if (arrives(first.there)) return first;
     // Away from an equilibrium an idle motion has some stiffness, and Newton's method would diverge
     // along it. So these motions are held first, by the looser threshold.
-    Approach held = from(z, little_is_nothing);
+    NearEquilibrium held = from(z, little_is_nothing);
     if (!held.found.settled) return first;
-    Approach again = from(held.found.y.head(system.n()), rounding);
+    NearEquilibrium again = from(held.found.y.head(system.n()), rounding);
     return arrives(again.there) ? again : held;
 }
 

@@ -18,8 +18,8 @@ namespace elastocheck::reference::certificate {
 struct Border {
     Eigen::MatrixXd U, g;  // [n × k]: redundant rows first, then idle motions
     int redundant = 0;
-    bool open = false,
-         pushed = false;  // at z: the redundant rows by more, an idle motion by more than rounding
+    // at z: the redundant rows by more, an idle motion by more than rounding
+    bool open = false, pushed = false;
     int count() const { return static_cast<int>(U.cols()); }
 };
 
@@ -39,10 +39,10 @@ double rounding_is_nothing(const System& system);
 constexpr double little_is_nothing = 1e-5;
 // The rounding of each equation [n]: relative to the forces on its body, to L or to a direction.
 Eigen::VectorXd rounding_of_equations(const System& system, const Eigen::VectorXd& z, double a);
-Border border_at(const System& system, const Eigen::VectorXd& z, double a, double nothing);
+Border border_at(const System& system, const Eigen::VectorXd& z, double a, double zero_tolerance);
 
-// Names of the bodies moved by the idle motions, and of the joints of the redundant rows:
-// "'strut'".
+// Names of the bodies moved by the idle motions, and of the joints of the
+// redundant rows: "'strut'".
 std::string idle_bodies(const System& system, const Border& border);
 std::string redundant_joints(const System& system, const Border& border);
 
@@ -83,18 +83,18 @@ Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a);
 // Validity of a border at y. `sound`: all its motions and rows are structurally idle or redundant
 // there, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond
 // rounding. Nothing is proved unless it is sound.
-struct Worth {
+struct BorderCheck {
     bool sound = false, pushed = false, open = false;
 };
-Worth worth(const Problem& problem, const Eigen::VectorXd& y, double a);
+BorderCheck check_border(const Problem& problem, const Eigen::VectorXd& y, double a);
 
-// Floating-point equilibrium near z, if one was found, with the border evaluated at that
-// equilibrium.
-struct Approach {
+// Floating-point equilibrium near z, if one was found, with the border evaluated
+// at that equilibrium.
+struct NearEquilibrium {
     Problem problem;
     Approximate found;
-    Worth there;
+    BorderCheck there;
 };
-Approach approach(const System& system, const Eigen::VectorXd& z, double a);
+NearEquilibrium equilibrium_near(const System& system, const Eigen::VectorXd& z, double a);
 
 }  // namespace elastocheck::reference::certificate

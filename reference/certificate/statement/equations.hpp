@@ -1,8 +1,8 @@
-// Equilibrium equations of elements, joints and loads on each body, for all number types of
-// numbers.hpp.
+// Equilibrium equations of elements, joints and loads on each body, for all number
+// types of numbers.hpp.
 //
-// Derived from the energies of mechanism.hpp by virtual work: a connection of two bodies does the
-// work
+// Derived from the energies of mechanism.hpp by virtual work: a connection of two bodies
+// does the work
 //
 //   δW = F_i · δr_i + M_i · δπ_i + F_j · δr_j + M_j · δπ_j
 //

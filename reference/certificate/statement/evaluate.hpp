@@ -146,7 +146,9 @@ struct Assembly {
     }
     // Whether the only law of an element is separated. The deformations of an element, `back`:
     // turned back about the axes of path.turns_freely.
-    static bool has_no_more(const AxialSpring&, const ElementPath& path) { return path.apart[0]; }
+    static bool has_no_more(const AxialSpring&, const ElementPath& path) {
+        return path.separated[0];
+    }
     static bool has_no_more(const Bushing&, const ElementPath&) { return false; }
     template <class T>
     std::array<T, 6> deformations_at(const AxialSpring& spring, const ElementPath& path,
@@ -177,7 +179,7 @@ struct Assembly {
                         const Frame<T>& j) {
         const Measured<T> m = measured(bushing, path.rotational, i, j);
         const T raised = path.free_length.at(parameter<T>());
-        std::array<T, 6> u = force(bushing.law, deformation(bushing, raised, m), path.apart);
+        std::array<T, 6> u = force(bushing.law, deformation(bushing, raised, m), path.separated);
         for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] + path.preload[k].at(parameter<T>());
         if (fixed_forces) {
             for (T& x : u) x = constant_of(x);
@@ -247,7 +249,7 @@ struct Assembly {
     }
     template <class T>
     void corner(std::size_t c) {
-        const Apart& of = system.apart[c];
+        const SeparatedCorner& of = system.separated[c];
         const ScalarLaw& law = law_of(system, of);
         const int to = system.corner(c), x_at = system.deformation(c), f_at = x_at + 1;
         const S &x = z[static_cast<std::size_t>(x_at)], &f = z[static_cast<std::size_t>(f_at)];
@@ -340,9 +342,9 @@ void assemble(Assembly<S>& sum, Slopes slopes) {
     };
     for (std::size_t e = 0; e < model.elastics.size(); ++e)
         two(model.elastics[e].kind) ? sum.template element<Two>(e) : sum.template element<One>(e);
-    for (std::size_t c = 0; c < system.apart.size(); ++c)
-        two(model.elastics[system.apart[c].element].kind) ? sum.template corner<Two>(c)
-                                                          : sum.template corner<One>(c);
+    for (std::size_t c = 0; c < system.separated.size(); ++c)
+        two(model.elastics[system.separated[c].element].kind) ? sum.template corner<Two>(c)
+                                                              : sum.template corner<One>(c);
     for (std::size_t c = 0; c < model.constraints.size(); ++c)
         two(model.constraints[c].kind) ? sum.template constraint<Two>(c)
                                        : sum.template constraint<One>(c);

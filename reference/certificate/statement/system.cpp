@@ -87,7 +87,7 @@ void for_corners(const Model& model, const Visit& visit) {
         for (std::size_t k = 0; k < 6; ++k)
             if (const ScalarLaw* law = scalar_law(model.elastics[e].kind, k);
                 law != nullptr && has_corner(*law))
-                visit(Apart{e, k});
+                visit(SeparatedCorner{e, k});
 }
 
 // Origin and size of the model. The proof does not depend on them.
@@ -119,7 +119,7 @@ void set_size(System& system) {
 
 bool has_corners(const Model& model) {
     bool any = false;
-    for_corners(model, [&](const Apart&) { any = true; });
+    for_corners(model, [&](const SeparatedCorner&) { any = true; });
     return any;
 }
 
@@ -127,20 +127,20 @@ std::string why_not_tried(const System& system) {
     if (!arithmetic_is_as_proved())
         return "the arithmetic does not round to nearest, or flushes denormals to zero: nothing "
                "can be proved";
-    if (system.n() <= most_unknowns) return {};
+    if (system.n() <= max_unknowns) return {};
     return fmt::format("not tried: {} unknowns, proofs are tried up to {}", system.n(),
-                       most_unknowns);
+                       max_unknowns);
 }
 
-const ScalarLaw& law_of(const System& system, const Apart& corner) {
+const ScalarLaw& law_of(const System& system, const SeparatedCorner& corner) {
     return *scalar_law(system.model->elastics[corner.element].kind, corner.axis);
 }
 
 void set_corners(const System& system, Eigen::VectorXd& z, double a) {
-    if (system.apart.empty()) return;
+    if (system.separated.empty()) return;
     const auto x = deformations(system, {z.data(), z.data() + z.size()}, Interval(a));
-    for (std::size_t k = 0; k < system.apart.size(); ++k) {
-        const Apart& corner = system.apart[k];
+    for (std::size_t k = 0; k < system.separated.size(); ++k) {
+        const SeparatedCorner& corner = system.separated[k];
         const double at = mid(x[corner.element][corner.axis]);
         z[system.deformation(k)] = at;
         z[system.deformation(k) + 1] = force(law_of(system, corner), at);
@@ -159,10 +159,10 @@ System make_system(const Model& model, const Branch& branch, Corners corners) {
     set_paths(system);
     set_formulations(system);
     set_size(system);
-    if (corners == Corners::apart)
-        for_corners(model, [&](const Apart& corner) {
-            system.apart.push_back(corner);
-            system.elements[corner.element].apart[corner.axis] = true;
+    if (corners == Corners::separated)
+        for_corners(model, [&](const SeparatedCorner& corner) {
+            system.separated.push_back(corner);
+            system.elements[corner.element].separated[corner.axis] = true;
         });
     return system;
 }

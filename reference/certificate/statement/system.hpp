@@ -39,14 +39,14 @@ struct Affine {
 
 // Driven quantities of an element along the branch, and how its law is evaluated.
 struct ElementPath : DrivenElement<Affine> {
-    bool rotational = false;      // bushing forces depend on the markers' relative rotation
-    std::array<bool, 6> apart{};  // separated laws; of a spring the first
+    bool rotational = false;          // bushing forces depend on the markers' relative rotation
+    std::array<bool, 6> separated{};  // separated laws; of a spring the first
     // Axes of a bushing's frame with equal rates across: rotating the frame about one leaves the
     // forces unchanged.
     std::array<bool, 3> turns_freely{};
 };
 // A law with a corner, separated: its deformation and force are unknowns.
-struct Apart {
+struct SeparatedCorner {
     std::size_t element = 0, axis = 0;
 };
 using LoadPath = DrivenLoad<Affine>;
@@ -54,13 +54,13 @@ using LoadPath = DrivenLoad<Affine>;
 struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
-    std::vector<Affine> values;         // per Model::constraints: its offset, length or angle
-    std::vector<int> first_row;         // per Model::constraints
-    std::vector<ElementPath> elements;  // per Model::elastics
-    std::vector<LoadPath> loads;        // static and driven
-    std::vector<Apart> apart;           // separated corners
-    Eigen::Vector3d c = {0, 0, 0};      // [m]
-    double length = 1;                  // L, size of the model: reference length of scaling [m]
+    std::vector<Affine> values;              // per Model::constraints: its offset, length or angle
+    std::vector<int> first_row;              // per Model::constraints
+    std::vector<ElementPath> elements;       // per Model::elastics
+    std::vector<LoadPath> loads;             // static and driven
+    std::vector<SeparatedCorner> separated;  // separated corners
+    Eigen::Vector3d c = {0, 0, 0};           // [m]
+    double length = 1;  // L, size of the model: reference length of scaling [m]
     // largest distance of a point from the origin of the stored coordinates, at least `length` [m]
     double farthest = 1;
     int bodies = 0, rows = 0;  // nb, m
@@ -82,15 +82,15 @@ struct System {
 
 // Throws std::invalid_argument where model and branch do not fit, or a driver moves a quantity that
 // does not exist.
-enum class Corners { in_place, apart };
+enum class Corners { in_place, separated };
 System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
 bool has_corners(const Model& model);
 // Largest number of unknowns for a proof. Its matrices are dense, so its time grows with the cube
 // (0.3 s per point at 500).
-inline constexpr int most_unknowns = 500;
+inline constexpr int max_unknowns = 500;
 // Reason why no proof is tried, the size or the arithmetic of the thread; empty where one is.
 std::string why_not_tried(const System& system);
-const ScalarLaw& law_of(const System& system, const Apart& corner);
+const ScalarLaw& law_of(const System& system, const SeparatedCorner& corner);
 // Sets x and f of the corners from the poses of z.
 void set_corners(const System& system, Eigen::VectorXd& z, double a);
 

@@ -40,21 +40,21 @@ constexpr double remainder_round_off = 1e-9;
 constexpr double soft_round_off = 1e-14;
 
 // However close the points, a step between two of them may be halved at least this often.
-constexpr int least_halvings = 6;
+constexpr int min_halvings = 6;
 
 // Trials to locate a knot before the step is shortened like any other; the error of each is O(h⁴)
 // of the previous.
-constexpr int most_knot_trials = 20;
+constexpr int max_knot_trials = 20;
 
 // Steps between two requested points before the branch counts as too long: about sixty turns, or
 // four hundred L.
-constexpr int most_steps = 2000;
+constexpr int max_steps = 2000;
 
 // Search past the smallest step before the branch counts as lost: length of the first probe in
 // smallest steps, growth factor, number of probes. A point that is singular within 1e-12 of the
 // stage shows its other side only farther on.
 constexpr double first_probe = 3, probe_growth = 4;
-constexpr int most_probes = 14;
+constexpr int max_probes = 14;
 
 Station station_at(Continuation& continuation, double t, VectorXd x, const Linearisation* last) {
     Station station;
@@ -69,7 +69,7 @@ Station station_at(Continuation& continuation, double t, VectorXd x, const Linea
     station.stiffness = stiffness(continuation.system, station.linearised);
     station.E = std::move(by.E);
     station.E_rate = std::move(by.E_rate);
-    const Rate rate = answer(station.linearised.bordered, station.E_rate);
+    const Rate rate = solve_bordered(station.linearised.bordered, station.E_rate);
     station.tangent = rate.dx;
     station.mu = rate.mu;
     station.curves =
@@ -131,10 +131,10 @@ bool is_within_reach(const Continuation& continuation, double h, const VectorXd&
 bool is_continuation(const System& system, const Station& from, const Station& to) {
     const VectorXd chord = step_between(system, from.x, to.x);
     const double h = to.t - from.t, size = pose_size(system, chord);
-    const double apart = std::max(pose_size(system, chord - h * from.tangent),
-                                  pose_size(system, chord - h * to.tangent));
-    return std::isfinite(size) && std::isfinite(apart) &&
-           apart <= std::max(straight * size, too_short_to_bend);
+    const double deviation = std::max(pose_size(system, chord - h * from.tangent),
+                                      pose_size(system, chord - h * to.tangent));
+    return std::isfinite(size) && std::isfinite(deviation) &&
+           deviation <= std::max(straight * size, too_short_to_bend);
 }
 
 // Midpoint of two equilibria by the cubic Hermite interpolant, with error O(h⁴),
@@ -217,7 +217,7 @@ double moved_by_rounding(const Continuation& continuation, const Station& at) {
     const double softer =
         continuation.first_stiffness > 0 ? at.stiffness.least / continuation.first_stiffness : 1;
     return std::clamp(softer, 0., 1.) *
-           pose_size(continuation.system, answer(at.linearised.bordered, E).dx);
+           pose_size(continuation.system, solve_bordered(at.linearised.bordered, E).dx);
 }
 
 // Whether the correction of a predicted state, with the matrix of the last one, is much smaller than
@@ -226,7 +226,7 @@ bool is_foreseen(Continuation& continuation, const Loading& loading, const Vecto
     constexpr double much_smaller = 0.1;
     ++continuation.counts.evaluations;
     const VectorXd E = residual(continuation.system, loading, x);
-    return E.allFinite() && answer(continuation.here.linearised.bordered, E).dx.norm() <=
+    return E.allFinite() && solve_bordered(continuation.here.linearised.bordered, E).dx.norm() <=
                                 much_smaller * last_correction;
 }
 
@@ -241,7 +241,7 @@ Trial try_step(Continuation& continuation, double t) {
     VectorXd further;
     const auto correct_at = [&](VectorXd x) {
         next = station_at(continuation, t, std::move(x), &continuation.here.linearised);
-        further = answer(next.linearised.bordered, next.E).dx;
+        further = solve_bordered(next.linearised.bordered, next.E).dx;
     };
     const auto is_solved = [&](const VectorXd& x) {
         return largest(residual(system, loading, x)) <= continuation.options.tolerance;
@@ -295,7 +295,7 @@ Failure diagnose_end(Continuation& continuation, double h, double t, Trial refus
         return at.verdict == Verdict::past_singular_point &&
                at.station.stiffness.least < -at.station.stiffness.round_off;
     };
-    for (int k = 0; k < most_probes && continuation.stage == Stage::branch && !is_clear(refused);
+    for (int k = 0; k < max_probes && continuation.stage == Stage::branch && !is_clear(refused);
          ++k) {
         const double past = continuation.here.t + first_probe * std::pow(probe_growth, k) * h;
         Trial probe = try_step(continuation, past);
@@ -434,8 +434,8 @@ Failure too_long(const Continuation& continuation, double target) {
                    ? fmt::format("{:.0f} % of the homotopy", 100 * t)
                    : parameter(*continuation.system.branch, t);
     };
-    return {Outcome::iteration_limit, fmt::format("{} steps reached {}, too far from {}",
-                                                  most_steps, at(continuation.here.t), at(target))};
+    return {Outcome::iteration_limit, fmt::format("{} steps reached {}, too far from {}", max_steps,
+                                                  at(continuation.here.t), at(target))};
 }
 }  // namespace
 
@@ -443,7 +443,7 @@ std::optional<Failure> advance(Continuation& continuation, double target) {
     double h = target - continuation.here.t;
     const double smallest =
         std::min(std::ldexp(continuation.length, -continuation.options.halvings),
-                 std::ldexp(std::abs(h), -least_halvings));
+                 std::ldexp(std::abs(h), -min_halvings));
     std::optional<Trial> refused;  // most informative trial since the last step
     double knot = 0;               // a piece ends here, before the end of the step ...
     int knot_trials = 0;           // ... number of attempts to locate it: 0 for the whole step
@@ -473,7 +473,7 @@ std::optional<Failure> advance(Continuation& continuation, double target) {
         if (std::abs(h) >= std::abs(rest) * (1 - 1e-9)) h = rest;
         const double t = knot_trials > 0 ? knot : h == rest ? target : continuation.here.t + h;
         Trial trial = try_step(continuation, t);
-        if (trial.verdict == Verdict::past_knot && knot_trials < most_knot_trials &&
+        if (trial.verdict == Verdict::past_knot && knot_trials < max_knot_trials &&
             trial.knot != continuation.here.t) {
             knot = trial.knot;
             ++knot_trials;
@@ -481,7 +481,7 @@ std::optional<Failure> advance(Continuation& continuation, double target) {
             continuation.before = std::move(continuation.here);
             continuation.here = std::move(trial.station);
             refused.reset();
-            if (++steps == most_steps && continuation.here.t != target)
+            if (++steps == max_steps && continuation.here.t != target)
                 return too_long(continuation, target);
             if (knot_trials == 0) h *= 2;
             knot_trials = 0;

@@ -57,15 +57,20 @@ inline Loading loading_at(const Continuation& continuation, double t) {
                                                  : Loading{t, 0, 1, 0, continuation.pieces};
 }
 
+// Result of a step, the first condition that holds in this order (accepted: none does). E is the scaled
+// residual, dx the predicted step, δ the last Newton correction.
 enum class Verdict {
     accepted,
-    out_of_reach,    // the tangent predicts a movement too large for one step
-    past_knot,       // an equilibrium of pieces that end before it
-    unsolved,        // the residual stays above the tolerance
-    another_branch,  // an equilibrium, but not on this branch
-    unsettled,       // on this branch, but a further Newton step is above its tolerance
-    uncertain,       // on this branch, but ends and middle do not determine the stability between
-    past_singular_point,  // on this branch, but past a singular point
+    out_of_reach,    // |dx| above the longest step, or a direction turned between two states of it
+    past_knot,       // E(x) = 0, but a deformation x has left its piece of a curve
+    unsolved,        // |E| above the tolerance after the last Newton step
+    another_branch,  // E(x) = 0, but x is not on the tangent's side of the last state
+    unsettled,       // on this branch, but |δ| of one more Newton step is above its tolerance
+    // on this branch, but rounding moves x by more than the tolerance, or Stability::uncertain
+    uncertain,
+    // on this branch, but more idle motions, another sign of det J or of the constraints' determinant
+    // (stability.hpp), or Stability::lost
+    past_singular_point,
 };
 
 struct Trial {

@@ -78,9 +78,9 @@ bool turns_back(const Continuation& continuation) {
                still_there * continuation.first_tangent;
 }
 
-// Whether a bifurcation was passed: beyond the singular point the same curve continues with a
-// negative eigenvalue of M, so another curve crosses it. M does not show a bifurcation of the
-// constraints.
+// Whether a bifurcation was passed: beyond the singular point the same curve continues
+// with a negative eigenvalue of M, so another curve crosses it. M does not show a
+// bifurcation of the constraints.
 bool has_divided(const Continuation& continuation, const Trial& trial) {
     const Stiffness& past = trial.station.stiffness;
     return trial.verdict == Verdict::past_singular_point && past.least < -past.round_off &&

@@ -94,7 +94,7 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
     Linearisation at = linearise(by.J, nullptr, counts);
     for (int iteration = 0;; ++iteration) {
         if (iteration == options.iteration_limit) return {Outcome::iteration_limit};
-        VectorXd dx = answer(at.bordered, by.E).dx;
+        VectorXd dx = solve_bordered(at.bordered, by.E).dx;
         if (!dx.allFinite()) return {Outcome::singular};
         dx *= stretched(system, others, x, dx);
         const double size = pose_size(system, dx);
@@ -122,9 +122,9 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
 std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
                                       const Equilibrium& state, int motions,
                                       std::span<const double> lengths) {
-    constexpr int most_bodies = 100;
+    constexpr int max_bodies = 100;
     const System system = make_system(model, branch, {&state.load, 1});
-    if (system.bodies == 0 || system.bodies > most_bodies) return {};
+    if (system.bodies == 0 || system.bodies > max_bodies) return {};
     const Index n = 6 * system.bodies, m = system.constraint_rows;
     const VectorXd x = unknowns_at(system, state.poses);
     // The curvature of the constraints depends on their reactions.
@@ -164,7 +164,8 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
     return list;
 }
 
-double apart(const Model& model, const Branch& branch, const Equilibrium& a, const Equilibrium& b) {
+double distance(const Model& model, const Branch& branch, const Equilibrium& a,
+                const Equilibrium& b) {
     const System system = make_system(model, branch, {&a.load, 1});
     return pose_size(
         system, known_state(system, a.load, a).from_here(system, unknowns_at(system, b.poses)));

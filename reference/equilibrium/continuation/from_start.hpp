@@ -41,8 +41,9 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
                                       const Equilibrium& state, int motions,
                                       std::span<const double> lengths);
 
-// Distance of two states, as in pose_size: shares of the model's size, radians; idle motions at `a`
-// excluded.
-double apart(const Model& model, const Branch& branch, const Equilibrium& a, const Equilibrium& b);
+// Distance of two states, as in pose_size: shares of the model's size, radians; idle motions
+// at `a` excluded.
+double distance(const Model& model, const Branch& branch, const Equilibrium& a,
+                const Equilibrium& b);
 
 }  // namespace elastocheck::reference::equilibrium

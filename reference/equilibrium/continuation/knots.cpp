@@ -34,7 +34,8 @@ struct Cubic {
         std::array<double, 4> s = {0, 0, 0, 1};
         const double root = std::sqrt(c * c - 3 * b * d), q = -(c + std::copysign(root, c));
         const auto within = [](double at) { return at > 0 && at < 1 ? at : 0; };  // false for NaN
-        s[1] = within(q / (3 * d)), s[2] = within(b / q);
+        s[1] = within(q / (3 * d));
+        s[2] = within(b / q);
         std::ranges::sort(s);
         return s;
     }

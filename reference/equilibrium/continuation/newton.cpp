@@ -8,9 +8,9 @@ using Eigen::VectorXd;
 // After a correction of this size the next one would be of its square, which is round-off.
 constexpr double smallest_step = 1e-8;
 
-// A damped step is accepted if it reduces the level by at least this part of the predicted
-// reduction.
-constexpr double least_promise_kept = 1e-3;
+// A damped step is accepted if it reduces the level by at least this part of
+// the predicted reduction.
+constexpr double min_promise_kept = 1e-3;
 
 // Limit of the damping: at stagnation no shorter step is an improvement.
 constexpr int halvings = 10;
@@ -28,7 +28,7 @@ constexpr int halvings = 10;
 // natural monotonicity test (Deuflhard 1974; linearisation.hpp has J and its border). It is zero
 // where E is.
 double level(const Linearisation& near, const VectorXd& E) {
-    const Rate corrections = answer(near.bordered, E);
+    const Rate corrections = solve_bordered(near.bordered, E);
     return std::hypot(corrections.dx.norm(), corrections.mu.norm());
 }
 
@@ -49,8 +49,9 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
             return attempt;
         }
         if (!is_finite(by.J)) return attempt;
-        ++counts.factorisations, ++counts.iterations;
-        const VectorXd dx = answer(bordered_like(near, by.J), by.E).dx;
+        ++counts.factorisations;
+        ++counts.iterations;
+        const VectorXd dx = solve_bordered(bordered_like(near, by.J), by.E).dx;
         if (!dx.allFinite()) return attempt;
 
         double part = 1, now = 0;
@@ -60,7 +61,7 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
             ++counts.evaluations;
             E = residual(system, loading, there);
             now = level(near, E);
-            if (now <= (1 - least_promise_kept * part) * before) break;
+            if (now <= (1 - min_promise_kept * part) * before) break;
             if (halving == halvings) return attempt;
         }
         x = std::move(there);

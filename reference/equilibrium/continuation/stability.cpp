@@ -140,11 +140,11 @@ struct Inverse {
     Eigen::SimplicialLDLT<Sparse> gram;
     Inverse(const Linearisation& linearised, Index size) : at(linearised), n(size) {
         if (at.modes.count() == 0) return;
-        constexpr double nothing = 1e-14;
+        constexpr double zero_tolerance = 1e-14;
         V = at.modes.right.topRows(n);
         Sparse one(V.cols(), V.cols());
         one.setIdentity();
-        gram.compute(Sparse(Sparse(V.transpose()) * V + nothing * one));
+        gram.compute(Sparse(Sparse(V.transpose()) * V + zero_tolerance * one));
     }
     VectorXd without_idle(const VectorXd& b) const {
         if (at.modes.count() == 0) return b;
@@ -153,14 +153,14 @@ struct Inverse {
     VectorXd operator()(const VectorXd& b) const {
         VectorXd right = VectorXd::Zero(at.J.rows());
         right.head(n) = without_idle(b);
-        return without_idle(answer(at.bordered, right).dx.head(n));
+        return without_idle(solve_bordered(at.bordered, right).dx.head(n));
     }
 };
 
-// Ritz values of an Arnoldi matrix H, and the size of the last entry of each eigenvector. Where an
-// energy makes M symmetric, H is nearly symmetric: each eigenvalue of S + N, S symmetric, is within
-// |N| of one of S (Bauer & Fike 1960). The eigenvalues of S are cheaper, and real where two
-// coincide.
+// Ritz values of an Arnoldi matrix H, and the size of the last entry of each eigenvector.
+// Where an energy makes M symmetric, H is nearly symmetric: each eigenvalue of S + N, S
+// symmetric, is within |N| of one of S (Bauer & Fike 1960). The eigenvalues of S are cheaper,
+// and real where two coincide.
 struct Ritz {
     Eigen::VectorXcd theta;
     VectorXd last;
@@ -234,12 +234,12 @@ std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free
 
 // Self-stresses in the left null space: combinations of its vectors whose body part is zero.
 MatrixXd self_stresses(const System& system, const NullSpaces& modes) {
-    constexpr double nothing = 1e-14;
+    constexpr double zero_tolerance = 1e-14;
     const Index n = 6 * system.bodies, m = system.constraint_rows;
     const Sparse of_bodies = modes.left.topRows(n);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(
         MatrixXd(Sparse(of_bodies.transpose()) * of_bodies));
-    const Index count = (solver.eigenvalues().array() <= nothing).count();
+    const Index count = (solver.eigenvalues().array() <= zero_tolerance).count();
     return modes.left.bottomRows(m) * solver.eigenvectors().leftCols(count);
 }
 
@@ -333,9 +333,9 @@ Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffn
     if (!(std::isfinite(l_0) && std::isfinite(l_m) && std::isfinite(l_1)))
         return Stability::uncertain;
     if (least < -round_off) return Stability::lost;
-    // Two eigenvalues became negative: through zero together, or around it as a complex pair. In
-    // the second case the least modulus is not small, and hardly changes over a sufficiently short
-    // step.
+    // Two eigenvalues became negative: through zero together, or around it as a complex pair.
+    // In the second case the least modulus is not small, and hardly changes over a
+    // sufficiently short step.
     constexpr double hardly = 0.25;
     const bool pair = from.negative != to.negative || from.negative != middle.negative;
     if (pair && std::max({l_0, l_m, l_1}) > (1 + hardly) * least) return Stability::uncertain;

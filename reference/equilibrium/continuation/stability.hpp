@@ -57,10 +57,13 @@ std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J,
 // suspension here. In larger models without energy, a pair of negative eigenvalues that moves far
 // past zero within one step may be missed.
 
+// λ the least eigenvalue of M at the start, the middle and the end of a step.
 enum class Stability {
-    kept,
-    lost,      // an eigenvalue is negative on the step
-    uncertain  // the parabola dips; a shorter step is needed
+    kept,  // min λ ≥ -round_off, and the parabola through the three values stays above zero
+    lost,  // min λ < -round_off
+    // λ is not finite, the number of negative eigenvalues changes, or the parabola of λ or of det M
+    // dips to zero between the three places: a shorter step is needed
+    uncertain
 };
 // `logs`: log₂ of a determinant with the zeros of det M, at the same three places.
 Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to,

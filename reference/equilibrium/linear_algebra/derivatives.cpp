@@ -218,7 +218,9 @@ Frame<Dual> moving_frame(const System& system, const VectorXd& x, const VectorXd
     const Eigen::Vector3d v = at.p.vec(), turn = dx.segment<3>(6 * body + 3);
     const Eigen::Vector3d dv = (at.p.w() * turn + cross(turn, v)) / 2;
     for (int k = 0; k < 3; ++k) frame.r[k].v[0] = system.length * dx[6 * body + k];
-    frame.p.x().v[0] = dv[0], frame.p.y().v[0] = dv[1], frame.p.z().v[0] = dv[2];
+    frame.p.x().v[0] = dv[0];
+    frame.p.y().v[0] = dv[1];
+    frame.p.z().v[0] = dv[2];
     frame.p.w().v[0] = -v.dot(turn) / 2;
     return frame;
 }
@@ -330,14 +332,14 @@ Deforming deforming(const System& system, const Loading& loading, const VectorXd
         const auto row = 6 * static_cast<Eigen::Index>(e);
         for (int k = 0; k < 6; ++k) {
             all.rate[row + k] = d[k].v[0];
-            all.answer[row + k] = force[k].v[0] / (system.force * system.length);
+            all.force_rate[row + k] = force[k].v[0] / (system.force * system.length);
         }
         const auto* law = member<SpatialLaw>(elastics[e].kind);
         const Matrix6* coupled = law != nullptr ? matrix_of(*law) : nullptr;
         if (coupled == nullptr) continue;
         const Vector6 sizes = coupled->cwiseAbs() * all.rate.segment<6>(row).cwiseAbs();
         for (int k = 0; k < 6; ++k)
-            if (std::abs(force[k].v[0]) <= rounding * sizes[k]) all.answer[row + k] = 0;
+            if (std::abs(force[k].v[0]) <= rounding * sizes[k]) all.force_rate[row + k] = 0;
     }
     return all;
 }

@@ -36,7 +36,7 @@ struct OnCurve {
 // F L, six rows per element (of a spring the first). They are in the element's axes, where a soft
 // axis keeps its digits beside stiff ones. A force that is only rounding is zero.
 struct Deforming {
-    Eigen::VectorXd rate, answer;
+    Eigen::VectorXd rate, force_rate;
 };
 Deforming deforming(const System& system, const Loading& loading, const Eigen::VectorXd& x,
                     const Eigen::VectorXd& dx);

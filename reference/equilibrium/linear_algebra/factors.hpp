@@ -1,5 +1,5 @@
-// Sparse factorisations: LU (KLU) for regular matrices, QR (SPQR) for matrices that may be
-// singular.
+// Sparse factorisations: LU (KLU) for regular matrices, QR (SPQR) for matrices that
+// may be singular.
 //
 // The elimination order depends only on the pattern. It is reused when the factors of a matrix with
 // the same pattern are passed in.

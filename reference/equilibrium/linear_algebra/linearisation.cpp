@@ -19,7 +19,7 @@ constexpr double null_threshold = 1e-11;
 // Exception: constraints that are redundant up to an angle σ do constrain, with a singular value of
 // σ² over a stiffness in J. Such a vector has an image larger than `nothing`, and consists of
 // reactions except for a part of about σ on bodies.
-constexpr double nothing = 1e-13, least_angle = 1e-9, largest_angle = 1e-3;
+constexpr double zero_tolerance = 1e-13, min_angle = 1e-9, largest_angle = 1e-3;
 
 // Below this condition number the null space is empty and is not computed.
 constexpr double surely_regular = 1e8;
@@ -27,8 +27,8 @@ constexpr double surely_regular = 1e8;
 // Equilibration sweeps; each halves the logarithm of the ratio of sizes.
 constexpr int equilibration_sweeps = 10;
 
-// Largest stiffness of a tracked mode, relative to the largest entry of J, that still counts as
-// idle.
+// Largest stiffness of a tracked mode, relative to the largest entry of J, that still
+// counts as idle.
 constexpr double idle_stiffness = 1e-10;
 
 // Relative to the length of a mode: smaller entries are round-off and dropped.
@@ -71,7 +71,8 @@ Equilibrated equilibrated(const Sparse& J) {
                 r[at.row()] = std::max(r[at.row()], size);
                 c[k] = std::max(c[k], size);
             }
-        r = r.unaryExpr(scale), c = c.unaryExpr(scale);
+        r = r.unaryExpr(scale);
+        c = c.unaryExpr(scale);
         for (Index k = 0; k < J.cols(); ++k)
             for (Sparse::InnerIterator at(of.A, k); at; ++at) at.valueRef() *= r[at.row()] * c[k];
         of.D_r.array() *= r.array();
@@ -95,7 +96,7 @@ Sparse without_angles(const Sparse& A, const Sparse& columns) {
     const Sparse images = A * columns;
     bool all = true;
     for (Index k = 0; k < columns.cols() && all; ++k)
-        all = images.col(k).norm() <= nothing * columns.col(k).norm();
+        all = images.col(k).norm() <= zero_tolerance * columns.col(k).norm();
     if (all) return columns;
     MatrixXd V = Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ() *
                  MatrixXd::Identity(columns.rows(), columns.cols());
@@ -104,7 +105,7 @@ Sparse without_angles(const Sparse& A, const Sparse& columns) {
     std::vector<Index> kept;
     for (Index k = 0; k < V.cols(); ++k) {
         const double part = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
-        if (!(part > least_angle && part < largest_angle && (A * V.col(k)).norm() > nothing))
+        if (!(part > min_angle && part < largest_angle && (A * V.col(k)).norm() > zero_tolerance))
             kept.push_back(k);
     }
     return MatrixXd(V(Eigen::all, kept)).sparseView();
@@ -158,7 +159,10 @@ NullSpaces null_spaces(const Sparse& J) {
     const auto [near_right, near_left] = null_bases(A, null_threshold);
     const Sparse A_t = A.transpose();
     Sparse right = without_angles(A, near_right), left = without_angles(A_t, near_left);
-    if (right.cols() != left.cols()) right = near_right, left = near_left;
+    if (right.cols() != left.cols()) {
+        right = near_right;
+        left = near_left;
+    }
     return {orthonormal(D_c.asDiagonal() * right), orthonormal(D_r.asDiagonal() * left)};
 }
 
@@ -192,7 +196,7 @@ Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
     return at;
 }
 
-Rate answer(const Factors& bordered, const VectorXd& E_rate) {
+Rate solve_bordered(const Factors& bordered, const VectorXd& E_rate) {
     const Index n = E_rate.size(), k = bordered.size() - n;
     if (n == 0) return {};
     if (bordered.sign() == 0)
@@ -204,10 +208,11 @@ Rate answer(const Factors& bordered, const VectorXd& E_rate) {
     return {solution.head(n), solution.tail(k)};
 }
 
-Rate refined_answer(const Linearisation& at, const VectorXd& E_rate) {
-    Rate rate = answer(at.bordered, E_rate);
+Rate solve_bordered_refined(const Linearisation& at, const VectorXd& E_rate) {
+    Rate rate = solve_bordered(at.bordered, E_rate);
     if (!rate.dx.allFinite()) return rate;
-    const Rate correction = answer(at.bordered, E_rate + at.J * rate.dx + at.modes.left * rate.mu);
+    const Rate correction =
+        solve_bordered(at.bordered, E_rate + at.J * rate.dx + at.modes.left * rate.mu);
     rate.dx += correction.dx;
     rate.mu += correction.mu;
     return rate;
@@ -238,7 +243,8 @@ VectorXd least_squares(const Sparse& A, const VectorXd& b) {
     VectorXd right = VectorXd::Zero(size);
     right.segment(tall ? 0 : first, b.size()) = -b;
     Counts counts;
-    const VectorXd solution = refined_answer(linearise(std::move(G), nullptr, counts), right).dx;
+    const VectorXd solution =
+        solve_bordered_refined(linearise(std::move(G), nullptr, counts), right).dx;
     return solution.segment(tall ? first : 0, A.cols());
 }
 

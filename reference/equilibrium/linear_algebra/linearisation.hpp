@@ -43,10 +43,10 @@ struct Rate {
     Eigen::VectorXd dx;  // [n]
     Eigen::VectorXd mu;  // [k]
 };
-Rate answer(const Factors& bordered, const Eigen::VectorXd& E_rate);
+Rate solve_bordered(const Factors& bordered, const Eigen::VectorXd& E_rate);
 
 // With one step of iterative refinement, which recovers digits lost in the factors.
-Rate refined_answer(const Linearisation& at, const Eigen::VectorXd& E_rate);
+Rate solve_bordered_refined(const Linearisation& at, const Eigen::VectorXd& E_rate);
 
 // Minimum-norm solution of the least-squares problem min |A x - b|.
 Eigen::VectorXd least_squares(const Sparse& A, const Eigen::VectorXd& b);

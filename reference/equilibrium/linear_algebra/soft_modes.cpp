@@ -49,13 +49,13 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
         const VectorXd v = modes.col(k);
         const double motion = v.head(n).norm(), left = (J * v).head(n).norm();
         Deforming one = deforming(system, loading, x, v);
-        const double nothing =
+        const double zero_tolerance =
             std::max(std::pow(no_deformation * motion, 2) * size, left * left / (threshold * size));
         // The elastic stiffness may be cancelled by the geometric one, as of a loaded bushing that
         // spins: then G exceeds |J v|.
-        const double stored = one.rate.dot(one.answer),
+        const double stored = one.rate.dot(one.force_rate),
                      most = few * left * motion + entry_rounding * size;
-        if (motion < part_of_bodies * v.norm() || !(stored > nothing && stored <= most)) {
+        if (motion < part_of_bodies * v.norm() || !(stored > zero_tolerance && stored <= most)) {
             idle.push_back(k);
         } else {
             resisted.push_back(k);
@@ -68,24 +68,24 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
     MatrixXd G(count, count);
     for (Index a = 0; a < count; ++a)
         for (Index b = 0; b < count; ++b)
-            G(a, b) =
-                by[static_cast<std::size_t>(a)].rate.dot(by[static_cast<std::size_t>(b)].answer);
+            G(a, b) = by[static_cast<std::size_t>(a)].rate.dot(
+                by[static_cast<std::size_t>(b)].force_rate);
     G = ((G + G.transpose()) / 2).eval();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
     const double largest = solver.eigenvalues()[count - 1];
-    const Index nothing = (solver.eigenvalues().array() <= zero_eigenvalue * largest).count();
-    MatrixXd all(modes.rows(), static_cast<Index>(idle.size()) + nothing);
+    const Index zeros = (solver.eigenvalues().array() <= zero_eigenvalue * largest).count();
+    MatrixXd all(modes.rows(), static_cast<Index>(idle.size()) + zeros);
     for (std::size_t k = 0; k < idle.size(); ++k)
         all.col(static_cast<Index>(k)) = VectorXd(modes.col(idle[k]));
     MatrixXd soft(modes.rows(), count);
     for (Index k = 0; k < count; ++k)
         soft.col(k) = VectorXd(modes.col(resisted[static_cast<std::size_t>(k)]));
-    all.rightCols(nothing) = soft * solver.eigenvectors().leftCols(nothing);
+    all.rightCols(zeros) = soft * solver.eigenvectors().leftCols(zeros);
     // relative to motions of size one
-    const VectorXd softest = soft * solver.eigenvectors().col(nothing);
+    const VectorXd softest = soft * solver.eigenvectors().col(zeros);
     result.idle = all.sparseView();
-    result.resisted = count - nothing;
-    result.least = solver.eigenvalues()[nothing] / softest.head(n).squaredNorm();
+    result.resisted = count - zeros;
+    result.least = solver.eigenvalues()[zeros] / softest.head(n).squaredNorm();
     return result;
 }
 

@@ -96,7 +96,8 @@ template <class T>
 Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
                      const Frame<T>& j) {
     Measured<T> m;
-    m.p_i = position(i, bushing.i.s_local), m.p_j = position(j, bushing.j.s_local);
+    m.p_i = position(i, bushing.i.s_local);
+    m.p_j = position(j, bushing.j.s_local);
     m.A_i = product(i.p, bushing.i.A_local);
     const Eigen::Quaternion<T> B = product(conjugate(m.A_i), product(j.p, bushing.j.A_local));
 
@@ -112,9 +113,9 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
     return m;
 }
 
-// (f, g) = ∂u/∂e + preload are work-conjugate to e = (d, θ): δU = f · δd + g · δθ. Let the bodies
-// move by δr and rotate by δπ (ground axes), D = p_j - p_i, F = A_f f, and let the frame rotate by
-// δπ_f.
+// (f, g) = ∂u/∂e + preload are work-conjugate to e = (d, θ): δU = f · δd + g · δθ. Let the
+// bodies move by δr and rotate by δπ (ground axes), D = p_j - p_i, F = A_f f, and let the frame
+// rotate by δπ_f.
 //
 //   δd = A_fᵀ (δp_j - δp_i - δπ_f × D)   so   f · δd = F · (δp_j - δp_i) - δπ_f · (D × F)
 //   δθ_k = a_k · A_iᵀ (δπ_j - δπ_i)      so   g · δθ = (A_i m) · (δπ_j - δπ_i),   m = Σ g_k a_k
@@ -238,8 +239,8 @@ Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, 
 }
 
 // u_i is perpendicular to the direction v_j = cos α y_j - sin α x_j, which rotates with α. Then
-// u_i = cos α x_j + sin α y_j, and u_i × v_j is the axis: R is the moment about x_j × y_j on body
-// i.
+// u_i = cos α x_j + sin α y_j, and u_i × v_j is the axis: R is the moment about x_j × y_j
+// on body i.
 template <class T>
 Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i, const Frame<T>& j,
                    const T* R) {

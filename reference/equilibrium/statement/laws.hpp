@@ -16,8 +16,8 @@ using Vec6 = Eigen::Matrix<T, 6, 1>;
 
 // Piece of its curve for each deformation of an element (a spring has only the first), or
 // `by_itself`: the piece that contains x. A given piece is extrapolated past its knots by its
-// tangent: as a polynomial, a short steep piece would fall again just outside the knot at which it
-// rises.
+// tangent: as a polynomial, a short steep piece would fall again just outside the knot at
+// which it rises.
 inline constexpr int by_itself = -1;
 using ElementPieces = std::array<int, 6>;
 inline constexpr ElementPieces all_by_themselves = {by_itself, by_itself, by_itself,
@@ -95,12 +95,12 @@ inline double steepest(const ScalarLaw& law) {
 
 // Whether u depends on x.
 inline bool resists(const ScalarLaw& law) {
-    const auto nothing = [](const std::array<double, 4>& c) {
+    const auto vanishes = [](const std::array<double, 4>& c) {
         return std::ranges::all_of(c, [](double c_n) { return c_n == 0; });
     };
     return std::visit(
         overloaded{[](const LinearRate& u) { return u.k != 0; },
-                   [&](const Curve& u) { return !std::ranges::all_of(u.pieces, nothing); }},
+                   [&](const Curve& u) { return !std::ranges::all_of(u.pieces, vanishes); }},
         law);
 }
 

@@ -112,8 +112,8 @@ double force_of(const LoadKind& load, double length) {
     return load_vector(load).norm() / (is_moment(load) ? length : 1);
 }
 
-// Reference deformation over L for the force scale: round-off of stiff elements is stiffness times
-// length.
+// Reference deformation over L for the force scale: round-off of stiff elements is
+// stiffness times length.
 constexpr double usual_deformation = 0.01;
 
 double force_of(const ScalarLaw& law, double length) {
@@ -184,8 +184,10 @@ System make_system(const Model& model, const Branch& branch, std::span<const dou
     // Points that differ only by rounding give no length.
     constexpr double digits = 1024 * std::numeric_limits<double>::epsilon();
     double radius = 0, reach = 0;
-    for (const auto& p : places)
-        radius = std::max(radius, (p - system.centre).norm()), reach = std::max(reach, p.norm());
+    for (const auto& p : places) {
+        radius = std::max(radius, (p - system.centre).norm());
+        reach = std::max(reach, p.norm());
+    }
     if (std::isfinite(radius) && radius > digits * reach) system.length = radius;
 
     system.carried = VectorXd::Zero(system.constraint_rows);

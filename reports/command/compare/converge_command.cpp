@@ -121,7 +121,7 @@ const Command converge_command{
                         "step counts per branch, at least five, increasing (default: "
                         "75,150,...,2400)")
             ->delimiter(',')
-            ->check(CLI::Range(1, most_steps));
+            ->check(CLI::Range(1, max_steps));
         add_output(command, request->folder,
                    "folder for result.json, convergence.csv, step_errors.csv and attribution.csv");
         add_candidate(command, request->candidate);

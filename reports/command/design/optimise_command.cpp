@@ -26,7 +26,7 @@ using Eigen::VectorXd;
 using reader::Cursor;
 
 // Points that are added where a curve leaves its band between its points, and the search repeated.
-constexpr int most_rounds = 3;
+constexpr int max_rounds = 3;
 constexpr double between_within = 1e-6;  // outside of a band, as a share of the movement
 constexpr int between_points = 3;        // at which a curve is looked at in each gap
 constexpr int default_points = 33;
@@ -283,7 +283,7 @@ struct Searching {
         for (int round = 0; all.optimum.met; ++round) {
             std::vector<Goal> goals = all.goals;
             all.between = add_points_outside(all, loaded.model, goals);
-            if (!all.between || round == most_rounds || !std::isfinite(all.between->excess)) return;
+            if (!all.between || round == max_rounds || !std::isfinite(all.between->excess)) return;
             const GoalFigures of = figures_of(goals, all.minimised);
             compare::Optimum next = search(of, {all.optimum.p});
             if (!next.met) next = search(of, starts);

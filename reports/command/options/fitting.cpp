@@ -62,9 +62,9 @@ MeasuredFigures read_measured(const FitInput& input, const Model& model) {
         runs.resize(compare::legs.size());
         static_cast<compare::PathCurve&>(
             runs[static_cast<std::size_t>(compare::Leg::equilibrium)]) =
-            compare::walk(model, compare::channels(model), model.branches[b],
-                          compare::sides_of(model, model.branches[b]),
-                          {.leg = compare::Leg::equilibrium});
+            compare::solve_branch(model, compare::channels(model), model.branches[b],
+                                  compare::sides_of(model, model.branches[b]),
+                                  {.leg = compare::Leg::equilibrium});
     }
     std::vector<compare::Place> places, kept;
     try {

@@ -52,7 +52,7 @@ void check_memory(const Model& model, const RunSize& run) {
 void check_memory_of_rows(const Model& model, const RunSize& run, std::size_t channels) {
     for (Branch branch : model.branches) {
         if (run.steps > 0) branch.steps = run.steps;
-        const auto sides = ways(branch);
+        const auto sides = branch_sides(branch);
         if (sides.size() < 2) continue;
         const double points = points_of(sides.front(), {.every = run.every});
         check(

@@ -9,7 +9,7 @@
 
 namespace elastocheck::reports {
 
-using reader::most_steps;  // of a branch, as in a scene
+using reader::max_steps;  // of a branch, as in a scene
 // Limit for the stored points of a run [bytes]: available on an ordinary desktop or CI machine.
 inline constexpr double most_memory = 4e9;
 

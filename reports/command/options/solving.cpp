@@ -96,7 +96,7 @@ SolvedBranch solve_branch(const Model& model, const Branch& branch,
         found(state, row);
         return row;
     };
-    SolvedBranch solved{compare::walk(sides, solver, read, hand_over)};
+    SolvedBranch solved{compare::solve_branch(sides, solver, read, hand_over)};
     const bool approximate =
         solver.leg == compare::Leg::recursive && recursive::has_steps(solver.recursion.method);
     for (std::size_t w = 0; w < sides.size(); ++w) {
@@ -116,8 +116,8 @@ std::string error_at_end(const Model& model, compare::BranchSide side, const Equ
         fmt::format("at {:g} {}, the end", compare::in_unit(unit) * side.branch.to, symbol(unit));
     side.branch.steps = 1;
     std::optional<Equilibrium> truth;
-    const EquilibriumPath path = compare::walk(side, {.leg = compare::Leg::equilibrium},
-                                               [&](const Equilibrium& found) { truth = found; });
+    const EquilibriumPath path = compare::solve_branch(
+        side, {.leg = compare::Leg::equilibrium}, [&](const Equilibrium& found) { truth = found; });
     if (path.outcome != Outcome::converged || !truth)
         return fmt::format("its error {} is not known: equilibrium leg: {}: {}", where,
                            name(path.outcome), path.detail);

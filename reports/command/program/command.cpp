@@ -112,7 +112,7 @@ void add_every(CLI::App& command, int& every) {
     command
         .add_option("--every", every,
                     "only every N-th step's point of each side from the start, and the last")
-        ->check(CLI::Range(1, most_steps));
+        ->check(CLI::Range(1, max_steps));
 }
 
 void add_output(CLI::App& command, std::string& folder, const char* description) {
@@ -121,7 +121,7 @@ void add_output(CLI::App& command, std::string& folder, const char* description)
 
 void add_recursion(CLI::App& command, RecursionRequest& request) {
     command.add_option("--steps", request.steps, "load steps per branch (default: of the scene)")
-        ->check(CLI::Range(1, most_steps));
+        ->check(CLI::Range(1, max_steps));
     command.add_option(
         "--tolerance", request.tolerance,
         "error tolerance of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)");

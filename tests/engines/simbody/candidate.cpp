@@ -44,7 +44,7 @@ std::string line(const Model& model, const Branch& branch, const Equilibrium& st
 std::string lines(const Model& model, Branch branch, int steps) {
     branch.steps = steps;
     std::string told;
-    const auto all = ways(branch);
+    const auto all = branch_sides(branch);
     for (const Branch& way : all) {
         std::vector<double> values;
         for (int k = 0; k <= way.steps; ++k) values.push_back(way.to * k / way.steps);

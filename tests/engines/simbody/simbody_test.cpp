@@ -59,8 +59,8 @@ std::vector<Point> points_of(Scene scene, const Model& model) {
 }
 
 // The largest distance of a point between two paths of one way [mm]; NaN where either is not whole.
-double apart(const std::vector<Point>& points, const EquilibriumPath& here,
-             const EquilibriumPath& there) {
+double distance(const std::vector<Point>& points, const EquilibriumPath& here,
+                const EquilibriumPath& there) {
     if (here.outcome != Outcome::converged || there.outcome != Outcome::converged ||
         here.points.size() != there.points.size())
         return NAN;
@@ -96,7 +96,8 @@ std::map<std::string, double> distances(const Scene& scene, int steps,
         for (const auto& way : compare::sides_of(model, branch, steps)) {
             const EquilibriumPath found = by_simbody(way);
             for (const Leg leg : legs) {
-                const double distance = apart(points, found, compare::walk(way, {.leg = leg}));
+                const double distance =
+                    distance(points, found, compare::solve_branch(way, {.leg = leg}));
                 double& largest = worst[branch.name];
                 if (!(distance <= largest)) largest = distance;
             }
@@ -157,11 +158,11 @@ TEST(Simbody, AMicrometreOfATieRodIsSeen) {
     const Model model = compile(support::scene("mcpherson"));
     auto way = compare::sides_of(model, model.branches[0], 2).front();
     const auto points = points_of(support::scene("mcpherson"), model);
-    const EquilibriumPath reference = compare::walk(way, {.leg = Leg::equilibrium});
-    EXPECT_TRUE(apart(points, by_simbody(way), reference) <= known);
+    const EquilibriumPath reference = compare::solve_branch(way, {.leg = Leg::equilibrium});
+    EXPECT_TRUE(distance(points, by_simbody(way), reference) <= known);
     for (auto& constraint : way.model.constraints)
         if (auto* rod = std::get_if<DistanceBetween>(&constraint.kind)) rod->length += 1e-6;
-    EXPECT_GT(apart(points, by_simbody(way), reference), known);
+    EXPECT_GT(distance(points, by_simbody(way), reference), known);
 }
 
 TEST(Simbody, WhatALoadPushesAndNothingResistsDoesNotSettle) {

@@ -76,8 +76,8 @@ TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
         const Scene scene = chrono(sample(file));
         const Model model = compile(scene);
         const auto ways = compare::sides_of(model, model.branches.front(), 6);
-        const auto a = compare::walk(ways, {.leg = compare::Leg::equilibrium}),
-                   b = compare::walk(ways, {.leg = compare::Leg::series});
+        const auto a = compare::solve_branch(ways, {.leg = compare::Leg::equilibrium}),
+                   b = compare::solve_branch(ways, {.leg = compare::Leg::series});
         ASSERT_EQ(a.outcome, Outcome::converged) << file << a.detail;
         ASSERT_EQ(b.outcome, Outcome::converged) << file << b.detail;
         ASSERT_EQ(a.points.size(), b.points.size());
@@ -117,8 +117,8 @@ TEST(Chrono, TheReplicaMovesAsItsTemplate) {
         const Model model = compile(scene);
         Branch branch = model.branches.front();
         branch.from = 0;
-        return compare::walk(compare::sides_of(model, branch, 2),
-                             {.leg = compare::Leg::equilibrium});
+        return compare::solve_branch(compare::sides_of(model, branch, 2),
+                                     {.leg = compare::Leg::equilibrium});
     };
     const auto p = travelled(a), q = travelled(b);
     ASSERT_EQ(p.points.size(), q.points.size());
@@ -323,7 +323,7 @@ TEST(Chrono, RatesHaveNoValueAtTheRowsOfATable) {
     int without = 0;
     for (const auto leg : {compare::Leg::equilibrium, compare::Leg::series}) {
         const auto walked =
-            compare::walk(model, channels, model.branches.front(), ways, {.leg = leg});
+            compare::solve_branch(model, channels, model.branches.front(), ways, {.leg = leg});
         for (const auto& values : walked.curve.values)
             without += values.at(rate) == compare::undefined ? 1 : 0;
     }
@@ -533,8 +533,9 @@ TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
         const Scene second = imported(importer::export_chrono(first, false).text);
         const auto end_of = [](const Scene& scene) {
             const Model model = compile(scene);
-            const auto path = compare::walk(compare::sides_of(model, model.branches.front(), 4),
-                                            {.leg = compare::Leg::equilibrium});
+            const auto path =
+                compare::solve_branch(compare::sides_of(model, model.branches.front(), 4),
+                                      {.leg = compare::Leg::equilibrium});
             std::vector<Vector3d> centres;
             for (const auto& point : path.points)
                 for (const Wheel& wheel : model.wheels) {

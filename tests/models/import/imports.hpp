@@ -66,7 +66,7 @@ inline Eigen::Matrix3d euler(double a, double b, double c) {
 inline Equilibrium at_rest(const Scene& scene, compare::Leg leg) {
     const Model model = compile(scene);
     const auto path =
-        compare::walk(compare::sides_of(model, model.branches.front(), 1), {.leg = leg});
+        compare::solve_branch(compare::sides_of(model, model.branches.front(), 1), {.leg = leg});
     if (path.points.empty())
         throw std::runtime_error(std::string(name(path.outcome)) + ": " + path.detail);
     return path.points.front();

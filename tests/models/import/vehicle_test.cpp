@@ -58,8 +58,8 @@ std::vector<Equilibrium> solved(const Model& model, const std::string& branch, i
     for (const Branch& each : model.branches) {
         if (each.name != branch) continue;
         const auto ways = compare::sides_of(model, each, steps);
-        const auto a = compare::walk(ways, {.leg = compare::Leg::equilibrium}),
-                   b = compare::walk(ways, {.leg = compare::Leg::series});
+        const auto a = compare::solve_branch(ways, {.leg = compare::Leg::equilibrium}),
+                   b = compare::solve_branch(ways, {.leg = compare::Leg::series});
         EXPECT_EQ(a.outcome, Outcome::converged) << a.detail;
         EXPECT_EQ(b.outcome, Outcome::converged) << b.detail;
         EXPECT_EQ(a.points.size(), b.points.size());

@@ -11,7 +11,7 @@ int main(int, char** arguments) {
     const auto outputs = compare::channels(model);
     const auto toe = static_cast<std::size_t>(compare::find_channel(outputs, "toe"));
     for (const auto& point :
-         compare::walk(compare::sides_of(model, model.branches.front()), {}).points)
+         compare::solve_branch(compare::sides_of(model, model.branches.front()), {}).points)
         std::cout << 1e3 * point.load << " mm: " << compare::evaluate(model, outputs, point)[toe]
                   << " deg\n";
 }

@@ -92,7 +92,7 @@ void operators(const Interval& a, const Interval& b) {
         note(inside(a, ball), "middle and radius", a, b, ball);
     }
     const Interval common{std::max(a.lo, b.lo), std::min(a.hi, b.hi)}, cut = intersection(a, b);
-    if (!apart(a, b)) note(inside(common, cut), "intersection", a, b, cut);
+    if (!are_disjoint(a, b)) note(inside(common, cut), "intersection", a, b, cut);
 }
 
 // ---- y = asin √x / √(x (1-x)) and (1 - (1-x) y) / x with two derivatives, from

@@ -41,34 +41,34 @@ struct OnSlider : Side {
 };
 OnSlider on_slider(const Slider& slider) { return OnSlider(slider.scene()); }
 
-TEST(CertifyBranch, GoesThroughAStopThatClosesHoweverStiffItIs) {
+TEST(CertifyBranch, StopOfAnyStiffnessIsCrossed) {
     for (const double k_s : {2., 400., 2e4, 2e6})
         for (const double c : {0., 0.3, 1., 4.99}) {
             const Slider slider{20, k_s, c};
             const Tube tube = on_slider(slider).tube(slider);
-            EXPECT_EQ(tube.answer, Answer::proved) << k_s << " " << c << ": " << tube.detail;
+            EXPECT_EQ(tube.state, ProofState::proved) << k_s << " " << c << ": " << tube.detail;
             EXPECT_EQ(tube.to, 100) << k_s << " " << c;
             EXPECT_LE(tube.width.length, 1e-9) << k_s << " " << c;
         }
 }
 
-TEST(CertifyBranch, ItsCurveIsThatOfTheStopThatIsThere) {
+TEST(CertifyBranch, StatesOfAnotherStopAreNotProved) {
     const Slider slider;
     const OnSlider way = on_slider(slider);
     // Just before the corner the stop has no effect.
-    EXPECT_EQ(way.tube(slider, 0.9999, 19.998).answer, Answer::proved);
+    EXPECT_EQ(way.tube(slider, 0.9999, 19.998).state, ProofState::proved);
     for (const Slider& other :
          {Slider{20, 400, 1 + 1e-5}, Slider{20, 400 * (1 + 1e-4), 1}, Slider{20, 0, 1}}) {
-        EXPECT_EQ(way.tube(other, 0.9999, 19.998).answer, Answer::proved);
+        EXPECT_EQ(way.tube(other, 0.9999, 19.998).state, ProofState::proved);
         const Tube wrong = way.tube(other);
-        EXPECT_EQ(wrong.answer, Answer::open) << other.c << " " << other.k_s;
+        EXPECT_EQ(wrong.state, ProofState::open) << other.c << " " << other.k_s;
         EXPECT_NE(wrong.detail.find("beyond the tolerance"), std::string::npos) << wrong.detail;
     }
 }
 
 // With a slope of -k_n beyond the corner: no equilibrium continues beyond that load, the curve
 // turns back.
-TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
+TEST(CertifyBranch, CornerWhereTheCurveTurnsBackIsNotCrossed) {
     for (const double k_n : {25., 40., 1000.}) {
         const Slider slider;
         OnSlider way = on_slider(slider);
@@ -80,9 +80,9 @@ TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
                     ++found;
                 }
         ASSERT_EQ(found, 1);
-        EXPECT_EQ(way.tube(slider, 0.9999, 19.998).answer, Answer::proved);
+        EXPECT_EQ(way.tube(slider, 0.9999, 19.998).state, ProofState::proved);
         const Tube tube = way.tube({20, 0, 1});
-        EXPECT_EQ(tube.answer, Answer::open) << k_n;
+        EXPECT_EQ(tube.state, ProofState::open) << k_n;
         EXPECT_NEAR(tube.to, 20, 1e-5) << k_n;
     }
     // Slightly less than the holding stiffness: soft, and the branch continues.
@@ -90,16 +90,16 @@ TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
     for (auto& elastic : soft.model.elastics)
         if (auto* curve = std::get_if<Curve>(&std::get<AxialSpring>(elastic.kind).law))
             for (auto& piece : curve->pieces) piece[1] *= -10. / 400;
-    EXPECT_EQ(soft.tube({20, -10, 1}).answer, Answer::proved);
+    EXPECT_EQ(soft.tube({20, -10, 1}).state, ProofState::proved);
 }
 
-TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
+TEST(Certificate, PointOnACornerIsProvedAndAPerturbedOneIsExcluded) {
     for (const double k_s : {400., 2e4, 2e6}) {
         const Slider slider{20, k_s, 1};
         const OnSlider way = on_slider(slider);
         for (const double by : {0., 1e-12, -1e-12, 1e-9, -1e-9, 1e-3, -1e-3}) {
             const Certificate c = way.certify(way.state(20 + by, slider));
-            EXPECT_EQ(c.answer, Answer::proved) << k_s << " " << by << ": " << c.detail;
+            EXPECT_EQ(c.state, ProofState::proved) << k_s << " " << by << ": " << c.detail;
             // 1e-9 N beyond the corner a stop of 2e9 N/m is compressed by 5e-19 m: doubles cannot
             // resolve the side.
             EXPECT_TRUE(c.stable || k_s > 1e6) << k_s << " " << by;
@@ -109,7 +109,7 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
             Equilibrium wrong = way.state(20, slider);
             wrong.poses[0].r[2] += by;
             const Certificate c = way.certify(wrong);
-            EXPECT_EQ(c.answer, Answer::excluded) << k_s << " " << by << ": " << c.detail;
+            EXPECT_EQ(c.state, ProofState::excluded) << k_s << " " << by << ": " << c.detail;
         }
     }
 }
@@ -138,7 +138,7 @@ Side cornered(const Formulation& formulation) {
     return at;
 }
 
-TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
+TEST(CertificateEquations, SeparatedCornerHasTheSolutionsOfTheElement) {
     using F = Formulation;
     for (const auto angles : {F::Angles::rotation_vector, F::Angles::cardan, F::Angles::projected})
         for (const auto frame : {F::Frame::on_i, F::Frame::middle})
@@ -147,7 +147,7 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
                     if (frame == F::Frame::middle && !conjugate) continue;
                     const Side at = cornered({frame, angles, conjugate, offset});
                     const System plain = make_system(at.model, at.branch),
-                                 apart = make_system(at.model, at.branch, Corners::apart);
+                                 apart = make_system(at.model, at.branch, Corners::separated);
                     ASSERT_EQ(apart.apart.size(), 6U);
                     Equilibrium state = at.drawn(70);
                     state.poses[0].r += Eigen::Vector3d(2e-3, 5e-5, -3e-4);
@@ -170,24 +170,24 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
                 }
 }
 
-TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
+TEST(CertifyBranch, CornersOfABushingAreCrossedOneAfterAnother) {
     const Side at = cornered({});
     std::vector<double> loads;
     for (int k = 0; k <= 60; ++k) loads.push_back(10. * k);
     const EquilibriumPath path = equilibrium::solve(at.model, at.branch, loads);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     const Tube tube = certify_branch(at.model, at.branch, path.points);
-    EXPECT_EQ(tube.answer, Answer::proved) << tube.detail;
+    EXPECT_EQ(tube.state, ProofState::proved) << tube.detail;
     EXPECT_GE(tube.corners, 3);
     for (const auto& point : path.points) {
         const Certificate c = at.certify(point);
-        EXPECT_EQ(c.answer, Answer::proved) << point.load << c.detail;
+        EXPECT_EQ(c.state, ProofState::proved) << point.load << c.detail;
         EXPECT_TRUE(c.stable) << point.load;
     }
 }
 
 // Every piece would have to cross the corner, without end.
-TEST(CertifyBranch, AWayThatStaysOnACornerIsProvedOrGivenUp) {
+TEST(CertifyBranch, BranchThatStaysOnACornerIsProvedOrOpen) {
     const Side at(R"(
 elastocheck: 1
 name: corner at rest
@@ -215,7 +215,7 @@ probes:
         equilibrium::solve(at.model, at.branch, std::vector<double>{0, 100, 200, 300});
     ASSERT_EQ(path.outcome, Outcome::converged);
     const Tube tube = certify_branch(at.model, at.branch, path.points);
-    EXPECT_TRUE(tube.answer == Answer::proved ||
+    EXPECT_TRUE(tube.state == ProofState::proved ||
                 tube.detail.find("stays on a knot") != tube.detail.npos)
         << tube.detail;
 }
@@ -228,7 +228,7 @@ Proved prove_every_way(const std::vector<std::string>& scenes) {
     for (const auto& scene : scenes)
         for (const auto& walk : walked(scene, 4)) {
             const Tube tube = certify_branch(walk.model, walk.branch, walk.points);
-            EXPECT_EQ(tube.answer, Answer::proved)
+            EXPECT_EQ(tube.state, ProofState::proved)
                 << scene << " '" << walk.branch.name << "': " << tube.detail;
             EXPECT_LE(tube.width.length, 1e-9) << scene << " " << walk.branch.name;
             ++count.ways;
@@ -237,13 +237,13 @@ Proved prove_every_way(const std::vector<std::string>& scenes) {
     return count;
 }
 
-TEST(CertifyBranch, EveryWayOfSomeBuiltInScenesIsOneCurve) {
+TEST(CertifyBranch, EverySideOfSomeBuiltInScenesIsOneCurve) {
     const Proved proved = prove_every_way({"mcpherson", "double_wishbone", "tyre_on_road"});
     EXPECT_GE(proved.ways, 10);
     EXPECT_GE(proved.with_corners, 3);
 }
 
-TEST(NightlyCertifyBranch, EveryWayOfEveryBuiltInSceneIsOneCurve) {
+TEST(NightlyCertifyBranch, EverySideOfEveryBuiltInSceneIsOneCurve) {
     const Proved proved = prove_every_way(support::scene_names());
     EXPECT_GE(proved.ways, 177);
     EXPECT_GE(proved.with_corners, 41);

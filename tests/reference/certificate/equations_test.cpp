@@ -1,5 +1,5 @@
-// Equations of the certificate: exact stored numbers, redundant joints, knots, formulations,
-// followers.
+// Equations of the certificate: exact stored numbers, redundant joints,
+// knots, formulations, followers.
 #include "reference/certificate/interval/laws.hpp"
 #include "reference/certificate/stability.hpp"
 #include "reference/certificate/state.hpp"
@@ -9,15 +9,21 @@ namespace elastocheck::reference::certificate {
 namespace {
 
 std::string swing(const std::string& joints, const std::string& elements = "") {
-    return "elastocheck: 1\nname: swing\nunits: {length: mm, angle: deg, force: N}\n"
-           "points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}\n"
-           "bodies: {arm: {origin: p}}\njoints: {" +
+    return R"(elastocheck: 1
+name: swing
+units: {length: mm, angle: deg, force: N}
+points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}
+bodies: {arm: {origin: p}}
+joints: {)" +
            joints + "}\n" +
            (elements.empty()
                 ? "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}"
                 : elements) +
-           "\nloads: {push: {on: arm, at: p, force: [0, 0, 1]}}\n"
-           "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n";
+           R"(
+loads: {push: {on: arm, at: p, force: [0, 0, 1]}}
+branches: {up: {load: push, to: 1000, steps: 10}}
+probes: {tip: {on: arm, at: p}}
+)";
 }
 const std::string hinge = "a: {type: revolute, bodies: [arm, ground], at: o, axis: y}",
                   hinge_again = "b: {type: revolute, bodies: [arm, ground], at: q, axis: y}";
@@ -28,7 +34,7 @@ bool holds_product(const Interval& x, double a, double b) {
     return (x.lo < p || (x.lo == p && e >= 0)) && (x.hi > p || (x.hi == p && e <= 0));
 }
 
-TEST(CertificateEquations, WhatADriverMovesIsNotRoundedBeforehand) {
+TEST(CertificateEquations, DrivenValuesEnterWithoutRounding) {
     Side way(swing(hinge, "bushings: {b: {bodies: [arm, ground], at: p, rates: [1, 1, 1]}}"));
     Vector6 direction;
     direction << 0.1, 0.7, -1. / 3, 3e-5, 1e7 / 3, 0.3;
@@ -43,11 +49,11 @@ TEST(CertificateEquations, WhatADriverMovesIsNotRoundedBeforehand) {
     }
 }
 
-TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradictionsAreNot) {
+TEST(CertificateEquations, RedundantJointsAreProvedWithTheirGapAndInconsistentOnesAreNot) {
     Side way(swing(hinge + ", " + hinge_again));
     const Equilibrium state = way.solved(500);
     const Certificate c = way.certify(state);
-    EXPECT_EQ(c.answer, Answer::proved) << c.detail;
+    EXPECT_EQ(c.state, ProofState::proved) << c.detail;
     EXPECT_NE(c.detail.find("are redundant"), std::string::npos) << c.detail;
     EXPECT_GT(c.gap, 0);
     EXPECT_LT(c.gap, 1e-12);
@@ -59,25 +65,28 @@ TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradict
             if (points->j.s_local[1] > 0.1 || points->i.s_local[1] > 0.05)
                 points->j.s_local[1] += 1e-6;
     const Certificate apart = way.certify(state);
-    EXPECT_EQ(apart.answer, Answer::excluded) << apart.detail;
+    EXPECT_EQ(apart.state, ProofState::excluded) << apart.detail;
 }
 
 // A rod on a ball joint, held by two springs at its other end, is free to spin about the line
 // between. Its origin lies beside that line.
-TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExcluded) {
+TEST(CertificateEquations, StateRotatedAlongAnIdleSpinIsProvedAndAStraightShiftIsExcluded) {
     const Side way(
-        "elastocheck: 1\nname: rod\nunits: {length: mm, angle: deg, force: N}\n"
-        "points: {o: [0, 0, 0], p: [300, 0, 0], q: [150, 80, 0], s: [300, 100, 400], t: [300, "
-        "-400, 100]}\n"
-        "bodies: {rod: {origin: q}}\njoints: {ball: {type: spherical, bodies: [rod, ground], "
-        "at: o}}\n"
-        "springs: {a: {bodies: [rod, ground], from: p, to: s, rate: 30},\n"
-        "          b: {bodies: [rod, ground], from: p, to: t, rate: 20}}\n"
-        "loads: {push: {on: rod, at: p, force: [0, 0, 1]}}\n"
-        "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: rod, at: p}}\n");
+        R"(elastocheck: 1
+name: rod
+units: {length: mm, angle: deg, force: N}
+points: {o: [0, 0, 0], p: [300, 0, 0], q: [150, 80, 0], s: [300, 100, 400], t: [300, -400, 100]}
+bodies: {rod: {origin: q}}
+joints: {ball: {type: spherical, bodies: [rod, ground], at: o}}
+springs: {a: {bodies: [rod, ground], from: p, to: s, rate: 30},
+          b: {bodies: [rod, ground], from: p, to: t, rate: 20}}
+loads: {push: {on: rod, at: p, force: [0, 0, 1]}}
+branches: {up: {load: push, to: 1000, steps: 10}}
+probes: {tip: {on: rod, at: p}}
+)");
     const Equilibrium state = way.solved(300);
     const Certificate c = way.certify(state);
-    ASSERT_EQ(c.answer, Answer::proved) << c.detail;
+    ASSERT_EQ(c.state, ProofState::proved) << c.detail;
     EXPECT_NE(c.detail.find("idle motion of 'rod' as in the state"), std::string::npos) << c.detail;
     const Pose& design = way.model.bodies[0].design;
     const Pose& rod = state.poses[0];
@@ -94,13 +103,13 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
     for (const double angle : {1e-6, 1e-3, 0.3, -2.}) {
         // Each is another equilibrium with its own spin.
         const Certificate spun = turned(angle, true, false);
-        EXPECT_EQ(spun.answer, Answer::proved) << angle << ": " << spun.detail;
+        EXPECT_EQ(spun.state, ProofState::proved) << angle << ": " << spun.detail;
         EXPECT_LT(spun.held, 1e-9) << angle;
     }
     for (const double angle : {1e-3, -1e-3, 1e-2})
         for (const bool origin_too : {true, false}) {
             const Certificate off = turned(angle, origin_too, true);
-            EXPECT_EQ(off.answer, Answer::excluded) << angle << origin_too << ": " << off.detail;
+            EXPECT_EQ(off.state, ProofState::excluded) << angle << origin_too << ": " << off.detail;
             // A straight displacement of 1e-3 rad is 4e-5 mm off the circle; far off the circle the
             // idle motion is not identified.
             const bool near = std::abs(angle) < 2e-3 && origin_too;
@@ -113,7 +122,7 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
 }
 
 // Over a knot: the values and the slopes of every piece, whichever side comes last.
-TEST(CertificateEquations, ACurveOverAKnotHasTheSlopesOfBothSides) {
+TEST(CertificateEquations, IntervalAcrossAKnotHasTheSlopesOfBothSides) {
     for (const auto& [soft, stiff] : {std::pair{1.0, 5.0}, {5.0, 1.0}}) {
         const elastocheck::Curve curve{{0, 1},
                                        {{0, soft, 0, 0}, {0, stiff, 0, 0}, {stiff, 3, 0, 0}}};
@@ -129,7 +138,7 @@ TEST(CertificateEquations, ACurveOverAKnotHasTheSlopesOfBothSides) {
 }
 
 // A stop that the load just closes: at its knot, where the slopes jump, and on both sides.
-TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
+TEST(CertificateEquations, StateOnTheKnotOfAStopAndABranchAcrossItAreProved) {
     const auto stopped = [](double rate) {
         return Side(swing(
             hinge,
@@ -153,7 +162,7 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
     bool said = false;
     for (const double by : {0., 1e-13, -1e-13, 1e-10, -1e-10, 1e-3, -1e-3}) {
         const Certificate c = way.certify(way.solved(low * (1 + by)));
-        EXPECT_EQ(c.answer, Answer::proved) << by << c.detail;
+        EXPECT_EQ(c.state, ProofState::proved) << by << c.detail;
         EXPECT_TRUE(c.stable) << by;
         said = said || c.detail.find("on a knot") != std::string::npos;
     }
@@ -164,23 +173,24 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
         return certify_branch(of.model, of.branch, states);
     };
     const Tube tube = tube_of(way);
-    EXPECT_EQ(tube.answer, Answer::proved) << tube.detail;
+    EXPECT_EQ(tube.state, ProofState::proved) << tube.detail;
     EXPECT_GE(tube.corners, 1);
 }
 
 // A cambered wheel that rolls, on a skewed hinge: on a tyre over its lift-off, on a jack, and braked.
-TEST(CertificateEquations, AWheelThatRollsIsProvedAndMovedByAMicrometreItIsNot) {
+TEST(CertificateEquations, RollingWheelIsProvedAndExcludedWhenMovedByAMicrometre) {
     const std::string scene =
-        "elastocheck: 1\nname: arm\nunits: {length: mm, angle: rad, force: N}\n"
-        "points: {o: [450, 600, 10], c: [0, 750, 0], p: [3, 730, -319]}\n"
-        "bodies: {arm: {origin: c}}\n"
-        "joints: {hinge: {type: revolute, bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1]}}\n"
-        "torsion_springs: {bar: {bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1], "
-        "rate: 4050e3, preload_moment: -1500e3}}\n"
-        "tyres: {t: {rate: 200, preload: 3500}}\n"
-        "loads: {brake: {on: arm, at: p, force: [-1, 0, 0.2]}}\n"
-        "wheel: {body: arm, centre: c, contact_patch: p, spin_axis: [0.03, 1, -0.06], side: left, "
-        "contact: rolling}\nbranches: ";
+        R"(elastocheck: 1
+name: arm
+units: {length: mm, angle: rad, force: N}
+points: {o: [450, 600, 10], c: [0, 750, 0], p: [3, 730, -319]}
+bodies: {arm: {origin: c}}
+joints: {hinge: {type: revolute, bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1]}}
+torsion_springs: {bar: {bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1], rate: 4050e3, preload_moment: -1500e3}}
+tyres: {t: {rate: 200, preload: 3500}}
+loads: {brake: {on: arm, at: p, force: [-1, 0, 0.2]}}
+wheel: {body: arm, centre: c, contact_patch: p, spin_axis: [0.03, 1, -0.06], side: left, contact: rolling}
+branches: )";
     int lifted = 0, corners = 0;
     for (const auto& [branch, to] : {std::pair{"{drive: tyres.t.road, to: -400, steps: 20}", -0.4},
                                      {"{drive: tyres.t.road, to: 100, steps: 20}", 0.1},
@@ -191,18 +201,18 @@ TEST(CertificateEquations, AWheelThatRollsIsProvedAndMovedByAMicrometreItIsNot) 
         for (int k = 0; k <= 4; ++k) {
             Equilibrium state = states.emplace_back(side.solved(to * k / 4));
             const Certificate c = side.certify(state);
-            EXPECT_EQ(c.answer, Answer::proved) << branch << k << c.detail;
+            EXPECT_EQ(c.state, ProofState::proved) << branch << k << c.detail;
             EXPECT_TRUE(c.stable) << branch << k;
             for (const int axis : {0, 2}) {
                 Equilibrium moved = state;
                 moved.poses[0].r[axis] += 1e-6;
-                EXPECT_EQ(side.certify(moved).answer, Answer::excluded) << branch << k << axis;
+                EXPECT_EQ(side.certify(moved).state, ProofState::excluded) << branch << k << axis;
             }
             lifted +=
                 k > 0 && (state.poses[0].r - states[states.size() - 2].poses[0].r).norm() < 1e-12;
         }
         const Tube tube = certify_branch(side.model, side.branch, states);
-        EXPECT_EQ(tube.answer, Answer::proved) << branch << tube.detail;
+        EXPECT_EQ(tube.state, ProofState::proved) << branch << tube.detail;
         corners += tube.corners;
     }
     EXPECT_EQ(corners, 1);  // where the wheel leaves the road
@@ -210,7 +220,7 @@ TEST(CertificateEquations, AWheelThatRollsIsProvedAndMovedByAMicrometreItIsNot) 
 }
 
 // For every formulation, at small and large rotations, the equilibrium leg's points are proved.
-TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) {
+TEST(CertificateEquations, EveryFormulationEqualsThatOfTheEquilibriumLeg) {
     using F = Formulation;
     int proved = 0;
     for (const auto angles : {F::Angles::rotation_vector, F::Angles::cardan, F::Angles::projected})
@@ -229,26 +239,26 @@ TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) 
                     bushing.undeformed << 1e-3, -2e-3, 0, 0.1, 0.2, -0.1;
                     for (const double a : {0., 300., 1000.}) {
                         const Certificate c = way.certify(way.solved(a));
-                        EXPECT_EQ(c.answer, Answer::proved) << a << c.detail;
-                        proved += c.answer == Answer::proved;
+                        EXPECT_EQ(c.state, ProofState::proved) << a << c.detail;
+                        proved += c.state == ProofState::proved;
                     }
                 }
     EXPECT_EQ(proved, 3 * 18);
 }
 
-TEST(CertificateEquations, WhereATableEndsNothingIsProved) {
+TEST(CertificateEquations, StateBeyondTheEndOfATableIsNotProved) {
     Side way(swing(hinge));
     auto& spring = std::get<AxialSpring>(way.model.elastics[0].kind);
     const Equilibrium state = way.solved(500);
-    ASSERT_EQ(way.certify(state).answer, Answer::proved);
+    ASSERT_EQ(way.certify(state).state, ProofState::proved);
     spring.law = Curve{
         {-1e-6, 1e-6}, {{0., 30e3, 0., 0.}, {-0.03, 30e3, 0., 0.}, {0.03, 30e3, 0., 0.}}, false};
     const Certificate c = way.certify(state);
-    EXPECT_EQ(c.answer, Answer::open);
+    EXPECT_EQ(c.state, ProofState::open);
     EXPECT_NE(c.detail.find("ends here"), std::string::npos) << c.detail;
 }
 
-TEST(CertificateEquations, PositiveDefiniteIsSaidOfNothingElse) {
+TEST(CertificateEquations, VerifiedCholeskyAcceptsOnlyPositiveDefiniteMatrices) {
     Eigen::Matrix2d M, R = Eigen::Matrix2d::Zero();
     M << 1e12, 1, 1, 1e-6;
     EXPECT_TRUE(positive_definite(M, R));

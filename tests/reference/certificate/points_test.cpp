@@ -12,7 +12,7 @@ const std::vector<compare::Leg> exact_legs{compare::Leg::equilibrium, compare::L
 std::string at(const std::string& scene, const Walked& walk, const Equilibrium& state,
                const Certificate& c) {
     return fmt::format("{} '{}' by {} at {}: {}: {}", scene, walk.branch.name,
-                       compare::name(walk.leg), state.load, name(c.answer), c.detail);
+                       compare::name(walk.leg), state.load, name(c.state), c.detail);
 }
 
 // Residuals of the legs at the centre of the box, relative to the acting forces: the certificate
@@ -24,13 +24,13 @@ void expect_met(const Residuals& r, double force, double length, const std::stri
     EXPECT_LE(r.moment, 1e-9 * force * length) << where;
 }
 
-TEST(Certificate, EveryPointOfEveryBuiltInSceneIsProvedWhicheverLegFoundIt) {
+TEST(Certificate, EveryPointOfEveryBuiltInSceneIsProvedForEveryLeg) {
     int proved = 0;
     for (const auto& scene : support::scene_names())
         for (const auto& walk : walked(scene, 1, exact_legs))
             for (const auto& state : walk.points) {
                 const Certificate c = certify(walk.model, walk.branch, state);
-                ASSERT_EQ(c.answer, Answer::proved) << at(scene, walk, state, c);
+                ASSERT_EQ(c.state, ProofState::proved) << at(scene, walk, state, c);
                 EXPECT_LE(c.error.length, 1e-9) << at(scene, walk, state, c);
                 EXPECT_GT(c.unique.length, c.error.length) << at(scene, walk, state, c);
                 EXPECT_GT(c.unique.angle, c.error.angle) << at(scene, walk, state, c);
@@ -40,7 +40,7 @@ TEST(Certificate, EveryPointOfEveryBuiltInSceneIsProvedWhicheverLegFoundIt) {
     EXPECT_GT(proved, 700);
 }
 
-TEST(Certificate, TheOtherLegsEquationsHoldAtTheCentreOfTheBox) {
+TEST(Certificate, CentreOfTheBoxSatisfiesTheEquationsOfTheOtherLegs) {
     for (const auto& scene : support::scene_names())
         for (const auto& walk : walked(scene, 1, {compare::Leg::equilibrium}))
             for (const auto& state : walk.points) {
@@ -63,14 +63,15 @@ struct OnMcPherson : Side {
         : Side(compile(support::scene("mcpherson"))), state(solved(share * branch.to)) {}
 };
 
-TEST(Certificate, AWrongPointIsExcludedAndSaysHowFarTheNextOneIs) {
+TEST(Certificate, PerturbedPointIsExcludedWithItsDistanceFromTheEquilibrium) {
     const OnMcPherson p(0.4);
-    ASSERT_EQ(p.certify(p.state).answer, Answer::proved);
+    ASSERT_EQ(p.certify(p.state).state, ProofState::proved);
     const auto excluded = [&](const std::string& what, const auto& change) {
         Equilibrium wrong = p.state;
         change(wrong);
         const Certificate c = p.certify(wrong);
-        EXPECT_EQ(c.answer, Answer::excluded) << what << ": " << name(c.answer) << " " << c.detail;
+        EXPECT_EQ(c.state, ProofState::excluded)
+            << what << ": " << name(c.state) << " " << c.detail;
         return c;
     };
     for (std::size_t body = 0; body < 3; ++body) {
@@ -104,7 +105,7 @@ TEST(Certificate, AWrongPointIsExcludedAndSaysHowFarTheNextOneIs) {
 }
 
 // A spun strut is another equilibrium; a load on the spin has none.
-TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
+TEST(Certificate, SpunStrutIsProvedAndALoadedSpinIsExcluded) {
     const OnMcPherson p(0.4);
     const Certificate before = p.certify(p.state);
     EXPECT_NE(before.detail.find("idle motion of 'strut'"), std::string::npos) << before.detail;
@@ -125,33 +126,33 @@ TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
         }
     EXPECT_GT(strut.p.angularDistance(p.state.poses[2].p), 0.29);
     const Certificate after = p.certify(spun);
-    EXPECT_EQ(after.answer, Answer::proved) << after.detail;
+    EXPECT_EQ(after.state, ProofState::proved) << after.detail;
 
     Model pushed = p.model;
     for (const double moment : {0.1, 1e-7}) {
         const Vector3d axis = across[0].cross(across[1]).normalized();
         pushed.static_loads = {{"push", FollowerMoment{2, moment * axis}}};
         const Certificate c = certify(pushed, p.branch, p.state);
-        EXPECT_EQ(c.answer, Answer::excluded) << moment << ": " << c.detail;
+        EXPECT_EQ(c.state, ProofState::excluded) << moment << ": " << c.detail;
         EXPECT_NE(c.detail.find("is loaded by"), std::string::npos) << moment << ": " << c.detail;
     }
     // A follower moment with a part across the axis rotates with the strut, so that the load on the
     // wheel depends on the spin: it is not idle.
     pushed.static_loads = {{"push", FollowerMoment{2, Vector3d(0.1, 0.1, 0.1)}}};
-    EXPECT_EQ(certify(pushed, p.branch, p.state).answer, Answer::excluded);
+    EXPECT_EQ(certify(pushed, p.branch, p.state).state, ProofState::excluded);
 }
 
-TEST(Certificate, AStateThatIsNotOfTheModelIsRefusedAndNaNIsOpen) {
+TEST(Certificate, StateOfAnotherModelIsRejectedAndNaNIsOpen) {
     const OnMcPherson p(0.1);
     Equilibrium short_of = p.state;
     short_of.poses.pop_back();
     EXPECT_THROW(p.certify(short_of), std::invalid_argument);
     Equilibrium nan = p.state;
     nan.poses[0].r[1] = std::nan("");
-    EXPECT_EQ(p.certify(nan).answer, Answer::open);
+    EXPECT_EQ(p.certify(nan).state, ProofState::open);
     nan = p.state;
     nan.reactions[0].force[0] = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(p.certify(nan).answer, Answer::open);
+    EXPECT_EQ(p.certify(nan).state, ProofState::open);
 }
 
 }  // namespace

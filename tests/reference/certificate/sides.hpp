@@ -34,7 +34,7 @@ inline std::vector<Walked> walked(const std::string& scene, int points,
     for (const auto& branch : model.branches)
         for (const auto& way : compare::sides_of(model, branch, points))
             for (const auto leg : legs) {
-                const EquilibriumPath path = compare::walk(way, {.leg = leg});
+                const EquilibriumPath path = compare::solve_branch(way, {.leg = leg});
                 if (compare::is_not_applicable(path.outcome)) continue;
                 EXPECT_EQ(path.outcome, Outcome::converged)
                     << scene << " " << way.name << " " << path.detail;
@@ -49,7 +49,7 @@ struct Side {
     Branch branch;
 
     explicit Side(const Model& whole) {
-        branch = ways(whole.branches.front()).front();
+        branch = branch_sides(whole.branches.front()).front();
         model = on_branch(whole, branch);
     }
     explicit Side(const std::string& scene) : Side(compile(parse_scene(scene, "test.yaml"))) {}

@@ -64,7 +64,7 @@ TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
     for (const int n : {2, 5, 12, 20})
         for (const bool hinged : {false, true}) models.push_back(compile(chain(n, hinged)));
     for (const auto& all : models) {
-        const Branch branch = ways(all.branches[0]).front();
+        const Branch branch = branch_sides(all.branches[0]).front();
         const Model model = on_branch(all, branch);
         const auto values = every_point(branch);
         const Cost cost = cost_of(model, values.size());

@@ -9,7 +9,7 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-TEST(EquilibriumElements, LogarithmInvertsTheExponentialFromNothingToNearlyHalfATurn) {
+TEST(EquilibriumElements, LogarithmInvertsTheExponentialUpToHalfATurn) {
     Random random;
     Worst worst;
     for (double angle = 1e-14; angle < 3.1415; angle = angle < 0.5 ? 2 * angle : angle + 0.01) {
@@ -23,7 +23,7 @@ TEST(EquilibriumElements, LogarithmInvertsTheExponentialFromNothingToNearlyHalfA
     EXPECT_TRUE(within(worst, 2e-15 * 4));
 }
 
-TEST(EquilibriumElements, WhereAnAngleHasNoValueThereIsNoNumber) {
+TEST(EquilibriumElements, UndefinedAngleIsNaN) {
     const auto turn = [](double angle, const Vector3d& axis) {
         return Quaterniond(Eigen::AngleAxisd(angle, axis));
     };
@@ -141,7 +141,7 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
 }
 
 // A formulation that compile() never passes to a leg is misuse.
-TEST(EquilibriumElements, AFrameThatThisLegHasNoLawForIsMisuse) {
+TEST(EquilibriumElements, UnsupportedFormulationIsRejected) {
     Scene s = hinged_bar(0.3 * X, Y, 100);
     s.branches = {twist(0, Y)};
     Model model = compile(s);

@@ -25,7 +25,7 @@ void expect_points_in_balance(const Model& model, const Branch& branch, const Eq
 // A bushing with an axis along (1, 2, 3), many decades softer than its other axes, is pulled along
 // it: the displacement is load / rate. Where K in ground axes has lost the soft rate to rounding,
 // the leg reports a failure.
-TEST(EquilibriumOutcome, AMotionThirteenDecadesSofterIsNotIdle) {
+TEST(EquilibriumOutcome, MotionThirteenDecadesSofterIsNotIdle) {
     const Vector3d along = Vector3d(1, 2, 3).normalized();
     const auto pulled = [&](double stiff) {
         const Model model = compile(parse_scene(fmt::format(R"(
@@ -70,7 +70,7 @@ TEST(EquilibriumOutcome, TooFewIterationsAreReportedAsSuch) {
     expect_points_in_balance(model, model.branches[0], path);
 }
 
-TEST(EquilibriumOutcome, AToleranceBelowRoundOffIsNotMetQuietly) {
+TEST(EquilibriumOutcome, UnreachableToleranceIsReported) {
     Options options;
     options.tolerance = 1e-19;
     options.halvings = 3;
@@ -81,7 +81,7 @@ TEST(EquilibriumOutcome, AToleranceBelowRoundOffIsNotMetQuietly) {
 }
 
 // A parallelogram is flat at half a turn, where it may continue in either of two configurations.
-TEST(EquilibriumOutcome, AMechanismEndsWhereItsMotionDivides) {
+TEST(EquilibriumOutcome, MechanismEndsAtABifurcationOfItsConstraints) {
     const Vector3d pin = 0.04 * X, far = 0.1 * X;
     const Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Z));
     Scene s;

@@ -24,7 +24,7 @@ void at_stations(const See& see) {
     for (const auto& file : files) {
         const Model whole = compile(scene(file));
         for (const auto& branch : whole.branches)
-            for (const auto& way : ways(branch)) {
+            for (const auto& way : branch_sides(branch)) {
                 const Model model = on_branch(whole, way);
                 const std::vector<double> points = {way.to / 3};
                 const System system = make_system(model, model.branches[0], points);
@@ -66,7 +66,7 @@ void expect_null_spaces_of(const MatrixXd& J, const NullSpaces& modes, const std
     EXPECT_LT((U.transpose() * U - one).cwiseAbs().maxCoeff(), 1e-12) << what;
 }
 
-TEST(EquilibriumSparse, NullSpacesAreTheDenseOnesFoundOrTracked) {
+TEST(EquilibriumSparse, ComputedAndTrackedNullSpacesEqualTheDenseOnes) {
     int with_modes = 0;
     at_stations([&](const Continuation& continuation, const std::string& what) {
         const auto& at = continuation.here.linearised;
@@ -79,7 +79,7 @@ TEST(EquilibriumSparse, NullSpacesAreTheDenseOnesFoundOrTracked) {
 
 // ---- Sparsity pattern
 
-TEST(EquilibriumSparse, APatternThatIsKeptHoldsWhatANewOneDoes) {
+TEST(EquilibriumSparse, ReusedPatternCoversTheEntriesOfANewOne) {
     at_stations([&](const Continuation& continuation, const std::string& what) {
         System fresh = continuation.system;
         fresh.pattern = nullptr;
@@ -124,7 +124,7 @@ double dense_least(const System& system, const Linearisation& at) {
     return system.conservative ? least : negative % 2 == 0 ? modulus : -modulus;
 }
 
-TEST(EquilibriumSparse, TheLeastStiffnessIsThatOfTheDenseMatrix) {
+TEST(EquilibriumSparse, LeastStiffnessEqualsTheDenseEigenvalue) {
     Worst worst;
     at_stations([&](const Continuation& continuation, const std::string& what) {
         const double least = dense_least(continuation.system, continuation.here.linearised);
@@ -135,7 +135,7 @@ TEST(EquilibriumSparse, TheLeastStiffnessIsThatOfTheDenseMatrix) {
 
 // Forty bodies, each a thousand times as stiff as its neighbour at first, beside a column far
 // beyond its buckling load: its negative eigenvalue is the farthest from zero.
-TEST(EquilibriumSparse, ANegativeEigenvalueFarFromZeroIsSeen) {
+TEST(EquilibriumSparse, NegativeEigenvalueFarFromZeroIsFound) {
     for (const bool stable : {true, false}) {
         Scene s = hinged_bar({0, 0, 0.5}, {0, 1, 0}, 1000);
         s.branches = {pull({0, {0, 0, 0.5}}, {0, 0, stable ? 1. : -1.})};
@@ -163,7 +163,7 @@ TEST(EquilibriumSparse, ANegativeEigenvalueFarFromZeroIsSeen) {
 
 // ---- Bifurcation of the constraints
 
-TEST(EquilibriumSparse, TheConstraintsSideIsThatOfTheDenseDeterminant) {
+TEST(EquilibriumSparse, SignOfTheConstraintDeterminantEqualsTheDenseOne) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> in(-1, 1);
     int kept = 0, changed = 0;
@@ -202,7 +202,7 @@ TEST(EquilibriumSparse, TheConstraintsSideIsThatOfTheDenseDeterminant) {
 
 // ---- Least squares
 
-TEST(EquilibriumSparse, LeastSquaresAreShortestToo) {
+TEST(EquilibriumSparse, LeastSquaresSolutionHasMinimumNorm) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> in(-1, 1);
     const auto any = [&](Index rows, Index cols) {
@@ -225,7 +225,7 @@ TEST(EquilibriumSparse, LeastSquaresAreShortestToo) {
 // ---- Large scenes
 
 // Blocks in a row, connected by springs of rate k: under P, the n-th moves by n P / k.
-TEST(EquilibriumSparse, AThousandSpringsInSeriesShareTheLoad) {
+TEST(EquilibriumSparse, ThousandSpringsInSeriesCarryTheSameForce) {
     constexpr int n = 1000;
     constexpr double k = 1e5, P = 300, h = 1e-2;
     Scene s;
@@ -257,7 +257,7 @@ TEST(EquilibriumSparse, AThousandSpringsInSeriesShareTheLoad) {
 
 // Hinges about z with torsion springs of n times the single rate: for any n, a moment at the end
 // gives the same rotation in the same number of steps.
-TEST(EquilibriumSparse, AThousandHingesTurnAlikeByAsManyStepsAsTen) {
+TEST(EquilibriumSparse, ThousandHingesNeedAsManyStepsAsTen) {
     constexpr double c = 100, M = 80, L = 1;
     std::vector<long> factorisations;
     for (const int n : {10, 1000}) {
@@ -295,7 +295,7 @@ TEST(EquilibriumSparse, AThousandHingesTurnAlikeByAsManyStepsAsTen) {
 }
 
 // Rods between two balls, each on ground: every one has its own idle spin and its own self-stress.
-TEST(EquilibriumSparse, HundredsOfModesAreAsManySparseColumns) {
+TEST(EquilibriumSparse, HundredsOfModesHaveSparseColumns) {
     for (const int n : {3, 150}) {
         Scene s;
         s.name = fmt::format("{} rods", n);
