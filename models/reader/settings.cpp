@@ -87,15 +87,36 @@ struct Edit {
     const Setting* setting;
 };
 
-// The line with the values replaced, the old ones in a comment at its end. `edits` from
-// right to left.
+// Takes the comment of an earlier edited() off a line whose values end before it. Its entries for
+// other paths: "PATH was VALUE, ...".
+std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
+    const std::size_t at = line.rfind("  # ");
+    if (at == line.npos || static_cast<std::size_t>(edits.front().value->column) > at) return "";
+    std::string kept;
+    for (std::size_t from = at + 4; from < line.size();) {
+        const std::size_t end = std::min(line.find(", ", from), line.size());
+        const std::string entry = line.substr(from, end - from);
+        const std::size_t was = entry.find(" was ");
+        if (was == entry.npos || entry.find(' ') != was || entry.find(' ', was + 5) != entry.npos)
+            return "";
+        if (std::ranges::none_of(
+                edits, [&](const Edit& edit) { return edit.setting->path == entry.substr(0, was); }))
+            kept += (kept.empty() ? "" : ", ") + entry;
+        from = end + 2;
+    }
+    line.erase(at);
+    return kept;
+}
+
+// The line with the values replaced, the old ones in a comment at its end. `edits` from right to
+// left.
 std::string edited(std::string line, const std::vector<Edit>& edits, const std::string& file) {
     std::string end;
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) {
         end.insert(end.begin(), line.back());
         line.pop_back();
     }
-    std::string comment;
+    std::string comment = earlier_comment(line, edits);
     for (const auto& [value, setting] : edits) {
         const auto at = static_cast<std::size_t>(value->column);
         const bool is_quoted = at < line.size() && (line[at] == '"' || line[at] == '\'');

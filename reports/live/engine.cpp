@@ -139,7 +139,7 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
         rows.rows, {}, [](const auto& row) { return std::abs(row.first); });
     result["start"] = start - rows.rows.begin();
     result["published"] = nullptr;
-    if (!full) return result;
+    if (!full || !request.published) return result;
     const int refine = std::max(1, (branch.steps + request.points / 2) / request.points);
     Rows fast;
     const EquilibriumPath published =
@@ -271,6 +271,10 @@ Request request_of(std::string_view text) {
     if (read.contains("only")) {
         require(read["only"].is_string());
         request.only = read["only"].get<std::string>();
+    }
+    if (read.contains("published")) {
+        require(read["published"].is_boolean());
+        request.published = read["published"].get<bool>();
     }
     if (read.contains("full")) {
         require(read["full"].is_array());

@@ -36,10 +36,10 @@ nlohmann::ordered_json open(Session& session, std::string_view text, const std::
 
 struct Request {
     std::vector<Setting> settings;
-    int points = 40;  // equal increments of the parameter over a branch, > 0
-    // per branch: whether characteristics and the published method are computed too; missing: not
-    std::vector<bool> full;
-    std::string only;  // name of a branch: the others are not solved; empty: all are
+    int points = 40;         // equal increments of the parameter over a branch, > 0
+    std::vector<bool> full;  // per branch: whether characteristics are computed too; missing: not
+    bool published = false;  // whether the published method is computed on those branches too
+    std::string only;        // name of a branch: the others are not solved; empty: all are
 };
 
 // Trims and solves all branches by the power series. Throws SceneError, std::invalid_argument.
@@ -61,8 +61,8 @@ Answer solve(Session& session, const Request& request);
 // The scene's text with these values (rewrite_scene()).
 std::string rewrite(const Session& session, const std::vector<Setting>& settings);
 
-// {"settings": [[path, value], ...], "points": 40, "full": [true, false, ...], "only": "travel"}; throws
-// std::invalid_argument for anything else.
+// {"settings": [[path, value], ...], "points": 40, "full": [true, false, ...], "published": false,
+// "only": "travel"}; throws std::invalid_argument for anything else.
 Request request_of(std::string_view json);
 
 }  // namespace elastocheck::live

@@ -16,6 +16,7 @@ export class Browser {
     browser.waiting = new Map();
     browser.requests = [];
     browser.complaints = [];
+    browser.dialogs = [];
     let rest = '';
     browser.process.stdio[4].on('data', data => {
       const messages = (rest + data).split('\0');
@@ -34,6 +35,9 @@ export class Browser {
       const call = this.waiting.get(id);
       this.waiting.delete(id);
       error ? call.reject(new Error(error.message)) : call.resolve(result);
+    } else if (method === 'Page.javascriptDialogOpening') {
+      this.dialogs.push(params.type);
+      this.send('Page.handleJavaScriptDialog', {accept: true});
     } else if (method === 'Network.requestWillBeSent') this.requests.push(params.request.url);
     else if (method === 'Runtime.exceptionThrown') this.complaints.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
     else if (method === 'Log.entryAdded') this.complaints.push(params.entry.text);
@@ -51,7 +55,7 @@ export class Browser {
     if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
     return result.value;
   }
-  async until(expression, what = expression, seconds = 60) {
+  async until(expression, what = expression, seconds = +(process.env.PATIENCE ?? 60)) {
     for (const end = Date.now() + 1e3 * seconds; Date.now() < end;) {
       if (await this.run(expression)) return;
       await new Promise(resolve => setTimeout(resolve, 20));
@@ -63,11 +67,11 @@ export class Browser {
     await this.send('Emulation.setDeviceMetricsOverride', {width, height, deviceScaleFactor: 1, mobile: width < 500});
     await this.send('Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: dark ? 'dark' : 'light'}]});
     await this.send('Page.navigate', {url: pathToFileURL(file).href});
-    await this.until(`document.readyState === 'complete' && window.live && window.live.ready > 0 && !busy && !due`, 'the page is ready');
+    await this.until(`document.readyState === 'complete' && window.live && window.live.ready > 0 && isIdle()`, 'the page is ready');
   }
   mouse(type, x, y, more = {}) { return this.send('Input.dispatchMouseEvent', {type, x, y, button: 'left', buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1, ...more}); }
   async key(key) {
-    for (const type of ['keyDown', 'keyUp']) await this.send('Input.dispatchKeyEvent', {type, key, code: key, windowsVirtualKeyCode: {Tab: 9, Enter: 13, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40}[key]});
+    for (const type of ['keyDown', 'keyUp']) await this.send('Input.dispatchKeyEvent', {type, key, code: key, ...key === 'Enter' && type === 'keyDown' ? {text: '\r'} : {}, windowsVirtualKeyCode: {Tab: 9, Enter: 13, Escape: 27, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40}[key]});
   }
   async picture(file, full = false) {
     writeFileSync(file, Buffer.from((await this.send('Page.captureScreenshot', {captureBeyondViewport: full})).data, 'base64'));

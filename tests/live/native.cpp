@@ -24,6 +24,7 @@ int main(int count, char** words) {
         live::Request request;
         for (int k = 2; k < count; ++k) request.settings.push_back(parse_setting(words[k]));
         request.full.assign(result["open"]["branches"].size(), true);
+        request.published = true;
         const live::Answer answer = live::solve(session, request);
         result["head"] = answer.head;
         result["numbers"] = nlohmann::ordered_json::array();

@@ -23,7 +23,7 @@ const compare = (name, settings) => {
   let opened, solved;
   try {
     opened = ask('open', {source: readFileSync(path.join(folder, name), 'utf8'), name: 'scene.yaml'});
-    solved = ask('solve', {request: {settings, points: 40, full: opened.head.branches.map(() => true)}});
+    solved = ask('solve', {request: {settings, points: 40, full: opened.head.branches.map(() => true), published: true}});
   } catch (error) {
     check(there.error === error.message, `${name}: "${error.message}" is not "${there.error}"`);
     return;
@@ -102,7 +102,7 @@ says('elastocheck: 1\nname: x\nunits: {length: mile}\n', ':3: units.length');
 says('a: \u0000', 'plain text');
 says(scene.replace('rate: 95e3', 'rate: -1'), 'springs.coil.rate');
 says('x'.repeat((1 << 20) + 1), 'larger than 1 MiB');
-for (const request of [{settings: 1}, {settings: [['a']]}, {settings: [], points: 0}, {settings: [], points: 1.5}, {settings: [], full: 'all'}])
+for (const request of [{settings: 1}, {settings: [['a']]}, {settings: [], points: 0}, {settings: [], points: 1.5}, {settings: [], full: 'all'}, {settings: [], published: 1}])
   try { ask('solve', {request}); check(false, `accepted: ${JSON.stringify(request)}`); } catch (error) { check(error.kind === 'input', error.message); }
 check(ask('solve', {request: {settings: [], points: 8}}).head.branches.length === 7, 'the scene opened last is solved after errors');
 // All points of a branch are proved, in ascending order. Requests that are none are refused.

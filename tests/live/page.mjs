@@ -1,37 +1,10 @@
-// The live page in a browser: what a hand does with it, against the program.
+// The live page in a browser: what is on it, against the program.
 // node page.mjs ELASTOCHECK SCENES-FOLDER [PICTURES-FOLDER]
 import {execFileSync} from 'node:child_process';
-import {mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
-import {tmpdir} from 'node:os';
+import {mkdirSync, readFileSync, statSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
-import {Browser} from './browser.mjs';
-
-const [program, scenes, pictures] = process.argv.slice(2).map(file => path.resolve(file));
-const folder = mkdtempSync(path.join(tmpdir(), 'live-pages-'));
-const scene = name => path.join(scenes, name + '.yaml');
-const pageOf = (file, name) => {
-  const page = path.join(folder, name + '.html');
-  execFileSync(program, ['live', file, '-o', page]);
-  return page;
-};
-const failures = [];
-const check = (met, what) => { if (!met) { failures.push(what); console.error('failed: ' + what); } };
-const near = (a, b, bound, what) => check(Math.abs(a - b) <= bound, `${what}: ${a} is not ${b} within ${bound}`);
-const browser = await Browser.start();
-const run = expression => browser.run(expression);
-const idle = () => browser.until('!busy && !due', 'the solver is idle');
-const wait = seconds => new Promise(resolve => setTimeout(resolve, 1e3 * seconds));
-const pictureOf = async (name, full) => { if (pictures) await browser.picture(path.join(pictures, name + '.png'), full); };
-const settings = async () => run('[...state.settings]');
-// The middle of a handle on the screen.
-const handleOf = name => run(`(() => { const b = [...document.querySelectorAll('.handle')].find(h => h.dataset.name === ${JSON.stringify(name)}).querySelector('.hit').getBoundingClientRect();
-  return [b.x + b.width / 2, b.y + b.height / 2]; })()`);
-// Curves of a branch by the program: [[parameter, value, ...], ...].
-const byProgram = (file, branch, channels, changes) => execFileSync(program, ['solve', file, '--method', 'series', '--steps', '40', '--channels', channels.join(','),
-  ...changes.flatMap(([p, v]) => ['--set', `${p}=${v}`])], {stdio: ['ignore', 'pipe', 'ignore']}).toString().trim().split('\n')
-  .filter(line => line.startsWith(branch + ',')).map(line => { const cells = line.split(','); return [cells[2], ...cells.slice(-channels.length)].map(Number); });
-const percentile = (list, share) => [...list].sort((a, b) => a - b)[Math.min(list.length - 1, Math.floor(share * list.length))];
-const report = [];
+import {browser, byProgram, check, folder, handleOf, idle, near, pageOf, percentile, pictureOf, program, report, run,
+  runTests, scene, scenes, settings, wait} from './harness.mjs';
 
 const tests = {
   async opensAndAsksForNothing() {
@@ -68,16 +41,16 @@ const tests = {
     await browser.mouse('mouseReleased', x, y - 12);
     await idle();
     const draws = await run('window.live.draws');
-    report.push(`double wishbone, ${await run('state.now.branches.length')} branches, ${draws.length} moves: solve p95 ${(1e3 * percentile(draws.map(d => d.solve), .95)).toFixed(1)} ms, ` +
+    report.push(`double wishbone, ${await run('state.info.branches.length')} branches, ${draws.length} moves: solve p95 ${(1e3 * percentile(draws.map(d => d.solve), .95)).toFixed(1)} ms, ` +
       `draw p95 ${(1e3 * percentile(draws.map(d => d.draw), .95)).toFixed(1)} ms, both p95 ${(1e3 * percentile(draws.map(d => d.all), .95)).toFixed(1)} ms, median ${(1e3 * percentile(draws.map(d => d.all), .5)).toFixed(1)} ms`);
     const changes = await settings();
     check(changes.length === 1 && changes[0][0] === 'points.tie_rod_inner.z' && +changes[0][1] > .001, 'dragged up: ' + JSON.stringify(changes));
     check(before !== await run(`document.querySelector('[data-channel=toe] path.now').getAttribute('d')`), 'the curve moved');
     check(before === await run(`document.querySelector('[data-channel=toe] path.was')?.getAttribute('d')`) || await run(`document.querySelector('[data-channel=toe] path.was') !== null`), 'the old curve stays');
-    for (const branch of await run('state.now.branches.map(b => b.name)')) {
+    for (const branch of await run('state.info.branches.map(b => b.name)')) {
       const channels = ['toe', 'camber', 'wheel_centre_z', 'track_change', ...branch === 'travel' ? ['bump_steer', 'lateral_force_steer', 'roll_centre_height'] : []];
       const rows = byProgram(scene('double_wishbone'), branch, channels, changes);
-      const own = await run(`${JSON.stringify(channels)}.map(c => state.now.curve(branchOf(state.now, ${JSON.stringify(branch)}), c))`);
+      const own = await run(`${JSON.stringify(channels)}.map(c => state.now.curve(state.now.branch(${JSON.stringify(branch)}), c))`);
       check(rows.length > 20 && rows.length === own[0].length, `${branch}: ${rows.length} points against ${own[0].length}`);
       rows.forEach((row, k) => channels.forEach((c, i) => { if (own[i][k]) { near(own[i][k][0], row[0], 1e-9 * Math.abs(row[0]), branch); near(own[i][k][1], row[i + 1], 1e-7, `${branch} ${c} ${k}`); } }));
     }
@@ -129,16 +102,18 @@ const tests = {
     check(await run('state.base.branches[0].points') === 41, 'the scene as opened keeps its points');
     await run(`document.getElementById('reset').click()`);
     await idle();
-    // Arrows during a hold, at the start, where fewer points are solved.
+    // Arrows are of the numbers on the screen: none during a drag, those of what was dragged after it.
     await set('motion', 20, 'input');
-    await browser.mouse('mousePressed', x, y);
-    await to(4);
     await set('effect', 'camber', 'change');
     await browser.until('state.effects && state.effects.length === 36', 'the effects are known');
+    await browser.mouse('mousePressed', x, y);
+    await to(4);
+    check(await run(`state.effects === null && document.getElementById('effects').hidden`), 'no arrow of other numbers');
+    await browser.mouse('mouseReleased', x, y - 4);
+    await browser.until('state.effects && state.effects.length === 36', 'the effects are known again');
     const of = await run(`state.effects.find(e => e.path === 'points.upper_ball.y').by`), held = await settings(), y0 = await run(`numberOf('points.upper_ball.y')`);
     const [more, less] = [1e-4, -1e-4].map(h => byProgram(scene('double_wishbone'), 'travel', ['camber'], [...held, ['points.upper_ball.y', y0 + h]]).find(row => row[0] === 0)[1]);
-    near(of, (more - less) / .2, 1e-3 * Math.abs(of), 'effect on the camber at the start during a hold');
-    await browser.mouse('mouseReleased', x, y - 4);
+    near(of, (more - less) / .2, 1e-3 * Math.abs(of), 'effect on the camber at the start');
     await set('effect', '', 'change');
     await set('table-at', 'start', 'change');
     await run(`document.getElementById('reset').click()`);
@@ -216,7 +191,7 @@ const tests = {
     await run(`{ const s = proofOf('travel').stations[3]; s.answer = 'open'; s.detail = 'reason'; drawCharts(); }`);
     check((await strips('unproved')).every(n => n === 1) && /^40 of 41 points proved.* at −68 mm not proved: reason$/.test(await run(`document.querySelector('#notes .proof').textContent`)), 'one not proved: ' + await run(`document.querySelector('#notes .proof').textContent`));
     // A change of a number discards them at once.
-    await run(`remember(); put('springs.coil.rate', '96000'); changed()`);
+    await run(`edit(() => put('springs.coil.rate', '96000'))`);
     await idle();
     check((await strips('unproved')).every(n => n === 0) && !(await run(all)), 'proofs belong to the numbers');
     await browser.until(all, 'proved again');
@@ -224,7 +199,7 @@ const tests = {
     // Numbers that are not solved have no proof.
     const unproved = async what => check((await strips('proved')).every(n => n === 0) && (await run(`document.querySelector('#notes .proof').textContent`)) === 'no proof: these numbers are not solved',
       what + ': ' + await run(`document.querySelector('#notes .proof').textContent`));
-    await run(`remember(); put('springs.coil.rate', 'abc'); changed()`);
+    await run(`edit(() => put('springs.coil.rate', 'abc'))`);
     await idle();
     await unproved('a number that is none');
     await run(`document.getElementById('reset').click()`);
@@ -238,7 +213,7 @@ const tests = {
     for (const title of ['adjusted by the trim', 'static values after the trim', 'lateral force at the contact patch', 'braking force at the contact patch', 'traction force at the wheel centre', 'aligning torque', 'steering'])
       check(groups.includes(title), `"${title}" is in ${groups}`);
     const change = [['bushings.lower_front.rates.x', '3000000'], ['springs.coil.bump_stop.clearance', '0.03']];
-    await run(`remember(); for (const [p, v] of ${JSON.stringify(change)}) put(p, v); changed()`);
+    await run(`edit(() => { for (const [p, v] of ${JSON.stringify(change)}) put(p, v); })`);
     await idle();
     const start = changes => byProgram(scene('double_wishbone'), 'travel', figures, changes).find(row => row[0] === 0).slice(1);
     const was = start([]), now = start(change);
@@ -258,7 +233,7 @@ const tests = {
     await run(`document.getElementById('forces').open = true; document.getElementById('forces-at').value = 'largest'; document.getElementById('forces-at').dispatchEvent(new Event('change'))`);
     await browser.until(`document.querySelector('#forces [data-channel="lower_front.elastic_force_y"]')`, 'forces');
     const force = await run(`[...document.querySelectorAll('#forces [data-channel="lower_front.elastic_force_y"] td')].map(td => td.textContent)`);
-    const branches = await run('state.now.branches.map(b => b.name)');
+    const branches = await run('state.info.branches.map(b => b.name)');
     const most = branches.flatMap(b => byProgram(scene('double_wishbone'), b, ['lower_front.elastic_force_y'], change).map(row => [row[1], b])).reduce((a, b) => Math.abs(b[0]) > Math.abs(a[0]) ? b : a);
     near(value(force[3]), most[0], 6e-4 * Math.abs(most[0]), 'largest force of a bushing');
     check(force[5] === most[1], `on branch ${force[5]}, ${most[1]}`);
@@ -353,13 +328,13 @@ const tests = {
     check((await paste('a: [')).startsWith('pasted.yaml:'), 'not YAML');
     check((await paste('')).startsWith('pasted.yaml'), 'empty');
     check(await run('state.info.title') === 'Double wishbone' && await run('!!state.now'), 'the scene before stays');
-    await run(`remember(); put('springs.coil.rate', '96000'); changed()`);
+    await run(`edit(() => put('springs.coil.rate', '96000'))`);
     await idle();
-    check(await run(`document.getElementById('trouble').hidden && state.now !== state.base`), 'and is solved again: ' + await run(`document.getElementById('trouble').textContent`));
+    check(await run(`document.getElementById('trouble').hidden && isChanged()`), 'and is solved again: ' + await run(`document.getElementById('trouble').textContent`));
     check(await paste(text) === '' && (await run('state.info.title')).includes('McPherson'), 'a pasted scene opens: ' + await run('state.info.title'));
     const {root} = await browser.send('DOM.getDocument'), {nodeId} = await browser.send('DOM.querySelector', {nodeId: root.nodeId, selector: '#file'});
     await browser.send('DOM.setFileInputFiles', {nodeId, files: [scene('trailing_arm')]});
-    await browser.until(`state.file === 'trailing_arm.yaml' && !busy && !!state.now`, 'a scene from disk opens');
+    await browser.until(`state.file === 'trailing_arm.yaml' && !!state.now`, 'a scene from disk opens');
     check(await run(`document.getElementById('trouble').hidden && document.querySelectorAll('#charts .chart').length > 2`), 'and is drawn');
     const marked = text.replace(/^name: .*$/m, `name: '<img src=x onerror="window.broken=1"></script><script>window.broken=1</script>'`);
     check(await paste(marked) === '', 'markup in a name is accepted');
@@ -373,7 +348,7 @@ const tests = {
     const drop = async (text, name) => {
       await run(`{ trouble(''); const data = new DataTransfer(); data.items.add(new File([${JSON.stringify(text)}], ${JSON.stringify(name)}));
         for (const type of ['dragover', 'drop']) document.dispatchEvent(new DragEvent(type, {dataTransfer: data, bubbles: true, cancelable: true})); }`);
-      await browser.until(`!document.getElementById('trouble').hidden || (state.file === ${JSON.stringify(name)} && state.base)`, 'an answer to the file');
+      await browser.until(`!document.getElementById('trouble').hidden || (state.file === ${JSON.stringify(name)} && state.now)`, 'an answer to the file');
       await idle();
       return run(`document.getElementById('trouble').textContent`);
     };
@@ -401,7 +376,7 @@ const tests = {
     writeFileSync(path.join(tables, 'stop.csv'), 'deflection,force\n0,0\n0.005,1000\n0.010,4000\n0.015,9000\n');
     await browser.open(pageOf(file, 'with_table'));
     check(await run(`document.getElementById('trouble').hidden`), 'it opens: ' + await run(`document.getElementById('trouble').textContent`));
-    const rows = byProgram(file, 'travel', ['toe', 'coil.bump_stop.force'], []), own = await run(`['toe', 'coil.bump_stop.force'].map(c => state.now.curve(branchOf(state.now, 'travel'), c))`);
+    const rows = byProgram(file, 'travel', ['toe', 'coil.bump_stop.force'], []), own = await run(`['toe', 'coil.bump_stop.force'].map(c => state.now.curve(state.now.branch('travel'), c))`);
     check(rows.length > 20 && rows.length === own[0].length && Math.abs(rows.at(-1)[2]) > 1000, `${rows.length} points, force ${rows.at(-1)[2]}`);
     rows.forEach((row, k) => [0, 1].forEach(c => near(own[c][k][1], row[c + 1], 1e-7 * Math.max(1, Math.abs(row[c + 1])), `point ${k}`)));
     // After an error, which ends the solver's instance, the tables are there again.
@@ -413,9 +388,9 @@ const tests = {
     };
     const message = await paste(text);
     check(/^pasted\.yaml:52: springs\.coil\.bump_stop\.curve\.file: .*not a file/.test(message), 'a pasted scene has no tables: ' + message);
-    await run(`remember(); put('springs.coil.rate', '96000'); changed()`);
+    await run(`edit(() => put('springs.coil.rate', '96000'))`);
     await idle();
-    check(await run(`document.getElementById('trouble').hidden && state.now !== state.base`), 'the scene of the file is solved again: ' + await run(`document.getElementById('trouble').textContent`));
+    check(await run(`document.getElementById('trouble').hidden && isChanged()`), 'the scene of the file is solved again: ' + await run(`document.getElementById('trouble').textContent`));
     // Opened together with its table.
     await run(`openFiles([new File([${JSON.stringify(text.replace('tables/', ''))}], 'a.yaml'), new File(['deflection,force\\n0,0\\n0.015,9000\\n'], 'stop.csv')])`);
     await idle();
@@ -466,7 +441,7 @@ const tests = {
     await browser.mouse('mouseReleased', x, y - 4);
     await idle();
     const draws = await run('window.live.draws');
-    report.push(`front axle, ${await run('state.now.branches.length')} branches, ${draws.length} moves: solve p95 ${(1e3 * percentile(draws.map(d => d.solve), .95)).toFixed(1)} ms, both p95 ${(1e3 * percentile(draws.map(d => d.all), .95)).toFixed(1)} ms, median ${(1e3 * percentile(draws.map(d => d.all), .5)).toFixed(1)} ms`);
+    report.push(`front axle, ${await run('state.info.branches.length')} branches, ${draws.length} moves: solve p95 ${(1e3 * percentile(draws.map(d => d.solve), .95)).toFixed(1)} ms, both p95 ${(1e3 * percentile(draws.map(d => d.all), .95)).toFixed(1)} ms, median ${(1e3 * percentile(draws.map(d => d.all), .5)).toFixed(1)} ms`);
     await pictureOf('axle', true);
   },
   async narrowAndDark() {
@@ -484,22 +459,9 @@ const tests = {
     await browser.open(path.join(folder, 'wishbone.html'));
     await idle();
     await browser.until(`shownBranches().every(b => proofOf(b.name)?.done)`, 'the points are proved');
-    await run(`worker.terminate(); remember(); put('springs.coil.rate', '96000'); changed()`);
+    await run(`solvers.front.worker.terminate(); edit(() => put('springs.coil.rate', '96000'))`);
     check(await run(`document.querySelectorAll('#charts .proof .proved').length`) === 0, 'no strip');
     check(await run(`document.querySelector('#notes .proof').textContent`) === 'no proof: these numbers are not solved', 'no words');
   }
 };
-try {
-  for (const [name, test] of Object.entries(tests)) {
-    const start = Date.now();
-    try { await test(); } catch (error) { check(false, `${name}: ${error.stack}`); }
-    console.log(`${name}: ${((Date.now() - start) / 1e3).toFixed(1)} s`);
-    check(browser.complaints.length === 0, `${name}: the browser complains: ${browser.complaints.splice(0).join('; ')}`);
-  }
-} finally {
-  browser.stop();
-  rmSync(folder, {recursive: true, force: true});
-}
-for (const line of report) console.log(line);
-console.log(`${Object.keys(tests).length} tests, ${failures.length} failures`);
-process.exit(failures.length ? 1 : 0);
+await runTests(tests);

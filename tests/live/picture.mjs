@@ -8,9 +8,9 @@ const browser = await Browser.start();
 try {
   await browser.open(page, {width: 1100, height: 900});
   await browser.run(`(async () => {
-    remember(); place('tie_rod_inner', add(coordinatesOf('tie_rod_inner'), 1, [0, 0, 12])); choose('tie_rod_inner');
+    edit(() => putCoordinates('tie_rod_inner', add(coordinatesOf('tie_rod_inner'), 1, [0, 0, 12]))); choose('tie_rod_inner');
     view.yaw = 40; view.pitch = 18; view.zoom = 1.15; draw3d(); state.curves = ['toe', 'camber', 'roll_centre_height', 'wheel_rate']; drawCharts(); })()`);
-  await browser.until('!busy && !due && state.settings.size === 1 && proofOf(state.branch)?.done', 'solved and proved');
+  await browser.until('isIdle() && state.settings.size === 1 && proofOf(state.branch)?.done', 'solved and proved');
   writeFileSync(output, await browser.run(`(() => {
     // The style of each element becomes its attributes, as it is on the page.
     const own = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin', 'font-size', 'font-weight', 'opacity', 'paint-order'];

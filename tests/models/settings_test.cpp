@@ -216,6 +216,14 @@ last: 8  # last was 7)");
               "a: 2  # a was 1\r\nb: 3\r\n");
 }
 
+TEST(RewriteScene, ReplacesItsOwnCommentAndNoOther) {
+    const Setting x{"p.x", "5"}, b{"b", "2"};
+    EXPECT_EQ(rewrite_scene("p: {x: 4, y: 2}  # p.x was 3, p.y was 1\n", "a.yaml", {&x, 1}),
+              "p: {x: 5, y: 2}  # p.x was 4, p.y was 1\n");
+    EXPECT_EQ(rewrite_scene("b: 1  # it was 0, once\n", "a.yaml", {&b, 1}),
+              "b: 2  # it was 0, once  # b was 1\n");
+}
+
 // Every number of every built-in scene is found at its place, and the rewritten scene is the one
 // that read_scene() makes with the setting.
 TEST(RewriteScene, FindsEveryNumberOfTheBuiltInScenes) {

@@ -1,136 +1,339 @@
 // ---- Curves: one chart for each chosen output of the shown branch, or of every branch
-const words = name => name.replaceAll('_', ' ').replace('@', ', ');
+import {$, make, show, shown, sketch} from './base.js';
+import {
+  isChanged, reference, referenceName, shownBranches, state, stationIn
+} from './state.js';
+import {proofStrip} from './proof.js';
+import {drawNotes, stopsOf} from './notes.js';
+import {moveTo} from './app.js';
+
+export const words = name => name.replaceAll('_', ' ').replace('@', ', ');
 const range = curve => {
   const values = curve.map(p => p[1]).filter(Number.isFinite);
   return values.length ? [Math.min(...values), Math.max(...values)] : null;
 };
-const moves = curve => { const r = range(curve); return r && r[1] - r[0] > 1e-6 * Math.max(1, Math.abs(r[0]), Math.abs(r[1])); };
+const moves = curve => {
+  const r = range(curve);
+  return r && r[1] - r[0] > 1e-6 * Math.max(1, Math.abs(r[0]), Math.abs(r[1]));
+};
 const defaultCurves = (run, branch) => {
-  const usable = state.info.channels.filter(c => ['motion', 'characteristic'].includes(c.kind) && moves(run.curve(branch, c.name)));
+  const usable = state.info.channels.filter(c =>
+    ['motion', 'characteristic'].includes(c.kind) && moves(run.curve(branch, c.name)));
   const list = usable.filter(c => c.usual).sort((a, b) => a.usual - b.usual);
-  for (const channel of usable) if (list.length < 4 && channel.main && !list.includes(channel)) list.push(channel);
+  for (const channel of usable)
+    if (list.length < 4 && channel.main && !list.includes(channel)) list.push(channel);
   return list.slice(0, 9).map(c => c.name);
+};
+// By the scene as opened, so that a drag keeps the charts in their places.
+export const curvesOf = branch => {
+  const base = state.base.branch(branch.name);
+  const names =
+      state.curves ?? (base ? defaultCurves(state.base, base) : defaultCurves(state.now, branch));
+  return state.branch === '' && !state.curves ? names.slice(0, 3) : names;
 };
 const ticks = (low, high, count) => {
   const rough = (high - low) / count, size = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map(f => f * size).find(s => s >= rough * .999), list = [];
-  for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) list.push(+v.toPrecision(12));
+  for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step)
+    list.push(+v.toPrecision(12));
   return list;
 };
 const worst = (curve, fast) => {
-  const at = new Map(fast.map(p => [p[0], p[1]]));
-  let off = 0, compared = 0;
-  for (const [a, v] of curve) {
-    const other = at.get(a);
-    if (!Number.isFinite(v) || !Number.isFinite(other)) continue;
-    off = Math.max(off, Math.abs(other - v)), ++compared;
-  }
-  return compared ? off : NaN;
+  const at = new Map(fast.map(p => [p[0], p[1]])),
+        off = curve.map(([a, v]) => Math.abs(at.get(a) - v));
+  return Math.max(...off.filter(Number.isFinite), -1);
 };
-const W = 264, H = 142, left = 38, right = 8, headroom = 6, footroom = 28;
-const chartOf = (branchName, name, withBranch) => {
-  const channel = state.channel.get(name), now = branchOf(state.now, branchName), old = branchOf(state.base, branchName);
-  const curve = state.now.curve(now, name), before = state.base.curve(old, name), fast = state.now.published(now, name);
-  const both = [...curve, ...before, ...fast].filter(p => Number.isFinite(p[1]));
-  const figure = sketch('div', {class: 'chart', 'data-channel': name, 'data-branch': branchName});
-  const here = curve[stationIn(state.now, now)];
-  const aim = sketch('button', {type: 'button', class: 'aim', title: 'Target band', 'aria-label': `Target band of ${name} on ${branchName}`,
-    onclick: () => editTarget(name, branchName)}, 'target');
-  const target = state.targets.get(`${branchName}|${name}`);
-  figure.children.push(sketch('h3', {title: channel?.definition ?? ''}, sketch('span', {}, words(name) + (withBranch ? ' · ' + branchName : '')),
-    sketch('span', {class: 'value'}, here ? `${shown(here[1])} ${channel?.unit ?? ''}` : '–')));
-  if (!both.length) { figure.children.push(sketch('p', {class: 'fast'}, 'not computed, or without a value on this branch')); return figure; }
-  let [x0, x1] = [Math.min(...both.map(p => p[0])), Math.max(...both.map(p => p[0]))];
-  // A pole of a figure does not flatten the rest of its curve.
-  const sorted = both.map(p => p[1]).sort((a, b) => a - b), q = share => sorted[Math.round(share * (sorted.length - 1))];
-  let [y0, y1] = [sorted[0], sorted.at(-1)];
-  if (target) [y0, y1] = [Math.min(y0, ...target.filter(Number.isFinite)), Math.max(y1, ...target.filter(Number.isFinite))];
-  const whole = [y0, y1], cut = channel?.undefined && y1 - y0 > 8 * (q(.9) - q(.1));
-  if (cut) [y0, y1] = [q(.05), q(.95)];
+export const W = 264;
+export const H = 142;
+export const left = 38;
+export const right = 8;
+export const footroom = 28;
+const headroom = 6;
+
+// What is in one chart.
+const dataOf = (branchName, name) => {
+  const channel = state.channel.get(name), now = state.now.branch(branchName),
+        old = reference().branch(branchName);
+  const curve = state.now.curve(now, name), before = reference().curve(old, name);
+  const fast = state.now.published(now, name), target = state.targets.get(`${branchName}|${name}`);
+  const variants = state.variants.filter(v => v.run !== reference()).map(
+    v => ({name: v.name, points: v.run.curve(v.run.branch(branchName), name)}));
+  const all = [curve, before, fast, ...variants.map(v => v.points)].flat()
+    .filter(p => Number.isFinite(p[1]));
+  const here = curve[now ? stationIn(state.now, now) : 0];
+  return {branchName, name, channel, now, curve, before, fast, target, variants, all, here};
+};
+// Its axes. A pole of a figure does not flatten the rest of its curve.
+const scaleOf = ({all, channel, target}) => {
+  const x0 = Math.min(...all.map(p => p[0])), xs = Math.max(...all.map(p => p[0])),
+        x1 = xs === x0 ? x0 + 1 : xs;
+  const sorted = all.map(p => p[1]).sort((a, b) => a - b),
+        q = share => sorted[Math.round(share * (sorted.length - 1))];
+  const ends = (target ?? []).filter(Number.isFinite);
+  const whole = [Math.min(sorted[0], ...ends), Math.max(sorted.at(-1), ...ends)];
+  const cut = channel?.undefined && whole[1] - whole[0] > 8 * (q(.9) - q(.1));
+  let [y0, y1] = cut ? [q(.05), q(.95)] : whole;
   const least = 1e-3 * Math.max(Math.abs(y0), Math.abs(y1)) || 1e-3;
   if (y1 - y0 < least) [y0, y1] = [y0 - least, y1 + least];
-  if (x1 === x0) x1 = x0 + 1;
   [y0, y1] = [y0 - .06 * (y1 - y0), y1 + .06 * (y1 - y0)];
-  const at = ([a, v]) => [left + (W - left - right) * (a - x0) / (x1 - x0), H - footroom - (H - headroom - footroom) * (Math.min(y1 + (y1 - y0), Math.max(y0 - (y1 - y0), v)) - y0) / (y1 - y0)];
-  const svg = sketch('svg', {viewBox: `0 0 ${W} ${H}`, role: 'img', 'aria-label': `${name} over ${branchName}`});
+  const high = y1 - y0, seen = v => Math.min(y1 + high, Math.max(y0 - high, v));
+  const at = ([a, v]) => [left + (W - left - right) * (a - x0) / (x1 - x0),
+    H - footroom - (H - headroom - footroom) * (seen(v) - y0) / high];
+  const parameter = x => x0 + (x1 - x0) * (x - left) / (W - left - right);
+  return {x0, x1, y0, y1, at, parameter, cut, whole};
+};
+const gridOf = ({branchName, now}, {x0, x1, y0, y1, at, cut, whole}) => {
+  const list = [];
   for (const v of ticks(y0, y1, 4)) {
     const y = px(at([x0, v])[1]);
-    svg.children.push(sketch('line', {class: 'grid', x1: left, x2: W - right, y1: y, y2: y}), sketch('text', {x: left - 4, y: +y + 3, 'text-anchor': 'end'}, shown(v)));
+    list.push(sketch('line', {class: 'grid', x1: left, x2: W - right, y1: y, y2: y}),
+      sketch('text', {x: left - 4, y: +y + 3, 'text-anchor': 'end'}, shown(v)));
   }
   for (const v of ticks(x0, x1, 4)) {
     const x = px(at([v, y0])[0]);
-    svg.children.push(sketch('line', {class: 'grid', x1: x, x2: x, y1: headroom, y2: H - footroom}), sketch('text', {x, y: H - 17, 'text-anchor': 'middle'}, shown(v)));
+    list.push(sketch('line', {class: 'grid', x1: x, x2: x, y1: headroom, y2: H - footroom}),
+      sketch('text', {x, y: H - 17, 'text-anchor': 'middle'}, shown(v)));
   }
-  if (cut) svg.children.push(sketch('text', {x: W - right, y: headroom + 8, 'text-anchor': 'end'}, `axis cut: ${whole.map(shown).join(' to ')}`));
-  svg.children.push(sketch('text', {x: W - right, y: H - 4, 'text-anchor': 'end'}, `${branchName} [${now?.unit ?? ''}]`));
-  const lines = points => {
-    const parts = [[]];
-    for (const p of points) Number.isFinite(p[1]) ? parts.at(-1).push(at(p)) : parts.push([]);
-    return parts.map(p => path(p)).join('');
-  };
-  const inner = sketch('svg', {x: left, y: 0, width: W - left - right, height: H - footroom + 3, viewBox: `${left} 0 ${W - left - right} ${H - footroom + 3}`});
-  if (target) {
-    const [from, to] = [Math.max(y0, target[0]), Math.min(y1, target[1])].map(v => at([x0, v])[1]);
-    if (from > to) inner.children.push(sketch('rect', {class: 'target', x: left, width: W - left - right, y: px(to), height: px(from - to)}));
-    figure.attributes.class += curve.length && curve.every(p => p[1] >= target[0] && p[1] <= target[1]) ? ' met' : ' missed';
-  }
-  if (state.base !== state.now) inner.children.push(sketch('path', {class: 'was', d: lines(before)}));
-  const same = new Map(fast.map(p => [p[0], p[1]])), pairs = curve.filter(p => Number.isFinite(p[1]) && Number.isFinite(same.get(p[0])));
+  const end = {x: W - right, 'text-anchor': 'end'};
+  if (cut)
+    list.push(
+        sketch('text', {...end, y: headroom + 8}, `axis cut: ${whole.map(shown).join(' to ')}`));
+  list.push(sketch('text', {...end, y: H - 4}, `${branchName} [${now?.unit ?? ''}]`));
+  return list;
+};
+// Met where every point of a branch that reaches its end lies in the band, missed where one does
+// not.
+const answerTo = ({target, curve, now}) => !target ? ''
+  : curve.some(p => !(p[1] >= target[0] && p[1] <= target[1])) ? 'missed'
+    : curve.length && now?.outcome === 'converged' ? 'met' : 'open';
+const targetOf = ({target}, {x0, y0, y1, at}) => {
+  if (!target) return [];
+  const [from, to] = [Math.max(y0, target[0]), Math.min(y1, target[1])].map(v => at([x0, v])[1]);
+  return from > to ?
+      [sketch(
+          'rect',
+          {class: 'target', x: left, width: W - left - right, y: px(to), height: px(from - to)})] :
+      [];
+};
+const pieces = (points, at) => {
+  const parts = [[]];
+  for (const p of points) Number.isFinite(p[1]) ? parts.at(-1).push(at(p)) : parts.push([]);
+  return parts.map(p => path(p)).join('');
+};
+const curvesIn = ({curve, before, fast, variants}, {at}) => {
+  const list = [], same = new Map(fast.map(p => [p[0], p[1]]));
+  for (const {name: kept, points} of variants)
+    list.push(sketch('path', {class: `variant ${kept}`, d: pieces(points, at)}));
+  if (isChanged()) list.push(sketch('path', {class: 'was', d: pieces(before, at)}));
+  const pairs = curve.filter(p => Number.isFinite(p[1]) && Number.isFinite(same.get(p[0])));
+  const back = pairs.map(p => at([p[0], same.get(p[0])])).reverse();
   if (pairs.length > 1)
-    inner.children.push(sketch('path', {class: 'band', d: path([...pairs.map(at), ...pairs.map(p => at([p[0], same.get(p[0])])).reverse()], 'Z')}),
-                 sketch('path', {class: 'fastline', d: lines(fast)}));
-  inner.children.push(sketch('path', {class: 'now', d: lines(curve)}));
+    list.push(sketch('path', {class: 'band', d: path([...pairs.map(at), ...back], 'Z')}),
+      sketch('path', {class: 'fastline', d: pieces(fast, at)}));
+  return [...list, sketch('path', {class: 'now', d: pieces(curve, at)})];
+};
+const marksIn = ({branchName, now, curve, here}, {y0, at}) => {
+  const list = [];
   if (here) {
     const x = px(at(here)[0]);
-    inner.children.push(sketch('line', {class: 'here', x1: x, x2: x, y1: headroom, y2: H - footroom}));
-    if (Number.isFinite(here[1])) inner.children.push(sketch('circle', {class: 'dot', cx: x, cy: px(at(here)[1]), r: 2.8}));
+    list.push(sketch('line', {class: 'here', x1: x, x2: x, y1: headroom, y2: H - footroom}));
+    if (Number.isFinite(here[1]))
+      list.push(sketch('circle', {class: 'dot', cx: x, cy: px(at(here)[1]), r: 2.8}));
   }
-  inner.children.push(sketch('g', {class: 'proof'}, ...proofStrip(branchName, a => at([a, y0])[0])));
-  for (const [a, stop, way] of stopsOf(state.now, now)) {
-    const x = at([a, y0])[0];
-    inner.children.push(sketch('path', {class: 'stop', d: `M${px(x)},${H - footroom - 6}l4,6h-8Z`}, sketch('title', {}, `${stop} ${way} near ${shown(a)} ${now.unit}`)));
-  }
+  list.push(sketch('g', {class: 'proof'}, ...proofStrip(branchName, a => at([a, y0])[0])));
+  for (const [a, stop, way] of now ? stopsOf(state.now, now) : [])
+    list.push(sketch(
+        'path', {class: 'stop', d: `M${px(at([a, y0])[0])},${H - footroom - 6}l4,6h-8Z`},
+        sketch('title', {}, `${stop} ${way} near ${shown(a)} ${now.unit}`)));
   if (now && now.outcome !== 'converged' && curve.length)
-    for (const p of [curve[0], curve.at(-1)].filter(p => Number.isFinite(p[1]) && !onEnd(branchName, p[0])))
-      inner.children.push(sketch('circle', {class: 'end', cx: px(at(p)[0]), cy: px(at(p)[1]), r: 3.5}, sketch('title', {}, now.detail)));
-  svg.children.push(inner);
-  figure.children.push(svg);
-  const off = worst(curve, fast), r = range(curve), far = r && off > .01 * (r[1] - r[0]);
-  figure.children.push(sketch('p', {class: far ? 'fast far' : 'fast'}, sketch('span', {}, !now?.published || Number.isNaN(off) ? '' : off < 5e-7 ? 'published recursion: no error'
-    : `published recursion off by up to ${shown(+off.toPrecision(2))} ${channel.unit}`), aim));
+    for (const p of [curve[0], curve.at(-1)].filter(
+             p => Number.isFinite(p[1]) && !onEnd(branchName, p[0])))
+      list.push(sketch(
+          'circle', {class: 'end', cx: px(at(p)[0]), cy: px(at(p)[1]), r: 3.5},
+          sketch('title', {}, now.detail)));
+  return list;
+};
+const fastWords = ({now, curve, fast, channel}) => {
+  const off = worst(curve, fast);
+  return !now?.published || off < 0 ? '' : off < 5e-7 ? 'published recursion: no error'
+    : `published recursion off by up to ${shown(+off.toPrecision(2))} ${channel.unit}`;
+};
+export const scales = new Map();  // of the charts on the page, by their keys
+export const keyOfChart = chart => `${chart.dataset.branch}|${chart.dataset.channel}`;
+const button = (kind, text, title, label, onclick) =>
+  sketch('button', {type: 'button', class: kind, title, 'aria-label': label, onclick}, text);
+const footOf = data => {
+  const {name, branchName} = data, key = `${branchName}|${name}`;
+  return sketch(
+      'p', {class: 'fast'}, sketch('span', {}, fastWords(data)),
+      button(
+          'enlarge', state.large === key ? 'smaller' : 'larger', 'Enlarge',
+          `Enlarge ${name} on ${branchName}`, () => enlarge(key)),
+      button(
+          'aim', 'target', 'Target band', `Target band of ${name} on ${branchName}`,
+          () => editTarget(name, branchName)));
+};
+const verdicts = {met: 'the whole branch lies in the band', missed: 'a point lies out of the band',
+  open: 'in the band, but the branch ends early'};
+const chartOf = (branchName, name) => {
+  const data = dataOf(branchName, name), {channel, here, all} = data,
+        key = `${branchName}|${name}`, verdict = answerTo(data);
+  const title = words(name) + (state.branch === '' ? ' · ' + branchName : '');
+  const kind =
+      ['chart', ...verdict ? [verdict] : [], ...state.large === key ? ['large'] : []].join(' ');
+  const figure = sketch(
+      'div',
+      {class: kind, 'data-channel': name, 'data-branch': branchName, 'data-solve': state.now.id},
+      sketch(
+          'h3', {title: [channel?.definition ?? '', verdicts[verdict] ?? ''].join('\n').trim()},
+          sketch('span', {}, title),
+          sketch(
+              'span', {class: 'value'}, here ? `${shown(here[1])} ${channel?.unit ?? ''}` : '–')));
+  scales.delete(key);
+  if (!all.length) {
+    figure.children.push(
+        sketch('p', {class: 'fast'}, 'not computed, or without a value on this branch'));
+    return figure;
+  }
+  const scale = scaleOf(data);
+  scales.set(key, {...scale, ...data});
+  const inner = sketch(
+      'svg', {
+        x: left,
+        y: 0,
+        width: W - left - right,
+        height: H - footroom + 3,
+        viewBox: `${left} 0 ${W - left - right} ${H - footroom + 3}`
+      },
+      ...targetOf(data, scale), ...curvesIn(data, scale), ...marksIn(data, scale));
+  figure.children.push(
+      sketch(
+          'svg',
+          {viewBox: `0 0 ${W} ${H}`, role: 'img', 'aria-label': `${name} over ${branchName}`},
+          ...gridOf(data, scale), inner),
+      footOf(data));
   return figure;
 };
-// The target band of one curve: met where every point of the branch lies in it.
+// The target band of one curve.
 const editTarget = (name, branchName) => {
-  const form = $('target'), key = `${branchName}|${name}`, given = state.targets.get(key) ?? [-Infinity, Infinity];
+  const form = $('target'), key = `${branchName}|${name}`,
+        given = state.targets.get(key) ?? [-Infinity, Infinity];
   const entries = [form.elements.low, form.elements.high];
   form.hidden = false;
-  form.querySelector('span').textContent = `target of ${name} on ${branchName} [${state.channel.get(name).unit}]`;
+  form.querySelector('span').textContent =
+      `target of ${name} on ${branchName} [${state.channel.get(name).unit}]`;
   entries.forEach((entry, k) => {
     entry.value = Number.isFinite(given[k]) ? given[k] : '';
     entry.oninput = () => {
-      const ends = entries.map((e, i) => e.value.trim() === '' ? [-Infinity, Infinity][i] : +e.value.trim());
-      entries.forEach((e, i) => e.setAttribute('aria-invalid', String(Number.isNaN(ends[i]) || ends[0] > ends[1])));
+      const ends = entries.map(
+          (e, i) => e.value.trim() === '' ? [-Infinity, Infinity][i] : +e.value.trim());
+      entries.forEach(
+          (e, i) =>
+              e.setAttribute('aria-invalid', String(Number.isNaN(ends[i]) || ends[0] > ends[1])));
       if (ends.some(Number.isNaN) || ends[0] > ends[1]) return;
       ends.some(Number.isFinite) ? state.targets.set(key, ends) : state.targets.delete(key);
       drawCharts();
     };
   });
-  form.querySelector('button').onclick = () => { state.targets.delete(key); form.hidden = true; drawCharts(); };
+  form.querySelector('button').onclick = () => {
+    state.targets.delete(key);
+    form.hidden = true;
+    drawCharts();
+  };
   entries[0].focus();
+};
+const enlarge = key => {
+  state.large = state.large === key ? '' : key;
+  drawCharts();
 };
 // Whether a parameter is an end of the branch as the scene gives it.
 const onEnd = (branchName, a) => {
   const b = state.info.branches.find(entry => entry.name === branchName);
   return b && [b.from, b.to].some(end => Math.abs(a - end) <= 1e-9 * Math.max(1, Math.abs(end)));
 };
-const drawCharts = () => {
-  const {now} = state;
-  if (!now) return;
-  const list = shownBranches().flatMap(branch => {
-    const names = state.curves ?? defaultCurves(state.base, branchOf(state.base, branch.name) ?? branch);
-    return (state.branch === '' && !state.curves ? names.slice(0, 3) : names).map(name => chartOf(branch.name, name, state.branch === ''));
-  });
+export const drawCharts = () => {
+  if (!state.now) return;
+  const list =
+      shownBranches().flatMap(branch => curvesOf(branch).map(name => chartOf(branch.name, name)));
   show($('charts'), ...list);
   drawNotes();
 };
+
+// ---- The pointer on a chart: the values there, and with a click the position
+const pointed = event => {
+  const svg = event.target.closest('#charts .chart > svg'),
+        scale = svg && scales.get(keyOfChart(svg.closest('.chart')));
+  if (!scale) return null;
+  const box = svg.getBoundingClientRect(), x = (event.clientX - box.left) * W / box.width;
+  return x < left || x > W - right ? null : {...scale, a: scale.parameter(x)};
+};
+const nearest = (curve, a) => curve.reduce(
+    (best, p) => Math.abs(p[0] - a) < Math.abs(best[0] - a) ? p : best, [Infinity, NaN]);
+const readOut = event => {
+  const there = pointed(event), box = $('readout');
+  box.hidden = !there?.curve.length;
+  if (box.hidden) return;
+  const {curve, before, channel, now} = there, [a, value] = nearest(curve, there.a);
+  const [b, old] = nearest(before, a),
+            same = isChanged() && Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(a));
+  box.textContent = `${shown(a)} ${now.unit}: ${shown(value)} ${channel.unit}` +
+      (same ? `, ${referenceName()} ${shown(old)}` : '');
+  box.style.left = `${Math.min(event.clientX + 14, innerWidth - box.offsetWidth - 8)}px`;
+  box.style.top = `${event.clientY + 16}px`;
+};
+export const makeCharts = () => {
+  $('charts').addEventListener('pointermove', readOut);
+  $('charts').addEventListener('pointerleave', () => { $('readout').hidden = true; });
+  $('charts').addEventListener('click', event => {
+    const there = pointed(event);
+    if (there) moveTo(there.branchName, there.a);
+  });
+};
+
+// ---- Which curves: sets chosen together, a list to search
+const isPushed = c =>
+    /force|torque/.test(c.cause);  // by a force or moment in the plane of the road
+const isAngle = c => c.unit.startsWith('deg') && (c.kind === 'motion' ? c.main || c.at_rest
+  : c.kind === 'characteristic' && !isPushed(c));
+const presets = {
+  'usual curves': () => false,
+  'steering and camber': isAngle,
+  'compliance': c => c.kind === 'characteristic' && isPushed(c),
+  'forces of bushings': c => c.kind === 'element' && /\.elastic_force_[xyz]$/.test(c.name),
+  'moments of bushings': c => c.kind === 'element' && /\.elastic_moment_[xyz]$/.test(c.name),
+  'forces of springs, stops and links': c =>
+      c.kind === 'element' && c.unit === 'N' && !/elastic_force/.test(c.name),
+};
+const chooseCurves = list => {
+  state.curves = list.length ? list : null;
+  drawCharts();
+};
+export const makeChoice = () => {
+  const box = $('choose').querySelector('div');
+  box.replaceChildren(...state.info.channels.map(channel => {
+    const tick = make('input', {type: 'checkbox', value: channel.name});
+    tick.onchange = () =>
+        chooseCurves([...box.querySelectorAll('input:checked')].map(t => t.value));
+    return make('label', {title: channel.definition}, tick, `${channel.name} [${channel.unit}]`);
+  }));
+  $('preset').selectedIndex = 0;
+};
+$('preset').replaceChildren(
+    ...Object.keys(presets).map(name => make('option', {value: name}, name)));
+export const choosePreset = () => {
+  const chosen = state.info?.channels.filter(presets[$('preset').value]) ?? [];
+  if (!chosen.length) $('preset').selectedIndex = 0;
+  chooseCurves(chosen.map(c => c.name));
+};
+$('choose').addEventListener('toggle', () => {
+  if (!$('choose').open || !state.now) return;
+  const list = shownBranches().flatMap(curvesOf);
+  for (const tick of $('choose').querySelectorAll('input[type=checkbox]'))
+    tick.checked = list.includes(tick.value);
+});
+$('search').oninput = () => {
+  const word = $('search').value.trim().toLowerCase().replaceAll(' ', '_');
+  for (const label of $('choose').querySelectorAll('div label'))
+    label.hidden = !label.textContent.toLowerCase().includes(word);
+};
+$('target').onsubmit = event => event.preventDefault();

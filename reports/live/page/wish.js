@@ -1,31 +1,71 @@
-// ---- Wanted values of several figures by several numbers within limits: the code of `elastocheck solve-for`
-// (reports/live/wishes.hpp), from the numbers as they are now.
-const entry = (value, label, more = {}) => make('input', {type: 'text', inputmode: 'decimal', size: 8, value, 'aria-label': label, autocomplete: 'off', ...more});
-const removable = row => {
+// ---- Wanted values of several figures by several numbers within limits: the code of `elastocheck
+// solve-for` (reports/live/wishes.hpp), from the numbers as they are now.
+import {$, make, millimetres, shown, signed, written} from './base.js';
+import {begin, numberOf, put, settle, stationOf, state} from './state.js';
+import {solvers} from './solver.js';
+import {changed} from './solve.js';
+import {rowsOf} from './numbers.js';
+import {quoted} from './files.js';
+
+const wishEntry = (value, label, more = {}) => make('input', {
+  type: 'text',
+  inputmode: 'decimal',
+  size: 8,
+  value,
+  'aria-label': label,
+  autocomplete: 'off',
+  ...more
+});
+const removableRow = row => {
   const button = make('button', {type: 'button', 'aria-label': 'remove'}, '×');
   button.onclick = () => { row.remove(); wishLine(); };
   row.append(button);
   return row;
 };
-const figuresToWant = () => state.info.channels.filter(c => c.kind === 'motion' || c.kind === 'characteristic' || (c.kind === 'element' && c.unit === 'N'));
-const addWant = (name, branchName, a, value = '') => {
-  const unit = branchOf(state.now, branchName)?.unit ?? '';
-  const figure = make('select', {'aria-label': 'wanted figure'}, ...figuresToWant().map(c => make('option', {value: c.name, selected: c.name === name}, `${c.name} [${c.unit}]`)));
-  const branch = make('select', {'aria-label': 'on branch'}, ...state.info.branches.map(b => make('option', {value: b.name, selected: b.name === branchName}, `${b.name} [${b.unit}]`)));
-  const row = make('div', {class: 'want'}, figure, ' on ', branch, ' at ', entry(String(a), `parameter of the branch [${unit}]`), ' = ', entry(value, 'wanted value'));
-  $('wants').append(removable(row));
+const figuresToWant = () => state.info.channels.filter(
+    c => c.kind === 'motion' || c.kind === 'characteristic' ||
+        (c.kind === 'element' && c.unit === 'N'));
+export const addWant = (name, branchName, a, value = '') => {
+  const unit = state.now.branch(branchName)?.unit ?? '';
+  const figure = make(
+      'select', {'aria-label': 'wanted figure'},
+      ...figuresToWant().map(
+          c => make(
+              'option', {value: c.name, selected: c.name === name}, `${c.name} [${c.unit}]`)));
+  const branch = make(
+      'select', {'aria-label': 'on branch'},
+      ...state.info.branches.map(
+          b => make(
+              'option', {value: b.name, selected: b.name === branchName},
+              `${b.name} [${b.unit}]`)));
+  const row = make(
+      'div', {class: 'want'}, figure, ' on ', branch, ' at ',
+      wishEntry(String(a), `parameter of the branch [${unit}]`), ' = ',
+      wishEntry(value, 'wanted value'));
+  $('wants').append(removableRow(row));
   wishLine();
 };
 const rangeOf = path => {
   const {unit} = state.of.get(path), value = numberOf(path), mmPerUnit = millimetres[unit];
-  const half = mmPerUnit && Math.abs(value * mmPerUnit) > 1e-9 || path.startsWith('points.') ? 20 / (mmPerUnit ?? 1) : .5 * Math.abs(value) || 1;
+  const half = mmPerUnit && Math.abs(value * mmPerUnit) > 1e-9 || path.startsWith('points.') ?
+      20 / (mmPerUnit ?? 1) :
+      .5 * Math.abs(value) || 1;
   return [value - half, value + half].map(written);
 };
-const addVaried = (path = '') => {
+export const addVaried = (path = '') => {
   const known = state.of.has(path), [low, high] = known ? rangeOf(path) : ['', ''];
-  const name = make('input', {type: 'text', list: 'paths', value: path, size: 26, 'aria-label': 'number that may change', autocomplete: 'off'});
-  const [from, to] = [entry(low, 'lower limit'), entry(high, 'upper limit')];
-  const row = make('div', {class: 'vary'}, name, ' from ', from, ' to ', to, make('span', {class: 'unit'}, known ? state.of.get(path).unit : ''));
+  const name = make('input', {
+    type: 'text',
+    list: 'paths',
+    value: path,
+    size: 26,
+    'aria-label': 'number that may change',
+    autocomplete: 'off'
+  });
+  const [from, to] = [wishEntry(low, 'lower limit'), wishEntry(high, 'upper limit')];
+  const row = make(
+      'div', {class: 'vary'}, name, ' from ', from, ' to ', to,
+      make('span', {class: 'unit'}, known ? state.of.get(path).unit : ''));
   name.onchange = () => {
     const known = state.of.has(name.value.trim());
     name.setAttribute('aria-invalid', String(!known));
@@ -33,7 +73,7 @@ const addVaried = (path = '') => {
     [from.value, to.value] = rangeOf(name.value.trim());
     row.querySelector('.unit').textContent = state.of.get(name.value.trim()).unit;
   };
-  $('varies').append(removable(row));
+  $('varies').append(removableRow(row));
   wishLine();
 };
 // The wishes as entered, or null where an entry is no number.
@@ -45,44 +85,74 @@ const wishes = () => {
     sound &&= met;
     return +text;
   };
-  const want = [...$('wants').children].map(row => { const [figure, branch] = row.querySelectorAll('select'), [a, value] = row.querySelectorAll('input');
-    return [figure.value, branch.value, number(a), number(value)]; });
-  const vary = [...$('varies').children].map(row => { const [name, low, high] = row.querySelectorAll('input'), path = name.value.trim(), known = state.of.has(path);
+  const want = [...$('wants').children].map(row => {
+    const [figure, branch] = row.querySelectorAll('select'),
+                   [a, value] = row.querySelectorAll('input');
+    return [figure.value, branch.value, number(a), number(value)];
+  });
+  const vary = [...$('varies').children].map(row => {
+    const [name, low, high] = row.querySelectorAll('input'), path = name.value.trim(),
+                      known = state.of.has(path);
     name.setAttribute('aria-invalid', String(!known));
     sound &&= known;
-    return [path, number(low), number(high)]; });
+    return [path, number(low), number(high)];
+  });
   return sound && want.length && vary.length ? {want, vary} : null;
 };
 // The same as a command line.
-const wishLine = () => {
+export const wishLine = () => {
   const {want, vary} = wishes() ?? {};
-  for (const input of $('wishes').querySelectorAll('input')) if (input.value.trim() === '') input.setAttribute('aria-invalid', 'false');
-  $('wish-line').textContent = !want ? '' : ['elastocheck', 'solve-for', quoted(state.file), ...[...state.settings].flatMap(([p, v]) => ['--set', quoted(`${p}=${v}`)]),
-    ...vary.flatMap(([p, low, high]) => ['--vary', quoted(`${p}=${low}:${high}`)]), ...want.flatMap(([c, b, a, v]) => ['--want', quoted(`${c}@${b}:${a}=${v}`)])].join(' ');
+  for (const input of $('wishes').querySelectorAll('input'))
+    if (input.value.trim() === '') input.setAttribute('aria-invalid', 'false');
+  $('wish-line').textContent = !want ? '' : [
+    'elastocheck', 'solve-for', quoted(state.file),
+    ...[...state.settings].flatMap(([p, v]) => ['--set', quoted(`${p}=${v}`)]),
+    ...vary.flatMap(([p, low, high]) => ['--vary', quoted(`${p}=${low}:${high}`)]),
+    ...want.flatMap(([c, b, a, v]) => ['--want', quoted(`${c}@${b}:${a}=${v}`)])
+  ].join(' ');
 };
 const grantWishes = async () => {
   const given = wishes(), said = $('wish-answer');
-  if (!given) { said.textContent = 'Each wish needs a figure, a position and a value, and at least one number with its limits.'; return; }
+  if (!given) {
+    said.textContent =
+        'Each wish needs a figure, a position and a value, and a number with its limits.';
+    return;
+  }
   said.textContent = 'Solving…';
   $('wish-go').disabled = true;
   const settings = [...state.settings], info = state.info;
   try {
-    const {found} = await ask('wish', {request: {settings, ...given}});
-    if (info !== state.info || JSON.stringify(settings) !== JSON.stringify([...state.settings])) { said.textContent = 'Numbers were changed meanwhile: nothing is taken over.'; return; }
+    const {found} = await solvers.back.ask('wish', {request: {settings, ...given}});
+    if (info !== state.info || JSON.stringify(settings) !== JSON.stringify([...state.settings])) {
+      said.textContent = 'Numbers were changed meanwhile: nothing is taken over.';
+      return;
+    }
     const dead = found.figures.find(f => f.still);
-    if (found.why_not || dead) { said.textContent = found.why_not ?? `${dead.name} on ${dead.branch}: none of these numbers moves it.`; return; }
-    remember();
+    if (found.why_not || dead) {
+      said.textContent =
+          found.why_not ?? `${dead.name} on ${dead.branch}: none of these numbers moves it.`;
+      return;
+    }
+    begin();
     for (const n of found.numbers) put(n.path, written(n.to));
-    changed();
     settle();
-    const limits = found.numbers.filter(n => n.at_limit).map(n => `${n.path} at its ${n.at_limit < 0 ? 'lower' : 'upper'} limit`);
-    const conflicts = found.figures.filter(f => f.conflict > .1).map(f => `${f.name} on ${f.branch}`);
-    said.textContent = (found.met ? 'Met, with the smallest change: ' : `Not met${found.converged ? ', this is nearest' : ', stopped without convergence'}: `) +
-      found.figures.map(f => `${f.name} ${shown(f.before)} → ${shown(f.after ?? NaN)} ${f.unit}`).join(', ') + ' by ' + found.numbers.map(n => `${n.path} ${signed(n.to - n.from)}`).join(', ') +
-      (limits.length ? `; ${limits.join(', ')}` : '') + (!found.met && conflicts.length > 1 ? `; in conflict: ${conflicts.join(', ')}` : '') + '.';
+    changed();
+    const limits = found.numbers.filter(n => n.at_limit)
+                       .map(n => `${n.path} at its ${n.at_limit < 0 ? 'lower' : 'upper'} limit`);
+    const conflicts =
+        found.figures.filter(f => f.conflict > .1).map(f => `${f.name} on ${f.branch}`);
+    said.textContent = (found.met ? 'Met, with the smallest change: ' :
+                                    `Not met${
+                                        found.converged ? ', this is nearest' :
+                                                          ', stopped without convergence'}: `) +
+        found.figures.map(f => `${f.name} ${shown(f.before)} → ${shown(f.after ?? NaN)} ${f.unit}`)
+            .join(', ') +
+        ' by ' + found.numbers.map(n => `${n.path} ${signed(n.to - n.from)}`).join(', ') +
+        (limits.length ? `; ${limits.join(', ')}` : '') +
+        (!found.met && conflicts.length > 1 ? `; in conflict: ${conflicts.join(', ')}` : '') + '.';
   } catch (error) { said.textContent = error.message; } finally { $('wish-go').disabled = false; }
 };
-const resetWishes = () => {
+export const resetWishes = () => {
   $('wants').replaceChildren();
   $('varies').replaceChildren();
   $('wish-answer').textContent = $('wish-line').textContent = '';
@@ -90,12 +160,19 @@ const resetWishes = () => {
   $('wishes').open = false;
 };
 const addShownWant = () => {
-  const [branch, k] = stationOf(state.now), name = $('effect').value || document.querySelector('#charts .chart')?.dataset.channel || figuresToWant()[0]?.name;
-  if (branch?.points && name) addWant(name, branch.name, +state.now.a(branch, k).toPrecision(6), '');
+  const [branch, k] = stationOf(state.now),
+                 name = $('effect').value ||
+      document.querySelector('#charts .chart')?.dataset.channel || figuresToWant()[0]?.name;
+  if (branch?.points && name)
+    addWant(name, branch.name, +state.now.a(branch, k).toPrecision(6), '');
 };
 const addMostEffect = () => {
   const used = new Set([...$('varies').querySelectorAll('input[list]')].map(i => i.value));
-  const best = [...state.effects ?? []].sort((a, b) => Math.abs(b.by) - Math.abs(a.by)).map(e => e.path).filter(p => !used.has(p)).slice(0, 3);
+  const best = [...state.effects ?? []]
+                   .sort((a, b) => Math.abs(b.by) - Math.abs(a.by))
+                   .map(e => e.path)
+                   .filter(p => !used.has(p))
+                   .slice(0, 3);
   if (best.length) for (const path of best) addVaried(path);
   else addVaried([...rowsOf.keys()].find(p => p.startsWith('points.') && !used.has(p)) ?? '');
 };

@@ -8,8 +8,7 @@ trap 'rm -rf "$part"' EXIT
 # The digest of a file in base64, as a policy names it.
 digest() { env printf "$(sha256sum "$1" | cut -c 1-64 | sed 's/../\\x&/g')" | base64 -w 0; }
 cat "$page/style.css" >"$part/style"
-{ echo "'use strict';"; cat "$page/base.js" "$page/../../page/templates/html/suspension.js.mustache" "$page/view.js" "$page/proof.js" "$page/notes.js" "$page/charts.js"
-    cat "$page/tables.js" "$page/wish.js" "$page/app.js"; } >"$part/script"
+"$(dirname "$0")/bundle.sh" "$page" >"$part/script"
 cat "$page/worker.js" >"$part/worker"
 gzip -9 -n -c "$wasm" | base64 -w 0 >"$part/solver"
 printf "default-src 'none'; script-src 'sha256-%s' 'wasm-unsafe-eval'; style-src 'sha256-%s'; worker-src blob:; base-uri 'none'; form-action 'none'" \

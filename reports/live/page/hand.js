@@ -1,0 +1,151 @@
+// ---- The hand on the drawing: hardpoints are dragged, the background turns (with Shift, or the
+// right button: is shifted), the wheel and two fingers zoom. The page scrolls over the drawing
+// until it is pressed.
+import {$} from './base.js';
+import {abandon, begin, settle, state} from './state.js';
+import {axesOf, coordinatesOf, draw3d, putCoordinates, view, zoomView, panView} from './view.js';
+import {changed} from './solve.js';
+import {choose} from './numbers.js';
+
+const pointers = new Map();  // pressed: id -> [x, y] in pixels of the window
+// How far a drag of some pixels moves, per axis [mm]. In a view along an axis in its plane; in
+// another along one axis: the chosen one, or the one that the first pixels follow. A pixel is a
+// step at most.
+const axisOf = (held, dx, dy, axes) => {
+  const chosen = $('along').value;
+  if (chosen !== '') return +chosen;
+  const fit = k => {
+    const s = [axes.right[k], -axes.up[k]], size = Math.hypot(...s);
+    return size < .05 ? 0 : Math.abs(s[0] * dx + s[1] * dy) / size;
+  };
+  if (held.axis === undefined && Math.hypot(dx, dy) >= 4)
+    held.axis = [0, 1, 2].reduce((best, k) => fit(k) > fit(best) ? k : best, 0);
+  return held.axis;
+};
+const isPlane = axes => [0, 1, 2].some(k => Math.hypot(axes.right[k], axes.up[k]) < 1e-6);
+export const moved = (held, dx, dy, fine = false) => {
+  const axes = axesOf(), step = +$('snap').value * (fine ? .1 : 1);
+  const pixel = Math.min(1 / axes.scale, +$('snap').value || Infinity) * (fine ? .1 : 1);
+  let d = [0, 0, 0];
+  if ($('along').value === '' && isPlane(axes))
+    d = add(add(d, dx * pixel, axes.right), -dy * pixel, axes.up);
+  else {
+    const k = axisOf(held, dx, dy, axes);
+    if (k === undefined) return held.from;
+    const s = [axes.right[k], -axes.up[k]], size = Math.hypot(...s);
+    if (size > .03) d[k] = pixel * (s[0] * dx + s[1] * dy) / size;
+  }
+  return held.from.map(
+      (v, k) => Math.abs(d[k]) < 1e-9 ? v :
+          step                        ? v + Math.round(d[k] / step) * step :
+                                        v + d[k]);
+};
+const inDrawing = ([x, y]) => {
+  const box = $('drawing').getBoundingClientRect();
+  return [(x - box.left) * view.wide / box.width, (y - box.top) * view.high / box.height];
+};
+const activate = on => $('drawing').classList.toggle('active', on);
+
+// Ends what the pointers do; a drag stays where it is, or goes back.
+export const release = (back = false) => {
+  const dragged = state.held?.name;
+  state.held = null;
+  if (!dragged) return;
+  back ? abandon() : settle();
+  changed();
+};
+const press = event => {
+  if (event.button > 2) return;
+  activate(true);
+  pointers.set(event.pointerId, [event.clientX, event.clientY]);
+  $('drawing').setPointerCapture(event.pointerId);
+  if (pointers.size > 1) { release(); return; }
+  const handle = event.target.closest('.handle'), {clientX: x, clientY: y} = event;
+  if (handle && !event.button) {
+    handle.focus({preventScroll: true});
+    choose(handle.dataset.name);
+    const from = coordinatesOf(handle.dataset.name);
+    state.held = {name: handle.dataset.name, from, x, y};
+    begin();
+  } else
+    state.held = {turn: !event.button && !event.shiftKey, x, y, yaw: view.yaw, pitch: view.pitch};
+  event.preventDefault();
+};
+const turn3d = (held, dx, dy) => {
+  view.yaw = held.yaw - dx * .4;
+  view.pitch = Math.max(-90, Math.min(90, held.pitch + dy * .4));
+  view.name = '';
+};
+const pinch = (event, before) => {
+  const other = [...pointers].find(([id]) => id !== event.pointerId)[1],
+        to = [event.clientX, event.clientY];
+  const apart = p => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
+  zoomView(apart(to) / apart(before), ...inDrawing(other));
+};
+const move = event => {
+  const before = pointers.get(event.pointerId), {held} = state;
+  if (!before) return;
+  pointers.set(event.pointerId, [event.clientX, event.clientY]);
+  if (pointers.size === 2) pinch(event, before);
+  else if (held?.name) {
+    const to = moved(held, event.clientX - held.x, event.clientY - held.y, event.shiftKey);
+    if (to.every((v, k) => v === coordinatesOf(held.name)[k])) return;
+    putCoordinates(held.name, to);
+    changed();
+    return;
+  } else if (held?.turn) turn3d(held, event.clientX - held.x, event.clientY - held.y);
+  else if (held) panView(event.clientX - before[0], event.clientY - before[1]);
+  draw3d();
+};
+const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+// One step along the axis nearest to the arrow in this view.
+const nudgeBy = (name, [x, y], fine) => {
+  const axes = axesOf(), step = (+$('snap').value || .1) * (fine ? .1 : 1),
+        from = coordinatesOf(name);
+  const along = $('along').value === '' ? [0, 1, 2] : [+$('along').value];
+  const fit = k => x * axes.right[k] - y * axes.up[k];
+  const k = along.reduce((best, i) => Math.abs(fit(i)) > Math.abs(fit(best)) ? i : best, along[0]);
+  if (Math.abs(fit(k)) < 1e-6) return;
+  begin();
+  putCoordinates(name, from.map((v, i) => i === k ? v + Math.sign(fit(k)) * step : v));
+  settle();
+  changed();
+};
+const pressKey = event => {
+  const handle = event.target.closest('.handle');
+  if (!handle) return;
+  const {name} = handle.dataset;
+  if (event.key === 'Enter' || event.key === ' ' || arrows[event.key]) event.preventDefault();
+  else return;
+  choose(name);
+  if (arrows[event.key]) nudgeBy(name, arrows[event.key], event.shiftKey);
+};
+export const makeHand = () => {
+  const svg = $('drawing');
+  svg.addEventListener('pointerdown', press);
+  svg.addEventListener('pointermove', move);
+  for (const end of ['pointerup', 'pointercancel'])
+    svg.addEventListener(end, event => {
+      pointers.delete(event.pointerId);
+      release();
+    });
+  svg.addEventListener('contextmenu', event => event.preventDefault());
+  svg.addEventListener('wheel', event => {
+    if (!svg.classList.contains('active')) return;
+    event.preventDefault();
+    zoomView(Math.exp(-event.deltaY * .0015), ...inDrawing([event.clientX, event.clientY]));
+    draw3d();
+  }, {passive: false});
+  svg.addEventListener('keydown', pressKey);
+  document.addEventListener('pointerdown', event => svg.contains(event.target) || activate(false));
+  document.addEventListener('keydown', event => {
+    if (event.key !== 'Escape') return;
+    if (state.held?.name) release(true);
+    else activate(false);
+  });
+};
+// A scene is opened: nothing is held any more.
+export const letGo = () => {
+  state.held = state.before = null;
+  pointers.clear();
+};

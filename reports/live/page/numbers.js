@@ -1,0 +1,122 @@
+// ---- The list of numbers, and the entry of the chosen hardpoint
+import {$, make, written} from './base.js';
+import {begin, put, settle, state} from './state.js';
+import {changed} from './solve.js';
+import {axesOf, drawHandles, paths} from './view.js';
+
+export const rowsOf = new Map();  // path -> [row, ...]
+const sliderOf = (number, filled) => {
+  const size = Math.abs(number.value);
+  const slider = make('input', {
+    type: 'range',
+    'aria-label': `${number.path}, slider`,
+    min: number.value - .5 * size,
+    max: number.value + .5 * size,
+    step: size / 200
+  });
+  slider.onpointerdown = begin;
+  slider.onkeydown = event => { if (event.key.startsWith('Arrow')) begin(); };
+  slider.oninput = () => {
+    begin();
+    put(number.path, written(+slider.value));
+    filled();
+    changed();
+  };
+  slider.onchange = settle;
+  return slider;
+};
+const numberRow = (number, words, slides) => {
+  const entry = make(
+      'input',
+      {type: 'text', inputmode: 'decimal', 'aria-label': number.path, autocomplete: 'off'});
+  const row =
+      make('div', {class: 'row', 'data-path': number.path}, make('span', {class: 'path'}, words));
+  let typed = false,
+      slid = null;  // the entry has text of its own; the text that the slider stands at
+  entry.oninput = () => { typed = true; };
+  entry.onchange = () => {
+    typed = false;
+    begin();
+    put(number.path, entry.value.trim());
+    settle();
+    changed();
+  };
+  row.title = `as opened: ${number.value} ${number.unit}`;
+  const slider = slides && number.value !== 0 ? sliderOf(number, () => { slid = null; }) : null;
+  row.append(slider ?? make('span'), entry, make('span', {class: 'unit'}, number.unit));
+  // Sets only what differs: the browser paints an entry again that is set to its own value.
+  row.fill = () => {
+    const text = state.settings.get(number.path) ?? String(number.value);
+    if (!typed && entry.value !== text) entry.value = text;
+    if (slider && slid !== text && document.activeElement !== slider) slider.value = slid = text;
+    row.classList.toggle('changed', state.settings.has(number.path));
+  };
+  // Whether text is taken back that is not entered yet.
+  row.revert = () => {
+    const was = typed;
+    typed = false;
+    row.fill();
+    return was;
+  };
+  rowsOf.set(number.path, [...(rowsOf.get(number.path) ?? []), row]);
+  row.fill();
+  return row;
+};
+export const fillNumbers = () => {
+  for (const rows of rowsOf.values())
+    for (const row of rows) row.fill();
+};
+// Marks the entries that the message is about, or that are no number.
+export const markInvalid = () => {
+  const text = state.failure?.message ?? '';
+  for (const [path, rows] of rowsOf)
+    for (const row of rows) {
+      const entry = row.querySelector('input[type=text]'), given = state.settings.get(path);
+      const wrong = given !== undefined && text !== '' &&
+          (text.includes(path) || !Number.isFinite(+given) || given === '');
+      if (entry.getAttribute('aria-invalid') !== String(wrong))
+        entry.setAttribute('aria-invalid', String(wrong));
+    }
+};
+const order = ['springs', 'bushings', 'stops', 'torsion_springs', 'beams', 'tyres', 'joints'];
+const rank = name => { const k = order.indexOf(name); return k < 0 ? 50 : k; };
+export const makeNumbers = () => {
+  rowsOf.clear();
+  const sections = new Map();
+  for (const number of state.info.numbers) {
+    const section = number.path.split('.')[0];
+    if (!sections.has(section))
+      sections.set(section, make('div', {}, make('h3', {}, section.replaceAll('_', ' '))));
+    const words = number.path.slice(section.length + 1) || section;
+    sections.get(section).append(numberRow(number, words, section !== 'points'));
+  }
+  const sorted = [...sections].sort((a, b) => rank(a[0]) - rank(b[0]));
+  $('list').replaceChildren(...sorted.map(s => s[1]));
+  filterNumbers();
+};
+const filterNumbers = () => {
+  const word = $('find').value.trim().toLowerCase();
+  for (const section of $('list').children) {
+    const rows = [...section.querySelectorAll('.row')];
+    for (const row of rows) row.hidden = !row.dataset.path.toLowerCase().includes(word);
+    section.hidden = rows.every(row => row.hidden);
+  }
+};
+export const choose = name => {
+  if (state.point === name && !$('point').hidden) return;
+  for (const [path, rows] of rowsOf)
+    rowsOf.set(path, rows.filter(row => !$('point').contains(row)));
+  state.point = name;
+  const back = make('button', {type: 'button'}, 'As opened');
+  back.onclick = () => {
+    begin();
+    for (const p of paths(name)) state.settings.delete(p);
+    settle();
+    changed();
+  };
+  const rows = paths(name).map((p, k) => numberRow(state.of.get(p), 'xyz'[k], false));
+  $('point').replaceChildren(make('h3', {}, name), ...rows, back);
+  $('point').hidden = false;
+  drawHandles(axesOf());
+};
+$('find').oninput = filterNumbers;

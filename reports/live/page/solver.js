@@ -1,0 +1,92 @@
+// ---- The solver in its workers. A worker that does not begin a call, or does not end it, is
+// started again.
+import {$} from './base.js';
+
+export const patience = {begin: 3e3, end: 60e3};  // [ms]
+const simd = new Uint8Array([
+  0, 97, 115, 109, 1,  0, 0, 0, 1,  5, 1,   96, 0,   1,  123, 3,
+  2, 1,  0,   10,  10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11
+]);
+export const browsers = 'Chrome and Edge from 91, Firefox from 113, Safari from 16.4';
+
+export class Solver {
+  constructor(module) {
+    this.module = module;
+    this.calls = 0;
+    this.waiting = new Map();  // in the order of the calls
+    this.scene = null;
+    this.start();
+  }
+  start() {
+    const blob = new Blob([$('worker').textContent], {type: 'text/javascript'});
+    const worker = this.worker = new Worker(URL.createObjectURL(blob));
+    worker.onmessage = ({data}) => this.worker === worker && this.receive(data);
+    worker.onerror = event => this.worker === worker && this.restart(event.message);
+    worker.onmessageerror = () =>
+        this.worker === worker && this.restart('its answer cannot be read');
+    const again = [this.ask('start', {module: this.module})];
+    if (this.scene) again.push(this.ask('open', this.scene));
+    for (const call of again) call.catch(() => 0);  // whoever asks next is told
+    this.watch ??= setInterval(() => this.check(), 200);
+  }
+  receive({id, begun, ...data}) {
+    const call = this.waiting.get(id);
+    if (!call) return;
+    if (begun) { call.begun = performance.now(); return; }
+    this.waiting.delete(id);
+    this.since = performance.now();
+    if (data.error === undefined) call.resolve(data);
+    else call.reject(Object.assign(new Error(data.error), {kind: data.kind}));
+  }
+  ask(what, data = {}) {
+    return new Promise((resolve, reject) => {
+      if (!this.waiting.size) this.since = performance.now();
+      this.waiting.set(++this.calls, {resolve, reject, what});
+      this.worker.postMessage({id: this.calls, what, ...data});
+    });
+  }
+  async open(scene) {
+    const answer = await this.ask('open', scene);
+    this.scene = scene;
+    return answer;
+  }
+  // The call that is next, or that the worker is at.
+  check() {
+    const [call] = this.waiting.values(), now = performance.now();
+    if (!call) return;
+    if (!call.begun && now - this.since > patience.begin) this.restart('it did not answer');
+    else if (call.begun && now - call.begun > patience.end && call.what !== 'wish')
+      this.restart(`no answer within ${patience.end / 1e3} s`);
+  }
+  restart(why, kind = 'stopped') {
+    const told = [...this.waiting.values()];
+    this.waiting.clear();
+    this.worker.terminate();
+    this.since = performance.now();
+    this.start();
+    const error = () => Object.assign(new Error(kind === 'cancelled' ? why
+      : `the solver stopped (${why}) and was started again`), {kind});
+    for (const call of told) call.reject(error());
+  }
+}
+
+// One for what the hand moves, one for the rest: the same where there is one core.
+export const solvers = {front: null, back: null};
+export const startSolvers = async () => {
+  if (typeof WebAssembly !== 'object' || !WebAssembly.validate(simd) ||
+      typeof DecompressionStream !== 'function')
+    throw new Error(
+        `this browser cannot run the solver, which needs WebAssembly with SIMD: ${browsers}`);
+  const coded = atob($('solver').textContent.trim()),
+        packed = Uint8Array.from(coded, c => c.charCodeAt(0));
+  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  const module = await WebAssembly.compile(await new Response(plain).arrayBuffer());
+  solvers.front = new Solver(module);
+  solvers.back = navigator.hardwareConcurrency > 1 ? new Solver(module) : solvers.front;
+};
+// Opens a scene in both; what was open stays where it is refused.
+export const openIn = async scene => {
+  const {head} = await solvers.front.open(scene);
+  if (solvers.back !== solvers.front) await solvers.back.open(scene);
+  return head;
+};

@@ -1,0 +1,112 @@
+// ---- The state of the page, and the functions that change it. A station is a parameter of a
+// branch, never an index. The scene as opened is solved once per branch and not overwritten. What
+// is on the screen belongs to one run (state.now).
+import {Run, keyOf} from './run.js';
+
+const fresh = () => ({
+  // The open scene, as engine.hpp opens it; its numbers by path, its outputs by name.
+  info: null, source: '', file: '', files: undefined, of: new Map(), channel: new Map(),
+  // path -> text of the numbers that are changed; the last saved
+  settings: new Map(), saved: keyOf([]),
+  // settings before each change, and before the one that goes on
+  undo: [], redo: [], before: null, held: null,
+  // the scene as opened; what is on the screen; why the newest numbers are not: {message, kind}
+  base: new Run([]), now: null, failure: null,
+  // kept runs: {name, run}; the name of that which is compared with
+  variants: [], compared: '',
+  // shown: a branch of '' is all, a station of null is the start
+  branch: '', station: null, curves: null, targets: new Map(), point: null, effects: null,
+  large: '',
+});
+export const state = {...fresh(), busy: false, due: false, since: 0, published: false, solves: 0};
+
+export const openScene = (head, source, file, files) => Object.assign(state, fresh(), {
+  info: head, source, file, files, branch: head.branches[0]?.name ?? '',
+  of: new Map(head.numbers.map(n => [n.path, n])),
+  channel: new Map(head.channels.map(c => [c.name, c])),
+});
+
+// ---- What is shown
+export const shownBranch = run => run.branch(state.branch) ?? run.branches[0];
+// Of the other branches the start is shown.
+export const stationIn = (run, branch) => !branch?.points ? 0
+  : state.station === null || branch.name !== shownBranch(run).name ? branch.start
+    : run.near(branch, state.station);
+export const stationOf = run => {
+  const branch = shownBranch(run);
+  return [branch, stationIn(run, branch)];
+};
+// What the run on the screen is compared with: the scene as opened, or a variant.
+export const reference = () =>
+  state.variants.find(v => v.name === state.compared)?.run ?? state.base;
+export const referenceName = () => state.compared || 'as opened';
+// The same position of the reference; -1: it has no such point.
+export const stationInReference = () => {
+  const [branch, k] = stationOf(state.now), old = reference().branch(branch?.name);
+  return [old, branch?.points ? reference().exact(old, state.now.a(branch, k)) : -1];
+};
+export const shownBranches = () =>
+    state.now.branches.filter(b => ['', b.name].includes(state.branch));
+export const showBranch = name => Object.assign(state, {branch: name, station: null});
+export const showStation = (branch, a) => {
+  const k = state.now.near(branch, a);
+  state.station = k === branch.start ? null : state.now.a(branch, k);
+};
+export const isSolved = () => state.now !== null && state.now.key === keyOf(state.settings) &&
+  state.now.fast === state.published;
+export const isChanged = () => state.now.key !== reference().key;
+export const keptRuns = () => [state.base, ...state.variants.map(v => v.run)];
+
+// ---- Numbers and settings
+export const numberOf = path =>
+  state.settings.has(path) ? +state.settings.get(path) : state.of.get(path).value;
+export const put = (path, text) => {
+  if (state.of.get(path).value === +text && text.trim() !== '') state.settings.delete(path);
+  else state.settings.set(path, text);
+};
+
+// ---- Variants: kept beside the scene as A, B and C
+export const keepVariant = run => {
+  const name = [...'ABC'].find(letter => state.variants.every(v => v.name !== letter));
+  if (name) state.variants.push({name, run});
+};
+export const dropVariant = name => {
+  state.variants = state.variants.filter(v => v.name !== name);
+  if (state.compared === name) state.compared = '';
+};
+
+// ---- Undo: the settings before each change. begin() and settle() enclose what is undone in one
+// step.
+export const begin = () => { state.before ??= [...state.settings]; };
+export const settle = () => {
+  const {before} = state;
+  state.before = null;
+  if (!before || keyOf(before) === keyOf(state.settings)) return;
+  state.undo.push(before);
+  state.redo = [];
+};
+// Back to what was before begin().
+export const abandon = () => {
+  if (state.before) state.settings = new Map(state.before);
+  state.before = null;
+};
+export const stepBack = (from, to) => {
+  if (!from.length) return false;
+  to.push([...state.settings]);
+  state.settings = new Map(from.pop());
+  return true;
+};
+
+// ---- Solving
+export const startSolve = () => {
+  const {since} = state;
+  Object.assign(state, {due: false, since: 0});
+  return since;
+};
+export const demandSolve = () => {
+  state.since ||= performance.now();
+  Object.assign(state, {due: true, failure: null});
+};
+export const showRun = run => Object.assign(
+    state, {now: run, failure: null, solves: Math.max(state.solves, run.id ??= state.solves + 1)});
+export const showFailure = ({message, kind}) => Object.assign(state, {failure: {message, kind}});
