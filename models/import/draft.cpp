@@ -222,6 +222,8 @@ std::vector<std::string> described(const Notes& notes) {
     for (const auto& [kind, n] : notes.understood)
         understood += fmt::format("{}{} {}", understood.empty() ? "" : ", ", n, kind);
     lines.push_back("Understood: " + (understood.empty() ? "nothing" : understood) + ".");
+    for (const auto& [role, point] : notes.roles)
+        lines.push_back(fmt::format("Point {}: {}.", role, described(point)));
     for (const auto& [why, what] : notes.omitted) {
         std::string list;
         for (std::size_t k = 0; k < std::min(what.size(), most_told); ++k)
@@ -260,7 +262,8 @@ std::string commented(std::string_view what) {
 Text write(const Draft& draft) {
     Text text;
     comment(fmt::format("Imported from {} ({}).", printable(draft.source), draft.format), text);
-    for (const std::string& remark : draft.remarks) comment(remark, text);
+    for (const std::string& remark : draft.remarks)  // may have text of the file
+        comment(reader::is_utf8(remark) ? remark : printable(remark), text);
     for (const std::string& line : described(draft.notes)) comment(line, text);
     const auto put = [&](const std::string& line) {
         text.yaml += line + "\n";

@@ -72,6 +72,7 @@ class Hardpoints {
     void add(const Eigen::Vector3d& position, std::string_view wanted, const SourceLocation& from);
     const std::vector<Entry>& entries() const { return entries_; }
     std::vector<Entry>& entries() { return entries_; }
+    const std::vector<Eigen::Vector3d>& positions() const { return positions_; }
 
   private:
     double size_;
@@ -90,6 +91,7 @@ struct Notes {
     std::vector<std::pair<SourceLocation, std::string>> warnings;
     // parts with an effect in statics that the scene cannot represent
     std::vector<std::pair<SourceLocation, std::string>> missing;
+    std::vector<std::pair<std::string, SourceLocation>> roles;  // of a mechanism, and their points
 
     void count(const std::string& kind) { ++understood[kind]; }
     void leave_out(const std::string& why, SourceLocation what) {

@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "elastocheck/read_scene.hpp"
+#include "models/import/mechanism/mechanism.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
@@ -57,37 +58,70 @@ std::string where(const SourceLocation& place) {
                                  fmt::format("the resulting scene is refused: {}", message)));
 }
 
+// What is read, by the extension of the file, and the options that it takes.
+struct Format {
+    std::string_view ending;
+    const char* what;
+    Draft (*read)(std::string_view text, const std::string& file, Options& options);
+    bool has_bodies;
+    std::string_view options;
+};
+template <auto read>
+Draft read_by(std::string_view text, const std::string& file, Options& options) {
+    return read(text, file, options);
+}
+constexpr Format formats[] = {
+    {".adm", "ADAMS datasets", read_by<import_adm>, true, ""},
+    {".json", "Chrono::Vehicle suspensions and vehicles", read_by<import_chrono>, true, "--axle"},
+    {".sub", "hardpoints of Adams/Car", read_by<import_subsystem>, false, "--axes --as --axle"},
+    {".csv", "tables of points", read_by<import_points>, false,
+     "--axes --as --axle --columns --unit"},
+    {".shk", "points of Lotus SHARK", read_by<import_points>, false, "--axes --as --axle --unit"},
+    {".ini", "suspensions.ini of Assetto Corsa", import_assetto, false, "--as --axle"},
+};
+
+// "tables of points (.csv), points of Lotus SHARK (.shk)": the formats that take the option.
+std::string formats_with(std::string_view option) {
+    std::string list;
+    for (const Format& format : formats)
+        if (format.options.find(option) != format.options.npos)
+            list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", format.what, format.ending);
+    return list;
+}
+
+void check_options(const Format& format, const Options& options, const std::string& file) {
+    for (const auto& [given, option] : {std::pair{&options.axes, "--axes"},
+                                        {&options.columns, "--columns"},
+                                        {&options.unit, "--unit"},
+                                        {&options.axle, "--axle"},
+                                        {&options.as, "--as"}})
+        if (!given->empty() && format.options.find(option) == format.options.npos)
+            fail(file, 0, option, "only for {}", formats_with(option));
+    const bool makes = !options.as.empty() || format.read == import_assetto;
+    const bool has_parts =
+        !options.pushrod.empty() || !options.damper.empty() || !options.roles.empty();
+    if (!makes && has_parts)
+        fail(file, 0, "--as", "missing; --pushrod, --damper and --role are of a mechanism: --as {}",
+             fmt::join(mechanisms(), ", "));
+    if (!makes && !options.axle.empty() && !format.has_bodies)
+        fail(file, 0, "--axle", "of points only with --as: {}", fmt::join(mechanisms(), ", "));
+}
+
 }  // namespace
 
-Imported import_text(std::string_view text, const std::string& file, const Options& options) {
+Imported import_text(std::string_view text, const std::string& file, const Options& given) {
     const std::string ending =
         reader::small_letters(std::filesystem::path(file).extension().string());
-    const bool list = ending == ".csv", points_only = list || ending == ".sub";
-    if (ending == ".shk")
-        fail(file, 1, "",
-             "files of SHARK are not read; export the points as a table (.csv) with "
-             "columns name, x, y, z");
-    if (ending != ".adm" && ending != ".json" && !points_only)
-        fail(file, 0, "",
-             "{} is not a supported file extension; allowed: .adm (ADAMS datasets), .json "
-             "(Chrono::Vehicle suspensions and vehicles), .sub (hardpoints of Adams/Car), .csv "
-             "(tables of points)",
-             reader::quote(ending));
-    if (!options.axes.empty() && !points_only)
-        fail(
-            file, 0, "--axes",
-            "only for hardpoints of Adams/Car (.sub) and tables of points; the axes of a model are "
-            "those of its file");
-    for (const auto& [given, option] :
-         {std::pair{&options.columns, "--columns"}, {&options.unit, "--unit"}})
-        if (!given->empty() && !list) fail(file, 0, option, "only for tables of points (.csv)");
-    if (!options.axle.empty() && ending != ".json")
-        fail(file, 0, "--axle", "only for a vehicle of Chrono::Vehicle (.json)");
-    const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
-                        : ending == ".json" ? import_chrono(text, file, options)
-                        : list              ? import_points(text, file, options)
-                                            : import_subsystem(text, file, options);
+    const auto format = std::ranges::find(formats, ending, &Format::ending);
+    if (format == std::end(formats))
+        fail(file, 0, "", "{} is not a supported file extension; allowed: {}",
+             reader::quote(ending), formats_with(""));
+    check_options(*format, given, file);
+    Options options = given;
+    Draft draft = format->read(text, file, options);
+    const bool makes = !options.as.empty(), points_only = !format->has_bodies && !makes;
     if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
+    if (makes) make_mechanism(file, options, draft);
     if (draft.bodies.empty() && !points_only)
         fail(file, 0, "",
              "the model has no moving part: no part has a joint or element that a scene "

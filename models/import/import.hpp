@@ -27,9 +27,13 @@ struct Options {
     std::string columns = {};
     // of the coordinates of a table of points: "mm", "cm", "m", "in"; empty: as the file says
     std::string unit = {};
-    // of a vehicle of Chrono: "front" (its first), "rear" (its last), "1", "2", ...; empty: the
-    // only one
+    // of a vehicle of Chrono: "front" (its first), "rear" (its last), "1", "2", ...; of points of two
+    // axles, which become a mechanism: "front", "rear"; empty: the only one
     std::string axle = {};
+    // of points: the mechanism to make of them, "double_wishbone"; empty: points alone
+    std::string as = {};
+    std::string pushrod = {}, damper = {};  // on which of its parts: "upright", "lower", "upper"
+    std::vector<std::string> roles = {};    // "tie_rod_inner=NAME"
 };
 
 // Allowed values of `axes`. Without z it is up, where that is right-handed; elsewhere z must be given.
@@ -50,7 +54,7 @@ struct Imported {
     int bodies = 0, elements = 0, joints = 0;
 };
 
-// Selects the format by extension: .adm, .json, .sub, .csv (points). Throws SceneError "file:line:
+// Selects the format by extension: .adm, .json, .sub, .csv, .shk, .ini (points). Throws SceneError "file:line:
 // ..." for errors in the file and parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 
@@ -63,10 +67,14 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
 Draft import_chrono(std::string_view text, const std::string& file, const Options& options);
 Draft import_subsystem(std::string_view text, const std::string& file, const Options& options);
 Draft import_points(std::string_view text, const std::string& file, const Options& options);
+// Chooses the mechanism and its roles in `options`, and drops the axle that it has read.
+Draft import_assetto(std::string_view text, const std::string& file, Options& options);
 
 // Signs of x, y and z of a table of hardpoints in the axes of a scene. Throws SceneError for axes that
 // are not among axes_of_tables.
 std::array<double, 3> directions(const std::string& axes, const std::string& file);
+// For the head of a scene of points alone; that of a mechanism has none.
+void remark_on_points(const Options& options, const char* remark, Draft& draft);
 std::string remark_on_axes(const std::string& axes, const std::array<double, 3>& along);
 
 }  // namespace elastocheck::importer

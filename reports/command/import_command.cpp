@@ -435,10 +435,12 @@ int export_scene(const ExportRequest& request) {
 const Command import_command{
     Group::models, "import",
     "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
-    "hardpoints .sub, tables of points .csv",
+    "hardpoints .sub, tables of points .csv, points of Lotus SHARK .shk, "
+    "suspensions.ini of Assetto Corsa",
     [](CLI::App& command) -> Run {
         const auto request = std::make_shared<ImportRequest>();
-        as_file(command.add_option("FILE", request->file, "the model (.adm, .json, .sub, .csv)"))
+        as_file(command.add_option("FILE", request->file,
+                                   "the model (.adm, .json, .sub, .csv, .shk, .ini)"))
             ->required();
         as_file(command.add_option("-o,--output", request->output, "write the scene to this file"));
         command.add_option("--wheel", request->options.wheel,
@@ -459,7 +461,18 @@ const Command import_command{
                 {"mm", "cm", "m", "in"});
         command.add_option(
             "--axle", request->options.axle,
-            "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ...");
+            "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ...; of points "
+            "with --as: front, rear");
+        command.add_option("--as", request->options.as,
+                           "mechanism to make of points: double_wishbone, strut, five_link, "
+                           "trailing_arm; rigid, one wheel (.csv, .shk, .sub, .ini)");
+        command.add_option("--pushrod", request->options.pushrod,
+                           "with --as: part on which a pushrod or pullrod to a rocker stands: "
+                           "upright, lower, upper");
+        command.add_option("--damper", request->options.damper,
+                           "with --as: part on which the damper stands: upright, lower, upper");
+        command.add_option("--role", request->options.roles,
+                           "with --as: the point of a role: tie_rod_inner=NAME");
         command.add_flag("--allow-missing", request->options.allow_missing,
                          "warn about what a scene cannot represent instead of rejecting the file");
         add_json(command, request->as_json);

@@ -39,6 +39,13 @@ void points(std::string_view input) {
         for (const char* unit : {"", "m"})
             expect_place(input, "points.csv",
                          {.axes = "x-rearward,y-right", .columns = columns, .unit = unit});
+    for (const char* mechanism : {"", "double_wishbone", "trailing_arm"})
+        for (const char* axle : {"", "front"})
+            for (const char* file : {"points.csv", "points.shk", "suspensions.ini"}) {
+                importer::Options options{.axle = axle, .as = mechanism};
+                if (!std::string_view(file).ends_with("ini")) options.axes = "x-rearward,y-right";
+                expect_place(input, file, options);
+            }
 }
 
 void property(std::string_view input) {

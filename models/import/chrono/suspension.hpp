@@ -51,6 +51,7 @@ class Suspension {
 
     const reader::Cursor& file() const { return file_; }
     Draft& draft() { return draft_; }
+    const Options& options() const { return options_; }
 
     bool one_freedom = false;  // the wheels share one freedom: one is driven, the other follows
 

@@ -175,6 +175,65 @@ void antiroll_bar(Suspension& s, const std::string& on) {
               s.real("RSD/Spring Coefficient"));
 }
 
+// The steering of an axle: its file is known before the suspension is attached to it.
+struct AxleSteering {
+    std::optional<Cursor> subsystem = {};
+    std::unique_ptr<JsonFile> file = {};
+    Steering (*steer)(Suspension&) = nullptr;
+};
+
+AxleSteering steering_of(const Cursor& root, const Cursor& axle, DataFolder& data, Draft& draft) {
+    AxleSteering found;
+    const auto index = axle.optional("Steering Index");
+    if (!index) return found;
+    const auto all = root.require("Steering Subsystems").items();
+    const double k = index->number();
+    if (!(k >= 0) || k != std::floor(k) || !(k < static_cast<double>(all.size())))
+        index->fail(fmt::format("{} is not a steering subsystem; there are {}, counted from 0",
+                                index->found(), all.size()));
+    found.subsystem = all[static_cast<std::size_t>(k)];
+    found.file = data.read(found.subsystem->require("Input File"));
+    const Cursor named = found.file->root.require("Template");
+    const std::string name = named.text("a template");
+    found.steer = name == "RackPinion"  ? rack_and_pinion
+                  : name == "PitmanArm" ? pitman_arm
+                                        : nullptr;
+    if (!found.steer)
+        draft.notes.miss({named.value->line, named.path, found.file->name},
+                         fmt::format("{} is not a supported steering; known: RackPinion, "
+                                     "PitmanArm; without it the tie rods are on ground",
+                                     named.found()));
+    return found;
+}
+
+// The anti-roll bar of an axle; false if there is none that a scene can represent.
+bool add_antiroll_bar(const Cursor& axle, const Vector3d& location, DataFolder& data,
+                      const Made& made, Suspension& whole) {
+    const auto named = axle.optional("Antirollbar Input File");
+    if (!named) return false;
+    Draft& draft = whole.draft();
+    const auto file = data.read(*named);
+    Suspension s(file->root, whole.options(), draft);
+    s.origin = vector(axle.require("Antirollbar Location")) - location;
+    const Cursor type = file->root.require("Template");
+    bool is_known = false;
+    if (type.text("a template") != "AntirollBarRSD") {
+        draft.notes.miss({type.value->line, type.path, file->name},
+                         fmt::format("{} is not a supported anti-roll bar; known: AntirollBarRSD",
+                                     type.found()));
+    } else if (made.antiroll_body.empty()) {
+        draft.notes.miss({named->value->line, named->path, *named->file},
+                         "an anti-roll bar on this template of a suspension");
+    } else {
+        antiroll_bar(s, made.antiroll_body);
+        s.leave_out(s.at("Type"), "without effect on the mechanism");
+        s.report_unread();
+        is_known = true;
+    }
+    from_file(draft, file->name);
+    return is_known;
+}
+
 }  // namespace
 
 Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
@@ -194,69 +253,27 @@ Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
     const auto suspension_file = data.read(axle.require("Suspension Input File"));
     Suspension suspension(suspension_file->root, options, draft);
 
-    // The steering: its template is known before the suspension is attached to it.
-    std::unique_ptr<JsonFile> steering_file;
-    Steering (*steer)(Suspension&) = nullptr;
-    std::optional<Cursor> subsystem;
-    if (const auto index = axle.optional("Steering Index")) {
-        const auto all = root.require("Steering Subsystems").items();
-        const double k = index->number();
-        if (!(k >= 0) || k != std::floor(k) || !(k < static_cast<double>(all.size())))
-            index->fail(fmt::format("{} is not a steering subsystem; there are {}, counted from 0",
-                                    index->found(), all.size()));
-        subsystem = all[static_cast<std::size_t>(k)];
-        steering_file = data.read(subsystem->require("Input File"));
-        const Cursor named = steering_file->root.require("Template");
-        const std::string name = named.text("a template");
-        steer = name == "RackPinion" ? rack_and_pinion : name == "PitmanArm" ? pitman_arm : nullptr;
-        if (steer)
-            suspension.steering_link = "steering_link";
-        else
-            draft.notes.miss({named.value->line, named.path, steering_file->name},
-                             fmt::format("{} is not a supported steering; known: RackPinion, "
-                                         "PitmanArm; without it the tie rods are on ground",
-                                         named.found()));
-    }
+    const AxleSteering steered = steering_of(root, axle, data, draft);
+    if (steered.steer) suspension.steering_link = "steering_link";
     if (suspension_file->root.require("Type").text("a type") != "Suspension")
         suspension_file->root.require("Type").fail("not a suspension");
     const Made made = make(suspension);
     from_file(draft, suspension_file->name);
 
     std::optional<Steering> steering;
-    if (steer && suspension.is_steered) {
-        Suspension s(steering_file->root, options, draft);
-        s.origin = vector(subsystem->require("Location")) - location;
-        s.turn = rotation(subsystem->require("Orientation"));
-        steering = steer(s);
+    if (steered.steer && suspension.is_steered) {
+        Suspension s(steered.file->root, options, draft);
+        s.origin = vector(steered.subsystem->require("Location")) - location;
+        s.turn = rotation(steered.subsystem->require("Orientation"));
+        steering = steered.steer(s);
         s.leave_out(s.at("Type"), "without effect on the mechanism");
         s.report_unread();
-        from_file(draft, steering_file->name);
+        from_file(draft, steered.file->name);
     }
 
-    bool has_bar = false;
-    if (const auto named = axle.optional("Antirollbar Input File")) {
-        const auto file = data.read(*named);
-        Suspension s(file->root, options, draft);
-        s.origin = vector(axle.require("Antirollbar Location")) - location;
-        const Cursor type = file->root.require("Template");
-        if (type.text("a template") != "AntirollBarRSD")
-            draft.notes.miss({type.value->line, type.path, file->name},
-                             fmt::format("{} is not a supported anti-roll bar; known: "
-                                         "AntirollBarRSD",
-                                         type.found()));
-        else if (made.antiroll_body.empty())
-            draft.notes.miss({named->value->line, named->path, vehicle.name},
-                             "an anti-roll bar on this template of a suspension");
-        else {
-            antiroll_bar(s, made.antiroll_body);
-            s.leave_out(s.at("Type"), "without effect on the mechanism");
-            s.report_unread();
-            has_bar = true;
-        }
-        from_file(draft, file->name);
-    }
+    const bool has_bar = add_antiroll_bar(axle, location, data, made, whole);
 
-    if (steer && !steering)
+    if (steered.steer && !steering)
         whole.leave_out(*axle.optional("Steering Index"),
                         "since no part of the suspension is attached to the steering");
     draft.title = root.optional("Name") ? root.require("Name").text("a name") : draft.title;
@@ -279,7 +296,7 @@ Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
     leave_out(root, "unused_of_vehicle");
     if (const auto all = root.optional("Steering Subsystems"))
         for (const Cursor& other : all->items())
-            if (!subsystem || other.value != subsystem->value || !steering)
+            if (!steered.subsystem || other.value != steered.subsystem->value || !steering)
                 whole.leave_out(other, "not of this axle");
     whole.report_unread();
 

@@ -197,10 +197,62 @@ struct Found {
     std::size_t head = no_row;  // row of the headings; no_row: chosen by position alone
 };
 
+// Columns without a heading in the row, whose cells beside the numbers below it are all words.
+std::vector<std::size_t> unnamed_columns(const Sheet& sheet, std::size_t head) {
+    std::vector<std::size_t> words;
+    for (std::size_t c = 0; c < SheetRow::most_cells; ++c) {
+        std::size_t cells = 0, wide = 0;
+        for (std::size_t r = head + 1; r < sheet.rows.size(); ++r) {
+            const SheetRow& row = sheet.rows[r];
+            if (std::ranges::count_if(row.cells, is_number) < 3) continue;
+            wide = std::max(wide, row.cells.size());
+            if (row.at(c).empty() || is_number(row.at(c))) cells = SheetRow::most_cells;
+            ++cells;
+        }
+        if (c >= wide) break;
+        if (cells < SheetRow::most_cells && sheet.rows[head].at(c).empty()) words.push_back(c);
+    }
+    return words;
+}
+
+// "LF_", "left_" of a heading above several columns: "Front left", "LEFT".
+std::string prefix_of(const std::string& heading) {
+    const auto has = [&](const char* word) { return has_word(heading, word); };
+    const bool left = has("left") || has("l") || has("lh"),
+               right = has("right") || has("r") || has("rh");
+    if (left == right) return heading + "_";
+    if (has("front") == has("rear")) return left ? "left_" : "right_";
+    return fmt::format("{}{}_", left ? 'L' : 'R', has("front") ? 'F' : 'R');
+}
+
+// The coordinates of each of several groups of columns, called as the row above says.
+std::vector<Triple> grouped(const Sheet& sheet, std::size_t head,
+                            const std::array<std::vector<std::size_t>, 4>& found) {
+    std::vector<Triple> triples;
+    if (head == 0 || found[1].size() != found[2].size() || found[1].size() != found[3].size())
+        return {};
+    for (std::size_t n = 0; n < found[1].size(); ++n) {
+        const auto x = found[1][n], before = n == 0 ? 0 : found[3][n - 1] + 1;
+        std::size_t at = x + 1;
+        while (at > before && sheet.rows[head - 1].at(at - 1).empty()) --at;
+        if (at == before) return {};
+        const std::string prefix = prefix_of(std::string(sheet.rows[head - 1].at(at - 1)));
+        if (std::ranges::find(triples, prefix, &Triple::prefix) != triples.end()) return {};
+        triples.push_back({prefix, {x, found[2][n], found[3][n]}});
+    }
+    return triples;
+}
+
 Found by_headings(const Sheet& sheet, const std::string& file) {
     std::vector<std::string> missing{"name", "x", "y", "z"};
     for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
-        const auto found = recognised(sheet.rows[r]);
+        auto found = recognised(sheet.rows[r]);
+        const bool has_places = !found[1].empty() && !found[2].empty() && !found[3].empty();
+        if (found[0].empty() && has_places && r > 0) found[0] = recognised(sheet.rows[r - 1])[0];
+        if (found[0].empty() && has_places) {
+            found[0] = unnamed_columns(sheet, r);
+            if (found[0].size() > 1) found[0].clear();
+        }
         std::vector<std::string> lacks;
         for (std::size_t k = 0; k < 4; ++k)
             if (found[k].empty()) lacks.emplace_back(k == 0 ? "name" : axis_names[k - 1]);
@@ -208,13 +260,15 @@ Found by_headings(const Sheet& sheet, const std::string& file) {
             if (lacks.size() < missing.size()) missing = lacks;
             continue;
         }
+        Found result;
+        if (found[1].size() > 1) result.columns.triples = grouped(sheet, r, found);
         for (std::size_t k = 0; k < 4; ++k)
-            if (found[k].size() > 1)
+            if (found[k].size() > 1 && (k == 0 || result.columns.triples.empty()))
                 refuse(sheet, file,
                        fmt::format("two columns of {}", std::array{"names", "x", "y", "z"}[k]));
-        Found result;
         result.columns.name = found[0][0];
-        result.columns.triples = {{"", {found[1][0], found[2][0], found[3][0]}}};
+        if (result.columns.triples.empty())
+            result.columns.triples = {{"", {found[1][0], found[2][0], found[3][0]}}};
         result.head = r;
         return result;
     }

@@ -9,20 +9,13 @@
 
 #include "models/import/import.hpp"
 #include "models/import/property/columns.hpp"
+#include "models/import/property/shark.hpp"
 #include "models/import/property/spreadsheet.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer {
 namespace {
-
-using Coordinates = std::array<double, 3>;
-
-struct NamedPoint {
-    int line = 0;
-    std::string name;
-    Coordinates at{};  // as in the file
-};
 
 constexpr std::size_t narrowest = 4;  // columns: the name and three coordinates
 
@@ -210,13 +203,15 @@ Draft import_points(std::string_view text, const std::string& name, const Option
     Draft draft;
     draft.title = std::filesystem::path(name).stem().string();
     draft.source = name;
-    draft.format = "table of points";
+    const bool shark = reader::small_letters(name).ends_with(".shk");
+    draft.format = shark ? "points of Lotus SHARK" : "table of points";
     draft.units = "{length: mm, angle: deg, force: N}";
     draft.remarks = {remark_on_axes(options.axes, along)};
     draft.points = Hardpoints(1);
-    const auto points = points_of_table(text, name, options, draft);
-    draft.remarks.emplace_back(
-        "Points only: bodies and joints are not in this file. Add yours below.");
+    const auto points = shark ? points_of_shark(text, name, options.unit, draft)
+                              : points_of_table(text, name, options, draft);
+    remark_on_points(
+        options, "Points only: bodies and joints are not in this file. Add yours below.", draft);
     if (points.empty()) fail(name, 0, "", "no point in this file");
     warn_of_equal_names(points, draft.notes);
     warn_of_equal_sides(points, draft.notes);

@@ -7,7 +7,6 @@
 
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/yaml.hpp"
-#include "models/reader/tables/csv.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -59,7 +58,7 @@ struct Splitter {
         SheetRow row{.line = line, .cells = {}};
         for (;;) {
             row.cells.push_back(cell());
-            if (row.cells.size() > reader::CsvLines::max_cells && wrong == nullptr)
+            if (row.cells.size() > SheetRow::most_cells && wrong == nullptr)
                 wrong_line = row.line, wrong = "more than 10000 cells";
             if (at == text.size() || wrong != nullptr) return row;
             if (ends_line()) {

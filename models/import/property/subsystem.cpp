@@ -30,6 +30,10 @@ std::string remark_on_axes(const std::string& axes, const std::array<double, 3>&
         along[0] * along[1] * along[2] > 0 ? "" : "; those of the file are left-handed");
 }
 
+void remark_on_points(const Options& options, const char* remark, Draft& draft) {
+    if (options.as.empty()) draft.remarks.emplace_back(remark);
+}
+
 // The file has x rearward, y right, z up unless options.axes is set; the scene has x forward, y
 // left, z up. A 'left/right' hardpoint is a pair, of which the left one is written.
 Draft import_subsystem(std::string_view text, const std::string& name, const Options& options) {
@@ -41,10 +45,11 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
     draft.source = name;
     draft.format = "hardpoints of an Adams/Car subsystem";
     draft.units = "{length: mm, angle: deg, force: N}";
-    draft.remarks = {
-        remark_on_axes(axes, along),
-        "Hardpoints only: joints and bodies are in the subsystem's template, which is another "
-        "file. Add yours below."};
+    draft.remarks = {remark_on_axes(axes, along)};
+    remark_on_points(options,
+                     "Hardpoints only: joints and bodies are in the subsystem's template, which is "
+                     "another file. Add yours below.",
+                     draft);
     draft.points = Hardpoints(1);
     bool any_pair = false;
     for (const auto& block : file.blocks) {

@@ -25,7 +25,10 @@ int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
 // Collects the parser's events into a tree of values.
 class TreeBuilder final : public YAML::EventHandler {
   public:
-    explicit TreeBuilder(const std::string& file_name) : file(file_name) {}
+    TreeBuilder(const std::string& file_name, Syntax syntax)
+        : file(file_name),
+          is_json(syntax == Syntax::json),
+          deepest(is_json ? 32 : deepest_nesting) {}
 
     Value root;
 
@@ -45,6 +48,7 @@ class TreeBuilder final : public YAML::EventHandler {
         add({.kind = Value::Kind::scalar,
              .text = text,
              .line = line_of(mark),
+             .is_string = is_json && tag == "!",
              .row = mark.line,
              .column = mark.column});
     }
@@ -71,8 +75,8 @@ class TreeBuilder final : public YAML::EventHandler {
     void begin(Value::Kind kind, const YAML::Mark& mark, const std::string& tag) {
         refuse_tag(mark, tag);
         if (expects_key()) fail_at(mark, "a list or map where the name of a field is expected");
-        if (open.size() == deepest_nesting)
-            fail_at(mark, fmt::format("nested more than {} levels deep", deepest_nesting));
+        if (open.size() == deepest)
+            fail_at(mark, fmt::format("nested more than {} levels deep", deepest));
         open.push_back({.value = {.kind = kind, .line = line_of(mark)}});
     }
 
@@ -150,6 +154,8 @@ class TreeBuilder final : public YAML::EventHandler {
     }
 
     const std::string& file;
+    const bool is_json;
+    const std::size_t deepest;
     bool seen_document = false;
     std::vector<Open> open;
 };
@@ -178,10 +184,10 @@ std::string place_in(const Value& list, std::size_t k) {
     return is_vector ? std::string(1, "xyz"[k]) : std::to_string(k + 1);
 }
 
-Value parse_yaml(std::string_view text, const std::string& file) {
+Value parse_yaml(std::string_view text, const std::string& file, Syntax syntax) {
     if (text.size() > largest_text) fail(file, 0, "", "larger than 1 MiB, the limit for a scene");
     refuse_binary(text, file);
-    TreeBuilder builder(file);
+    TreeBuilder builder(file, syntax);
     try {
         std::istringstream stream{std::string(text)};
         YAML::Parser parser(stream);

@@ -25,7 +25,9 @@ struct Value {
 // Rejects, with the line: text that is not YAML, duplicate keys, keys that are not plain text,
 // aliases, tags, a second document, excessive nesting, control characters and bytes that are not
 // UTF-8, more than 1 MiB. Throws SceneError.
-Value parse_yaml(std::string_view text, const std::string& file);
+// JSON is YAML, but may be 32 levels deep, and what is in quotes is text there, never a number.
+enum class Syntax { yaml, json };
+Value parse_yaml(std::string_view text, const std::string& file, Syntax syntax = Syntax::yaml);
 
 // Name of a list entry in paths, "y" or "4": vectors have x, y, z, all other lists
 // positions from 1.

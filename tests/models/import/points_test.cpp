@@ -50,7 +50,7 @@ TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
     // z of a frame that may be left-handed is not guessed
     for (const char* axes : {"x-rearward,y-left", "x-forward,y-right"})
         EXPECT_TRUE(says(refused(good, "p.csv", axes), "needs its z"));
-    EXPECT_TRUE(says(refused("LOWER WISHBONE 1 2 3\n", "p.shk"), "p.shk:1: files of SHARK"));
+    EXPECT_TRUE(says(refused("LOWER WISHBONE 1 2 3\n", "p.shk"), "no point in this file"));
 }
 
 // A front wheel behind the rear one, a left one to the right: the axes are wrong.
@@ -114,11 +114,36 @@ TEST(PointsTable, WithUnknownHeadingsIsRefusedWithTheOptionToType) {
     columns.resize(columns.find(' '));
     EXPECT_EQ(columns, "name=Punkt,x=C,y=Y-Wert,z=Z-Wert");
     EXPECT_EQ(refused_table(text, columns), "");
-    // a column of names without a heading
+}
+
+// The one column of words without a heading has the names; of two none is chosen.
+TEST(PointsTable, HasItsNamesInTheColumnWithoutAHeading) {
     const std::string unnamed = "X,Y,Z,\n(mm),(mm),(mm),\n110,215,150,LBJ\n160,600,248,WC\n";
+    EXPECT_TRUE(says(importer::import_text(unnamed, "p.csv", with_columns("")).yaml,
+                     "LBJ: [110, 215, 150]"));
+    const std::string two = "X,Y,Z,,\n(mm),(mm),(mm),,\n110,215,150,LBJ,a\n160,600,248,WC,b\n";
     EXPECT_TRUE(
-        says(refused_table(unnamed, ""), "none (D); choose with --columns name=D,x=X,y=Y,"));
-    EXPECT_EQ(refused_table(unnamed, "name=D,x=X,y=Y,z=Z"), "");
+        says(refused_table(two, ""), "none (D), none (E); choose with --columns name=D,x=X,"));
+    EXPECT_EQ(refused_table(two, "name=D,x=X,y=Y,z=Z"), "");
+}
+
+// Headings in two rows: the upper one says the side, or the wheel.
+TEST(PointsTable, HasSeveralGroupsOfColumnsUnderTheirHeadings) {
+    const auto table = [](const char* first, const char* second) {
+        return fmt::format(
+            ",{},,,{},,\nPoint,X [mm],Y [mm],Z [mm],X [mm],Y [mm],Z [mm]\nLBJ,1,2,3,4,-5,6\n",
+            first, second);
+    };
+    for (const auto& [first, second, one, other] :
+         {std::tuple{"Left", "RIGHT SIDE", "left_LBJ: [1, 2, 3]", "right_LBJ: [4, -5, 6]"},
+          {"Front left", "front right", "LF_LBJ: [1, 2, 3]", "RF_LBJ: [4, -5, 6]"},
+          {"Stand 1", "Stand 2", "Stand_1_LBJ: [1, 2, 3]", "Stand_2_LBJ: [4, -5, 6]"}}) {
+        const std::string yaml =
+            importer::import_text(table(first, second), "p.csv", with_columns("")).yaml;
+        EXPECT_TRUE(says(yaml, one) && says(yaml, other));
+    }
+    for (const char* second : {"", "Left"})
+        EXPECT_TRUE(says(refused_table(table("Left", second), ""), "two columns of x"));
 }
 
 TEST(PointsTable, SaysWhatIsWrongInAMap) {

@@ -1,0 +1,372 @@
+#include "models/import/mechanism/mechanism.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "mechanism_embedded.hpp"  // generated: text of mechanisms.yaml
+#include "models/reader/document/characters.hpp"
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::importer {
+namespace {
+
+using Eigen::Vector3d;
+using reader::Value;
+using Words = std::set<std::string>;
+
+const Value& mechanism_table(std::string_view name) {
+    static const Value file = reader::parse_yaml(embedded_mechanism[0].text, "mechanisms.yaml");
+    return *entry(file, name);
+}
+
+Words words_between_blanks(std::string_view text) {
+    Words words;
+    for (std::string_view rest = reader::trimmed(text); !rest.empty();) {
+        const std::string_view word = rest.substr(0, rest.find(' '));
+        words.emplace(word);
+        rest = reader::trimmed(rest.substr(word.size()));
+    }
+    return words;
+}
+
+bool lists(const Value& list, std::string_view word) {
+    return std::ranges::find(list.items, word, &Value::text) != list.items.end();
+}
+
+// Words of a name in small letters: "CHAS_LowFor" is chas, low, for; "PPAttPnt" is pp, att, pnt.
+std::vector<std::string> split_name(std::string_view name) {
+    std::vector<std::string> words(1);
+    const auto is_capital = [&](std::size_t k) {
+        return k < name.size() && name[k] >= 'A' && name[k] <= 'Z';
+    };
+    for (std::size_t k = 0; k < name.size(); ++k) {
+        const bool is_part = reader::is_letter(name[k]);
+        const bool begins = is_capital(k) && k > 0 &&
+                            (!is_capital(k - 1) || (k + 1 < name.size() && !is_capital(k + 1) &&
+                                                    reader::is_letter(name[k + 1])));
+        if ((!is_part || begins) && !words.back().empty()) words.emplace_back();
+        if (is_part) words.back() += reader::small_letters(name.substr(k, 1));
+    }
+    if (words.back().empty()) words.pop_back();
+    return words;
+}
+
+struct PlacedPoint {
+    std::string name;  // in the file
+    Vector3d at;
+    SourceLocation from;
+    Words words = {}, marks = {};
+    bool has_role = false;
+};
+
+PlacedPoint understood(std::string name, const Vector3d& at, const SourceLocation& from) {
+    PlacedPoint point{std::move(name), at, from};
+    std::vector<std::string> words = split_name(point.name);
+    if (words.size() > 1 && words[1] == "axle" && (words[0] == "front" || words[0] == "rear")) {
+        point.marks.insert(words[0] + " axle");
+        words.erase(words.begin(), words.begin() + 2);
+    }
+    for (const std::string& word : words) {
+        bool is_mark = false;
+        const Value& marks = mechanism_table("marks");
+        for (std::size_t k = 0; k < marks.keys.size(); ++k)
+            if (lists(marks.items[k], word)) point.marks.insert(marks.keys[k]), is_mark = true;
+        if (is_mark) continue;
+        const Value& known = mechanism_table("words");
+        const auto same = std::ranges::find_if(
+            known.items, [&](const Value& others) { return lists(others, word); });
+        if (same == known.items.end())
+            point.words.insert(word);
+        else
+            point.words.merge(words_between_blanks(
+                known.keys[static_cast<std::size_t>(same - known.items.begin())]));
+    }
+    return point;
+}
+
+struct Role {
+    std::string name;
+    std::vector<Words> phrases = {};
+    PlacedPoint* point = nullptr;
+};
+
+// Size of the longest phrase of the role that the point's name has; 0 if it has none.
+std::size_t fit(const Role& role, const PlacedPoint& point) {
+    std::size_t most = 0;
+    for (const Words& phrase : role.phrases) {
+        const bool has_all = std::ranges::includes(point.words, phrase);
+        const bool is_of_kind =
+            std::ranges::all_of(mechanism_table("kinds").items, [&](const Value& kind) {
+                return !point.words.contains(kind.text) || phrase.contains(kind.text);
+            });
+        if (has_all && is_of_kind) most = std::max(most, phrase.size());
+    }
+    return most;
+}
+
+struct Maker {
+    const std::string& file;
+    const Options& options;
+    Draft& draft;
+    const Value& made;  // the template
+    std::vector<PlacedPoint> points = {};
+    std::vector<Role> roles = {};
+
+    [[noreturn]] void fail(const std::string& option, const std::string& what) const {
+        reader::fail(file, 0, option, what);
+    }
+
+    // Points of one side of one axle.
+    void choose_points() {
+        for (std::size_t k = 0; k < draft.points.entries().size(); ++k) {
+            const Entry& entry = draft.points.entries()[k];
+            points.push_back(understood(entry.from.what, draft.points.positions()[k], entry.from));
+        }
+        const auto has = [&](const char* mark) {
+            return std::ranges::any_of(
+                points, [&](const PlacedPoint& p) { return p.marks.contains(mark); });
+        };
+        const auto drop = [&](const std::string& mark, const char* why) {
+            std::erase_if(points, [&](const PlacedPoint& p) {
+                if (p.marks.contains(mark)) draft.notes.leave_out(why, p.from);
+                return p.marks.contains(mark);
+            });
+        };
+        if (has("front axle") && has("rear axle")) {
+            if (options.axle != "front" && options.axle != "rear")
+                fail("--axle", "the names are of two axles; choose one: front, rear");
+            drop(options.axle == "front" ? "rear axle" : "front axle", "of the other axle");
+        } else if (!options.axle.empty()) {
+            fail("--axle", "the names of the points are not of two axles");
+        }
+        if (has("left") && has("right")) drop("right", "of the other side");
+    }
+
+    void add_roles(const Value& of) {
+        const Value* list = entry(of, "roles");
+        for (std::size_t k = 0; list && k < list->keys.size(); ++k) {
+            Role role{list->keys[k]};
+            for (const Value& phrase : list->items[k].items)
+                role.phrases.push_back(words_between_blanks(phrase.text));
+            roles.push_back(std::move(role));
+        }
+    }
+
+    // --role ROLE=POINT
+    void give(const std::string& text) {
+        const auto equals = std::min(text.find('='), text.size());
+        const std::string name = text.substr(0, equals),
+                          wanted = text.substr(std::min(equals + 1, text.size()));
+        std::vector<std::string> names, known;
+        for (const Role& role : roles) names.push_back(role.name);
+        for (const PlacedPoint& point : points) known.push_back(point.name);
+        const auto role = std::ranges::find(roles, name, &Role::name);
+        if (role == roles.end())
+            fail("--role", fmt::format("{} is not a role of this mechanism{}", reader::quote(name),
+                                       reader::did_you_mean(name, names, "roles")));
+        const auto point = std::ranges::find(points, wanted, &PlacedPoint::name);
+        if (point == points.end())
+            fail("--role", fmt::format("{}: there is no point {}{}", name, reader::quote(wanted),
+                                       reader::did_you_mean(wanted, known, "points")));
+        if (role->point || point->has_role)
+            fail("--role", fmt::format("{}: the role or its point is given twice", text));
+        role->point = &*point;
+        point->has_role = true;
+    }
+
+    std::vector<PlacedPoint*> candidates(const Role& role, std::size_t size) {
+        std::vector<PlacedPoint*> found;
+        for (PlacedPoint& point : points)
+            if (!point.has_role && fit(role, point) >= size) found.push_back(&point);
+        return found;
+    }
+
+    // A role gets a point if no other point fits it; long phrases before short ones.
+    void find_points() {
+        for (std::size_t size = 3; size > 0; --size)
+            for (bool again = true; std::exchange(again, false);)
+                for (Role& role : roles) {
+                    if (role.point) continue;
+                    const auto fits = candidates(role, size);
+                    if (fits.size() != 1) continue;
+                    role.point = fits[0];
+                    fits[0]->has_role = again = true;
+                }
+    }
+
+    bool is_found(const Value& group) const {
+        const Value& names = *entry(group, "roles");
+        return std::ranges::all_of(names.keys, [&](const std::string& name) {
+            return std::ranges::find(roles, name, &Role::name)->point != nullptr;
+        });
+    }
+
+    // A point on the axis of the rocker across its other points, if none is given.
+    void add_rocker_axis() {
+        const auto role = [&](const char* name) {
+            return std::ranges::find(roles, name, &Role::name);
+        };
+        const auto axis = role("rocker_axis"), pivot = role("rocker_pivot"),
+                   rod = role("pushrod_inner"), damper = role("damper_rocker");
+        if (axis->point || !pivot->point || !rod->point || !damper->point) return;
+        const Vector3d o = pivot->point->at, n = (rod->point->at - o).cross(damper->point->at - o);
+        if (!(n.norm() > 0)) return;
+        draft.points.add(o + 50 * n.normalized(), "rocker_axis",
+                         {0, "across the plane of the rocker's points"});
+        draft.notes.warn({0, "rocker_axis"},
+                         "the file has one point of the rocker's axis; the axis is taken to be "
+                         "across the plane of its three points");
+        roles.erase(axis);
+    }
+
+    void require_points() {
+        std::string missing, first;
+        for (const Role& role : roles) {
+            if (role.point) continue;
+            if (first.empty()) first = role.name;
+            std::vector<std::string> names;
+            for (const auto* point : candidates(role, 1))
+                names.push_back(reader::quote(point->name));
+            missing +=
+                fmt::format("{}{}{}", missing.empty() ? "" : ", ", role.name,
+                            names.empty() ? "" : fmt::format(" ({})", fmt::join(names, " or ")));
+        }
+        if (missing.empty()) return;
+        std::vector<std::string> rest;
+        for (const PlacedPoint& point : points)
+            if (!point.has_role) rest.push_back(reader::quote(point.name));
+        fail("--as " + options.as,
+             fmt::format("no point for {}; name it with --role {}=POINT; points without a role: {}",
+                         missing, first,
+                         rest.empty() ? "none" : fmt::format("{}", fmt::join(rest, ", "))));
+    }
+
+    // The body on which the damper or the pushrod stands.
+    std::string part(const char* option, const std::string& wanted) const {
+        const Value* list = entry(made, "parts");
+        const Value* body = list ? entry(*list, wanted) : nullptr;
+        if (!body)
+            fail(option,
+                 fmt::format("{} is not a part of {}; allowed: {}", reader::quote(wanted),
+                             options.as,
+                             list ? fmt::format("{}", fmt::join(list->keys, ", ")) : "none"));
+        return body->text;
+    }
+
+    void write(const Value& of, const std::string& stands_on) {
+        for (const auto& [section, list] : {std::pair{"bodies", &draft.bodies},
+                                            {"joints", &draft.joints},
+                                            {"dampers", &draft.dampers},
+                                            {"branches", &draft.branches}}) {
+            const Value* entries = entry(of, section);
+            for (std::size_t k = 0; entries && k < entries->keys.size(); ++k) {
+                std::string fields = entries->items[k].text;
+                if (const auto at = fields.find("PART"); at != fields.npos)
+                    fields.replace(at, 4, stands_on);
+                list->push_back({entries->keys[k], fields, {}});
+            }
+        }
+    }
+
+    void write_points() {
+        Hardpoints written(1);
+        for (const Role& role : roles) {
+            written.add(role.point->at, role.name, role.point->from);
+            draft.notes.roles.emplace_back(role.name, role.point->from);
+        }
+        for (std::size_t k = 0; k < draft.points.entries().size(); ++k)
+            if (const Entry& e = draft.points.entries()[k]; e.name == "rocker_axis")
+                written.add(draft.points.positions()[k], e.name, e.from);
+        draft.points = std::move(written);
+        for (const PlacedPoint& point : points)
+            if (!point.has_role) draft.notes.leave_out("without a role", point.from);
+    }
+
+    void write_wheel(bool has_contact) {
+        const PlacedPoint& centre = *std::ranges::find(roles, "wheel_centre", &Role::name)->point;
+        const bool left = centre.at.y() >= 0;
+        if (centre.marks.contains(left ? "right" : "left"))
+            reader::fail(file, centre.from.line, centre.name,
+                         fmt::format("lies on the {} in the axes of --axes; choose the axes in "
+                                     "which it does not, or rename the point",
+                                     left ? "left" : "right"));
+        draft.wheels.push_back(
+            {"wheel",
+             fmt::format("{{{}{}, spin_axis: {}, side: {}}}", entry(made, "wheel")->text,
+                         has_contact ? ", contact_patch: contact" : "", left ? "y" : "-y",
+                         left ? "left" : "right"),
+             {}});
+    }
+
+    void run() {
+        choose_points();
+        const Value& groups = mechanism_table("groups");
+        const Value &contact = *entry(groups, "contact"), &damper = *entry(groups, "damper"),
+                    &pushrod = *entry(groups, "pushrod");
+        const Value* standard = entry(made, "damper");
+        const bool has_rod = !options.pushrod.empty(),
+                   may_damp = standard || !options.damper.empty();
+        if (has_rod && !options.damper.empty())
+            fail("--damper", "with --pushrod the damper stands on the rocker");
+        const std::string stands_on =
+            has_rod    ? part("--pushrod", options.pushrod)
+            : may_damp ? part("--damper", options.damper.empty() ? standard->text : options.damper)
+                       : "";
+        add_roles(made);
+        if (has_rod) add_roles(pushrod);
+        add_roles(contact);
+        if (!has_rod && may_damp) add_roles(damper);
+        for (const std::string& given : options.roles) give(given);
+        find_points();
+        if (has_rod) add_rocker_axis();
+        write_groups(contact, has_rod ? pushrod : damper, stands_on);
+    }
+
+    void write_groups(const Value& contact, const Value& spring, const std::string& stands_on) {
+        const bool has_rod = !options.pushrod.empty();
+        const bool has_contact = is_found(contact),
+                   has_spring = has_rod || (!stands_on.empty() && is_found(spring));
+        const auto drop = [&](const Value& group) {
+            for (const std::string& name : entry(group, "roles")->keys)
+                std::erase_if(roles, [&](const Role& role) {
+                    if (role.name == name && role.point) role.point->has_role = false;
+                    return role.name == name;
+                });
+        };
+        if (!has_contact) drop(contact);
+        if (!has_spring && !stands_on.empty()) drop(spring);
+        require_points();
+        write_points();
+        write(made, "");
+        if (has_spring) write(spring, stands_on);
+        draft.branches.insert(draft.branches.begin(),
+                              {"travel", "{drive: travel, from: -30, to: 30, steps: 60}", {}});
+        write_wheel(has_contact);
+        draft.title += fmt::format(", {}", reader::small_letters(entry(made, "title")->text));
+        draft.mirror.reset();
+    }
+};
+
+}  // namespace
+
+const std::vector<std::string>& mechanisms() { return mechanism_table("templates").keys; }
+
+std::string mechanism_called(std::string_view words) {
+    const std::string text = reader::small_letters(words);
+    const Value& table = mechanism_table("templates");
+    for (std::size_t k = 0; k < table.keys.size(); ++k)
+        for (const Value& name : entry(table.items[k], "called")->items)
+            if (text.find(name.text) != text.npos) return table.keys[k];
+    return "";
+}
+
+void make_mechanism(const std::string& file, const Options& options, Draft& draft) {
+    const Value* made = entry(mechanism_table("templates"), options.as);
+    if (!made)
+        fail(file, 0, "--as", "{} is not a mechanism{}", reader::quote(options.as),
+             reader::did_you_mean(options.as, mechanisms(), "allowed"));
+    Maker{file, options, draft, *made}.run();
+}
+
+}  // namespace elastocheck::importer
