@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -157,22 +158,42 @@ double step(const Trim::Adjustment& adjustment) {
     return of_what / std::abs(adjustment.per_unit);
 }
 
+// Changes of the conditions from p - h to p + h, h the step of adjustment k; by a reference along a
+// branch that moves the adjustment, so that the start settles once. Empty where the leg failed.
+std::optional<VectorXd> change_beside(const TrimProblem& problem, const VectorXd& p, Index k,
+                                      TrimAttempt& failed) {
+    const auto& adjustment = problem.trim->adjust[static_cast<std::size_t>(k)];
+    const double h = step(adjustment);
+    std::array<VectorXd, 2> missed;  // at p + h, p - h
+    if (problem.solver == Leg::series) {
+        for (const int side : {0, 1}) {
+            const double by = side == 0 ? h : -h;
+            failed = settle(problem, p + by * VectorXd::Unit(p.size(), k), problem.solver);
+            if (failed.outcome != Outcome::converged) return std::nullopt;
+            missed[static_cast<std::size_t>(side)] = failed.missed;
+        }
+        return missed[0] - missed[1];
+    }
+    BranchSide along = held_at(problem, p);
+    along.branch.drivers[static_cast<std::size_t>(k)].rate = adjustment.per_unit * h;
+    along.model.branches = {along.branch};
+    constexpr std::array both{1.0, -1.0};
+    const EquilibriumPath path =
+        walk_through(along, problem.solver, both, [&](const Equilibrium& state) {
+            missed[state.load > 0 ? 0 : 1] = values(problem, state) - problem.target;
+        });
+    failed = {path.outcome, path.detail, {}, {}};
+    if (path.outcome != Outcome::converged) return std::nullopt;
+    return missed[0] - missed[1];
+}
+
 // J, one column per step h: change of the conditions with an adjustment. Empty where a leg failed.
-std::optional<MatrixXd> responses(const TrimProblem& problem, const VectorXd& p,
-                                  TrimAttempt& failed) {
-    const Index n = p.size();
-    MatrixXd J(static_cast<Index>(problem.channels.size()), n);
-    for (Index k = 0; k < n; ++k) {
-        const VectorXd h =
-            step(problem.trim->adjust[static_cast<std::size_t>(k)]) * VectorXd::Unit(n, k);
-        const TrimAttempt more = settle(problem, p + h, problem.solver),
-                          less = settle(problem, p - h, problem.solver);
-        for (const TrimAttempt* answer : {&more, &less})
-            if (answer->outcome != Outcome::converged) {
-                failed = *answer;
-                return std::nullopt;
-            }
-        J.col(k) = 0.5 * (more.missed - less.missed);
+std::optional<MatrixXd> responses(const TrimProblem& problem, const VectorXd& p, TrimAttempt& failed) {
+    MatrixXd J(static_cast<Index>(problem.channels.size()), p.size());
+    for (Index k = 0; k < p.size(); ++k) {
+        const auto change = change_beside(problem, p, k, failed);
+        if (!change) return std::nullopt;
+        J.col(k) = 0.5 * *change;
     }
     return J;
 }

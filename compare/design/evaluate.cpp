@@ -194,13 +194,13 @@ MatrixXd Figures::gradient(const VectorXd& p) const {
     std::iota(open.begin(), open.end(), Index{0});
     double share = 1;
     for (int pass = 0; pass <= most_shorter && !open.empty(); ++pass, share /= 8) {
-        std::vector<VectorXd> points;
+        std::vector<VectorXd> points{p};
         for (const Index i : open)
             for (const double t : {-2, -1, 1, 2})
                 points.push_back(p + t * share * step[i] * VectorXd::Unit(p.size(), i));
         const auto y = values(points);
         std::vector<Index> kinked;
-        for (std::size_t k = 0; k < y.size(); k += 4) {
+        for (std::size_t k = 1; k < y.size(); k += 4) {
             const Index i = open[k / 4];
             const Changes by{y[k] - here, y[k + 1] - here, y[k + 2] - here, y[k + 3] - here};
             bool settled = true;

@@ -27,31 +27,57 @@ FigureValues of_trimmed(const Trimmed& trimmed, std::span<const Figure> figures,
     return evaluate(compile(trimmed.scene), figures, leg);
 }
 
-// By the equilibrium leg; a trim by the series from that of a similar scene, or else, where the start
-// settles past a limit point, by the equilibrium leg, neither confirmed. Without values where the scene
-// does not exist: a negative rate, points that meet.
+// Where the trim of a similar scene ended, and by which leg.
+struct NearTrim : TrimStart {
+    bool by_equilibrium = false;
+};
+
+// By the equilibrium leg, with a trim from that of a similar scene, which it replaces: by the series,
+// or, where the start settles past a limit point, by the equilibrium leg; neither is confirmed. Without
+// values where the scene does not exist: a negative rate, points that meet.
 FigureValues values_at(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
-                       TrimStart start = {}) {
+                       NearTrim& near) {
     try {
         const Scene scene = varied.scene(p);
-        Trimmed trimmed = trim_by_series(scene, &start);
-        if (trimmed.record && !trimmed.record->reached())
-            trimmed = trim_not_confirmed(scene, &start);
+        const auto trim_by = [&](bool by_equilibrium) {
+            return (by_equilibrium ? trim_not_confirmed : trim_by_series)(scene, &near);
+        };
+        Trimmed trimmed = trim_by(near.by_equilibrium);
+        if (trimmed.record && !trimmed.record->reached()) {
+            trimmed = trim_by(!near.by_equilibrium);
+            if (trimmed.record->reached()) near.by_equilibrium = !near.by_equilibrium;
+        }
         return of_trimmed(trimmed, figures, Leg::equilibrium);
     } catch (const std::runtime_error& error) {
         return {VectorXd::Constant(std::ssize(figures), nan), error.what()};
     }
 }
 
-// Where the trim of the scene as it is ends.
-TrimStart start_of_trims(const Varied& varied) {
-    TrimStart start;
-    try {
-        trim_by_series(varied.scene(varied.start), &start);
-    } catch (const std::runtime_error&) {
+// Values at points near the first one, from whose trim those of the others start; that of the first from
+// the last one that there was.
+struct SolvedFigures {
+    Varied varied;
+    std::vector<Figure> figures;
+    int threads;
+    NearTrim near = {};
+    VectorXd first = {}, value = {};
+
+    std::vector<VectorXd> operator()(const std::vector<VectorXd>& points) {
+        if (first.size() != points[0].size() || first != points[0]) {
+            value = values_at(varied, figures, points[0], near).value;
+            first = points[0];
+        }
+        std::vector<VectorXd> all(points.size(), value);
+        std::vector<Job> jobs;
+        for (std::size_t k = 1; k < points.size(); ++k)
+            jobs.push_back({"", [&, k] {
+                                NearTrim start = near;
+                                all[k] = values_at(varied, figures, points[k], start).value;
+                            }});
+        run_jobs(jobs, threads, {});
+        return all;
     }
-    return start;
-}
+};
 
 }  // namespace
 
@@ -63,23 +89,13 @@ Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int th
     VectorXd step(std::ssize(varied.numbers));
     for (Index i = 0; i < step.size(); ++i)
         step[i] = difference_step(varied_number(varied.numbers[static_cast<std::size_t>(i)]));
-    return {[varied, figures, threads,
-             start = start_of_trims(varied)](const std::vector<VectorXd>& points) {
-                std::vector<VectorXd> all(points.size());
-                std::vector<Job> jobs;
-                for (std::size_t k = 0; k < points.size(); ++k)
-                    jobs.push_back({"", [&, k] {
-                                        all[k] = values_at(varied, figures, points[k], start).value;
-                                    }});
-                run_jobs(jobs, threads, {});
-                return all;
-            },
-            step};
+    return {SolvedFigures{varied, std::move(figures), threads}, step};
 }
 
 std::string why_not_solved(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
                            const char* where) {
-    const std::string why = values_at(varied, figures, p).why_not;
+    NearTrim near;
+    const std::string why = values_at(varied, figures, p, near).why_not;
     if (!why.empty()) return fmt::format("no value at {}: {}", where, why);
     const Figures solved = solved_figures(varied, {figures.begin(), figures.end()});
     const MatrixXd rate = solved.gradient(p);
@@ -90,8 +106,9 @@ std::string why_not_solved(const Varied& varied, std::span<const Figure> figures
             std::string beside;
             for (const double by : {solved.step[i], -solved.step[i]})
                 if (beside.empty())
-                    beside = values_at(varied, {&figure, 1}, p + by * VectorXd::Unit(p.size(), i))
-                                 .why_not;
+                    beside =
+                        values_at(varied, {&figure, 1}, p + by * VectorXd::Unit(p.size(), i), near)
+                            .why_not;
             return fmt::format("no rate at {}: {} on branch '{}' by {}: {}", where, figure.name,
                                figure.branch, varied.numbers[static_cast<std::size_t>(i)].path,
                                beside.empty() ? "it differs on both sides of this value" : beside);
@@ -131,8 +148,9 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures, const 
     Confirmation result;
     std::string& why = result.why_not;
     bool judged = false;
+    const Trimmed trimmed = trim(scene);
     for (const auto leg : {Leg::energy, Leg::series}) {
-        const FigureValues found = figure_values(scene, figures, leg);
+        const FigureValues found = of_trimmed(trimmed, figures, leg);
         (leg == Leg::energy ? result.energy : result.series) = found.value;
         if (found.not_applicable) continue;
         judged = true;

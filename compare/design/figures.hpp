@@ -65,7 +65,7 @@ struct Varied : SearchRange {
 
 // The algorithms of this folder know a scene by its figures at points p alone.
 struct Figures {
-    // of each point: in the units of the outputs; NaN where there is none
+    // at points near the first one, in the units of the outputs; NaN where there is none
     std::function<std::vector<Eigen::VectorXd>(const std::vector<Eigen::VectorXd>& p)> values;
     Eigen::VectorXd step;  // h, per number
 
@@ -73,7 +73,7 @@ struct Figures {
     // [figures × numbers], NaN where there is no rate
     Eigen::MatrixXd gradient(const Eigen::VectorXd& p) const;
 };
-// By the equilibrium leg, points on several threads.
+// By the equilibrium leg, points on several threads; a trim starts from that of the last first point.
 Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads = 1);
 
 // Reason why one of the figures has no value, or else no rate, at p: "no rate at the start: ...".

@@ -80,6 +80,12 @@ void add_conflict(Result& result, const std::vector<std::string>& conflicting,
             : fmt::format("The {} would come nearer with {}.", what, fmt::join(limits, "; ")));
 }
 
+// Numbers with which wishes are not met are the nearest ones, and those with which they are change least,
+// where the search has converged.
+Grade grade_of(bool met, bool converged) {
+    return !converged ? Grade::not_judged : met ? Grade::pass : Grade::fail;
+}
+
 void set_confirmation(Result& result, const Confirmation& by, Grade otherwise) {
     result.verdict.grade = by.confirmed ? otherwise : Grade::not_judged;
     if (by.confirmed)
@@ -277,12 +283,13 @@ Result result_of(const SolvedFor& solved) {
         if (!found.converged)
             result.notes.emplace_back("The search has not converged: there may be nearer numbers.");
     }
-    set_confirmation(result, solved.by, met ? Grade::pass : Grade::fail);
-    result.verdict.sentence = met ? "All wishes are met; of all such numbers within the limits, "
-                                    "these change least, as shares of their ranges."
-                              : found.converged
-                                  ? "The wishes cannot be met; these numbers come nearest."
-                                  : "The wishes are not met, and the search has not converged.";
+    set_confirmation(result, solved.by, grade_of(met, found.converged));
+    result.verdict.sentence =
+        !found.converged ? fmt::format("The wishes are {}met, and the search has not converged.",
+                                       met ? "" : "not ")
+        : met ? "All wishes are met; of all such numbers within the limits, these change least, as "
+                "shares of their ranges."
+              : "The wishes cannot be met; these numbers come nearest.";
     result.verdict.compared = static_cast<int>(solved.target.size());
     return result;
 }
@@ -329,12 +336,13 @@ Result result_of(const OptimisedScene& scene) {
                     bands.push_back(
                         bound_text(scene, {false, k, above, above ? goal.high : goal.low}));
         add_conflict(result, bands, "", scene.varied, optimum.nearest.at_limit, "bands");
-        sentence = "The bands cannot be met; these numbers come nearest.";
+        sentence = optimum.converged ? "The bands cannot be met; these numbers come nearest."
+                                     : "The bands are not met, and the search has not converged.";
     }
     if (scene.between)
         note(fmt::format("Between its points {} is outside of its band by {:.2g}.",
                          scene.between->what, scene.between->excess));
-    set_confirmation(result, scene.by, optimum.met ? Grade::pass : Grade::fail);
+    set_confirmation(result, scene.by, grade_of(optimum.met, optimum.converged));
     if (!optimum.converged)
         note(optimum.met
                  ? fmt::format("The search has not converged (optimality {:.1e}): there may be a "
@@ -343,7 +351,7 @@ Result result_of(const OptimisedScene& scene) {
                  : "The search has not converged: there may be nearer numbers.");
     if (scene.certificate) note(result_of(*scene.certificate).verdict.sentence);
     const bool open = scene.between && !std::isfinite(scene.between->excess);
-    if (optimum.met && (!optimum.converged || open || !scene.certificate->conclusive()))
+    if (optimum.met && (open || !scene.certificate->conclusive()))
         result.verdict.grade = Grade::not_judged;
     result.verdict.compared = static_cast<int>(scene.figures.size());
     return result;

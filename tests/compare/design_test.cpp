@@ -11,6 +11,7 @@
 
 #include "compare/design/least_squares.hpp"
 #include "compare/design/optimise.hpp"
+#include "compare/design/results.hpp"
 #include "compare/design/tolerances.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
@@ -181,6 +182,46 @@ TEST(SolveFor, ASearchThatEndsBesidePointsWithoutValuesHasNotConverged) {
     const Solved found = solved(ends, list_of({0}), {list_of({0.8}), list_of({-1}), list_of({1})});
     EXPECT_FALSE(found.met);
     EXPECT_FALSE(found.solution.converged);
+}
+
+// Numbers beside which there may be nearer ones, or a smaller change, are not judged.
+TEST(SolveFor, AndOptimiseDoNotJudgeWhereTheSearchHasNotConverged) {
+    const Varied varied{{list_of({0.5}), list_of({0}), list_of({1})}, {{"p", 0.5, "m"}}};
+    for (const bool met : {false, true})
+        for (const bool converged : {false, true}) {
+            const Grade grade = !converged ? Grade::not_judged : met ? Grade::pass : Grade::fail;
+            SolvedFor wishes{varied, {{.name = "f", .branch = "b"}}, list_of({1})};
+            wishes.start = {list_of({0}), MatrixXd::Ones(1, 1), list_of({1})};
+            wishes.solution = {list_of({1}), converged, list_of({met ? 0.0 : 0.5}), {1}};
+            wishes.after = list_of({met ? 1.0 : 0.5});
+            wishes.by = {list_of({1}), list_of({1}), true};
+            EXPECT_EQ(result_of(wishes).verdict.grade, grade);
+
+            OptimisedScene bands{varied, {{.points = {{.name = "f", .branch = "b"}}, .low = 1}}};
+            bands.figures = bands.goals.front().points;
+            bands.by = wishes.by;
+            bands.optimum.p = bands.optimum.conflict = bands.optimum.scale = list_of({1});
+            bands.optimum.after = wishes.after, bands.optimum.start = wishes.start;
+            bands.optimum.nearest = wishes.solution;
+            bands.optimum.met = met, bands.optimum.converged = converged;
+            if (met) bands.certificate.emplace();
+            const Grade of_bands = result_of(bands).verdict.grade;
+            EXPECT_EQ(of_bands, met ? Grade::not_judged : grade);  // without a proof
+        }
+}
+
+// Trims near the first point of a call start from its trim.
+TEST(Figures, RatesAskForTheirPointFirst) {
+    std::vector<VectorXd> first;
+    const Figures figures{[&](const std::vector<VectorXd>& points) {
+                              first.push_back(points.front());
+                              return points;
+                          },
+                          list_of({0.1, 0.1})};
+    const VectorXd p = list_of({1, 2});
+    EXPECT_TRUE(figures.gradient(p).isApprox(MatrixXd::Identity(2, 2), 1e-12));
+    for (const VectorXd& point : first) EXPECT_EQ(point, p);
+    EXPECT_EQ(first.size(), 2u);
 }
 
 // ---- Figures of scenes.
