@@ -85,7 +85,7 @@ void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Correcti
 }
 
 void require_drawn_values(const Scene& scene) {
-    const Eigen::VectorXd differs = asked_from_drawn(scene);
+    const Eigen::VectorXd differs = requested_from_drawn(scene);
     for (Eigen::Index k = 0; k < differs.size(); ++k)
         if (!(std::abs(differs[k]) <= acceptable))
             throw std::invalid_argument(

@@ -444,7 +444,7 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
     return scene;
 }
 
-VectorXd asked_from_drawn(const Scene& scene) {
+VectorXd requested_from_drawn(const Scene& scene) {
     const TrimProblem problem = pose(scene);
     return problem.target - problem.drawn;
 }

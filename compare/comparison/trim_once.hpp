@@ -19,7 +19,7 @@ struct SettledTrim {
 Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
                   SettledTrim* settles);
 
-// What the conditions are counted from, as drawn and as asked, difference [m, rad].
-Eigen::VectorXd asked_from_drawn(const Scene& scene);
+// What the conditions are counted from, as drawn and as requested, difference [m, rad].
+Eigen::VectorXd requested_from_drawn(const Scene& scene);
 
 }  // namespace elastocheck::compare

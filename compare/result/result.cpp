@@ -14,11 +14,32 @@ std::vector<std::string> table_ids(const Result& result) {
     return ids;
 }
 
+Table with_columns(const Table& table, const std::vector<std::string>& names) {
+    Table chosen{.rows = std::vector<std::vector<Cell>>(table.rows.size()),
+                 .id = table.id,
+                 .caption = table.caption,
+                 .notes = table.notes,
+                 .detail = table.detail};
+    for (const auto& name : names) {
+        const auto of = std::ranges::find(table.columns, name, &Column::name);
+        if (of == table.columns.end()) continue;
+        chosen.columns.push_back(*of);
+        if (of->digits == Digits::hidden)
+            chosen.columns.back().words = true, chosen.columns.back().digits = Digits::words;
+        chosen.columns.back().place = -1;
+        for (std::size_t r = 0; r < table.rows.size(); ++r)
+            chosen.rows[r].push_back(
+                table.rows[r][static_cast<std::size_t>(of - table.columns.begin())]);
+    }
+    return chosen;
+}
+
 Table whole_table(const Result& result, const std::string& id) {
     Table whole;
     for (const auto& table : result.tables) {
         if (table.id != id) continue;
-        if (whole.id.empty()) whole = {.columns = table.columns, .id = id};
+        if (whole.id.empty())
+            whole = {.columns = table.columns, .id = id, .caption = table.caption};
         std::ranges::copy(table.rows, std::back_inserter(whole.rows));
         std::ranges::copy(table.notes, std::back_inserter(whole.notes));
     }

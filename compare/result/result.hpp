@@ -38,7 +38,7 @@ struct Result {
     std::vector<std::string> notes{};  // each with its place: "branch 'jounce': ..."
 };
 
-// The tables of one id as one: its columns, all rows, all notes. Throws std::out_of_range where there
+// The tables of one id as one: its columns, all rows, all notes, the first caption. Throws std::out_of_range where there
 // is none.
 Table whole_table(const Result& result, const std::string& id);
 std::vector<std::string> table_ids(const Result& result);  // in their order, each once

@@ -21,12 +21,16 @@ using Cell = std::variant<double, std::string>;  // a missing number is NaN
 enum class Digits {
     hidden,
     words,
+    note,       // words that explain the row: below it where the page is narrow
     whole,      // 120
+    place,      // 21.33, -80: a parameter, a coordinate
     given,      // 1e-06: as entered
     size,       // 2.6e-13: an error, of which the magnitude matters
     three,      // 0.137
+    four,       // 27.35; rounding is 0
     deviation,  // +0.137; rounding is 0: less than 1e-9 mm, deg, N, N·m
     rounded,    // 0.14, 14; likewise
+    shaded,     // 0.14; on a page the darker the larger it is in its column
     percent,    // 14 %, of a share
 };
 
@@ -50,13 +54,15 @@ struct Column {
 
 struct Table {
     std::vector<Column> columns{};
-    std::vector<std::vector<Cell>> rows{};  // one cell per column, of the column's kind
+    // one cell per column, of the column's kind; where a number has none, also words
+    std::vector<std::vector<Cell>> rows{};
     // "sides": name of its file and in a document; empty: for readers alone. Tables of one id have the
     // same columns and are one table there, of which readers see the parts apart, each with its
     // caption and notes.
     std::string id{};
     std::string caption{};             // above it
     std::vector<std::string> notes{};  // below it
+    bool detail = false;               // readers see it when they ask for it: not on a terminal
 };
 
 // A cell from a number of any kind or a text.
@@ -87,7 +93,7 @@ Table table(std::string id, const std::vector<ColumnOf<S>>& columns, const auto&
         all.columns.push_back({.name = c.name,
                                .unit = c.unit,
                                .description = c.description,
-                               .words = c.digits == Digits::words,
+                               .words = c.digits == Digits::words || c.digits == Digits::note,
                                .digits = c.digits,
                                .heading = c.heading});
     for (const S& s : range) {
@@ -96,6 +102,10 @@ Table table(std::string id, const std::vector<ColumnOf<S>>& columns, const auto&
     }
     return all;
 }
+
+// The table with these of its columns alone, in this order, each for readers; those that are hidden as
+// words. A name that it lacks is left out.
+Table with_columns(const Table& table, const std::vector<std::string>& names);
 
 // The description of a struct S is a function
 //     void describe(auto& field, Described<S> auto& s)

@@ -207,42 +207,4 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
     return list;
 }
 
-std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study,
-                                const std::string& method) {
-    std::optional<GapPart> found;
-    for (const auto& branch : comparison.branches) {
-        const BranchStudy* side = nullptr;  // the study of the branch side with the same end
-        for (const auto& candidate : study.branches)
-            if (candidate.belongs_to == branch.branch) side = &candidate;
-        if (side == nullptr) continue;
-        for (const auto& m : side->methods) {
-            if (m.method != method || branch.run(Leg::recursive).method != method) continue;
-            for (std::size_t k = 0; k < m.equal_parameter.size(); ++k) {
-                if (study.channels[k].unit != Unit::mm) continue;
-                const int c = find_channel(comparison.channels, study.channels[k].name);
-                if (c < 0 || branch.deviation.equal_parameter.channels.empty()) continue;
-                const double end =
-                    branch.deviation.equal_parameter.channels[static_cast<std::size_t>(c)].end;
-                const ChannelStudy& s = m.equal_parameter[k];
-                if (!std::isfinite(s.gap) ||
-                    !(std::abs(end) >
-                      std::max(zero_tolerance, found ? std::abs(found->deviation) : 0)))
-                    continue;
-                found = GapPart{branch.branch, study.channels[k].name, end, s.gap, s.end.band};
-            }
-        }
-    }
-    if (!found) return std::nullopt;
-    const double share = found->gap / found->deviation;
-    found->role =
-        std::abs(found->gap) <= std::max(std::isnan(found->band) ? 0 : found->band, zero_tolerance)
-            ? GapRole::none
-        : share < 0   ? GapRole::opposite
-        : share > 1.1 ? GapRole::hidden
-        : share > 0.9 ? GapRole::nearly_all
-        : share < 0.1 ? GapRole::hardly_any
-                      : GapRole::part;
-    return found;
-}
-
 }  // namespace elastocheck::compare

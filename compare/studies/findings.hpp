@@ -44,22 +44,4 @@ struct RateError {
 };
 std::vector<RateError> rate_errors(const Model& model, const Comparison& comparison);
 
-// Share of the formulation gap in the deviation at the end of a branch, for the position with the
-// largest deviation there.
-enum class GapRole {  // with s = gap / deviation
-    none,             // |gap| ≤ its uncertainty
-    nearly_all,       // 0.9 < s ≤ 1.1
-    part,             // 0.1 ≤ s ≤ 0.9
-    hardly_any,       // 0 ≤ s < 0.1
-    hidden,           // s > 1.1: step errors cancel part of the gap
-    opposite,         // s < 0
-};
-struct GapPart {
-    std::string branch, channel;
-    double deviation = 0, gap = 0, band = 0;  // [mm], signed; band: uncertainty of the gap
-    GapRole role = GapRole::none;
-};
-std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study,
-                                const std::string& method);
-
 }  // namespace elastocheck::compare

@@ -45,62 +45,6 @@ std::vector<std::size_t> shown(const Comparison& all, const BranchComparison& br
 
 double share_of_range(const Deviation& d) { return d.range > 1e-9 ? d.max / d.range : nan; }
 
-// Deviations of the recursion, and the distance of the references. Readers see the unit of `at` in
-// the headings.
-Table deviations(const Comparison& all, const BranchComparison& branch) {
-    using enum Digits;
-    const Reading &load = branch.deviation.equal_parameter,
-                  &travel = branch.deviation.equal_abscissa,
-                  &doubt = branch.uncertainty.equal_parameter;
-    const auto at_load = [&](std::size_t c) -> const Deviation& { return load.channels[c]; };
-    Deviation none;
-    none.max = none.signed_max = none.rms = none.range = none.at = nan;
-    const auto at_travel = [&](std::size_t c) {
-        return travel.channels.empty() ? none : travel.channels[c];
-    };
-    const Channel* by =
-        branch.abscissa < 0 ? nullptr : &all.channels[static_cast<std::size_t>(branch.abscissa)];
-    const std::string over = abscissa_reading(by == nullptr ? "" : by->name);
-    using C = std::size_t;
-    const std::vector<ColumnOf<C>> columns{
-        {"branch", hidden, [&](C) { return branch.branch; }},
-        {"output", words, [&](C c) { return all.channels[c].name; }},
-        {"unit", words, [&](C c) { return symbol(all.channels[c].unit); }},
-        {"range", three, [&](C c) { return at_load(c).range; }, "of the reference over the branch"},
-        {"deviation", deviation, [&](C c) { return at_load(c).signed_max; },
-         "of the recursion from the equilibrium leg at equal parameter, largest over the branch",
-         "", parameter_reading(symbol(branch.unit)) + ": max"},
-        {"at", given, [&](C c) { return at_load(c).at; }, "parameter there", "",
-         fmt::format("at {}", symbol(branch.unit))},
-        {"rms", rounded, [&](C c) { return at_load(c).rms; }, "over the branch"},
-        {"share", percent, [&](C c) { return share_of_range(at_load(c)); },
-         "of the deviation in the range"},
-        {"deviation across", deviation, [&](C c) { return at_travel(c).signed_max; },
-         "likewise at equal abscissa", "", over + ": max"},
-        {"at abscissa", three, [&](C c) { return at_travel(c).at; }, "abscissa there", "",
-         fmt::format("at {}", by == nullptr ? "" : symbol(by->unit))},
-        {"rms across", rounded, [&](C c) { return at_travel(c).rms; }, "", "", "rms"},
-        {"share across", percent, [&](C c) { return share_of_range(at_travel(c)); }, "", "",
-         "share"},
-        {"uncertainty", size, [&](C c) { return doubt.channels[c].max; },
-         "distance of the references, largest over the branch"}};
-    const bool compared = !load.channels.empty() && !doubt.channels.empty();
-    Table result =
-        table("deviation", columns, compared ? shown(all, branch, load) : std::vector<C>{});
-    if (!compared) {
-        result.notes.push_back("nothing compared: " +
-                               (load.channels.empty() ? load.not_compared : doubt.not_compared));
-        return result;
-    }
-    if (!travel.not_compared.empty())
-        result.notes.push_back(fmt::format("{}: not compared, {}", over, travel.not_compared));
-    if (travel.outside > 0)
-        result.notes.push_back(fmt::format(
-            "{}: {} points of the reference lie beyond the recursion's and are not compared", over,
-            travel.outside));
-    return result;
-}
-
 // Solver name of a run in these tables.
 std::string solver_of(const LegRun& run) {
     return run.method.empty() || run.method == "published" ? name(run.leg) : run.method;
@@ -116,29 +60,6 @@ std::string judged_by_others(const BranchComparison& branch, const LegRun& run) 
                             r.force, r.moment, 1e3 * r.length);
     }
     return text;
-}
-
-Table legs_of(const BranchComparison& branch) {
-    using enum Digits;
-    using Run = LegRun;
-    return table<Run>(
-        "legs",
-        {{"branch", hidden, [&](const Run&) { return branch.branch; }},
-         {"leg", words, [](const Run& run) { return solver_of(run); }},
-         {"outcome", words, [](const Run& run) { return elastocheck::name(run.outcome); }},
-         {"points", whole, [](const Run& run) { return run.curve.a.size(); }},
-         {"factorisations", whole, [](const Run& run) { return run.counts.factorisations; }, "", "",
-          "factor."},
-         {"iterations", whole, [](const Run& run) { return run.counts.iterations; }, "", "",
-          "iter."},
-         {"evaluations", whole, [](const Run& run) { return run.counts.evaluations; }, "", "",
-          "eval."},
-         {"time", three, [](const Run& run) { return 1e3 * run.seconds; }, "", "ms"},
-         {"residuals", words, [&](const Run& run) { return judged_by_others(branch, run); },
-          "of its states in the equations of the other legs: force [N], moment [N·m], constraint "
-          "[mm]",
-          "", "its states in the others' equations: force N, moment N·m, constraint mm"}},
-        branch.runs);
 }
 
 // Interval proofs of the points at the start, the middle and the ends.
@@ -292,6 +213,92 @@ std::string about(const Model& model, const Comparison& comparison) {
 
 }  // namespace
 
+// Deviations of the recursion, and the distance of the references. Readers see the unit of `at` in
+// the headings.
+Table deviation_table(const Comparison& all, const BranchComparison& branch) {
+    using enum Digits;
+    const Reading &load = branch.deviation.equal_parameter,
+                  &travel = branch.deviation.equal_abscissa,
+                  &doubt = branch.uncertainty.equal_parameter;
+    const auto at_load = [&](std::size_t c) -> const Deviation& { return load.channels[c]; };
+    Deviation none;
+    none.max = none.signed_max = none.rms = none.range = none.at = nan;
+    const auto at_travel = [&](std::size_t c) {
+        return travel.channels.empty() ? none : travel.channels[c];
+    };
+    const Channel* by =
+        branch.abscissa < 0 ? nullptr : &all.channels[static_cast<std::size_t>(branch.abscissa)];
+    const std::string over = abscissa_reading(by == nullptr ? "" : by->name);
+    using C = std::size_t;
+    const std::vector<ColumnOf<C>> columns{
+        {"branch", hidden, [&](C) { return branch.branch; }},
+        {"output", words, [&](C c) { return all.channels[c].name; }},
+        {"unit", words, [&](C c) { return symbol(all.channels[c].unit); }},
+        {"range", three, [&](C c) { return at_load(c).range; }, "of the reference over the branch"},
+        {"deviation", deviation, [&](C c) { return at_load(c).signed_max; },
+         "of the recursion from the equilibrium leg at equal parameter, largest over the branch",
+         "", parameter_reading(symbol(branch.unit)) + ": max"},
+        {"at", given, [&](C c) { return at_load(c).at; }, "parameter there", "",
+         fmt::format("at {}", symbol(branch.unit))},
+        {"rms", rounded, [&](C c) { return at_load(c).rms; }, "over the branch"},
+        {"share", percent, [&](C c) { return share_of_range(at_load(c)); },
+         "of the deviation in the range"},
+        {"deviation across", deviation, [&](C c) { return at_travel(c).signed_max; },
+         "likewise at equal abscissa", "", over + ": max"},
+        {"at abscissa", three, [&](C c) { return at_travel(c).at; }, "abscissa there", "",
+         fmt::format("at {}", by == nullptr ? "" : symbol(by->unit))},
+        {"rms across", rounded, [&](C c) { return at_travel(c).rms; }, "", "", "rms"},
+        {"share across", percent, [&](C c) { return share_of_range(at_travel(c)); }, "", "",
+         "share"},
+        {"uncertainty", size, [&](C c) { return doubt.channels[c].max; },
+         "distance of the references, largest over the branch"}};
+    const bool compared = !load.channels.empty() && !doubt.channels.empty();
+    Table result =
+        table("deviation", columns, compared ? shown(all, branch, load) : std::vector<C>{});
+    if (!compared) {
+        result.notes.push_back("nothing compared: " +
+                               (load.channels.empty() ? load.not_compared : doubt.not_compared));
+        return result;
+    }
+    if (!travel.not_compared.empty())
+        result.notes.push_back(fmt::format("{}: not compared, {}", over, travel.not_compared));
+    if (travel.outside > 0)
+        result.notes.push_back(fmt::format(
+            "{}: {} points of the reference lie beyond the recursion's and are not compared", over,
+            travel.outside));
+    return result;
+}
+
+Table leg_table(std::span<const BranchComparison> branches) {
+    using enum Digits;
+    struct OfRun {
+        const BranchComparison* branch;
+        const LegRun* run;
+    };
+    std::vector<OfRun> runs;
+    for (const auto& branch : branches)
+        for (const auto& run : branch.runs) runs.push_back({&branch, &run});
+    return table<OfRun>(
+        "legs",
+        {{"branch", hidden, [](const OfRun& o) { return o.branch->branch; }},
+         {"leg", words, [](const OfRun& o) { return solver_of(*o.run); }},
+         {"outcome", words, [](const OfRun& o) { return elastocheck::name(o.run->outcome); }},
+         {"detail", hidden, [](const OfRun& o) { return o.run->detail; }, "of the outcome"},
+         {"points", whole, [](const OfRun& o) { return o.run->curve.a.size(); }},
+         {"factorisations", whole, [](const OfRun& o) { return o.run->counts.factorisations; }, "",
+          "", "factor."},
+         {"iterations", whole, [](const OfRun& o) { return o.run->counts.iterations; }, "", "",
+          "iter."},
+         {"evaluations", whole, [](const OfRun& o) { return o.run->counts.evaluations; }, "", "",
+          "eval."},
+         {"time", three, [](const OfRun& o) { return 1e3 * o.run->seconds; }, "", "ms"},
+         {"residuals", words, [](const OfRun& o) { return judged_by_others(*o.branch, *o.run); },
+          "of its states in the equations of the other legs: force [N], moment [N·m], constraint "
+          "[mm]",
+          "", "its states in the others' equations: force N, moment N·m, constraint mm"}},
+        runs);
+}
+
 std::string not_determined(std::span<const Channel> channels,
                            const std::function<bool(std::size_t)>& is_undefined) {
     std::string names, why;
@@ -307,14 +314,14 @@ Result result_of(const Model& model, const Comparison& comparison, const Assessm
     const auto errors = rate_errors(model, comparison);
     for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
         const BranchComparison& branch = comparison.branches[k];
-        Table deviation = deviations(comparison, branch);
+        Table deviation = deviation_table(comparison, branch);
         deviation.caption = caption_of(comparison, branch, model.branches[k]);
         add_rates(deviation.notes, errors, branch);
         for (const auto& event : lift_offs(model, model.branches[k], Leg::equilibrium))
             deviation.notes.push_back(event.text());
         result.tables.push_back(std::move(deviation));
 
-        Table runs = legs_of(branch);
+        Table runs = leg_table({&branch, 1});
         add_proofs(runs.notes, branch);
         if (!branch.why_not_energy.empty()) add_substitute(runs.notes, branch);
         if (const auto why = not_determined(
@@ -336,6 +343,50 @@ Result result_of(const Model& model, const Comparison& comparison, const Assessm
     result.verdict.grade = !comparison.conclusive() ? Grade::not_judged : assessment.verdict;
     result.verdict.requested = assessment.requested;
     return result;
+}
+
+namespace {
+
+Table rate_error_table(const std::vector<RateError>& errors) {
+    using enum Digits;
+    using E = RateError;
+    return table<E>(
+        "rate_errors",
+        {{"branch", words, [](const E& e) { return e.branch; }},
+         {"wheel", words, [](const E& e) { return e.wheel; }},
+         {"to", place, [](const E& e) { return e.to; }, "end of the branch"},
+         {"unit", words, [](const E& e) { return symbol(e.unit); }},
+         {"error", percent, [](const E& e) { return e.off; },
+          "of the recursion's wheel rate; positive is too stiff"},
+         {"over", four, [](const E& e) { return e.over; }, "travel of the reference", "mm"},
+         {"travel", deviation, [](const E& e) { return e.travel; },
+          "recursion less reference at the end", "mm"},
+         {"force", deviation, [](const E& e) { return e.force; }, "likewise", "N"},
+         {"wheel rate", four, [](const E& e) { return e.wheel_rate; }, "of the reference", "N/mm"},
+         {"ride rate", four, [](const E& e) { return e.ride_rate; }, "with the tyre in series",
+          "N/mm"},
+         {"ride error", percent, [](const E& e) { return e.ride_off; }}},
+        errors);
+}
+
+}  // namespace
+
+void add_tables(Result& result, const Model& model, const Comparison& comparison) {
+    const auto add = [&](const char* id, Table table) {
+        table.id = id;
+        table.detail = true;
+        result.tables.push_back(std::move(table));
+    };
+    add("agreement", agreement_table(comparison));
+    add("residuals", residual_table(comparison));
+    add("proofs", proof_table(comparison));
+    if (!model.wheels.empty() && !comparison.branches.empty()) {
+        add("rates", table_of(characteristic_rows(comparison)));
+        add("compliance", table_of(compliance_rows(model, comparison)));
+    }
+    add("rate_errors", rate_error_table(rate_errors(model, comparison)));
+    add("forces", table_of(force_rows(model, comparison)));
+    add("largest_forces", table_of(largest_force_rows(comparison)));
 }
 
 void add_definitions(Result& result, const Model& model, const Comparison& comparison) {

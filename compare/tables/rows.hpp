@@ -20,14 +20,16 @@ struct CharacteristicRow {
     std::string undefined{}, definition{};
 };
 void describe(auto& field, Described<CharacteristicRow> auto& r) {
-    field("output", r.output);
-    field("unit", r.unit);
+    using enum Digits;
+    field("output", r.output, {"", "", words});
+    field("unit", r.unit, {"", "", words});
     field("value", r.value,
-          {"", "at a = 0 of the first branch, by the equilibrium leg; none if it is undefined"});
-    field("references apart", r.apart, {"", "second reference less equilibrium leg"});
+          {"", "at a = 0 of the first branch, by the equilibrium leg; none if it is undefined",
+           four});
+    field("distance of references", r.apart, {"", "second reference less equilibrium leg"});
     field("recursion", r.recursion, {"", "by the matrix that the recursion factorises there"});
-    field("off", r.off, {"", "recursion less equilibrium leg"});
-    field("off %", r.off_percent, {"%", "of the value"});
+    field("off", r.off, {"", "recursion less equilibrium leg", deviation, "error"});
+    field("off %", r.off_percent, {"%", "of the value", three, "share"});
     field("undefined", r.undefined, {"", "reason for a missing value"});
     field("definition", r.definition);
 }
@@ -68,7 +70,8 @@ void describe(auto& field, Described<ComplianceRow> auto& r) {
     field("loaded wheel", r.loaded_wheel,
           {"", "on which forces and moments act, all jacks and tyres removed"});
     for (std::size_t k = 0; k < 6; ++k)
-        field(r.causes[k], r.by_cause[k], {"", k < 3 ? "response per kN" : "response per 100 N·m"});
+        field(r.causes[k], r.by_cause[k],
+              {"", k < 3 ? "response per kN" : "response per 100 N·m", Digits::four});
     field("reciprocity", r.reciprocity,
           {"",
            "|C - Cᵀ| / |C| of the whole matrix at the wheel centres, rotations counted by the "
@@ -136,7 +139,7 @@ void describe(auto& field, Described<FormulationRow> auto& r) {
     field("smallest by", r.smallest_by,
           {"", "the formulation that gives the smallest value there", words});
     field("largest by", r.largest_by, {"", "likewise", words});
-    field("references apart", r.apart, {"", "at most, at equal parameter", size});
+    field("distance of references", r.apart, {"", "at most, at equal parameter", size});
     field("deviation", r.deviation,
           {"", "of the recursion from the equilibrium leg at equal parameter, at most", three});
 }
@@ -198,7 +201,7 @@ void describe(auto& field, Described<StudyRow> auto& r) {
     field("rms gap", r.gap_rms);
     field("gap exponent", r.gap_exponent,
           {"", "power of the parameter or abscissa with which it grows", three, "growth a^"});
-    field("references apart", r.apart, {"", "", size});
+    field("distance of references", r.apart, {"", "", size});
     field("range", r.range, {"", "of the reference over the branch"});
     field("gap share", r.gap_share,
           {"%", "gap at the end, of the range", three, "of the range", 14});

@@ -65,6 +65,8 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
         std::string curves = curves_csv({{loaded.scene.name, &comparison}});
         SceneAnalyses found = analyses_of(loaded, request.scene);
         add_comparison(found, std::move(comparison));
+        found.judgement = compare::assess(model, found.comparison, tolerance, given);
+        found.judgement->requested = false;
         found.candidates = std::move(candidates);
         auto part = scene_json(found);
         add_verdict(part, compared, reasons);

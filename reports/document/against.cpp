@@ -18,8 +18,8 @@ namespace {
 
 using compare::BranchComparison;
 using compare::Channel;
+using compare::Digits;
 using compare::nan;
-using json = nlohmann::ordered_json;
 using Line = Against::Line;
 
 // Pre: the scene has the channel.
@@ -147,44 +147,118 @@ Against differences(const SceneAnalyses& base, const SceneAnalyses& variant) {
     return found;
 }
 
-json against_json(const Against& against) {
-    json numbers = json::array(), figures = json::array(), branches = json::array();
-    const auto number = [](const std::optional<Number>& n) {
-        return n ? json{{"value", n->value}, {"unit", n->unit}} : json(nullptr);
-    };
-    const auto line = [](const Line& l) { return json{{"a", l.a}, {"y", l.y}}; };
-    for (const auto& change : against.numbers)
-        numbers.push_back({{"path", (change.is ? change.is : change.was)->path},
-                           {"base", number(change.was)},
-                           {"variant", number(change.is)}});
-    for (const auto& f : against.figures)
-        figures.push_back({{"output", f.output},
-                           {"unit", f.unit},
-                           {"base", f.base},
-                           {"variant", f.variant},
-                           {"difference", f.difference},
-                           {"unit_of_difference", f.unit_of_difference},
-                           {"noticed", f.noticed}});
-    for (const auto& branch : against.branches) {
-        json curves = json::array();
-        for (const auto& c : branch.curves)
-            curves.push_back({{"output", c.output},
-                              {"unit", c.unit},
-                              {"largest", c.largest},
-                              {"at", c.at},
-                              {"noticed", c.noticed},
-                              {"base", line(c.base)},
-                              {"variant", line(c.variant)}});
-        branches.push_back({{"name", branch.name}, {"unit", branch.unit}, {"curves", curves}});
-    }
-    return {{"name", against.name},
-            {"source", against.source},
-            {"input_hash", against.hash},
-            {"numbers", numbers},
-            {"figures", figures},
-            {"branches", branches},
-            {"only_base", against.only_base},
-            {"only_variant", against.only_variant}};
+namespace {
+
+// A curve of the base and the variant, and a point of one of them.
+struct OfCurve {
+    const Against::Branch* branch;
+    const Against::Curve* curve;
+    const Line* line = nullptr;
+    std::size_t k = 0;
+};
+
+compare::Table numbers_of(const Against& against) {
+    using compare::Change;
+    const auto number = [](const std::optional<Number>& n) { return n ? n->value : nan; };
+    const auto either = [](const Change& c) { return *(c.is ? c.is : c.was); };
+    compare::Table table = compare::table<Change>(
+        "numbers",
+        {{"number", Digits::words, [=](const Change& c) { return either(c).path; }},
+         {"base", Digits::given, [=](const Change& c) { return number(c.was); }},
+         {"variant", Digits::given, [=](const Change& c) { return number(c.is); }},
+         {"unit", Digits::words, [=](const Change& c) { return either(c).unit; }}},
+        against.numbers);
+    table.caption = "Numbers of the scene that differ";
+    return table;
+}
+
+// Those that an engineer notices, or the others.
+compare::Table figures_of(const Against& against, bool noticed) {
+    using F = Against::Figure;
+    std::vector<F> rows = against.figures;
+    std::erase_if(rows, [&](const F& f) { return noticed == (f.noticed <= 1); });
+    compare::Table table = compare::table<F>(
+        "figures",
+        {{"figure", Digits::words, [](const F& f) { return as_words(f.output); }},
+         {"output", Digits::hidden, [](const F& f) { return f.output; }},
+         {"base", Digits::four, [](const F& f) { return f.base; }},
+         {"variant", Digits::four, [](const F& f) { return f.variant; }},
+         {"unit", Digits::words, [](const F& f) { return f.unit; }},
+         {"difference", Digits::deviation, [](const F& f) { return f.difference; }},
+         {"unit of difference", Digits::words, [](const F& f) { return f.unit_of_difference; }, "",
+          "", "its unit"},
+         {"noticed", Digits::hidden, [](const F& f) { return f.noticed; },
+          "ratio to what an engineer notices; none: no value of one of them"}},
+        rows);
+    table.caption = noticed ? "Figures at the design position that differ"
+                            : "Figures that differ by less than an engineer notices";
+    table.detail = !noticed;
+    return table;
+}
+
+std::vector<compare::ColumnOf<OfCurve>> curve_columns() {
+    return {{"branch", Digits::words, [](const OfCurve& o) { return o.branch->name; }},
+            {"output", Digits::words, [](const OfCurve& o) { return as_words(o.curve->output); }},
+            {"unit", Digits::words, [](const OfCurve& o) { return o.curve->unit; }}};
+}
+
+compare::Table largest_of(const Against& against) {
+    std::vector<OfCurve> rows;
+    for (const auto& branch : against.branches)
+        for (const auto& curve : branch.curves) rows.push_back({&branch, &curve});
+    auto columns = curve_columns();
+    columns.insert(
+        columns.end(),
+        {{"largest difference", Digits::deviation,
+          [](const OfCurve& o) { return o.curve->largest; }},
+         {"at", Digits::place, [](const OfCurve& o) { return o.curve->at; }, "parameter there"},
+         {"parameter unit", Digits::words, [](const OfCurve& o) { return o.branch->unit; }, "", "",
+          "its unit"},
+         {"noticed", Digits::hidden, [](const OfCurve& o) { return o.curve->noticed; }}});
+    compare::Table table = compare::table("differences", columns, rows);
+    table.caption = "Largest difference over each branch, at equal load or drive";
+    return table;
+}
+
+compare::Table lines_of(const Against& against) {
+    std::vector<OfCurve> rows;
+    for (const auto& branch : against.branches)
+        for (const auto& curve : branch.curves)
+            for (const Line* line : {&curve.base, &curve.variant})
+                for (std::size_t k = 0; k < line->a.size(); ++k)
+                    rows.push_back({&branch, &curve, line, k});
+    auto columns = curve_columns();
+    columns.insert(
+        columns.end(),
+        {{"of", Digits::words,
+          [](const OfCurve& o) { return o.line == &o.curve->base ? "base" : "variant"; }},
+         {"parameter", Digits::place, [](const OfCurve& o) { return o.line->a[o.k]; }},
+         {"value", Digits::four, [](const OfCurve& o) { return o.line->y[o.k]; }}});
+    compare::Table table = compare::table("lines", columns, rows);
+    table.detail = true;
+    return table;
+}
+
+}  // namespace
+
+compare::Result result_of(const Against& against) {
+    compare::Result result{.analysis = "against"};
+    result.about = {
+        fmt::format("the variant {} of {}, hash {}", against.name, against.source, against.hash)};
+    result.verdict.requested = false;
+    result.verdict.grade = compare::Grade::pass;
+    result.tables = {numbers_of(against), figures_of(against, true), figures_of(against, false),
+                     largest_of(against), lines_of(against)};
+    result.charts = {{.id = "lines",
+                      .title = "Base and variant",
+                      .table = "lines",
+                      .x = "parameter",
+                      .y = {"value"},
+                      .by = {"branch", "output", "of"}}};
+    for (const auto& what : against.only_base) result.notes.push_back("only of the base: " + what);
+    for (const auto& what : against.only_variant)
+        result.notes.push_back("only of the variant: " + what);
+    return result;
 }
 
 std::string against_sentence(const std::string& base_source, const Against& against) {

@@ -1,11 +1,11 @@
 // Two variants of a scene: what differs between them.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "compare/comparison/changes.hpp"
+#include "compare/result/result.hpp"
 
 namespace elastocheck::reports {
 
@@ -43,8 +43,9 @@ struct Against {
 
 Against differences(const SceneAnalyses& base, const SceneAnalyses& variant);
 
-// "against" in result.json.
-nlohmann::ordered_json against_json(const Against& against);
+// Its tables: numbers of the scene, figures at the design position (two parts: those that an engineer
+// notices, the others), largest differences of the curves, and the curves.
+compare::Result result_of(const Against& against);
 
 // "B against A: 1 number of the scene and 31 figures at the design position differ, most bump_steer
 // [deg/m] from -2.16 to 0.0812."

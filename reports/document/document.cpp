@@ -8,16 +8,15 @@
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/converge.hpp"
-#include "compare/studies/findings.hpp"
 #include "compare/tables/compare_result.hpp"
 #include "compare/tables/rows.hpp"
 #include "compare/warnings/plausibility.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
-#include "reports/document/candidate.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/given/wheels.hpp"
 #include "reports/render/render.hpp"
+#include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/elements.hpp"
 #include "reports/tables/judgement.hpp"
 
@@ -176,58 +175,6 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all,
             {"at_equal_abscissa", reading_json(pair.equal_abscissa, all, determined)}};
 }
 
-json worst_json(const std::optional<compare::Worst>& worst) {
-    if (!worst) return nullptr;
-    return {{"branch", worst->branch},
-            {"channel", worst->channel},
-            {"max", worst->max},
-            {"end", worst->end},
-            {"range", worst->range}};
-}
-
-json findings_json(const compare::Comparison& all) {
-    using compare::ReadingKind;
-    json findings;
-    for (const auto unit : {compare::Unit::mm, compare::Unit::deg}) {
-        const char* name = symbol(unit);
-        findings["worst_at_equal_parameter"][name] =
-            worst_json(compare::worst_deviation(all, ReadingKind::equal_parameter, unit));
-        findings["worst_at_equal_abscissa"][name] =
-            worst_json(compare::worst_deviation(all, ReadingKind::equal_abscissa, unit));
-        findings["references_apart"][name] = worst_json(compare::worst_disagreement(all, unit));
-    }
-    return findings;
-}
-
-const char* name_of(compare::GapRole role) {
-    switch (role) {
-        case compare::GapRole::none: return "none";
-        case compare::GapRole::nearly_all: return "nearly_all";
-        case compare::GapRole::part: return "part";
-        case compare::GapRole::hardly_any: return "hardly_any";
-        case compare::GapRole::hidden: return "hidden";
-        case compare::GapRole::opposite: return "opposite";
-    }
-    return "";
-}
-
-json rate_errors_json(const std::vector<compare::RateError>& rates) {
-    json list = json::array();
-    for (const auto& rate : rates)
-        list.push_back({{"branch", rate.branch},
-                        {"wheel", rate.wheel},
-                        {"to", rate.to},
-                        {"unit", symbol(rate.unit)},
-                        {"off", rate.off},
-                        {"over_mm", rate.over},
-                        {"travel_mm", rate.travel},
-                        {"force_N", rate.force},
-                        {"wheel_rate_N_per_mm", rate.wheel_rate},
-                        {"ride_rate_N_per_mm", rate.ride_rate},
-                        {"ride_off", rate.ride_off}});
-    return list;
-}
-
 json trim_json(const compare::TrimRecord& trim) {
     json adjusted = json::array(), conditions = json::array();
     for (const auto& a : trim.adjusted)
@@ -236,7 +183,7 @@ json trim_json(const compare::TrimRecord& trim) {
     for (const auto& c : trim.conditions)
         conditions.push_back({{"name", c.name},
                               {"unit", symbol(c.unit)},
-                              {"asked", c.target},
+                              {"requested", c.target},
                               {"missed", c.missed},
                               {"missed_by_confirming_leg", c.confirmed}});
     return {{"adjusted", adjusted},
@@ -246,7 +193,7 @@ json trim_json(const compare::TrimRecord& trim) {
             {"confirmed_by", name(trim.confirmed_by)}};
 }
 
-json wheels_json(const Model& model, const compare::Comparison& comparison) {
+json wheels_json(const Model& model) {
     json names = json::array(), vehicle = nullptr;
     for (const auto& wheel : model.wheels)
         names.push_back({{"name", wheel.name}, {"side", wheel.side > 0 ? "left" : "right"}});
@@ -255,8 +202,7 @@ json wheels_json(const Model& model, const compare::Comparison& comparison) {
                    {"cg_height_mm", 1e3 * model.vehicle->cg_height}};
     return {{"names", names},
             {"vehicle", vehicle},
-            {"settled_on", model.branches[settled_on(model)].name},
-            {"static", table_json(static_rows(model, comparison))}};
+            {"settled_on", model.branches[settled_on(model)].name}};
 }
 
 // Residuals of the equilibrium leg's states in the equations of the energy leg, and their bounds,
@@ -333,7 +279,7 @@ json branches_json(const SceneAnalyses& scene) {
              {"cross_check", pair(branch.cross_check)},
              {"reference_uncertainty", pair(branch.uncertainty)},
              {"second_reference", name(branch.second)},
-             {"energy_not_asked", branch.why_not_energy},
+             {"why_not_energy", branch.why_not_energy},
              {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()},
@@ -361,15 +307,7 @@ void add_compared(json& part, const SceneAnalyses& scene) {
     part["numbers"] = numbers_json(scene.scene);
     part["channels"] = described_channels(model, comparison);
     part["branches"] = branches_json(scene);
-    part["findings"] = findings_json(comparison);
-    part["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
-    if (!model.wheels.empty())
-        part["characteristics"] = {{"design", table_json(characteristic_rows(comparison))},
-                                   {"compliance", table_json(compliance_rows(model, comparison))}};
-    if (!model.wheels.empty() && !comparison.branches.empty())
-        part["wheels"] = wheels_json(model, comparison);
-    part["forces"] = table_json(force_rows(model, comparison));
-    part["largest_forces"] = table_json(largest_force_rows(comparison));
+    if (!model.wheels.empty() && !comparison.branches.empty()) part["wheels"] = wheels_json(model);
     part["drawing"] = drawing_json(scene.drawing);
 }
 
@@ -441,65 +379,72 @@ void add_verdict(json& scene_document, int numbers_compared,
 
 namespace {
 
+// Error of the recommended configuration over the branches.
+compare::Table recommended_table(const Recommended& recommended) {
+    struct Point {
+        std::string branch;
+        double a;
+        compare::Accuracy apart;
+    };
+    std::vector<Point> points;
+    for (const auto& [branch, profile] : recommended.branches)
+        for (std::size_t k = 0; k < profile.a.size(); ++k)
+            points.push_back({branch, profile.a[k], profile.apart[k]});
+    using enum compare::Digits;
+    return compare::table<Point>(
+        "recommended",
+        {{"branch", words, [](const Point& p) { return p.branch; }},
+         {"parameter", place, [](const Point& p) { return p.a; }},
+         {"error", size, [](const Point& p) { return p.apart.mm; }, "", "mm"},
+         {"angle error", size, [](const Point& p) { return p.apart.deg; }, "", "deg"}},
+        points);
+}
+
 // What the analyses found, each as its command writes it.
 json results_json(const SceneAnalyses& s) {
-    json results = json::array();
-    if (s.judgement) {
-        compare::Result compared = result_of(s.model, s.comparison, *s.judgement);
-        compared.verdict.sentence = sentence(*s.judgement);
-        if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);
-        results.push_back(json_of(compared));
-    }
+    compare::Assessment judgement = s.judgement.value_or(compare::Assessment{});
+    if (!s.judgement) judgement.requested = false, judgement.verdict = compare::Grade::pass;
+    compare::Result compared = result_of(s.model, s.comparison, judgement);
+    if (s.judgement) compared.verdict.sentence = sentence(judgement);
+    if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);
+    add_tables(compared, s);
+    json results = json::array({json_of(compared)});
     if (s.study)
         results.push_back(
             json_of(result_of(s.model, compare::ConvergenceStudies{.methods = s.study})));
-    if (s.trade) results.push_back(json_of(result_of(s.model, *s.trade)));
-    return results;
-}
-
-json gap_json(const compare::GapPart& part) {
-    return {{"branch", part.branch}, {"channel", part.channel}, {"deviation", part.deviation},
-            {"gap", part.gap},       {"band", part.band},       {"role", name_of(part.role)}};
-}
-
-json recommended_json(const Recommended& recommended) {
-    const compare::TradePoint& point = recommended.configuration;
-    json result = {{"method", point.method}};
-    if (point.steps > 0) result["steps"] = point.steps;
-    if (point.own_tolerance > 0) result["own_tolerance_m"] = point.own_tolerance;
-    result["branches"] = json::array();
-    for (const auto& [branch, profile] : recommended.branches) {
-        json mm = json::array(), deg = json::array();
-        for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
-        result["branches"].push_back(
-            {{"name", branch}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
+    if (s.trade) {
+        compare::Result trade = result_of(s.model, *s.trade);
+        if (s.recommended) trade.tables.push_back(recommended_table(*s.recommended));
+        results.push_back(json_of(trade));
     }
-    return result;
+    if (s.effects) results.push_back(json_of(result_of(*s.effects)));
+    if (s.measured) results.push_back(json_of(result_of(*s.measured, s.comparison)));
+    for (const auto& [candidate, sentence] : s.candidates)
+        results.push_back(json_of(result_of(candidate, s.comparison)));
+    if (s.against) results.push_back(json_of(result_of(*s.against)));
+    return results;
 }
 
 }  // namespace
 
-json scene_json(const SceneAnalyses& s) {
+void add_tables(compare::Result& compared, const SceneAnalyses& s) {
+    add_tables(compared, s.model, s.comparison);
+    compared.tables.push_back(table_of(static_rows(s.model, s.comparison)));
+    compared.tables.back().id = "static";
+}
+
+json compared_json(const SceneAnalyses& s) {
     json part = scene_head(s);
     if (!s.only.empty()) part["only"] = s.only;
     if (s.quick) part["proved"] = "ends";
     add_compared(part, s);
-    if (s.measured) part["measured"] = measured_json(*s.measured, s.comparison);
-    if (s.effects)
-        part["sensitivity"] = {{"conclusive", s.effects->reasons.empty()},
-                               {"reasons", s.effects->reasons},
-                               {"compared", s.effects->compared},
-                               {"apart", s.effects->apart},
-                               {"effects", table_json(s.effects->rows)}};
-    if (s.study)
-        if (const auto gap = compare::gap_part(s.comparison, *s.study, "published"))
-            part["findings"]["gap"] = gap_json(*gap);
-    part["results"] = results_json(s);
-    if (s.recommended) part["recommended"] = recommended_json(*s.recommended);
-    for (const auto& [judgement, sentence] : s.candidates)
-        part["candidates"].push_back(candidate_json(judgement, s.comparison, sentence));
     add_verdict(part, s.comparison.compared, s.reasons);
-    if (s.against) part["against"] = against_json(*s.against);
+    return part;
+}
+
+json scene_json(const SceneAnalyses& s) {
+    json part = compared_json(s);
+    part["results"] = results_json(s);
     return part;
 }
 

@@ -12,7 +12,7 @@
 namespace elastocheck::reports {
 
 // Incremented when a field changes its meaning or is removed; new fields do not increment it.
-inline constexpr const char* result_schema = "elastocheck/result/4";
+inline constexpr const char* result_schema = "elastocheck/result/5";
 
 // "vertical", "left.jack", "free length of coil"
 std::string driven_name(const Model& model, const Driven& what);
@@ -25,8 +25,12 @@ nlohmann::ordered_json document(const std::string& reproduce, const Provenance& 
 // A scene in the document without results: name, source, hash of its file, compiled model, trim,
 // warnings.
 nlohmann::ordered_json scene_head(const SceneAnalyses& scene);
-// A compared scene, with all that was found on it; a part that was not requested is absent.
+// A compared scene: its curves and deviations; and with the results of all that was found on it.
+nlohmann::ordered_json compared_json(const SceneAnalyses& scene);
 nlohmann::ordered_json scene_json(const SceneAnalyses& scene);
+
+// The tables of a comparison that are only in files.
+void add_tables(compare::Result& compared, const SceneAnalyses& scene);
 
 // "channels", "branches" and the "verdict" of `solve`: every point of one leg, without a
 // comparison.

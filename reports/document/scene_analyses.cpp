@@ -1,5 +1,7 @@
 #include "reports/document/scene_analyses.hpp"
 
+#include <fmt/format.h>
+
 #include "compare/warnings/lift_off.hpp"
 
 namespace elastocheck::reports {
@@ -23,6 +25,19 @@ void add_comparison(SceneAnalyses& scene, compare::Comparison comparison) {
             texts.push_back(event.text());
     }
     scene.drawing = drawing_of(scene.scene, scene.model, scene.comparison);
+}
+
+compare::Result result_of(const Effects& effects) {
+    compare::Result result{.analysis = "sensitivity"};
+    result.tables = {table_of(effects.rows)};
+    result.tables.front().id = "effects";
+    result.verdict = {
+        .grade = effects.reasons.empty() ? compare::Grade::pass : compare::Grade::not_judged,
+        .sentence = fmt::format("The solvers differ by {:.1e} of the largest of a figure at most.",
+                                effects.apart),
+        .reasons = effects.reasons,
+        .compared = static_cast<int>(effects.compared)};
+    return result;
 }
 
 }  // namespace elastocheck::reports

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compare/candidate/judgement.hpp"
+#include "compare/result/result.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
@@ -28,6 +29,8 @@ struct Effects {
     long compared = 0;                   // derivatives that two solvers gave
     double apart = 0;                    // largest difference, of the largest of their figure
 };
+
+compare::Result result_of(const Effects& effects);  // a table of them
 
 struct JudgedCandidate {
     compare::CandidateJudgement judgement;

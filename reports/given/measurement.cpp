@@ -13,7 +13,6 @@
 namespace elastocheck::reports {
 namespace {
 
-using json = nlohmann::ordered_json;
 using compare::Leg;
 
 // Whether a point has a value of an output; a travel that places it is none.
@@ -50,27 +49,31 @@ void renumber(Measurement& measurement, const std::vector<compare::Channel>& cha
     measurement.channels = channels;
 }
 
-json rows_json(const Measured& measured, const compare::MeasuredReading& reading,
-               const compare::Comparison& all) {
-    json rows = json::array();
-    for (const auto& of : reading.rows) {
-        const auto& channel = all.channels[of.channel];
-        const auto [unit, factor] = gradient_unit(measured, reading, of, all);
-        json row = {{"branch", of.branch},
-                    {"channel", channel.name},
-                    {"unit", symbol(channel.unit)},
-                    {"compared", of.compared()},
-                    {"gradient",
-                     {{"unit", unit},
-                      {"measured", factor * of.measured_gradient},
-                      {"model", factor * of.gradient}}}};
-        for (const Leg leg : compare::legs) {
-            const auto& off = of.off[static_cast<std::size_t>(leg)];
-            row[name(leg)] = {{"signed_max", off.signed_max}, {"rms", off.rms}};
-        }
-        rows.push_back(row);
-    }
-    return rows;
+std::string word_of(const Measured& measured, const compare::MeasuredReading& reading,
+                    const compare::Comparison& all) {
+    const PointTable& table = measured.measurement.table;
+    if (!reading.by_parameter) return "at equal " + all.channels[*table.points.abscissa].name;
+    const auto is_load = [](const std::string& name) { return name.starts_with("load"); };
+    return std::ranges::all_of(table.parameters, is_load)    ? "at equal load"
+           : std::ranges::none_of(table.parameters, is_load) ? "at equal parameter"
+                                                             : "at equal load or parameter";
+}
+
+compare::Unit unit_of_place(const Measured& measured, bool by_parameter, const std::string& branch,
+                            const compare::Comparison& all) {
+    return by_parameter ? all.branch(branch).unit
+                        : all.channels[*measured.measurement.table.points.abscissa].unit;
+}
+
+std::pair<std::string, double> gradient_unit(const Measured& measured,
+                                             const compare::MeasuredReading& reading,
+                                             const compare::MeasuredRow& row,
+                                             const compare::Comparison& all) {
+    const auto per = unit_of_place(measured, reading.by_parameter, row.branch, all);
+    const bool force = per == compare::Unit::newton || per == compare::Unit::newton_metre;
+    return {fmt::format("{}/{}{}", symbol(all.channels[row.channel].unit), force ? "k" : "",
+                        symbol(per)),
+            force ? 1e3 : 1};
 }
 
 // Reason why a point is not compared; empty if it is.
@@ -137,71 +140,114 @@ Measured compare_measurement(const Model& model, const compare::Comparison& all,
     return made;
 }
 
-std::string word_of(const Measured& measured, const compare::MeasuredReading& reading,
-                    const compare::Comparison& all) {
-    const PointTable& table = measured.measurement.table;
-    if (!reading.by_parameter) return "at equal " + all.channels[*table.points.abscissa].name;
-    const auto is_load = [](const std::string& name) { return name.starts_with("load"); };
-    return std::ranges::all_of(table.parameters, is_load)    ? "at equal load"
-           : std::ranges::none_of(table.parameters, is_load) ? "at equal parameter"
-                                                             : "at equal load or parameter";
-}
-
-compare::Unit unit_of_place(const Measured& measured, bool by_parameter, const std::string& branch,
-                            const compare::Comparison& all) {
-    return by_parameter ? all.branch(branch).unit
-                        : all.channels[*measured.measurement.table.points.abscissa].unit;
-}
-
-std::pair<std::string, double> gradient_unit(const Measured& measured,
-                                             const compare::MeasuredReading& reading,
-                                             const compare::MeasuredRow& row,
-                                             const compare::Comparison& all) {
-    const auto per = unit_of_place(measured, reading.by_parameter, row.branch, all);
-    const bool force = per == compare::Unit::newton || per == compare::Unit::newton_metre;
-    return {fmt::format("{}/{}{}", symbol(all.channels[row.channel].unit), force ? "k" : "",
-                        symbol(per)),
-            force ? 1e3 : 1};
-}
-
-json measured_json(const Measured& measured, const compare::Comparison& all) {
-    const auto& [measurement, found, left_out] = measured;
-    const compare::Points& points = measurement.table.points;
-    json columns = json::object(), branches = json::array(), readings = json::array(),
-         loops = json::array();
-    if (points.abscissa) columns[all.channels[*points.abscissa].name] = points.at;
-    for (const auto& column : found.columns)
-        columns[all.channels[column.channel].name] = column.values;
-    for (const auto& place : found.places)
-        branches.push_back(
-            place.branch < 0 ? "" : all.branches[static_cast<std::size_t>(place.branch)].branch);
-    for (const auto& reading : found.readings)
-        readings.push_back({{"reading", word_of(measured, reading, all)},
-                            {"channels", rows_json(measured, reading, all)}});
-    for (const auto& loop : found.loops) {
-        const auto& channel = all.channels[loop.channel];
-        loops.push_back(
-            {{"branch", loop.branch},
-             {"channel", channel.name},
-             {"unit", symbol(channel.unit)},
-             {"width", loop.width},
-             {"at", loop.at},
-             {"at_unit", symbol(unit_of_place(measured, loop.by_parameter, loop.branch, all))},
-             {"points", loop.points}});
+compare::Table deviation_table(const Measured& measured, const compare::MeasuredReading& reading,
+                               const compare::Comparison& all) {
+    using enum compare::Digits;
+    using Row = compare::MeasuredRow;
+    const auto per = [&](const Row& r) { return gradient_unit(measured, reading, r, all); };
+    std::vector<compare::ColumnOf<Row>> columns{
+        {"reading", hidden, [&](const Row&) { return word_of(measured, reading, all); }},
+        {"test", words, [](const Row& r) { return r.branch; }},
+        {"output", words, [&](const Row& r) { return all.channels[r.channel].name; }},
+        {"unit", words, [&](const Row& r) { return symbol(all.channels[r.channel].unit); }},
+        {"points", whole, [](const Row& r) { return r.compared(); }},
+        {"gradient measured", deviation,
+         [=](const Row& r) { return per(r).second * r.measured_gradient; },
+         "slope of the straight line through the points"},
+        {"gradient", deviation, [=](const Row& r) { return per(r).second * r.gradient; },
+         "likewise, of the equilibrium leg", "", "of the model"},
+        {"gradient unit", words, [=](const Row& r) { return per(r).first; }, "", "", "its unit"}};
+    for (const Leg leg : compare::legs) {
+        const auto off = [=](const Row& r) { return r.off[static_cast<std::size_t>(leg)]; };
+        const bool shown = leg != Leg::energy;
+        const std::string who = leg == Leg::equilibrium ? "full solution" : "published recursion";
+        columns.push_back({fmt::format("{} max", name(leg)), shown ? deviation : hidden,
+                           [=](const Row& r) { return off(r).signed_max; },
+                           "deviation where it is largest", "", who + ", max"});
+        columns.push_back({fmt::format("{} rms", name(leg)), shown ? rounded : hidden,
+                           [=](const Row& r) { return off(r).rms; }, "", "", "rms"});
     }
-    json document = {{"file", measurement.file},
-                     {"hash", measurement.hash},
-                     {"points", measurement.table.lines.size()},
-                     {"left_out", left_out},
-                     {"columns", columns},
-                     {"branch", branches},
-                     {"branch_given", !points.branch.empty()},
-                     {"readings", readings},
-                     {"loops", loops},
-                     {"findings", found.explanations}};
-    if (!points.a.empty()) document["parameter"] = points.a;
-    if (points.abscissa) document["abscissa"] = all.channels[*points.abscissa].name;
-    return document;
+    compare::Table table = compare::table("measured", columns, reading.rows);
+    table.caption = "Deviation from the measurement, " + word_of(measured, reading, all);
+    return table;
+}
+
+compare::Table loop_table(const Measured& measured, const compare::Comparison& all) {
+    using enum compare::Digits;
+    using Loop = compare::Hysteresis;
+    compare::Table table = compare::table<Loop>(
+        "loops",
+        {{"branch", words, [](const Loop& l) { return l.branch; }},
+         {"output", words, [&](const Loop& l) { return all.channels[l.channel].name; }},
+         {"unit", words, [&](const Loop& l) { return symbol(all.channels[l.channel].unit); }},
+         {"width", size, [](const Loop& l) { return l.width; }, "largest difference of both ways",
+          "", "largest width"},
+         {"at", place, [](const Loop& l) { return l.at; }},
+         {"place unit", words,
+          [&](const Loop& l) {
+              return symbol(unit_of_place(measured, l.by_parameter, l.branch, all));
+          },
+          "", "", "its unit"},
+         {"points", whole, [](const Loop& l) { return l.points; }}},
+        measured.found.loops);
+    table.caption = "Hysteresis of the measurement: its two ways, whose mean is compared";
+    return table;
+}
+
+namespace {
+
+// A value of a point.
+struct PointValue {
+    std::size_t point;
+    const compare::PointColumn* of;
+};
+
+compare::Table point_table(const Measured& measured, const compare::Comparison& all) {
+    using enum compare::Digits;
+    const compare::Points& points = measured.measurement.table.points;
+    std::vector<PointValue> rows;
+    for (std::size_t k = 0; k < measured.found.places.size(); ++k)
+        for (const auto& column : measured.found.columns)
+            if (std::isfinite(column.values[k])) rows.push_back({k, &column});
+    const auto value = [](const std::vector<double>& of, std::size_t k) {
+        return k < of.size() ? of[k] : compare::nan;
+    };
+    using V = PointValue;
+    compare::Table table = compare::table<V>(
+        "points",
+        {{"point", whole, [](const V& v) { return v.point + 1; }},
+         {"branch", words,
+          [&](const V& v) {
+              const int b = measured.found.places[v.point].branch;
+              return b < 0 ? "" : all.branches[static_cast<std::size_t>(b)].branch;
+          }},
+         {"parameter", place, [&](const V& v) { return value(points.a, v.point); }},
+         {points.abscissa ? all.channels[*points.abscissa].name : "abscissa", place,
+          [&](const V& v) { return value(points.at, v.point); }, "where the point was measured"},
+         {"output", words, [&](const V& v) { return all.channels[v.of->channel].name; }},
+         {"unit", words, [&](const V& v) { return symbol(all.channels[v.of->channel].unit); }},
+         {"value", four, [](const V& v) { return v.of->values[v.point]; }, "absolute"}},
+        rows);
+    table.detail = true;
+    return table;
+}
+
+}  // namespace
+
+compare::Result result_of(const Measured& measured, const compare::Comparison& all) {
+    const auto& [measurement, found, left_out] = measured;
+    compare::Result result{.analysis = "measured"};
+    result.about = {fmt::format("{} points of {}, hash {}", measurement.table.lines.size(),
+                                measurement.file, measurement.hash)};
+    for (const auto& reading : found.readings)
+        result.tables.push_back(deviation_table(measured, reading, all));
+    result.tables.push_back(loop_table(measured, all));
+    result.tables.push_back(point_table(measured, all));
+    result.notes = found.explanations;
+    for (const auto& what : left_out) result.notes.push_back("left out: " + what);
+    result.verdict = {
+        .grade = compare::Grade::pass, .compared = found.compared, .requested = false};
+    return result;
 }
 
 }  // namespace elastocheck::reports

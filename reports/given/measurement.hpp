@@ -1,13 +1,13 @@
 // Measured curves in CSV, beside the calculated ones.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "compare/candidate/measured.hpp"
+#include "compare/result/result.hpp"
 #include "elastocheck/compare.hpp"
 #include "elastocheck/model.hpp"
 #include "reports/files/csv_table.hpp"
@@ -49,20 +49,13 @@ struct Measured {
 Measured compare_measurement(const Model& model, const compare::Comparison& comparison,
                              const compare::DefinedCurves& defined, Measurement measurement);
 
-// "measured" in result.json: the points, and the deviation of every leg from them.
-nlohmann::ordered_json measured_json(const Measured& measured,
-                                     const compare::Comparison& comparison);
+// Its tables: deviations, loops, and the points; notes: what makes a column right that deviates.
+compare::Result result_of(const Measured& measured, const compare::Comparison& comparison);
 
-// "at equal load", "at equal travel"
-std::string word_of(const Measured& measured, const compare::MeasuredReading& reading,
-                    const compare::Comparison& comparison);
-// Unit of the parameter of a branch, or of the abscissa.
-compare::Unit unit_of_place(const Measured& measured, bool by_parameter, const std::string& branch,
-                            const compare::Comparison& comparison);
-// "deg/kN", and the factor to it: large numbers of newtons stand for one.
-std::pair<std::string, double> gradient_unit(const Measured& measured,
-                                             const compare::MeasuredReading& reading,
-                                             const compare::MeasuredRow& row,
-                                             const compare::Comparison& comparison);
+// Deviation of every leg from the points, a test and output a row; a part for each reading.
+compare::Table deviation_table(const Measured& measured, const compare::MeasuredReading& reading,
+                               const compare::Comparison& comparison);
+// Ways out and back that differ.
+compare::Table loop_table(const Measured& measured, const compare::Comparison& comparison);
 
 }  // namespace elastocheck::reports

@@ -180,43 +180,11 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
     return kept;
 }
 
-namespace {
-
-// With as many digits as entered, up to six.
-std::string given(double value) {
-    int digits = 1;
-    while (digits < 6 && parsed_number(fmt::format("{:.{}e}", value, digits - 1)) != value)
-        ++digits;
-    return number(value, digits);
-}
-
-std::string written(double value, Digits digits) {
-    if (!std::isfinite(value)) return number(value);
-    switch (digits) {
-        case Digits::whole:
-            return std::abs(value) < 1e15 ? whole_number(std::lround(value)) : number(value);
-        case Digits::given: return given(value);
-        case Digits::size: return number(value, 2);
-        case Digits::three:
-        case Digits::deviation:
-        case Digits::rounded: return number(value, 3);
-        case Digits::percent: return percent(value);
-        case Digits::hidden:
-        case Digits::words: break;
-    }
-    return {};
-}
-
-}  // namespace
-
-Table page_table(std::string caption, const compare::Table& table) {
-    Table page{.caption = std::move(caption),
-               .rows = std::vector<std::vector<std::string>>(table.rows.size())};
-    for (const auto& column : shown_columns(table, written)) {
-        page.columns.push_back({column.heading, column.words});
-        for (std::size_t r = 0; r < page.rows.size(); ++r) page.rows[r].push_back(column.cells[r]);
-    }
-    return page;
+Table words_table(std::string caption, const std::vector<const char*>& columns) {
+    Table table{.caption = std::move(caption)};
+    for (const char* name : columns)
+        table.columns.push_back({.name = name, .words = true, .digits = Digits::words});
+    return table;
 }
 
 std::string configuration(const compare::TradePoint& chosen) {

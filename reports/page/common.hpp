@@ -77,12 +77,8 @@ struct SweepCurve {
 // Up to `count` evenly spaced indices of 0 ... size - 1, including both ends.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
 
-// A study's table as a table of the page, without empty columns.
-Table page_table(std::string caption, const compare::Table& table);
-template <class Row>
-Table page_table(std::string caption, const std::vector<Row>& rows) {
-    return page_table(std::move(caption), compare::table_of(rows));
-}
+// A table of texts alone.
+Table words_table(std::string caption, const std::vector<const char*>& columns);
 
 // "tangent, 60 steps"; "adaptive, tolerance 0.1 mm"; "equilibrium solution".
 std::string configuration(const compare::TradePoint& chosen);

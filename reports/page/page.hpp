@@ -9,20 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "compare/result/table.hpp"
+
 namespace elastocheck::reports {
 
-struct Column {
-    std::string name;    // with its unit
-    bool words = false;  // text, left-aligned
-    bool note = false;   // explains the row; below it on a narrow screen
-};
-
-struct Table {
-    std::string caption{};
-    std::vector<Column> columns{};
-    std::vector<std::vector<std::string>> rows{};
-    bool folded = false;  // collapsed by default
-};
+using compare::Digits;
+using compare::Table;
 
 // Position in the palette (svg.hpp): 0 is ink.
 enum Colour { ink, vermilion, blue, green, purple, ochre, slate, pink, sky, faint };

@@ -61,13 +61,17 @@ Illustration illustrate(const Svg& svg, const std::string& id, const std::string
         "aria-labelledby=\"{2}-title {2}-desc\"{5}><title id=\"{2}-title\">{3}</title>"
         "<desc id=\"{2}-desc\">{4}</desc>",
         svg.width, svg.height, id, for_xml(title), for_xml(description), svg.of_image);
-    nlohmann::ordered_json tints = nlohmann::ordered_json::array();
-    for (std::size_t k = 0; k < palette.size(); ++k)
-        tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
     const std::string paper = "<style>" +
-                              render("figure.css", {{"tints", tints}}, Escape::nothing) +
+                              render("figure.css", {{"tints", tints()}}, Escape::nothing) +
                               "</style><rect class=\"e-paper\" width=\"100%\" height=\"100%\"/>";
     return {head + paper + svg.elements + "</svg>\n", head + svg.elements + "</svg>"};
+}
+
+nlohmann::ordered_json tints() {
+    auto all = nlohmann::ordered_json::array();
+    for (std::size_t k = 0; k < palette.size(); ++k)
+        all.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
+    return all;
 }
 
 }  // namespace elastocheck::reports

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,8 @@ inline constexpr std::array<Tint, 10> palette{{
     {"#2a93c0", "#79d0f0"},  // sky
     {"#d9dee4", "#38404a"},  // faint
 }};
+
+nlohmann::ordered_json tints();  // of the palette, for the style sheet of pages
 
 // Elements of an SVG image in drawing order. Coordinates are pixels from the upper left corner, y
 // down, written with one decimal in every locale. Colours are classes of the style sheet: e-s0 ...

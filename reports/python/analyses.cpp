@@ -17,7 +17,6 @@
 #include "reports/command/options/running.hpp"
 #include "reports/command/program/exit_code.hpp"
 #include "reports/command/program/parse.hpp"
-#include "reports/document/candidate.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/python/convert.hpp"
 #include "reports/python/scene.hpp"
@@ -116,10 +115,9 @@ Output judge(const std::shared_ptr<SceneOfFile>& scene, const py::function& solv
         model, comparison, compare::candidate_of(model, comparison, name, as_leg), within,
         tolerance.has_value());
     const compare::Result result = reports::result_of(judgement, comparison);
-    return {
-        .exit_code = reports::exit_code_of(judgement.verdict),
-        .printed = reports::candidate_json(judgement, comparison, result.verdict.sentence).dump(),
-        .text = reports::text(result)};
+    return {.exit_code = reports::exit_code_of(judgement.verdict),
+            .printed = reports::json_of(result).dump(),
+            .text = reports::text(result)};
 }
 
 py::tuple as_tuple(const Output& output) {

@@ -11,7 +11,6 @@
 #include "reports/files/templates.hpp"
 #include "reports/page/plot.hpp"
 #include "reports/page/svg.hpp"
-#include "reports/page/template_data.hpp"
 #include "reports/python/analyses.hpp"
 
 namespace elastocheck::python {

@@ -1,5 +1,5 @@
 // The formats of a result (compare/result/result.hpp) and of its tables, and nothing else knows them:
-// text.cpp for a terminal, csv.cpp, json.cpp, markdown.cpp. A missing number is a dash, an empty cell, null.
+// text.cpp for a terminal, csv.cpp, json.cpp, markdown.cpp, page.cpp. A missing number is a dash, an empty cell, null.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -23,14 +23,19 @@ std::string with_unit(const std::string& name, const std::string& unit);  // "er
 // A column as readers see it.
 struct ShownColumn {
     std::string heading;  // "error [mm]"
-    bool words = false;
+    bool words = false, note = false;
     std::vector<std::string> cells;
+    std::vector<double> shades;  // shares of the largest; empty: not shaded
 };
 
 // The columns with digits that are not empty, in the order for readers. `written` formats a number.
 std::vector<ShownColumn> shown_columns(const compare::Table& table,
                                        std::string (*written)(double, Digits));
 std::vector<ShownColumn> shown_columns(const compare::Table& table);  // as on a terminal
+std::vector<ShownColumn> page_columns(const compare::Table& table);   // as on a page
+
+// For the templates of pages: {"caption", "columns", "rows", "folded"}.
+nlohmann::ordered_json page_table(const compare::Table& table);
 
 // Markdown; a text or cell of more than `longest` bytes is cut.
 std::string markdown(std::string_view text, std::size_t longest);

@@ -35,13 +35,17 @@ std::string written(double value, Digits digits) {
         case Digits::given: return fmt::format("{:g}", value);
         case Digits::size: return value == 0 ? "0" : fmt::format("{:.1e}", value);
         case Digits::three: return fmt::format("{:.3g}", value);
+        case Digits::place: return fmt::format("{:.4g}", value);
+        case Digits::four: return rounding(value) ? "0" : fmt::format("{:.4g}", value);
         case Digits::deviation: return rounding(value) ? "0" : fmt::format("{:+.3g}", value);
         case Digits::rounded:
+        case Digits::shaded:
             return rounding(value) ? "0"
                    : value < 10    ? fmt::format("{:.2g}", value)
                                    : fmt::format("{:.0f}", value);
         case Digits::percent: return share(value);
         case Digits::hidden:
+        case Digits::note:
         case Digits::words: break;
     }
     return {};
@@ -72,10 +76,18 @@ std::vector<ShownColumn> shown_columns(const Table& table, std::string (*written
         if (of.digits == Digits::hidden ||
             std::ranges::all_of(table.rows, [&](const auto& row) { return empty(row[c]); }))
             continue;
-        shown.push_back(
-            {with_unit(of.heading.empty() ? of.name : of.heading, of.unit), of.words, {}});
+        shown.push_back({with_unit(of.heading.empty() ? of.name : of.heading, of.unit),
+                         of.words,
+                         of.digits == Digits::note,
+                         {},
+                         {}});
+        double largest = 0;
+        for (const auto& row : table.rows)
+            if (const auto* value = std::get_if<double>(&row[c]); of.digits == Digits::shaded)
+                largest = std::max(largest, value != nullptr ? *value : 0);
         for (const auto& row : table.rows) {
             const auto* value = std::get_if<double>(&row[c]);
+            if (largest > 0) shown.back().shades.push_back(value != nullptr ? *value / largest : 0);
             shown.back().cells.push_back(value != nullptr ? written(*value, of.digits)
                                                           : std::get<std::string>(row[c]));
         }
@@ -125,6 +137,7 @@ std::string text(const compare::Result& result) {
     };
     for (const auto& paragraph : result.about) line(paragraph), gap();
     for (const auto& table : result.tables) {
+        if (table.detail) continue;
         const std::string rows = table.rows.empty() ? "" : text(table);
         if (rows.find_first_not_of('\n') == std::string::npos && table.caption.empty() &&
             table.notes.empty())

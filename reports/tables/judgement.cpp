@@ -13,7 +13,6 @@
 namespace elastocheck::reports {
 namespace {
 
-using json = nlohmann::ordered_json;
 using compare::Assessment;
 using compare::Grade;
 using compare::Worst;
@@ -155,11 +154,6 @@ std::string sentence(const Assessment& j) {
                 subject(j), worst_of(j), rate_of(j), tolerance_of(j));
     }
     return {};
-}
-
-nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool given) {
-    return {{"mm", tolerance.mm},           {"deg", tolerance.deg},     {"N", tolerance.newton},
-            {"Nm", tolerance.newton_metre}, {"share", tolerance.share}, {"asked", given}};
 }
 
 }  // namespace elastocheck::reports

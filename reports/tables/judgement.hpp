@@ -1,7 +1,6 @@
 // Verdict in one sentence, the same on the terminal, on the page and in result.json.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "compare/candidate/judgement.hpp"
@@ -21,8 +20,5 @@ std::string deviation_text(double value, double limit, const char* unit);
 
 // "Not judged: the references disagree (and 2 reasons more)."
 std::string not_judged(const std::vector<std::string>& reasons);
-
-// A tolerance: mm, deg, N, Nm, share, and whether the user gave it ("asked").
-nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool given);
 
 }  // namespace elastocheck::reports

@@ -143,19 +143,6 @@ TEST(Findings, TheWorstDeviationIsTheLargestOfAnyBranch) {
     EXPECT_FALSE(worst_deviation({}, ReadingKind::equal_parameter, Unit::mm));
 }
 
-TEST(Findings, FormulationGapIsTheLimitOfTheDeviation) {
-    StudyOptions options;
-    options.steps = {50, 100, 200, 400, 800};
-    const Study s = study(mcpherson(), options);
-    const auto part = gap_part(compared(), s, "published");
-    ASSERT_TRUE(part);
-    EXPECT_EQ(part->channel, "wheel_centre_z");
-    EXPECT_NEAR(part->gap / part->deviation, 1, 0.1);
-    EXPECT_EQ(part->role, GapRole::nearly_all);
-    EXPECT_FALSE(gap_part(compared(), s, "tangent"));  // not the compared method
-    EXPECT_FALSE(gap_part(compared(), {}, "published"));
-}
-
 // ---- Measured points
 
 // Points of the equilibrium leg with an error `off`, at a few places of one branch.

@@ -117,7 +117,7 @@ TEST(Against, TheSectionDrawsBothOnCommonAxesAndSaysNothingOfAVerdict) {
         EXPECT_EQ(figure.series[0].rows.size(), figure.series[1].rows.size()) << figure.title;
     }
     ASSERT_GE(section->tables.size(), 2u);
-    EXPECT_EQ(section->tables[0].rows[0][0], "points.tie_rod_inner.z");
+    EXPECT_EQ(section->tables[0].rows[0][0], compare::Cell("points.tie_rod_inner.z"));
     EXPECT_GT(section->tables[1].rows.size(), 5u);
     // variants of one scene have its name
     SceneAnalyses twin = scene;

@@ -20,6 +20,7 @@
 #include "reports/json/json.hpp"
 #include "reports/render/render.hpp"
 #include "reports/tables/csv.hpp"
+#include "tests/reports/documents.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -98,7 +99,7 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
 TEST(Document, EveryChannelSaysWhatItIs) {
     const json d = Made().document();
     std::set<std::string> rates;  // of the state and how it answers
-    for (const auto& row : d["scenes"][0]["characteristics"]["design"]["rows"])
+    for (const auto& row : result_in(d["scenes"][0], "compare")["tables"]["rates"]["rows"])
         rates.insert(row[0].get<std::string>());
     EXPECT_GT(rates.size(), 20u);
     for (const auto& channel : d["scenes"][0]["channels"]) {
@@ -114,7 +115,8 @@ TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
     const Made made;
     const json whole = json::parse(made.document().dump());
     const auto told = compare::force_rows(made.model, made.comparison);
-    EXPECT_EQ(whole["scenes"][0]["forces"], json::parse(table_json(told).dump()));
+    EXPECT_EQ(result_in(whole["scenes"][0], "compare")["tables"]["forces"],
+              json::parse(table_json(told).dump()));
     const std::string rows = forces_csv({made});
     EXPECT_TRUE(
         rows.starts_with("scene,branch,end,end unit,element,output,unit,value,error,share [%]\n"))

@@ -6,11 +6,14 @@
 #include <regex>
 
 #include "tests/reports/command.hpp"
+#include "tests/reports/documents.hpp"
 
 namespace elastocheck {
 namespace {
 
 using nlohmann::json;
+using reports::objects;
+using reports::result_in;
 
 const std::string bushing = scenes + "/single_bushing.yaml";
 
@@ -31,7 +34,7 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
          {"inspect " + bushing, "solve --steps=4 " + bushing, "compare --steps=4 " + bushing,
           "converge " + bushing + " --steps=4,8,16,32,64", "trade " + chain}) {
         const json said = document(command);
-        EXPECT_EQ(said["schema"], "elastocheck/result/4") << command;
+        EXPECT_EQ(said["schema"], "elastocheck/result/5") << command;
         EXPECT_EQ(said["scenes"].size(), 1u) << command;
         EXPECT_EQ(said["scenes"][0]["name"], command.ends_with(chain)
                                                  ? "chain of 15 bodies on bushings"
@@ -273,12 +276,15 @@ TEST(ReportCommand, LaysMeasuredPointsOverTheCurves) {
                       map = " --map " + (report.folder.path / "map.yaml").string();
     expect_says(command + measured + map, 0, {.err = {"rig.csv: left out: time"}});
     const json result = json::parse(text_of(report.folder.path / "out/result.json"));
-    const json& points = result["scenes"][0]["measured"];
-    EXPECT_EQ(points["columns"]["centre_x"], (json{100.0, 101.5}));
-    EXPECT_EQ(points["branch"], (json{"pull", "push"}));
-    const json& tests = points["readings"][0]["channels"];
+    const json tables = result_in(result["scenes"][0], "measured")["tables"];
+    const json points = objects(tables["points"]), tests = objects(tables["measured"]);
+    ASSERT_EQ(points.size(), 2u);
+    EXPECT_EQ(points[0]["value"], 100.0);
+    EXPECT_EQ(points[1]["value"], 101.5);
+    EXPECT_EQ(points[0]["branch"], "pull");
+    EXPECT_EQ(points[1]["branch"], "push");
     EXPECT_EQ(tests.size(), 2u);
-    for (const auto& test : tests) EXPECT_EQ(test["compared"], 1);
+    for (const auto& test : tests) EXPECT_EQ(test["points"], 1);
     expect_parts(text_of(report.folder.path / "out/report.html"),
                  {"Comparison with the measurement"});
     // nothing within range: could not be judged

@@ -6,6 +6,7 @@
 
 #include "reports/document/scene_analyses.hpp"
 #include "reports/page/report/report.hpp"
+#include "tests/reports/documents.hpp"
 
 namespace elastocheck::reports {
 

@@ -194,7 +194,7 @@ TEST(TooLarge, IsSaidAndTheEnergyLegBearsWitness) {
         EXPECT_LE(branch["witness"]["left"][unit].get<double>(),
                   branch["witness"]["at_most"][unit].get<double>())
             << unit;
-    expect_parts(branch["energy_not_asked"].get<std::string>(), {"900 coordinates"});
+    expect_parts(branch["why_not_energy"].get<std::string>(), {"900 coordinates"});
 }
 
 }  // namespace

@@ -26,11 +26,12 @@ std::string said(const SceneAnalyses& scene, const std::string& id) {
         if (section.id != id) continue;
         text += render("text/" + id, section.words, Escape::nothing);
         for (const auto& table : section.tables) {
+            const auto columns = page_columns(table);
             text += table.caption + "\n";
-            for (const auto& column : table.columns) text += "| " + column.name + " ";
-            for (const auto& row : table.rows) {
+            for (const auto& column : columns) text += "| " + column.heading + " ";
+            for (std::size_t r = 0; r < table.rows.size(); ++r) {
                 text += "|\n";
-                for (const auto& cell : row) text += "| " + cell + " ";
+                for (const auto& column : columns) text += "| " + column.cells[r] + " ";
             }
             text += "|\n";
         }
@@ -106,19 +107,22 @@ TEST(Sections, EffectsOfNumbersAreBarsArrowsAndAMap) {
     EXPECT_EQ(bars.series[0].rows[0][3], 0);
 
     // along the gradient (0.3, 0, -0.4), of size 0.5
-    const auto& arrows = section.figures[0].table;
-    EXPECT_EQ(arrows.rows[0],
+    const auto arrows = page_columns(section.figures[0].table);
+    std::vector<std::string> first;
+    for (const auto& column : arrows) first.push_back(column.cells[0]);
+    EXPECT_EQ(first,
               (std::vector<std::string>{as_words(names[0]), "+0.300", "0", "−0.400", "0.500"}));
     const auto words = figure(scene, "change-view-front").words;
     EXPECT_EQ(std::ranges::count(words, as_words(names[0]) + " 0.50", &Word::text), 1);
     EXPECT_EQ(std::ranges::count(words, as_words(names[1]), &Word::text), 0)
         << "the names of the points give way to those of the arrows";
 
-    const auto& map = section.figures.back();
-    EXPECT_EQ(map.table.columns[1].name, "left bump steer [deg/m]");
-    EXPECT_EQ(map.table.rows[0], (std::vector<std::string>{as_words(names[0]), "0.500"}));
-    EXPECT_EQ(map.figures[0].series.size(), 2u);
-    EXPECT_NEAR(map.figures[0].series[1].opacity, 0.1 * map.figures[0].series[0].opacity, 1e-12);
+    const auto map = page_columns(section.tables.back());
+    EXPECT_EQ(map[1].heading, "left bump steer [deg/m]");
+    EXPECT_EQ(map[0].cells[0], as_words(names[0]));
+    EXPECT_EQ(map[1].cells[0], "0.50");
+    EXPECT_EQ(map[1].shades[0], 1);
+    EXPECT_NEAR(map[1].shades[1], 0.1, 1e-12);
 
     EXPECT_EQ(section_with(false).mark, Mark::open);
     expect_parts(said(scene, "change"), {"not confirmed"});

@@ -62,14 +62,43 @@ TEST(Tables, ThePageShowsTheSameColumns) {
                                {"share", "", "", false, Digits::percent},
                                {"empty", "", "", false, Digits::whole}},
                               {{"a", 1e-6, 12345.0, 0.137, nan}, {"b", 2.5e-6, nan, 1e-3, nan}}};
-    const Table page = page_table("Caption", told);
-    ASSERT_EQ(page.columns.size(), 4u);
-    EXPECT_TRUE(page.columns[0].words && !page.columns[1].words);
-    EXPECT_EQ(page.columns[1].name, "told [m]");
-    EXPECT_EQ(page.columns[2].name, "how many");
-    EXPECT_EQ(page.rows[0], (std::vector<std::string>{"a", number(1e-6, 1), whole_number(12345),
-                                                      percent(0.137)}));
-    EXPECT_EQ(page.rows[1], (std::vector<std::string>{"b", number(2.5e-6, 2), "–", percent(1e-3)}));
+    const auto page = page_columns(told);
+    ASSERT_EQ(page.size(), 4u);
+    EXPECT_TRUE(page[0].words && !page[1].words);
+    EXPECT_EQ(page[1].heading, "told [m]");
+    EXPECT_EQ(page[2].heading, "how many");
+    using Cells = std::vector<std::string>;
+    EXPECT_EQ(page[0].cells, (Cells{"a", "b"}));
+    EXPECT_EQ(page[1].cells, (Cells{number(1e-6, 1), number(2.5e-6, 2)}));
+    EXPECT_EQ(page[2].cells, (Cells{whole_number(12345), "–"}));
+    EXPECT_EQ(page[3].cells, (Cells{percent(0.137), percent(1e-3)}));
+}
+
+TEST(Tables, ChosenColumnsAreShownInTheirOrder) {
+    const compare::Table chosen = with_columns(small, {"count", "how", "nothing", "who"});
+    ASSERT_EQ(chosen.columns.size(), 3u);
+    EXPECT_EQ(text(chosen),
+              "  count  how  who\n"
+              "      3  x    a, b\n"
+              "      4  x    c\n"
+              "      3  y    a, b\n");
+}
+
+// A page shades the cells of a column by their share of the largest; a detail is not on a terminal.
+TEST(Tables, ShadesAndDetailsAreForPages) {
+    compare::Table table{
+        {{"who", "", "", true, Digits::words}, {"effect", "", "", false, Digits::shaded}},
+        {{"a", 2.0}, {"b", 0.5}, {"c", nan}}};
+    EXPECT_EQ(page_columns(table)[1].shades, (std::vector<double>{1, 0.25, 0}));
+    EXPECT_TRUE(page_columns(table)[0].shades.empty());
+    const json data = page_table(table);
+    EXPECT_EQ(data["rows"][1]["cells"][1]["share"], "0.25");
+    EXPECT_EQ(data["folded"], false);
+    compare::Result result{.tables = {table}};
+    expect_parts(text(result), {"effect"});
+    result.tables[0].detail = true;
+    EXPECT_EQ(text(result), "");
+    EXPECT_EQ(page_table(result.tables[0])["folded"], true);
 }
 
 TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {

@@ -72,7 +72,8 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
                  {"forces.csv", csv(force_rows(model, comparison))}};
         SceneAnalyses found = analyses_of(loaded, request.scene);
         add_comparison(found, std::move(comparison));
-        scene = scene_json(found);
+        add_tables(result, found);
+        scene = compared_json(found);
     }
     deliver_result(delivery, std::move(scene), result, std::move(files));
     return result.verdict.grade == compare::Grade::not_judged ? could_not_judge : fine;

@@ -18,7 +18,6 @@
 #include "reports/page/plot.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/svg.hpp"
-#include "reports/page/template_data.hpp"
 #include "reports/text/escape.hpp"
 #include "reports/text/numbers.hpp"
 
@@ -86,13 +85,13 @@ struct Page {
                 figures.push_back(figure(part.plots.at(plot++)));
             json entry = {{"caption", group.caption},
                           {"figures", figures},
-                          {"table", table_data(group.table)}};
+                          {"table", page_table(group.table)}};
             entry["wide"] = group.figures.size() > 1;
             entry["broad"] = group.figures.size() > 1 && group.figures.front().sheet &&
                              group.figures.front().sheet->width > 400;
             (group.figures.size() > 1 ? several : single).push_back(entry);
         }
-        for (const auto& table : section.tables) tables.push_back(table_data(table));
+        for (const auto& table : section.tables) tables.push_back(page_table(table));
         json groups = single;
         for (const auto& entry : several) groups.push_back(entry);
         const json all = paragraphs(section);
@@ -156,49 +155,42 @@ struct Page {
 // Summary of several scenes: whether the references agree, the cheapest method that is good enough,
 // and how far the published one is off.
 Table summary(const std::list<ScenePart>& parts) {
-    Table table{.caption =
-                    "Summary: how far the references agree, the cheapest fast method within "
-                    "the tolerance, and the largest errors of the published recursion",
-                .columns = {{"scene", true},
-                            {"references apart [mm]"},
-                            {"cheapest method within the tolerance", true},
-                            {"its work, of the full solution"},
-                            {"published: position, at equal load or drive"},
-                            {"position, at equal travel"},
-                            {"angle, at equal load or drive"},
-                            {"angle, at equal travel"},
-                            {"wheel rate"},
-                            {"force, moment or rate, of its extent"}}};
+    Table table = words_table(
+        "Summary: how far the references agree, the cheapest fast method within the tolerance, and "
+        "the largest errors of the published recursion",
+        {"scene", "distance of the references", "cheapest method within the tolerance",
+         "its work, of the full solution", "published: position, at equal load or drive",
+         "position, at equal travel", "angle, at equal load or drive", "angle, at equal travel",
+         "wheel rate", "force, moment or rate, of its extent"});
     for (const auto& part : parts) {
-        std::vector<std::string> row{part.scene.scene.name};
         const auto apart = compare::worst_disagreement(part.scene.comparison, compare::Unit::mm);
-        row.push_back(!part.scene.conclusive() ? "not judged"
-                      : apart                  ? number(apart->max, 2)
-                                               : "–");
         const auto rows = method_rows(part.scene);
         const auto chosen = std::ranges::find_if(rows, &MethodRow::chosen);
-        row.push_back(chosen == rows.end() ? "–" : chosen->method + ", " + chosen->setting);
-        row.push_back(chosen == rows.end() ? "–" : percent(chosen->cost));
+        const bool none = chosen == rows.end();
         const compare::Assessment judgement = part.scene.judgement.value_or(compare::Assessment{});
-        for (const auto& worst : {judgement.position, judgement.position_across, judgement.angle,
-                                  judgement.angle_across})
-            row.push_back(!worst ? "–" : quantity(worst->max, symbol(worst->unit)));
-        const auto& rate = judgement.wheel_rate;
-        row.push_back(!rate ? "–"
-                            : fmt::format("{} too {}", percent(std::abs(rate->off)),
-                                          rate->off < 0 ? "soft" : "stiff"));
+        const auto size = [](const std::optional<compare::Worst>& worst) {
+            return worst ? quantity(worst->max, symbol(worst->unit)) : "–";
+        };
         double other = -1;
         for (const auto& worst : {judgement.other, judgement.other_across})
             if (worst && worst->extent > 0) other = std::max(other, worst->max / worst->extent);
-        row.push_back(other < 0 ? "–" : percent(other));
-        table.rows.push_back(row);
+        const auto& rate = judgement.wheel_rate;
+        table.rows.push_back(
+            {part.scene.scene.name, !part.scene.conclusive() ? "not judged" : size(apart),
+             none ? "–" : chosen->method + ", " + chosen->setting,
+             none ? "–" : percent(chosen->cost), size(judgement.position),
+             size(judgement.position_across), size(judgement.angle), size(judgement.angle_across),
+             !rate ? "–"
+                   : fmt::format("{} too {}", percent(std::abs(rate->off)),
+                                 rate->off < 0 ? "soft" : "stiff"),
+             other < 0 ? "–" : percent(other)});
     }
     return table;
 }
 
 json made_by(const Report& report) {
     const Provenance& p = report.provenance;
-    Table table{.caption = "Made by", .columns = {{"what", true}, {"which", true}}};
+    Table table = words_table("Made by", {"what", "which"});
     table.rows = {{"elastocheck", p.version},
                   {"commit", p.commit + (p.dirty ? ", with uncommitted changes" : "")},
                   {"compiler", p.compiler},
@@ -206,7 +198,7 @@ json made_by(const Report& report) {
     for (const auto& [name, version] : p.libraries) table.rows.push_back({name, version});
     for (const auto& scene : report.scenes)
         table.rows.push_back({scene.scene.source, "hash " + scene.hash});
-    return table_data(table);
+    return page_table(table);
 }
 
 // Removes fields that differ from run to run.
@@ -313,7 +305,7 @@ std::vector<NamedContent> texts(Draft draft, const Report& report, const std::st
     const json data = {{"title", title_of(report.scenes)},
                        {"several", scenes.size() > 1},
                        {"scenes", scenes},
-                       {"summary", table_data(summary(draft.parts))},
+                       {"summary", page_table(summary(draft.parts))},
                        {"provenance", made_by(report)},
                        {"reproduce", for_terminal(report.reproduce)},
                        {"tints", tints()},

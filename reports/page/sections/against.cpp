@@ -15,8 +15,6 @@
 namespace elastocheck::reports {
 namespace {
 
-std::string value_or_none(double value) { return std::isfinite(value) ? number(value, 4) : "none"; }
-
 // Of the base and the variant: the scenes' names, or where these are the same, their files'.
 std::pair<std::string, std::string> names_of(const SceneAnalyses& scene, const Against& against) {
     const auto file = [](const std::string& source) {
@@ -24,52 +22,6 @@ std::pair<std::string, std::string> names_of(const SceneAnalyses& scene, const A
     };
     if (scene.scene.name != against.name) return {scene.scene.name, against.name};
     return {file(scene.scene.source), file(against.source)};
-}
-
-Table numbers_table(const Against& against) {
-    Table table{.caption = "Numbers of the scene that differ",
-                .columns = {{"number", true}, {"base"}, {"variant"}, {"unit", true}}};
-    const auto as_written = [](const std::optional<Number>& number) {
-        return number ? fmt::format("{}", number->value) : "none";
-    };
-    for (const auto& [was, is] : against.numbers)
-        table.rows.push_back(
-            {(is ? is : was)->path, as_written(was), as_written(is), (is ? is : was)->unit});
-    return table;
-}
-
-// Those that an engineer notices, or the others.
-Table figures_table(const Against& against, bool noticed) {
-    Table table{.caption = noticed ? "Figures at the design position that differ"
-                                   : "Figures that differ by less than an engineer notices",
-                .columns = {{"figure", true},
-                            {"base"},
-                            {"variant"},
-                            {"unit", true},
-                            {"difference"},
-                            {"its unit", true}},
-                .folded = !noticed};
-    for (const auto& f : against.figures)
-        if (noticed == !(f.noticed <= 1))
-            table.rows.push_back({as_words(f.output), value_or_none(f.base),
-                                  value_or_none(f.variant), f.unit, signed_number(f.difference, 3),
-                                  f.unit_of_difference});
-    return table;
-}
-
-Table curves_table(const Against& against) {
-    Table table{.caption = "Largest difference over each branch, at equal load or drive",
-                .columns = {{"branch", true},
-                            {"output", true},
-                            {"largest difference"},
-                            {"unit", true},
-                            {"at"},
-                            {"", true}}};
-    for (const auto& branch : against.branches)
-        for (const auto& c : branch.curves)
-            table.rows.push_back({branch.name, as_words(c.output), signed_number(c.largest, 3),
-                                  c.unit, number(c.at, 4), branch.unit});
-    return table;
 }
 
 Series curve(const Against::Line& line, bool variant) {
@@ -96,7 +48,7 @@ FigureGroup figures(const SceneAnalyses& scene, const Against& against) {
     constexpr std::size_t most = 12;
     const auto [base, variant] = names_of(scene, against);
     FigureGroup group{.caption = fmt::format("Wide line: {}. Thin line: {}.", base, variant),
-                      .table = curves_table(against)};
+                      .table = whole_table(result_of(against), "differences")};
     const auto branches = branches_of(scene);
     for (const auto& branch : against.branches) {
         const auto same = std::ranges::find(branches, branch.name, &ComparedBranch::name);
@@ -132,9 +84,10 @@ std::optional<Section> against_section(const SceneAnalyses& scene) {
     if (!against.only_base.empty()) section.words["only_base"] = enumerated(against.only_base);
     if (!against.only_variant.empty())
         section.words["only_variant"] = enumerated(against.only_variant);
-    for (Table table :
-         {numbers_table(against), figures_table(against, true), figures_table(against, false)})
-        if (!table.rows.empty()) section.tables.push_back(std::move(table));
+    compare::Result result = result_of(against);
+    for (Table& table : result.tables)
+        if ((table.id == "numbers" || table.id == "figures") && !table.rows.empty())
+            section.tables.push_back(std::move(table));
     FigureGroup group = figures(scene, against);
     if (!group.figures.empty())
         section.figures.push_back(std::move(group));

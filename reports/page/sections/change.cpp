@@ -9,7 +9,6 @@
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/suspension.hpp"
-#include "reports/text/labels.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -123,81 +122,27 @@ Figure tornado(const KeyFigure& of) {
     return figure;
 }
 
-// A title in lines that fit the width.
-std::vector<std::string> wrapped(const std::string& text, double most) {
-    std::vector<std::string> lines{""};
-    for (std::size_t from = 0; from < text.size();) {
-        const std::size_t end = std::min(text.find(' ', from), text.size());
-        const std::string word = text.substr(from, end - from);
-        const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-        if (lines.back().empty() || text_width(longer, 10) <= most)
-            lines.back() = longer;
-        else
-            lines.push_back(word);
-        from = end + 1;
-    }
-    return lines;
-}
-
-// Size of the gradient of each figure by each hardpoint; shade: share of the figure's largest.
-FigureGroup heat_map(const std::vector<KeyFigure>& figures, const std::vector<EffectRow>& rows) {
-    constexpr double names = 118, cell = 64, line = 17, word = 12;  // [px]
+// Size of the gradient of each figure by each hardpoint.
+Table heat_map(const std::vector<KeyFigure>& figures, const std::vector<EffectRow>& rows) {
+    using Gradient = std::pair<std::string, Position>;
     auto points = gradients_of(figures.front(), rows);
-    std::erase_if(points, [&](const auto& point) {
-        return std::ranges::none_of(figures, [&](const KeyFigure& figure) {
-            return norm(gradient_by(point.first, figure)) > rounding * figure.largest();
-        });
+    const auto size = [](const KeyFigure& figure, const Gradient& of) {
+        const double norm_of = norm(gradient_by(of.first, figure));
+        return norm_of > rounding * figure.largest() ? norm_of : 0;
+    };
+    std::erase_if(points, [&](const Gradient& of) {
+        return std::ranges::none_of(figures, [&](const auto& f) { return size(f, of) > 0; });
     });
-    std::size_t heading = 0;
-    for (const auto& figure : figures)
-        heading = std::max(heading, wrapped(figure.title, cell - 4).size() + 1);
-    const double bottom = 4, top = bottom + line * static_cast<double>(points.size());
-    Figure map{.id = "change-map",
-               .title = "Effect of moving a hardpoint by 1 mm in its most effective direction",
-               .description = "Of each figure by each hardpoint; the numbers are in the table."};
-    map.sheet = Sheet{.width = static_cast<int>(names + cell * static_cast<double>(figures.size())),
-                      .height = static_cast<int>(top + 8 + word * static_cast<double>(heading))};
-    Table table{.caption = "Effect of 1 mm in the most effective direction",
-                .columns = {{"hardpoint", true}}};
-    for (std::size_t p = 0; p < points.size(); ++p) {
-        const std::string name = as_words(points[p].first);
-        map.words.push_back({2, top - line * (static_cast<double>(p) + 0.5), name, ink});
-        table.rows.push_back({name});
-    }
-    for (std::size_t f = 0; f < figures.size(); ++f) {
-        const double left = names + cell * static_cast<double>(f);
-        auto title = wrapped(figures[f].title, cell - 4);
-        title.push_back("[" + figures[f].unit + "]");
-        for (std::size_t k = 0; k < title.size(); ++k)
-            map.words.push_back({left + 2,
-                                 top + 8 + word * (static_cast<double>(title.size() - k) - 0.5),
-                                 title[k], slate});
-        table.columns.push_back({fmt::format("{} [{}]", figures[f].title, figures[f].unit)});
-        std::vector<double> sizes;
-        for (const auto& [name, gradient] : points)
-            sizes.push_back(norm(gradient_by(name, figures[f])));
-        const double largest = std::ranges::max(sizes);
-        for (std::size_t p = 0; p < points.size(); ++p) {
-            const double size = sizes[p];
-            const double high = top - line * static_cast<double>(p), low = high - line;
-            table.rows[p].push_back(size > rounding * largest ? number(size) : "0");
-            if (!(size > rounding * largest)) continue;
-            map.series.push_back({.style = Series::Style::face,
-                                  .colour = vermilion,
-                                  .rows = {{left, low},
-                                           {left + cell - 2, low},
-                                           {left + cell - 2, high - 2},
-                                           {left, high - 2}},
-                                  .opacity = 0.6 * size / largest});
-            if (size >= 0.01 * largest)
-                map.words.push_back({left + 4, low + line / 2 - 1, number(size, 2), ink});
-        }
-    }
-    FigureGroup group{"Hardpoints against figures; shade: share of the largest of the column.",
-                      {},
-                      std::move(table)};
-    group.figures.push_back(std::move(map));
-    return group;
+    std::vector<compare::ColumnOf<Gradient>> columns{
+        {"hardpoint", Digits::words, [](const Gradient& of) { return as_words(of.first); }}};
+    for (const KeyFigure& figure : figures)
+        columns.push_back({figure.title, Digits::shaded,
+                           [&](const Gradient& of) { return size(figure, of); }, "", figure.unit});
+    Table map = compare::table("", columns, points);
+    map.caption =
+        "Effect of moving a hardpoint by 1 mm in its most effective direction; shade: share of the "
+        "largest of the column";
+    return map;
 }
 
 // The suspension with an arrow at each hardpoint in the direction in which the figure grows most.
@@ -227,15 +172,22 @@ std::optional<FigureGroup> arrows(const SceneAnalyses& scene, const KeyFigure& f
              fmt::format("{} {}", as_words(name), number(norm(gradient), 2))});
     }
     FigureGroup group;
-    group.table = {.caption = fmt::format("Effect of 1 mm on {} [{}]", figure.title, figure.unit),
-                   .columns = {{"hardpoint", true}, {"x"}, {"y"}, {"z"}, {"along the arrow"}}};
-    for (const auto& [name, gradient] : points) {
-        std::vector<std::string> row{as_words(name)};
-        for (const double v : gradient)
-            row.push_back(std::abs(v) > rounding * largest ? signed_number(v) : "0");
-        row.push_back(number(norm(gradient)));
-        group.table.rows.push_back(std::move(row));
-    }
+    using Gradient = std::pair<std::string, Position>;
+    const auto along = [=](std::size_t axis) {
+        return [=](const Gradient& of) {
+            return std::abs(of.second[axis]) > rounding * largest ? of.second[axis] : 0;
+        };
+    };
+    group.table = compare::table<Gradient>(
+        "",
+        {{"hardpoint", Digits::words, [](const Gradient& of) { return as_words(of.first); }},
+         {"x", Digits::deviation, along(0)},
+         {"y", Digits::deviation, along(1)},
+         {"z", Digits::deviation, along(2)},
+         {"along the arrow", Digits::three, [](const Gradient& of) { return norm(of.second); }}},
+        points);
+    group.table.caption = fmt::format("Effect of 1 mm on {} [{}]", figure.title, figure.unit);
+    group.table.detail = true;
     const std::vector<View> views{front_view, side_view, top_view};
     group.figures = draw_views(suspension, views, small_frame(suspension));
     for (std::size_t k = 0; k < views.size(); ++k) {
@@ -271,16 +223,22 @@ std::optional<Section> change_section(const SceneAnalyses& scene) {
     for (const auto& figure : figures)
         if (charts.figures.size() < most_charts) charts.figures.push_back(tornado(figure));
     charts.caption = "The five numbers with the largest effect on each figure, for 1 mm or 1 %.";
-    charts.table = {
-        .caption = "Effects on each figure, the largest ten, for 1 mm or 1 %",
-        .columns = {{"figure", true}, {"number", true}, {"for"}, {"effect"}, {"unit", true}}};
+    std::vector<std::pair<const KeyFigure*, const EffectRow*>> largest;
     for (const auto& figure : figures)
-        for (std::size_t k = 0; k < std::min<std::size_t>(10, figure.effects.size()); ++k) {
-            const EffectRow& row = figure.effects[k];
-            if (std::abs(row.effect) <= rounding * figure.largest()) break;
-            charts.table.rows.push_back(
-                {figure.title, row.number, row.step, signed_number(row.effect), figure.unit});
-        }
+        for (std::size_t k = 0; k < std::min<std::size_t>(10, figure.effects.size()); ++k)
+            if (std::abs(figure.effects[k].effect) > rounding * figure.largest())
+                largest.emplace_back(&figure, &figure.effects[k]);
+    using L = std::pair<const KeyFigure*, const EffectRow*>;
+    charts.table = compare::table<L>(
+        "",
+        {{"figure", Digits::words, [](const L& l) { return l.first->title; }},
+         {"number", Digits::words, [](const L& l) { return l.second->number; }},
+         {"for", Digits::words, [](const L& l) { return l.second->step; }},
+         {"effect", Digits::deviation, [](const L& l) { return l.second->effect; }},
+         {"unit", Digits::words, [](const L& l) { return l.first->unit; }}},
+        largest);
+    charts.table.caption = "Effects on each figure, the largest ten, for 1 mm or 1 %";
+    charts.table.detail = true;
     section.figures.push_back(std::move(charts));
     if (figures.size() > most_columns) figures.resize(most_columns);
     const auto by_a_point = [](const KeyFigure& figure) {
@@ -288,8 +246,7 @@ std::optional<Section> change_section(const SceneAnalyses& scene) {
             return coordinate(row.number) && std::abs(row.effect) > rounding * figure.largest();
         });
     };
-    if (std::ranges::any_of(figures, by_a_point))
-        section.figures.push_back(heat_map(figures, rows));
+    if (std::ranges::any_of(figures, by_a_point)) section.tables.push_back(heat_map(figures, rows));
     return section;
 }
 

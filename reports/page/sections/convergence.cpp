@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
@@ -47,11 +48,7 @@ std::vector<std::vector<double>> rows(const std::vector<double>& steps,
 // Step errors of one method over one branch.
 std::optional<FigureGroup> group(const std::string& branch, const std::vector<StepRow>& steps_of) {
     FigureGroup group;
-    group.table.caption =
-        fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);
-    group.table.columns = {{"steps"}, {"|Φ|, eq. (31)"}};
-    group.table.folded = true;
-    std::vector<Levels> both;
+    std::vector<std::pair<std::string, Levels>> readings;
     for (const auto& reading : distinct(steps_of, &StepRow::reading)) {
         const Levels levels = levels_of(where(steps_of, &StepRow::reading, reading));
         if (levels.steps.empty()) continue;
@@ -70,29 +67,34 @@ std::optional<FigureGroup> group(const std::string& branch, const std::vector<St
                          {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
         std::erase_if(figure.series, [](const Series& s) { return s.rows.empty(); });
         if (figure.series.empty()) continue;
+        const auto ends = [](const std::vector<double>& values) {
+            return fmt::format("from {} to {} mm", number(values.front(), 2),
+                               number(values.back(), 2));
+        };
         figure.description = fmt::format(
-            "Logarithmic plot, {}: from {} to {} steps the constraint error of eq. (31) goes from "
-            "{} to {} "
-            "mm, "
-            "the step error from {} to {} mm, the error against the reference from {} to {} mm.",
-            name, number(steps.front(), 4), number(steps.back(), 4), number(phi.front(), 2),
-            number(phi.back(), 2), number(step.front(), 2), number(step.back(), 2),
-            number(truth.front(), 2), number(truth.back(), 2));
-        group.table.columns.push_back({fmt::format("step error, {}", name)});
-        group.table.columns.push_back({fmt::format("error against the reference, {}", name)});
+            "Logarithmic plot, {}: from {} to {} steps the constraint error of eq. (31) goes {}, "
+            "the step error {}, the error against the reference {}.",
+            name, number(steps.front(), 4), number(steps.back(), 4), ends(phi), ends(step),
+            ends(truth));
         group.figures.push_back(std::move(figure));
-        both.push_back(levels);
+        readings.emplace_back(name, levels);
     }
     if (group.figures.empty()) return std::nullopt;
-    for (std::size_t l = 0; l < both.front().steps.size(); ++l) {
-        std::vector<std::string> row{whole_number(std::lround(both.front().steps[l])),
-                                     number(both.front().phi[l])};
-        for (const auto& levels : both) {
-            row.push_back(number(levels.step[l]));
-            row.push_back(number(levels.truth[l]));
-        }
-        group.table.rows.push_back(row);
+    using Level = std::size_t;
+    const Levels& first = readings.front().second;
+    std::vector<compare::ColumnOf<Level>> columns{
+        {"steps", Digits::whole, [&](Level l) { return first.steps[l]; }},
+        {"|Φ|, eq. (31)", Digits::three, [&](Level l) { return first.phi[l]; }}};
+    for (const auto& [name, levels] : readings) {
+        columns.push_back(
+            {"step error, " + name, Digits::three, [&levels](Level l) { return levels.step[l]; }});
+        columns.push_back({"error against the reference, " + name, Digits::three,
+                           [&levels](Level l) { return levels.truth[l]; }});
     }
+    group.table = compare::table("", columns, std::views::iota(Level{0}, first.steps.size()));
+    group.table.caption =
+        fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);
+    group.table.detail = true;
     group.caption =
         fmt::format("Branch {}: worst position at its end, published recursion.", branch);
     return group;
@@ -119,10 +121,10 @@ std::optional<Section> convergence_section(const SceneAnalyses& scene) {
                 section.words["notes"].push_back({{"branch", branch},
                                                   {"reading", as_words(row.reading)},
                                                   {"why", row.not_studied}});
-        section.tables.push_back(
-            page_table(fmt::format("Orders and gaps, branch {}, {}", branch, reading),
-                       where(found, &StudyRow::reading, reading)));
-        section.tables.back().folded = true;
+        Table& table =
+            section.tables.emplace_back(table_of(where(found, &StudyRow::reading, reading)));
+        table.caption = fmt::format("Orders and gaps, branch {}, {}", branch, reading);
+        table.detail = true;
     }
     return section;
 }

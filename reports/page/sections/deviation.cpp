@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/tables/compare_result.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/text/numbers.hpp"
@@ -36,6 +37,11 @@ double tolerance_of(const SceneAnalyses& scene, Unit unit) {
     return unit == Unit::mm ? scene.trade->tolerance.mm : scene.trade->tolerance.deg;
 }
 
+// Deviations at one parameter, for the table.
+struct Station {
+    double a, load, travel, recommended, references;
+};
+
 // The worst deviations of a unit over a sweep, as curves and as a table.
 struct Worst {
     Series load{"", Series::Style::line, vermilion};
@@ -44,7 +50,7 @@ struct Worst {
     Series references{"difference of the references", Series::Style::thin, slate};
     double load_peak = 0, travel_peak = 0, apart = 0;
     bool complete = true;  // both references reached the end
-    Table table{};
+    std::vector<Station> stations{};
 
     std::vector<Series*> compared() { return {&load, &travel, &recommended}; }
 };
@@ -55,34 +61,22 @@ void raise_peak(double& most, const Profile& profile) {
         if (value > most) most = value;
 }
 
-// At the same parameter; empty without one.
-std::string recommended_at(const compare::Profile* profile, const Profile& errors, double a,
-                           double extent) {
-    std::size_t nearest = 0;
+// Of the recommended configuration at the same parameter; NaN without one.
+double recommended_at(const compare::Profile& profile, const Profile& errors, double a,
+                      double extent) {
     for (std::size_t l = 0; l < errors.size(); ++l)
-        if (std::abs(profile->a[l] - a) < std::abs(profile->a[nearest] - a)) nearest = l;
-    const bool same =
-        !errors.empty() && std::abs(profile->a[nearest] - a) <= 1e-9 * std::abs(extent);
-    return same ? number(errors[nearest]) : "–";
+        if (std::abs(profile.a[l] - a) <= 1e-9 * std::abs(extent)) return errors[l];
+    return compare::nan;
 }
 
 Worst worst_of(const SceneAnalyses& scene, const Sweep& sweep, Unit unit) {
     Worst worst;
     worst.load.title = "published, " + sweep.at_equal_parameter();
     worst.travel.title = "published, " + sweep.at_equal_abscissa();
-    const auto column = [&](const std::string& name) {
-        worst.table.columns.push_back({fmt::format("{} [{}]", name, symbol(unit))});
-    };
-    worst.table.columns = {{sweep.parameter}};
-    column(worst.load.title), column(worst.travel.title);
-    if (scene.recommended) {
-        const std::string which = configuration(scene.recommended->configuration);
-        worst.recommended.title = which + ", " + sweep.at_equal_parameter();
-        column(which);
-    }
-    column("difference of the references");
+    if (scene.recommended)
+        worst.recommended.title =
+            configuration(scene.recommended->configuration) + ", " + sweep.at_equal_parameter();
     const auto& channels = scene.comparison.channels;
-    std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
     for (const auto& branch : sweep.branches) {
         const compare::Curve &truth = branch.truth(),
                              &other = branch.result->run(Leg::recursive).curve,
@@ -103,26 +97,38 @@ Worst worst_of(const SceneAnalyses& scene, const Sweep& sweep, Unit unit) {
         append(worst.load, a, by_load);
         append(worst.travel, a, by_travel);
         append(worst.references, a, uncertainty);
-        const compare::Profile* recommended = nullptr;
+        compare::Profile recommended;
         if (scene.recommended)
             for (const auto& [name, profile] : scene.recommended->branches)
-                if (name == branch.name()) recommended = &profile;
-        const Profile errors = recommended ? profile_of(*recommended, unit) : Profile{};
-        if (recommended) append(worst.recommended, recommended->a, errors);
-        for (const auto k : thinned(by_load.size(), 7)) {
-            if (k == 0 && !rows_by_load.empty()) continue;
-            std::vector<std::string> row{number(a[k], 4), number(by_load[k]),
-                                         k < by_travel.size() ? number(by_travel[k]) : "–"};
-            if (scene.recommended)
-                row.push_back(recommended_at(recommended, errors, a[k], a.back()));
-            row.push_back(k < uncertainty.size() ? number(uncertainty[k]) : "–");
-            rows_by_load.emplace_back(a[k], row);
-        }
+                if (name == branch.name()) recommended = profile;
+        const Profile errors = profile_of(recommended, unit);
+        if (!errors.empty()) append(worst.recommended, recommended.a, errors);
+        const auto value = [](const Profile& profile, std::size_t k) {
+            return k < profile.size() ? profile[k] : compare::nan;
+        };
+        for (const auto k : thinned(by_load.size(), 7))
+            if (k > 0 || worst.stations.empty())
+                worst.stations.push_back({a[k], by_load[k], value(by_travel, k),
+                                          recommended_at(recommended, errors, a[k], a.back()),
+                                          value(uncertainty, k)});
     }
-    std::ranges::sort(rows_by_load, {}, [](const auto& row) { return row.first; });
-    for (auto& [load, row] : rows_by_load) worst.table.rows.push_back(std::move(row));
-    worst.table.folded = true;
+    std::ranges::stable_sort(worst.stations, {}, &Station::a);
     return worst;
+}
+
+Table stations_of(const Worst& worst, const std::string& parameter, const char* unit) {
+    using enum Digits;
+    using S = Station;
+    Table table = compare::table<S>(
+        "",
+        {{parameter, place, [](const S& s) { return s.a; }},
+         {worst.load.title, three, [](const S& s) { return s.load; }, "", unit},
+         {worst.travel.title, three, [](const S& s) { return s.travel; }, "", unit},
+         {worst.recommended.title, three, [](const S& s) { return s.recommended; }, "", unit},
+         {worst.references.title, three, [](const S& s) { return s.references; }, "", unit}},
+        worst.stations);
+    table.detail = true;
+    return table;
 }
 
 // The curves over six decades; smaller values lie on the lower edge.
@@ -186,80 +192,10 @@ std::optional<FigureGroup> group(const SceneAnalyses& scene, const Sweep& sweep,
                                   : fmt::format(", {} up to {}", sweep.at_equal_abscissa(),
                                                 quantity(worst.travel_peak, unit)),
         std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", agreement);
-    worst.table.caption = fmt::format("Worst of {}, {}", which, sweep.name);
+    Table stations = stations_of(worst, sweep.parameter, symbol(of_unit));
+    stations.caption = fmt::format("Worst of {}, {}", which, sweep.name);
     return FigureGroup{
-        fmt::format("Worst of {}. {}", which, agreement), {figure}, std::move(worst.table)};
-}
-
-// 0 below 1e-9, which is rounding.
-std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); }
-
-// A dash for what does not move.
-std::string share_of(double deviation, double range) {
-    return range < 1e-9 ? "–" : percent(deviation / range);
-}
-
-// Positions of the channels in a table: the main ones, and of each joint its worst force and moment
-// component.
-std::vector<std::size_t> shown_channels(const std::vector<compare::Channel>& channels,
-                                        const compare::BranchComparison& branch) {
-    const auto& load = branch.deviation.equal_parameter.channels;
-    std::vector<std::size_t> rows;
-    for (std::size_t c = 0; c < load.size(); ++c) {
-        const auto& channel = channels[c];
-        // travel duplicates wheel_centre_z
-        if (!branch.determined[c] || (channel.kinematic() && !channel.main)) continue;
-        const auto joint = channel.name.substr(0, channel.name.find('.')) + ".";
-        if (!channel.main && !rows.empty() && channels[rows.back()].name.starts_with(joint) &&
-            channels[rows.back()].unit == channel.unit) {
-            if (load[c].max > load[rows.back()].max) rows.back() = c;
-        } else {
-            rows.push_back(c);
-        }
-    }
-    std::erase_if(rows, [&](std::size_t c) { return !channels[c].main && load[c].max < 1e-6; });
-    return rows;
-}
-
-Table deviations(const SceneAnalyses& scene, const ComparedBranch& branch) {
-    const Sweep alone = sweep_of(scene, branch);
-    Table table{.caption = fmt::format(
-                    "Deviation of the published recursion from the full solution, branch {}",
-                    branch.name()),
-                .columns = {{"output", true},
-                            {"range"},
-                            {"max " + alone.at_equal_parameter()},
-                            {fmt::format("at [{}]", alone.unit)},
-                            {"rms"},
-                            {"share"},
-                            {"max " + alone.at_equal_abscissa()},
-                            {alone.abscissa.empty()
-                                 ? "at"
-                                 : "at" + alone.abscissa.substr(alone.abscissa.find(" ["))},
-                            {"rms"},
-                            {"share"},
-                            {"difference of the references"}},
-                .folded = true};
-    const auto& result = *branch.result;
-    const auto &load = result.deviation.equal_parameter.channels,
-               &travel = result.deviation.equal_abscissa.channels,
-               &uncertainty = result.uncertainty.equal_parameter.channels;
-    for (const std::size_t c : shown_channels(scene.comparison.channels, result)) {
-        std::vector<std::string> row{heading(scene.comparison.channels[c]),
-                                     number(load[c].range, 4)};
-        const auto add = [&](const compare::Deviation& d) {
-            row.insert(row.end(), {deviation_number(d.signed_max), number(d.at, 4), small(d.rms),
-                                   share_of(d.max, d.range)});
-        };
-        add(load[c]);
-        if (c < travel.size())
-            add(travel[c]);
-        else
-            row.insert(row.end(), {"–", "–", "–", "–"});
-        row.push_back(c < uncertainty.size() ? number(uncertainty[c].max, 2) : "–");
-        table.rows.push_back(std::move(row));
-    }
-    return table;
+        fmt::format("Worst of {}. {}", which, agreement), {figure}, std::move(stations)};
 }
 
 }  // namespace
@@ -270,14 +206,12 @@ std::optional<Section> deviation_section(const SceneAnalyses& scene) {
     for (const auto& sweep : sweeps_of(scene))
         for (const Unit unit : {Unit::mm, Unit::deg})
             if (auto made = group(scene, sweep, unit)) section.figures.push_back(std::move(*made));
-    for (const auto& branch : branches_of(scene)) {
-        section.tables.push_back(deviations(scene, branch));
-        const std::string& why = branch.result->deviation.equal_abscissa.not_compared;
-        if (!why.empty())
-            section.words["notes"].push_back(
-                {{"branch", branch.name()},
-                 {"reading", sweep_of(scene, branch).at_equal_abscissa()},
-                 {"why", why}});
+    for (const auto& branch : scene.comparison.branches) {
+        Table& table = section.tables.emplace_back(deviation_table(scene.comparison, branch));
+        table.caption =
+            fmt::format("Deviation of the published recursion from the full solution, branch {}",
+                        branch.branch);
+        table.detail = true;
     }
     if (section.figures.empty() && section.tables.empty()) return std::nullopt;
     return section;

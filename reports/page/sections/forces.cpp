@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "models/kinds.hpp"
 #include "reports/page/common.hpp"
@@ -59,20 +60,21 @@ std::vector<Largest> largest_of(const std::vector<LargestForceRow>& forces,
     return largest;
 }
 
-// Value, where it is, and the deformation there; of a stop its penetration.
-std::vector<std::string> cells(const LargestForceRow* r, const Elements& elements) {
-    if (r == nullptr) return {"", "", ""};
-    std::string by;
-    if (double value = r->deformation; std::isfinite(value)) {
-        const auto stop = elements.clearance.find(r->element);
-        if (stop != elements.clearance.end()) value = std::max(0.0, std::abs(value) - stop->second);
-        by = quantity(value, r->deformation_unit);
-    }
+// "z, jounce, 3000 N"
+std::string place_of(const LargestForceRow* r) {
+    if (r == nullptr) return "";
     const char axis = r->output.back();
-    return {number(r->value),
-            fmt::format("{}{}, {} {}", axis >= 'x' && axis <= 'z' ? std::string{axis} + ", " : "",
-                        r->branch, short_number(r->at), r->parameter_unit),
-            by};
+    return fmt::format("{}{}, {} {}", axis >= 'x' && axis <= 'z' ? std::string{axis} + ", " : "",
+                       r->branch, short_number(r->at), r->parameter_unit);
+}
+
+// The deformation there; of a stop its penetration.
+std::string deformation_of(const LargestForceRow* r, const Elements& elements) {
+    if (r == nullptr || !std::isfinite(r->deformation)) return "";
+    double value = r->deformation;
+    const auto stop = elements.clearance.find(r->element);
+    if (stop != elements.clearance.end()) value = std::max(0.0, std::abs(value) - stop->second);
+    return quantity(value, r->deformation_unit);
 }
 
 }  // namespace
@@ -93,27 +95,24 @@ std::optional<Section> forces_section(const SceneAnalyses& scene) {
         section.words["left_out"] = whole_number(static_cast<long>(largest.size() - most_elements));
         largest.resize(most_elements);
     }
-    Table table{
-        .caption = "Largest force and moment of each element over all points of the branches",
-        .columns = {{"element", true},
-                    {"largest force [N]"},
-                    {"where", true},
-                    {"deformed by"},
-                    {"largest moment [N·m]"},
-                    {"where", true},
-                    {"deformed by"}}};
-    for (const auto& l : largest) {
-        std::vector<std::string> row{l.element};
-        for (const auto* r : {l.force, l.moment}) {
-            const auto three = cells(r, elements);
-            row.insert(row.end(), three.begin(), three.end());
-        }
-        table.rows.push_back(std::move(row));
+    using enum Digits;
+    using L = Largest;
+    std::vector<compare::ColumnOf<L>> columns{
+        {"element", words, [](const L& l) { return l.element; }}};
+    for (const auto& [name, unit, of] :
+         {std::tuple{"largest force", "N", &L::force}, {"largest moment", "N·m", &L::moment}}) {
+        columns.push_back({name, three,
+                           [of](const L& l) -> compare::AnyCell {
+                               if (l.*of == nullptr) return "";
+                               return (l.*of)->value;
+                           },
+                           "", unit});
+        columns.push_back({"where", words, [of](const L& l) { return place_of(l.*of); }});
+        columns.push_back({"deformed by", words,
+                           [&, of](const L& l) { return deformation_of(l.*of, elements); }});
     }
-    if (std::ranges::none_of(largest, [](const Largest& l) { return l.moment != nullptr; })) {
-        table.columns.resize(4);
-        for (auto& row : table.rows) row.resize(4);
-    }
+    Table table = compare::table("", columns, largest);
+    table.caption = "Largest force and moment of each element over all points of the branches";
     section.tables.push_back(std::move(table));
     return section;
 }

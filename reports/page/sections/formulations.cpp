@@ -1,7 +1,5 @@
 // Section: spread of the outputs over bushing formulations.
-#include <algorithm>
-#include <cmath>
-
+#include "compare/tables/compare_result.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/text/numbers.hpp"
@@ -14,22 +12,16 @@ std::optional<Section> formulations_section(const SceneAnalyses& scene) {
     Section section{.id = "formulations",
                     .title = "Differences between bushing formulations of tools",
                     .part = Part::evidence};
-    Table table{
-        .caption =
-            "Largest minus smallest value over the formulations, at the point where it is largest",
-        .columns = {{"branch", true},
-                    {"output", true},
-                    {"spread"},
-                    {"unit", true},
-                    {"smallest by", true},
-                    {"largest by", true},
-                    {"difference of the references"},
-                    {"published deviation"}},
-        .folded = true};
+    const auto rows = formulation_rows(*study, scene.comparison);
+    Table table = with_columns(compare::table_of(rows),
+                               {"branch", "output", "spread", "unit", "smallest by", "largest by",
+                                "distance of references", "deviation"});
+    table.caption =
+        "Largest minus smallest value over the formulations, at the point where it is largest";
+    table.detail = true;
+    section.tables.push_back(std::move(table));
     double most = 1e-9;  // [mm]: smaller spreads are rounding
-    for (const auto& r : formulation_rows(*study, scene.comparison)) {
-        table.rows.push_back({r.branch, r.output, deviation_number(r.spread), r.unit, r.smallest_by,
-                              r.largest_by, number(r.apart, 2), number(r.deviation, 2)});
+    for (const auto& r : rows) {
         if (r.unit != "mm" || !(r.spread > most)) continue;
         most = r.spread;
         section.words["most"] = {{"value", quantity(r.spread, r.unit)}, {"channel", r.output}};
@@ -38,11 +30,9 @@ std::optional<Section> formulations_section(const SceneAnalyses& scene) {
     for (const auto& one : compare::formulations) names.emplace_back(one.name);
     section.words["formulations"] = enumerated(names);
     section.words["bushings"] = enumerated(study->bushings);
-    auto& reasons = section.words["reasons"] = nlohmann::ordered_json::array();
+    auto& reasons = section.words["reasons"] = study->inconclusive;
     for (const auto& branch : study->branches)
         for (const auto& why : branch.not_solved) reasons.push_back(branch.branch + ": " + why);
-    for (const auto& why : study->inconclusive) reasons.push_back(why);
-    section.tables.push_back(std::move(table));
     return section;
 }
 

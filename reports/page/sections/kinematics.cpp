@@ -122,26 +122,24 @@ constexpr Colour case_colours[] = {vermilion, blue, green, purple, ochre, pink, 
 
 // Numbers of a figure: of every curve some points.
 Table numbers(const Figure& figure) {
-    Table table{.caption = fmt::format("{} over {}", figure.y, figure.x), .folded = true};
-    std::size_t most = 0;
-    std::vector<Rows> stations;
+    constexpr std::size_t most = 7;
+    Table table{.rows = std::vector<std::vector<compare::Cell>>(most),
+                .caption = fmt::format("{} over {}", figure.y, figure.x),
+                .detail = true};
     for (const auto& series : figure.series) {
-        Rows rows;
-        for (const auto& row : series.rows)
-            if (!row.empty()) rows.push_back(row);
-        Rows kept;
-        for (const auto k : thinned(rows.size(), 7)) kept.push_back(rows[k]);
-        most = std::max(most, kept.size());
-        stations.push_back(std::move(kept));
-        table.columns.push_back({series.title + ": " + figure.x});
-        table.columns.push_back({figure.y});
-    }
-    for (std::size_t k = 0; k < most; ++k) {
-        table.rows.emplace_back();
-        for (const auto& rows : stations)
+        Rows rows = series.rows;
+        std::erase_if(rows, [](const auto& row) { return row.empty(); });
+        const auto kept = thinned(rows.size(), most);
+        table.columns.push_back({.name = series.title + ": " + figure.x, .digits = Digits::place});
+        table.columns.push_back({.name = figure.y, .digits = Digits::four});
+        for (std::size_t k = 0; k < most; ++k)
             for (std::size_t j = 0; j < 2; ++j)
-                table.rows.back().push_back(k < rows.size() ? number(rows[k][j], 4) : "–");
+                table.rows[k].emplace_back(k < kept.size() ? rows[kept[k]][j] : compare::nan);
     }
+    std::erase_if(table.rows, [](const auto& row) {
+        return std::ranges::all_of(row,
+                                   [](const auto& c) { return std::isnan(std::get<double>(c)); });
+    });
     return table;
 }
 
@@ -305,78 +303,73 @@ std::optional<FigureGroup> figure(const SceneAnalyses& scene, const Family& fami
 
 // ---- Tables
 
-// Columns of a table over a sweep: a quantity of each wheel, once where the wheels agree.
-void add_columns(Table& table, const SceneAnalyses& scene, const Case& c,
-                 const std::vector<std::size_t>& at, const Quantity& quantity) {
-    const auto found = find(scene, quantity.name);
-    std::vector<std::vector<std::string>> columns;
-    std::vector<std::string> names;
-    for (const auto& of : found) {
-        const auto values = c.curve.channel(of.channel);
-        const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
-        std::vector<std::string> cells;
-        for (const auto k : at)
-            cells.push_back(table.columns.empty() ? short_number(at_rest(scale(values[k])))
-                                                  : number(at_rest(scale(values[k])), 4));
-        if (std::ranges::all_of(cells, [](const auto& cell) { return cell == "–"; })) continue;
-        columns.push_back(std::move(cells));
-        names.push_back(of.of_all ? "" : of.wheel.name);
-    }
-    if (columns.size() == 2 && columns[0] == columns[1]) columns.pop_back(), names = {""};
-    const std::string heading =
-        quantity.shown == Shown::steer_angle ? "steer angle" : as_words(quantity.name);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-        table.columns.push_back({fmt::format("{}{}{} [{}]", heading, names[k].empty() ? "" : " ",
-                                             names[k], found[0].unit)});
-        for (std::size_t r = 0; r < at.size(); ++r) table.rows[r].push_back(columns[k][r]);
-    }
+std::string column_heading(const Quantity& quantity, const Found& of, bool whose) {
+    return fmt::format(
+        "{}{}{} [{}]",
+        quantity.shown == Shown::steer_angle ? "steer angle" : as_words(quantity.name),
+        whose && !of.wheel.name.empty() ? " " : "", whose ? of.wheel.name : "", of.unit);
 }
 
-// Outputs over a sweep at some points of it.
+// Outputs over a sweep at some points of it: a quantity of each wheel, once where the wheels agree.
 Table stations(const SceneAnalyses& scene, const Case& c, const std::string& caption,
                const std::vector<Quantity>& quantities) {
-    Table table{.caption = caption};
     std::vector<std::size_t> at = thinned(c.curve.a.size(), 9);
     if (std::ranges::find(at, c.curve.start) == at.end() && c.curve.start < c.curve.a.size())
         at.insert(std::ranges::lower_bound(at, c.curve.start), c.curve.start);
-    table.rows.resize(at.size());
-    if (!c.sweep.lifts()) {  // else by travel
-        table.columns.push_back({c.sweep.parameter});
-        for (std::size_t r = 0; r < at.size(); ++r)
-            table.rows[r].push_back(short_number(c.curve.a[at[r]]));
+    std::vector<compare::ColumnOf<std::size_t>> columns;
+    const auto add = [&](const std::string& name, std::vector<double> values) {
+        columns.push_back(
+            {name, columns.empty() ? Digits::place : Digits::four,
+             [values = std::move(values)](std::size_t k) { return at_rest(values[k]); }});
+    };
+    if (!c.sweep.lifts()) add(c.sweep.parameter, c.curve.a);  // else by travel
+    for (const auto& quantity : quantities) {
+        const auto found = find(scene, quantity.name);
+        std::vector<std::vector<double>> values;
+        for (const auto& of : found) {
+            values.push_back(c.curve.channel(of.channel));
+            const Scale scale = scale_of(quantity, of.wheel.side, values.back(), c.curve.start);
+            for (double& value : values.back()) value = scale(value);
+        }
+        const bool agree =
+            values.size() == 2 && std::ranges::equal(values[0], values[1], [](double a, double b) {
+                return std::isnan(a) ? std::isnan(b) : std::abs(a - b) <= rest + 1e-4 * std::abs(a);
+            });
+        for (std::size_t k = 0; k < (agree ? 1 : values.size()); ++k)
+            add(column_heading(quantity, found[k], !found[k].of_all && !agree), values[k]);
     }
-    for (const auto& quantity : quantities) add_columns(table, scene, c, at, quantity);
+    Table table = compare::table("", columns, at);
+    table.caption = caption;
     return table;
 }
 
 // Changes at the ends of a load case, a quantity a row.
-Table at_ends(const SceneAnalyses& scene, const Case& c, const std::vector<Quantity>& quantities) {
+Table at_ends(const SceneAnalyses& scene, const Case& c, std::vector<Quantity> quantities) {
     const auto& wheels = scene.model.wheels;
     const std::string direction = push_of(scene, c, wheels[0]).positive;
-    Table table{.caption = fmt::format("{}{}{}: changes since the start of the branch", c.legend(),
-                                       direction.empty() ? "" : ", ", direction),
-                .columns = {{"change", true}}};
-    std::vector<std::size_t> ends;
+    std::erase_if(quantities, [&](const Quantity& quantity) {
+        return find(scene, quantity.name).size() != wheels.size();
+    });
+    std::vector<compare::ColumnOf<Quantity>> columns{
+        {"change", Digits::words, [&](const Quantity& quantity) {
+             return fmt::format("{} [{}], {}", as_words(quantity.name),
+                                find(scene, quantity.name)[0].unit, quantity.sign);
+         }}};
     for (const std::size_t k : {std::size_t{0}, c.curve.a.size() - 1})
-        if (k != c.curve.start) ends.push_back(k);
-    for (const auto k : ends)
-        for (const auto& wheel : wheels)
-            table.columns.push_back({fmt::format(
-                "{}{}{} {}", wheel.name, wheel.name.empty() ? "at " : ", ",
-                short_number(push_of(scene, c, wheel).factor * c.curve.a[k]), c.sweep.unit)});
-    for (const auto& quantity : quantities) {
-        const auto found = find(scene, quantity.name);
-        if (found.size() != wheels.size()) continue;
-        std::vector<std::string> row{
-            fmt::format("{} [{}], {}", as_words(quantity.name), found[0].unit, quantity.sign)};
-        for (const auto k : ends)
-            for (const auto& of : found) {
-                const auto values = c.curve.channel(of.channel);
-                const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
-                row.push_back(number(at_rest(scale(values[k]))));
-            }
-        table.rows.push_back(std::move(row));
-    }
+        for (std::size_t w = 0; w < wheels.size() && k != c.curve.start; ++w)
+            columns.push_back(
+                {fmt::format("{}{}{} {}", wheels[w].name, wheels[w].name.empty() ? "at " : ", ",
+                             short_number(push_of(scene, c, wheels[w]).factor * c.curve.a[k]),
+                             c.sweep.unit),
+                 Digits::three, [&scene, &c, k, w](const Quantity& quantity) {
+                     const Found of = find(scene, quantity.name)[w];
+                     const auto values = c.curve.channel(of.channel);
+                     return at_rest(
+                         scale_of(quantity, of.wheel.side, values, c.curve.start)(values[k]));
+                 }});
+    Table table = compare::table("", columns, quantities);
+    table.caption = fmt::format("{}{}{}: changes since the start of the branch", c.legend(),
+                                direction.empty() ? "" : ", ", direction);
     return table;
 }
 

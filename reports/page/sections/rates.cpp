@@ -84,13 +84,6 @@ std::vector<Rate> rates_of(const Design& design, const std::vector<Wheel>& wheel
     return rates;
 }
 
-constexpr double rate_rounding = 1e-9;  // in any unit of a rate
-
-std::string value_at(const CharacteristicRow& row) {
-    if (!row.undefined.empty()) return "none";
-    return std::abs(row.value) < rate_rounding ? "0" : number(row.value, 4);
-}
-
 double value_of(const Design& design, const Wheel& wheel, std::string_view rate) {
     const auto row = std::ranges::find(design, output_of(wheel, rate), &CharacteristicRow::output);
     return row == design.end() ? NAN : row->value;
@@ -113,43 +106,44 @@ void add_roll_stiffness(Table& table, const SceneAnalyses& scene, const Design& 
     if (track.empty() || !std::isfinite(roll)) return;
     const double t = track[curve.start];  // [mm]; N/mm · mm² = N·mm per rad
     const double stiffness = 1e-3 * roll * t * t / 2 * std::numbers::pi / 180;
-    const auto row = [&](const std::string& name, const std::string& value, const std::string& unit,
-                         const std::string& definition) {
-        table.rows.push_back({name, value, value, unit, definition});
-    };
-    row("roll stiffness at the wheels", number(stiffness, 4), "N·m/deg",
-        "moment over roll of the axle against the body, without the tyres: wheel rate in roll · "
-        "track² / 2");
+    table.rows.push_back(
+        {"roll stiffness at the wheels", stiffness, stiffness, "N·m/deg",
+         "moment over roll of the axle against the body, without the tyres: wheel rate in roll · "
+         "track² / 2"});
     if (std::isfinite(heave) && roll > heave)
-        row("of it, anti-roll bar", number(100 * (roll - heave) / roll, 3), "%",
-            "what resists opposed travel and not parallel travel: 1 − wheel rate / wheel rate in "
-            "roll");
+        table.rows.push_back({"of it, anti-roll bar", 100 * (roll - heave) / roll,
+                              100 * (roll - heave) / roll, "%",
+                              "what resists opposed travel and not parallel travel: 1 − wheel rate "
+                              "/ wheel rate in roll"});
 }
 
 Table rates_table(const SceneAnalyses& scene, const Design& design,
                   const std::vector<Wheel>& wheels, bool only_key = false) {
-    Table table{.caption = "Rates at the design position", .columns = {{"rate", true}}};
-    if (wheels.size() < 2)
-        table.columns.push_back({"value"});
-    else
-        for (const auto& wheel : wheels) table.columns.push_back({wheel.name});
-    table.columns.push_back({"unit", true});
-    table.columns.push_back({.name = "definition", .words = true, .note = true});
-    const std::size_t width = table.columns.size() - 3;
-    for (const auto& rate : rates_of(design, wheels)) {
-        if (only_key && !rate.is_key) continue;
-        std::vector<std::string> row{rate.name};
-        std::string undefined;
-        for (std::size_t k = 0; k < width; ++k) {
-            row.push_back(rate.rows[k] ? value_at(*rate.rows[k]) : "");
-            if (rate.rows[k]) undefined = rate.rows[k]->undefined;
-        }
-        row.push_back(rate.unit == "-" ? "" : rate.unit);
-        row.push_back(undefined.empty() ? rate.definition
-                                        : fmt::format("{}. Here: {}", rate.definition, undefined));
-        table.rows.push_back(std::move(row));
-    }
-    if (width == 2) add_roll_stiffness(table, scene, design, wheels);
+    std::vector<Rate> rates = rates_of(design, wheels);
+    std::erase_if(rates, [&](const Rate& rate) { return only_key && !rate.is_key; });
+    std::vector<compare::ColumnOf<Rate>> columns{
+        {"rate", Digits::words, [](const Rate& r) { return r.name; }}};
+    for (std::size_t k = 0; k < std::max<std::size_t>(1, wheels.size()); ++k)
+        columns.push_back({wheels.size() < 2 ? "value" : wheels[k].name, Digits::four,
+                           [=](const Rate& r) -> compare::AnyCell {
+                               if (!r.rows[k]) return "";
+                               if (!r.rows[k]->undefined.empty()) return "none";
+                               return r.rows[k]->value;
+                           }});
+    columns.push_back(
+        {"unit", Digits::words, [](const Rate& r) { return r.unit == "-" ? "" : r.unit; }});
+    if (!only_key)
+        columns.push_back({"definition", Digits::note, [](const Rate& r) {
+                               std::string why;
+                               for (const auto& row : r.rows)
+                                   if (row) why = row->undefined;
+                               return why.empty() ? r.definition
+                                                  : fmt::format("{}. Here: {}", r.definition, why);
+                           }});
+    Table table = compare::table("", columns, rates);
+    table.caption = "Rates at the design position";
+    if (wheels.size() == 2) add_roll_stiffness(table, scene, design, wheels);
+    for (auto& row : table.rows) row.resize(table.columns.size());
     return table;
 }
 
@@ -164,35 +158,29 @@ std::optional<Table> matrix_table(const std::vector<ComplianceRow>& compliance,
                r.branch != compliance.front().branch || r.a != 0;
     });
     if (rows.empty()) return std::nullopt;
-    Table table{.caption = fmt::format("Compliance at the {}: displacement [mm] and rotation [deg] "
-                                       "per kN and per 100 N·m, the wheel free",
-                                       point),
-                .columns = {{"answer", true}},
-                .folded = true};
-    const bool several = distinct(rows, &ComplianceRow::wheel).size() > 1;
-    if (several) table.columns = {{"wheel", true}, {"answer", true}, {"loaded wheel", true}};
-    for (const char* cause : ComplianceRow::causes) table.columns.push_back({cause});
-    for (const auto& r : rows) {
-        std::vector<std::string> row{r.answer};
-        if (several) row = {r.wheel, r.answer, r.loaded_wheel};
-        for (const double value : r.by_cause)
-            row.push_back(std::abs(value) < rate_rounding ? "0" : number(value, 3));
-        table.rows.push_back(std::move(row));
-    }
+    std::vector<std::string> columns{"answer"};
+    if (distinct(rows, &ComplianceRow::wheel).size() > 1)
+        columns = {"wheel", "answer", "loaded wheel"};
+    columns.insert(columns.end(), ComplianceRow::causes.begin(), ComplianceRow::causes.end());
+    Table table = with_columns(compare::table_of(rows), columns);
+    table.caption = fmt::format(
+        "Compliance at the {}: displacement [mm] and rotation [deg] per kN and per 100 N·m, the "
+        "wheel free",
+        point);
+    table.detail = true;
     return table;
 }
 
 // Errors of the recursion in the rates. No share of a value that its error exceeds: it is zero.
-Table errors_table(const Design& design) {
-    Table table{.caption = "Error of the published recursion in the rates at the design position",
-                .columns = {{"rate", true}, {"value"}, {"unit", true}, {"error"}, {"share"}},
-                .folded = true};
-    for (const auto& r : design) {
-        const double share = r.off_percent / 100;
-        table.rows.push_back({as_words(r.output), value_at(r), r.unit,
-                              std::isfinite(r.off) ? deviation_number(r.off) : "–",
-                              std::abs(share) <= 1 ? percent(share) : "–"});
+Table errors_table(Design design) {
+    for (auto& r : design) {
+        r.output = as_words(r.output);
+        if (!(std::abs(r.off_percent) <= 100)) r.off_percent = compare::nan;
     }
+    Table table =
+        with_columns(compare::table_of(design), {"output", "value", "unit", "off", "off %"});
+    table.caption = "Error of the published recursion in the rates at the design position";
+    table.detail = true;
     return table;
 }
 
@@ -203,14 +191,11 @@ Design design_of(const SceneAnalyses& scene) {
 }  // namespace
 
 Table key_rates(const SceneAnalyses& scene) {
-    Table table{.caption =
-                    "Key figures at the design position (lateral forces towards the middle "
-                    "of the vehicle, braking to the back, traction forward; toe-in positive)"};
     const auto design = design_of(scene);
-    if (design.empty()) return table;
-    const Table all = rates_table(scene, design, scene.model.wheels, true);
-    table.columns.assign(all.columns.begin(), all.columns.end() - 1);
-    for (const auto& row : all.rows) table.rows.emplace_back(row.begin(), row.end() - 1);
+    Table table = design.empty() ? Table{} : rates_table(scene, design, scene.model.wheels, true);
+    table.caption =
+        "Key figures at the design position (lateral forces towards the middle of the vehicle, "
+        "braking to the back, traction forward; toe-in positive)";
     return table;
 }
 

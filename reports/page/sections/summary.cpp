@@ -19,48 +19,60 @@ namespace {
 
 using compare::StaticRow;
 
-// Without rounding: no finer than a thousandth of a mm or deg, no more than four digits.
-std::string static_number(double value) { return std::abs(value) < 5e-5 ? "0" : number(value, 4); }
+// No finer than a thousandth of a mm or deg, or a column would be of zeros and one digit.
+double settled_value(double value) { return std::abs(value) < 5e-5 ? 0 : value; }
 
 // As drawn and as settled, left and right as columns.
-std::optional<Table> alignment(const SceneAnalyses& scene) {
-    const auto& wheels = scene.model.wheels;
+Table alignment(const SceneAnalyses& scene) {
     const auto values = static_rows(scene.model, scene.comparison);
-    Table table{.caption = fmt::format(
-                    "Static alignment as drawn and as settled{} (toe-in, top outwards positive)",
-                    scene.trim ? " after the trim" : ""),
-                .columns = {{"of the wheel", true}}};
-    for (const char* state : {"drawn", "settled"})
-        for (const auto& wheel : wheels)
-            table.columns.push_back(
-                {fmt::format("{}{}{}", state, wheel.name.empty() ? "" : " ", wheel.name)});
-    for (const auto& output : distinct(values, &StaticRow::output)) {
-        const auto rows = where(values, &StaticRow::output, output);
-        std::vector<std::string> row{fmt::format("{} [{}]", as_words(output), rows.front().unit)};
-        for (const auto state : {&StaticRow::drawn, &StaticRow::settled})
-            for (const auto& wheel : wheels) {
-                const auto mine = std::ranges::find(rows, wheel.name, &StaticRow::wheel);
-                row.push_back(mine == rows.end() ? "–" : static_number((*mine).*state));
-            }
-        table.rows.push_back(std::move(row));
-    }
-    if (table.rows.empty()) return std::nullopt;
+    const auto outputs = distinct(values, &StaticRow::output);
+    using Output = std::string;
+    const auto row_of = [&](const Output& output, const std::string& wheel) {
+        return std::ranges::find_if(values, [&](const StaticRow& row) {
+            return row.output == output && row.wheel == wheel;
+        });
+    };
+    std::vector<compare::ColumnOf<Output>> columns{
+        {"of the wheel", Digits::words, [&](const Output& output) {
+             return fmt::format("{} [{}]", as_words(output),
+                                std::ranges::find(values, output, &StaticRow::output)->unit);
+         }}};
+    for (const auto& [state, of] :
+         {std::pair{"drawn", &StaticRow::drawn}, {"settled", &StaticRow::settled}})
+        for (const auto& wheel : scene.model.wheels)
+            columns.push_back(
+                {fmt::format("{}{}{}", state, wheel.name.empty() ? "" : " ", wheel.name),
+                 Digits::four, [&, of](const Output& output) {
+                     const auto row = row_of(output, wheel.name);
+                     return row == values.end() ? compare::nan : settled_value((*row).*of);
+                 }});
+    Table table = compare::table("", columns, outputs);
+    table.caption =
+        fmt::format("Static alignment as drawn and as settled{} (toe-in, top outwards positive)",
+                    scene.trim ? " after the trim" : "");
     return table;
 }
 
 // What the trim adjusted. Preloads of balanced bushings are listed with the model.
-std::optional<Table> adjusted(const SceneAnalyses& scene) {
-    if (!scene.trim) return std::nullopt;
+Table adjusted(const SceneAnalyses& scene) {
     const bool balanced = scene.trim->bushings == Trim::Bushings::balanced;
-    Table table{.caption = balanced
-                               ? "The trim adjusted; preloads of all bushings (in “The model as "
-                                 "compiled”) balance the drawn position"
-                               : "The trim adjusted; bushings are unloaded as drawn",
-                .columns = {{"what", true}, {"by"}, {"makes", true, true}}};
-    for (const auto& a : scene.trim->adjusted)
-        if (!balanced || !a.name.starts_with("bushings.") || !a.name.ends_with(".preload"))
-            table.rows.push_back(
-                {a.name, fmt::format("{} {}", signed_number(a.by, 4), symbol(a.unit)), a.makes});
+    auto rows = scene.trim->adjusted;
+    using Adjusted = decltype(rows)::value_type;
+    std::erase_if(rows, [&](const Adjusted& a) {
+        return balanced && a.name.starts_with("bushings.") && a.name.ends_with(".preload");
+    });
+    Table table = compare::table<Adjusted>(
+        "",
+        {{"what", Digits::words, [](const Adjusted& a) { return a.name; }},
+         {"by", Digits::four,
+          [](const Adjusted& a) {
+              return fmt::format("{} {}", signed_number(a.by, 4), symbol(a.unit));
+          }},
+         {"makes", Digits::note, [](const Adjusted& a) { return a.makes; }}},
+        rows);
+    table.caption = balanced ? "The trim adjusted; preloads of all bushings (in “The model as "
+                               "compiled”) balance the drawn position"
+                             : "The trim adjusted; bushings are unloaded as drawn";
     return table;
 }
 
@@ -76,19 +88,18 @@ void add_changes(Table& table, const SceneAnalyses& scene) {
         sweep->name);
     for (const auto& quantity : compare::drawn_over(compare::Over::load))
         for (const std::size_t end : {std::size_t{0}, curve.a.size() - 1}) {
-            if (end == curve.start) continue;
             const compare::Entry& entry = *compare::find_entry(quantity.name);
-            if (entry.point != nullptr) continue;  // a position
+            if (end == curve.start || entry.point != nullptr) continue;  // a position
             const bool from_drawn = !entry.is.main;
-            std::vector<std::string> row{fmt::format(
+            std::vector<compare::Cell> row{fmt::format(
                 "{}{} at {}{}\u00a0{}", as_words(quantity.name), from_drawn ? "" : " change",
                 curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};
             for (const auto& wheel : wheels) {
                 const auto values = curve.channel(output_of(wheel, quantity.name));
-                row.push_back(
+                row.emplace_back(
                     values.empty()
-                        ? "–"
-                        : static_number(values[end] - (from_drawn ? 0 : values[curve.start])));
+                        ? compare::nan
+                        : settled_value(values[end] - (from_drawn ? 0 : values[curve.start])));
             }
             row.emplace_back(symbol(entry.unit));
             if (row.size() == table.columns.size()) table.rows.push_back(std::move(row));
@@ -103,7 +114,7 @@ FigureGroup picture_of(const Suspension& suspension) {
     group.figures = draw_views(suspension, {view}, large_frame(suspension));
     Figure& figure = group.figures.front();
     figure.title = fmt::format("The {}", noun);
-    std::vector<std::string> names, moved, listed;
+    std::vector<std::string> names, moved;
     for (const auto& point : suspension.points)
         if (point.hardpoint && std::ranges::find(names, point.name) == names.end())
             names.push_back(point.name);
@@ -114,15 +125,12 @@ FigureGroup picture_of(const Suspension& suspension) {
     group.caption = fmt::format(
         "Design position to scale{}{}.", moved.empty() ? "" : ", pale lines: " + enumerated(moved),
         suspension.wheels.empty() ? "" : "; the tyre’s width is only drawn");
-    group.table = {.caption = "Points",
-                   .columns = {{"point", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}}};
-    for (const auto& point : suspension.points) {
-        if (std::ranges::find(listed, point.name) != listed.end()) continue;
-        listed.push_back(point.name);
-        group.table.rows.push_back(
-            {point.name, number(point.at[0], 4), number(point.at[1], 4), number(point.at[2], 4)});
-    }
-    group.table.folded = true;
+    std::vector<Suspension::Point> points;
+    for (const auto& point : suspension.points)
+        if (std::ranges::find(points, point.name, &Suspension::Point::name) == points.end())
+            points.push_back(point);
+    group.table = points_table(points);
+    group.table.caption = "Points";
     return group;
 }
 
@@ -132,11 +140,12 @@ std::optional<Section> first_section(const SceneAnalyses& scene) {
     Section section{.id = "first", .title = "At a glance"};
     section.words["trust"] = trust_sentence(scene);
     if (!scene.warnings.empty()) section.words["warnings"] = scene.warnings;
-    if (auto table = alignment(scene)) section.tables.push_back(std::move(*table));
+    section.tables.push_back(alignment(scene));
     Table key = key_rates(scene);
     if (!key.columns.empty()) add_changes(key, scene);
-    if (!key.rows.empty()) section.tables.push_back(std::move(key));
-    if (auto table = adjusted(scene)) section.tables.push_back(std::move(*table));
+    section.tables.push_back(std::move(key));
+    if (scene.trim) section.tables.push_back(adjusted(scene));
+    std::erase_if(section.tables, [](const Table& table) { return table.rows.empty(); });
     const Suspension suspension = suspension_of(scene);
     section.figures.push_back(picture_of(suspension));
     section.motion = motion_of(scene, axonometric_view(is_right(suspension)));

@@ -98,12 +98,11 @@ std::optional<Section> price_section(const SceneAnalyses& scene) {
     std::erase_if(group.figures, [](const Figure& f) { return f.series.empty(); });
     group.caption =
         "Worst position error over all branches, output points and outputs, at equal parameter.";
-    group.table = page_table(
+    group.table = table_of(points);
+    group.table.caption =
         "Work-precision table. A configuration is on the front if no other is as accurate for s: "
-        "fewer "
-        "solves, f: fewer factorisations and evaluations, t: less time",
-        points);
-    group.table.folded = true;
+        "fewer solves, f: fewer factorisations and evaluations, t: less time";
+    group.table.detail = true;
     if (group.figures.empty())
         section.tables.push_back(group.table);
     else

@@ -250,7 +250,7 @@ class Result:
         """The tables of the document by name: {"columns": [...], "rows": [...]}."""
         scenes = self.document.get("scenes", [])
         results = [result for scene in scenes for result in scene.get("results", [])]
-        parts = [result["tables"] for result in results] + [self.document]
+        parts = [result["tables"] for result in results] + [self.document.get("tables", {}), self.document]
         return {name: table for part in parts for name, table in part.items()
                 if isinstance(table, dict) and "columns" in table}
 

@@ -5,89 +5,36 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/outputs/readings.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/text/numbers.hpp"
+#include "reports/tables/candidate_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 using compare::CandidateBranch;
-using compare::CandidateJudgement;
-using compare::Deviation;
-
-// Deviation of a column; null where it has no numbers.
-const Deviation* deviation_of(const std::vector<Deviation>& columns, std::size_t c) {
-    return c < columns.size() && columns[c].compared > 0 ? &columns[c] : nullptr;
-}
-
-std::string cell(const Deviation* deviation) {
-    return deviation == nullptr ? "–" : signed_number(deviation->signed_max);
-}
-
 // Deviations of every output that the candidate gives on a branch, beside those of the recursion.
-Table beside_the_recursion(const SceneAnalyses& scene, const CandidateJudgement& candidate,
-                           const CandidateBranch& branch) {
+void add_recursion(Table& table, const SceneAnalyses& scene, const std::string& name) {
+    const compare::BranchComparison& solved = scene.comparison.branch(name);
     const auto& channels = scene.comparison.channels;
-    const compare::BranchComparison& solved = scene.comparison.branch(branch.branch);
-    const std::string load = compare::parameter_reading(symbol(branch.unit)),
-                      travel = compare::abscissa_reading(
-                          branch.abscissa < 0
-                              ? ""
-                              : channels[static_cast<std::size_t>(branch.abscissa)].name);
-    Table table{.caption = fmt::format("Deviation from the full solution, branch {} ({} points)",
-                                       branch.branch, branch.points),
-                .columns = {{"output", true},
-                            {fmt::format("{}, {}", candidate.name, load)},
-                            {fmt::format("{}, {}", candidate.name, travel)},
-                            {"share of the range"},
-                            {"published recursion, " + load},
-                            {"published recursion, " + travel}}};
-    for (std::size_t c = 0; c < candidate.columns.size(); ++c) {
-        const std::size_t channel = candidate.columns[c].channel;
-        const Deviation *mine = deviation_of(branch.equal_parameter.columns, c),
-                        *across = deviation_of(branch.equal_abscissa.columns, c),
-                        *some = mine ? mine : across;
-        if (some == nullptr || (!candidate.judged[c] && some->max < 1e-6)) continue;
-        const auto recursion = [&](const compare::Reading& reading) {
-            return cell(solved.determined[channel] && channel < reading.channels.size()
-                            ? &reading.channels[channel]
-                            : nullptr);
-        };
-        table.rows.push_back(
-            {fmt::format("{} [{}]", channels[channel].name, symbol(channels[channel].unit)),
-             cell(mine), cell(across), some->range < 1e-9 ? "–" : percent(some->max / some->range),
-             recursion(solved.deviation.equal_parameter),
-             recursion(solved.deviation.equal_abscissa)});
+    const std::size_t output = 1;  // column
+    for (const auto& [reading, title] :
+         {std::pair{&solved.deviation.equal_parameter,
+                    compare::parameter_reading(symbol(solved.unit))},
+          {&solved.deviation.equal_abscissa,
+           compare::abscissa_reading(
+               solved.abscissa < 0 ? ""
+                                   : channels[static_cast<std::size_t>(solved.abscissa)].name)}}) {
+        table.columns.push_back(
+            {.name = "published recursion, " + title, .digits = Digits::deviation});
+        for (auto& row : table.rows) {
+            const auto c = static_cast<std::size_t>(
+                compare::find_channel(channels, std::get<std::string>(row[output])));
+            const bool known = solved.determined[c] && c < reading->channels.size() &&
+                               reading->channels[c].compared > 0;
+            row.emplace_back(known ? reading->channels[c].signed_max : compare::nan);
+        }
     }
-    return table;
-}
-
-double largest_of(const std::vector<Residuals>& list, double Residuals::*field) {
-    double worst = 0;
-    for (const auto& r : list) worst = compare::worse(worst, r.*field);
-    return worst;
-}
-
-// Residuals of its states in the equations of the legs.
-Table leftovers(const CandidateJudgement& candidate) {
-    Table table{.caption = fmt::format(
-                    "Largest residuals of the states of {} in the equations of the references",
-                    candidate.name),
-                .columns = {{"branch", true},
-                            {"equations of", true},
-                            {"states"},
-                            {"force [N]"},
-                            {"moment [N·m]"},
-                            {"constraints [mm]"}}};
-    for (const auto& of : candidate.leftovers)
-        for (const auto& [leg, left] :
-             {std::pair{compare::Leg::equilibrium, &of.truth}, std::pair{of.second, &of.by_second}})
-            table.rows.push_back({of.branch, name(leg),
-                                  whole_number(static_cast<long>(of.a.size())),
-                                  number(largest_of(*left, &Residuals::force), 2),
-                                  number(largest_of(*left, &Residuals::moment), 2),
-                                  number(1e3 * largest_of(*left, &Residuals::length), 2)});
-    return table;
 }
 
 }  // namespace
@@ -102,10 +49,14 @@ std::optional<Section> candidate_section(const SceneAnalyses& scene) {
             section.mark = Mark::open;
         section.words["candidates"].push_back(
             {{"sentence", sentence}, {"reasons", candidate.reasons}, {"notes", candidate.notes}});
-        for (const auto& branch : candidate.branches)
-            if (auto table = beside_the_recursion(scene, candidate, branch); !table.rows.empty())
-                section.tables.push_back(std::move(table));
-        if (!candidate.leftovers.empty()) section.tables.push_back(leftovers(candidate));
+        compare::Result result = result_of(candidate, scene.comparison);
+        for (auto& table : result.tables) {
+            if (table.id == "residuals" || table.rows.empty()) continue;
+            if (table.id == "deviations")
+                add_recursion(table, scene, std::get<std::string>(table.rows.front().front()));
+            table.caption = fmt::format("{}, {}", candidate.name, table.caption);
+            section.tables.push_back(std::move(table));
+        }
     }
     return section;
 }

@@ -4,7 +4,6 @@
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/suspension.hpp"
-#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 
@@ -26,25 +25,21 @@ std::optional<Section> drawing_section(const SceneAnalyses& scene) {
             views[k].from,
             moved.empty() ? "" : ", with it at " + enumerated(moved) + " in pale lines");
     group.caption = "All three views have one scale.";
-    Table& table = group.table;
+    Table& table = group.table = points_table(suspension.points);
     table.caption = fmt::format("Points at the design position{}",
                                 moved.empty() ? "" : ", and their displacements (Δ)");
-    table.columns = {{"point", true}, {"on", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}};
     for (const auto& position : suspension.moved)
-        for (const char* axis : {"Δx", "Δy", "Δz"})
-            table.columns.push_back({fmt::format("{} {} [mm]", position.title, axis)});
-    table.folded = true;
-    for (std::size_t k = 0; k < suspension.points.size(); ++k) {
-        const auto& point = suspension.points[k];
-        std::vector<std::string> row{point.name, point.body};
-        for (const double v : point.at) row.push_back(number(v, 4));
-        for (const auto& position : suspension.moved)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                row.push_back(point.body == "ground"
-                                  ? "–"
-                                  : deviation_number(position.points[k][axis] - point.at[axis]));
-        table.rows.push_back(row);
-    }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            table.columns.push_back({.name = fmt::format("{} Δ{}", position.title, "xyz"[axis]),
+                                     .unit = "mm",
+                                     .digits = Digits::deviation});
+            for (std::size_t k = 0; k < table.rows.size(); ++k) {
+                const auto& point = suspension.points[k];
+                table.rows[k].emplace_back(point.body == "ground"
+                                               ? compare::nan
+                                               : position.points[k][axis] - point.at[axis]);
+            }
+        }
     section.figures.push_back(std::move(group));
     return section;
 }

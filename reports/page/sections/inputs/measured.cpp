@@ -1,13 +1,10 @@
 #include "reports/page/sections/inputs/measured.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -26,56 +23,6 @@ bool is_on(const SceneAnalyses& scene, const Sweep& sweep, std::size_t k) {
     const int branch = scene.measured->found.places[k].branch;
     return branch >= 0 &&
            sweep.has(scene.comparison.branches[static_cast<std::size_t>(branch)].branch);
-}
-
-std::string named(const compare::Channel& channel) {
-    return fmt::format("{} [{}]", channel.name, symbol(channel.unit));
-}
-
-Table deviations(const SceneAnalyses& scene, const compare::MeasuredReading& reading) {
-    Table table{.caption = "Deviation from the measurement, " +
-                           word_of(*scene.measured, reading, scene.comparison),
-                .columns = {{"test", true},
-                            {"output", true},
-                            {"points"},
-                            {"gradient measured"},
-                            {"of the model"},
-                            {"unit", true},
-                            {"full solution, max"},
-                            {"rms"},
-                            {"published recursion, max"},
-                            {"rms"}}};
-    for (const auto& row : reading.rows) {
-        const auto [unit, factor] = gradient_unit(*scene.measured, reading, row, scene.comparison);
-        std::vector<std::string> cells{row.branch,
-                                       named(scene.comparison.channels[row.channel]),
-                                       whole_number(row.compared()),
-                                       signed_number(factor * row.measured_gradient),
-                                       signed_number(factor * row.gradient),
-                                       unit};
-        for (const auto leg : {compare::Leg::equilibrium, compare::Leg::recursive}) {
-            const auto& off = row.off[static_cast<std::size_t>(leg)];
-            cells.push_back(signed_number(off.signed_max));
-            cells.push_back(number(off.rms, 2));
-        }
-        table.rows.push_back(std::move(cells));
-    }
-    return table;
-}
-
-Table hysteresis(const SceneAnalyses& scene) {
-    Table table{
-        .caption = "Hysteresis of the measurement: its two ways, whose mean is compared",
-        .columns = {
-            {"branch", true}, {"output", true}, {"largest width"}, {"at", true}, {"points"}}};
-    for (const auto& loop : scene.measured->found.loops)
-        table.rows.push_back({loop.branch, named(scene.comparison.channels[loop.channel]),
-                              number(loop.width, 2),
-                              fmt::format("{:.4g} {}", loop.at,
-                                          symbol(unit_of_place(*scene.measured, loop.by_parameter,
-                                                               loop.branch, scene.comparison))),
-                              whole_number(loop.points)});
-    return table;
 }
 
 }  // namespace
@@ -121,8 +68,10 @@ std::optional<Section> measured_section(const SceneAnalyses& scene) {
     if (!left_out.empty()) section.words["left_out"] = enumerated(left_out);
     if (!found.explanations.empty()) section.words["findings"] = enumerated(found.explanations);
     for (const auto& reading : found.readings)
-        if (!reading.rows.empty()) section.tables.push_back(deviations(scene, reading));
-    if (!found.loops.empty()) section.tables.push_back(hysteresis(scene));
+        if (!reading.rows.empty())
+            section.tables.push_back(deviation_table(*scene.measured, reading, scene.comparison));
+    if (!found.loops.empty())
+        section.tables.push_back(loop_table(*scene.measured, scene.comparison));
     return section;
 }
 

@@ -21,7 +21,7 @@ std::string names_of(const std::vector<Part>& parts) {
 Table parts(const SceneAnalyses& scene) {
     const Model& model = scene.model;
     const auto& d = scene.diagnosis;
-    Table table{.caption = "The model", .columns = {{"what", true}, {"as compiled", true}}};
+    Table table = words_table("The model", {"what", "as compiled"});
     const auto row = [&](const char* what, const std::string& value) {
         if (!value.empty()) table.rows.push_back({what, value});
     };
@@ -63,8 +63,7 @@ std::optional<Section> model_section(const SceneAnalyses& scene) {
     Section section{.id = "model", .title = "The model as compiled", .part = Part::evidence};
     section.words = {{"source", scene.scene.source}, {"hash", scene.hash}};
     section.tables.push_back(parts(scene));
-    Table outputs{.caption = "Outputs and their definitions",
-                  .columns = {{"output", true}, {"unit", true}, {"definition", true}}};
+    Table outputs = words_table("Outputs and their definitions", {"output", "unit", "definition"});
     for (const auto& channel : scene.comparison.channels)
         if (channel.main || channel.kinematic())
             outputs.rows.push_back({channel.name, symbol(channel.unit), channel.definition});

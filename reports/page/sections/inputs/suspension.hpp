@@ -8,6 +8,9 @@ namespace elastocheck::reports {
 
 Suspension suspension_of(const SceneAnalyses& scene);
 
+// Names and coordinates of points, on demand.
+Table points_table(const std::vector<Suspension::Point>& points);
+
 // "suspension", or "mechanism" for a scene without a wheel.
 const char* noun_of(const Suspension& suspension);
 
