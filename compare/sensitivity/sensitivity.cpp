@@ -423,9 +423,24 @@ std::vector<std::string> Gradients::not_confirmed() const {
 Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& model,
                     const VaryingScene& varying, std::span<const Channel> outputs,
                     const GradientOptions& options) {
-    Gradients all{{outputs.begin(), outputs.end()}, varying.numbers, {}};
+    const GradientGroup group{{outputs.begin(), outputs.end()}, options};
+    return std::move(gradients(scene, trimmed, model, varying, std::span(&group, 1)).front());
+}
+
+std::vector<Gradients> gradients(const Scene& scene, const Trimmed& trimmed, const Model& model,
+                                 const VaryingScene& varying,
+                                 std::span<const GradientGroup> groups) {
+    const GradientOptions& options = groups.front().options;
     const auto used = legs_for(model, options.legs);
-    std::vector<SideWork> sides = sides_to_follow(model, outputs, options);
+    std::vector<Gradients> all;
+    std::vector<SideWork> sides;
+    std::vector<std::size_t> group_of;  // of each side
+    for (const GradientGroup& group : groups) {
+        std::ranges::move(sides_to_follow(model, group.outputs, group.options),
+                          std::back_inserter(sides));
+        group_of.resize(sides.size(), all.size());
+        all.push_back({group.outputs, varying.numbers, {}});
+    }
     const auto on_every_side = [&](const std::function<void(SideWork&)>& run) {
         std::vector<Job> jobs;
         for (SideWork& side : sides) jobs.push_back({side.result.name, [&] { run(side); }});
@@ -457,9 +472,11 @@ Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& mod
         for (std::size_t k = 0; k < numbers.size(); ++k)
             jobs.push_back({"models", [&, k] { points[k] = compiled(numbers[k]); }});
         run_jobs(jobs, options.threads, {});
-        for (std::size_t k = from; k < std::min(from + numbers.size(), all.numbers.size()); ++k)
-            all.numbers[k].side = points[k - from].side,
-            all.numbers[k].undefined = points[k - from].undefined;
+        for (Gradients& of_group : all)
+            for (std::size_t k = from; k < std::min(from + numbers.size(), varying.numbers.size());
+                 ++k)
+                of_group.numbers[k].side = points[k - from].side,
+                of_group.numbers[k].undefined = points[k - from].undefined;
         on_every_side([&](SideWork& side) { side.differentiate(numbers, points); });
     }
     std::vector<Adjusting> dx(used.size());
@@ -474,15 +491,17 @@ Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& mod
                         : adjusting(start.rates[l].front(), numbers);
     }
     on_every_side([&](SideWork& side) {
-        if (options.by_parameter) {
+        const std::size_t group = group_of[static_cast<std::size_t>(&side - sides.data())];
+        if (groups[group].options.by_parameter) {
             const Changing parameter = by_parameter(side.read.side);
             const Compiled points = compiled(parameter);
             side.differentiate({&parameter, 1}, {&points, 1});
         }
         take(side, numbers, dx);
-        if (std::ssize(used) > 1) side.result.worst = compared(all, side.result);
+        if (std::ssize(used) > 1) side.result.worst = compared(all[group], side.result);
     });
-    for (SideWork& side : sides) all.sides.push_back(std::move(side.result));
+    for (std::size_t k = 0; k < sides.size(); ++k)
+        all[group_of[k]].sides.push_back(std::move(sides[k].result));
     return all;
 }
 

@@ -105,4 +105,14 @@ Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& mod
                     const VaryingScene& varying, std::span<const Channel> outputs,
                     const GradientOptions& options = {});
 
+// Likewise of several groups of outputs: every scene is read, compiled and trimmed once for all of them.
+// The legs, the threads and the progress are those of the first group.
+struct GradientGroup {
+    std::vector<Channel> outputs;
+    GradientOptions options = {};
+};
+std::vector<Gradients> gradients(const Scene& scene, const Trimmed& trimmed, const Model& model,
+                                 const VaryingScene& varying,
+                                 std::span<const GradientGroup> groups);
+
 }  // namespace elastocheck::compare

@@ -5,24 +5,31 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "models/reader/document/suggestions.hpp"
+#include "models/reader/parsed_scene.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
 struct File {
-    std::filesystem::path path;
+    File(const std::filesystem::path& file, std::span<const Setting> set)
+        : parsed(std::make_shared<const reader::ParsedScene>(file)),
+          settings(set.begin(), set.end()) {}
+
+    std::shared_ptr<const reader::ParsedScene> parsed;
     std::vector<Setting> settings;
 
     // the scene where the number has this value
     Scene with(const VariedNumber& number, double value) const {
-        std::vector<Setting> all = settings;
-        for (const std::string& path_of_one : paths_in(number.path)) {
-            std::erase_if(all, [&](const Setting& set) { return set.path == path_of_one; });
-            all.push_back(setting(path_of_one, value));
-        }
-        return read_scene(path, all);
+        const auto paths = paths_in(number.path);
+        std::vector<Setting> others = settings;
+        std::erase_if(others, [&](const Setting& set) {
+            return std::ranges::find(paths, set.path) != paths.end();
+        });
+        return reader::VariedScene(*parsed, paths, std::move(others))
+            .read(std::vector<double>(paths.size(), value));
     }
     bool accepts(const VariedNumber& number) const {
         const double h = difference_step(number);
@@ -117,7 +124,8 @@ double difference_step(const VariedNumber& number) {
 
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
                      std::span<const std::string> paths) {
-    const Scene scene = read_scene(file, settings);
+    const File of(file, settings);
+    const Scene scene = of.parsed->read(settings);
     std::vector<VariedNumber> numbers;
     for (const std::string& joined : paths) {
         for (const std::string& path : paths_in(joined))
@@ -131,14 +139,15 @@ VaryingScene varying(const std::filesystem::path& file, std::span<const Setting>
         numbers.push_back(varied_number(*find_number(scene, paths_in(joined).front())));
         numbers.back().path = joined;
     }
-    return varying({file, {settings.begin(), settings.end()}}, std::move(numbers));
+    return varying(of, std::move(numbers));
 }
 
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
                      const std::function<bool(const std::string& path)>& wanted) {
     std::vector<VariedNumber> numbers;
     std::vector<bool> chosen;
-    const Scene scene = read_scene(file, settings);
+    File of(file, settings);
+    const Scene scene = of.parsed->read(settings);
     for (const Number& number : scene.numbers) {
         numbers.push_back(varied_number(number));
         chosen.push_back(!wanted || wanted(number.path));
@@ -148,7 +157,6 @@ VaryingScene varying(const std::filesystem::path& file, std::span<const Setting>
                 chosen.push_back(true);
             }
     }
-    File of{file, {settings.begin(), settings.end()}};
     auto list = joined(of, std::move(numbers), std::move(chosen));
     return varying(std::move(of), std::move(list));
 }

@@ -39,14 +39,16 @@ class ParsedScene {
 // each: without their texts, and without the paths of all numbers, which the scene then has not.
 class VariedScene {
   public:
-    // Throws SceneError for a path that is not one of a value, or is given twice.
-    VariedScene(const ParsedScene& scene, std::vector<std::string> paths);
+    // With these settings of other values. Throws SceneError for a path that is not one of a value,
+    // or is given twice.
+    VariedScene(const ParsedScene& scene, std::vector<std::string> paths,
+                std::vector<Setting> settings = {});
     // The values in the units of the file. Throws SceneError, as ParsedScene::read().
     Scene read(std::span<const double> values);
 
   private:
     const ParsedScene& scene_;
-    std::vector<std::string> paths_;
+    std::vector<Setting> settings_;            // then those of the paths
     std::vector<std::vector<Value*>> places_;  // of each path; two where it is of both sides
     Trees trees_;
 };

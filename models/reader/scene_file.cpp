@@ -310,11 +310,13 @@ Scene ParsedScene::read(std::span<const Setting> settings,
     return read_trees(with_settings(tree_, settings, name_), name_, folder_, true, warnings);
 }
 
-VariedScene::VariedScene(const ParsedScene& scene, std::vector<std::string> paths)
-    : scene_(scene), paths_(std::move(paths)) {
-    std::vector<Setting> settings;
-    for (const std::string& path : paths_) settings.push_back(setting(path, 0));
-    trees_ = with_settings(scene.tree_, settings, scene.name_, &places_);
+VariedScene::VariedScene(const ParsedScene& scene, std::vector<std::string> paths,
+                         std::vector<Setting> settings)
+    : scene_(scene), settings_(std::move(settings)) {
+    const auto fixed = std::ssize(settings_);
+    for (std::string& path : paths) settings_.push_back(setting(std::move(path), 0));
+    trees_ = with_settings(scene.tree_, settings_, scene.name_, &places_);
+    places_.erase(places_.begin(), places_.begin() + fixed);
 }
 
 Scene VariedScene::read(std::span<const double> values) {
@@ -323,9 +325,11 @@ Scene VariedScene::read(std::span<const double> values) {
     try {
         return read_trees(trees_, scene_.name_, scene_.folder_, false, nullptr);
     } catch (const SceneError&) {  // again, to say where
-        std::vector<Setting> settings;
-        for (std::size_t k = 0; k < paths_.size(); ++k)
-            settings.push_back(setting(paths_[k], values[k]));
+        std::vector<Setting> settings = settings_;
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            Setting& varied = settings[settings.size() - places_.size() + k];
+            varied = setting(varied.path, values[k]);
+        }
         return scene_.read(settings);
     }
 }

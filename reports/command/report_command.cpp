@@ -176,24 +176,29 @@ void add_effects(SceneAnalyses& scene, const LoadedScene& loaded, const std::str
         return std::ranges::none_of(std::array{"loads.", "branches.", "trim.", "vehicle."},
                                     [&](const char* group) { return path.starts_with(group); });
     });
-    Effects effects;
     // a characteristic costs several times an angle, and is shown at one station
-    const auto add = [&](const std::vector<compare::Channel>& outputs, bool of_design) {
-        if (outputs.empty()) return;
-        compare::GradientOptions options{.points = 1, .branches = branches, .threads = threads};
-        if (of_design) options.stations[branches.front()] = {0};
-        if (of_design) options.branches = {branches.front()};
-        const auto all = gradients_of(file, settings, loaded, outputs, varying, options);
-        for (auto& row : compare::effect_rows(all))
+    std::vector<compare::GradientGroup> groups;
+    const compare::GradientOptions options{.points = 1, .branches = branches, .threads = threads};
+    if (!key.at_design.empty()) {
+        groups.push_back({key.at_design, options});
+        groups.back().options.branches = {branches.front()};
+        groups.back().options.stations[branches.front()] = {0};
+    }
+    if (!key.at_ends.empty()) groups.push_back({key.at_ends, options});
+    if (groups.empty()) return;
+    Effects effects;
+    const auto all = gradients_of(file, settings, loaded, varying, groups);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const auto& group = all[k];
+        const bool of_design = !groups[k].options.stations.empty();
+        for (auto& row : compare::effect_rows(group))
             if ((row.at == 0) == of_design) effects.rows.push_back(std::move(row));
-        for (const auto& side : all.sides) {
+        for (const auto& side : group.sides) {
             effects.apart = std::max(effects.apart, side.worst.whole);
             effects.compared += side.worst.compared;
             std::ranges::move(side.not_confirmed(), std::back_inserter(effects.reasons));
         }
-    };
-    add(key.at_design, true);
-    add(key.at_ends, false);
+    }
     if (effects.rows.empty()) return;
     if (effects.compared == 0) effects.reasons.emplace_back("no derivative was compared");
     for (const auto& why : effects.reasons)

@@ -204,6 +204,42 @@ TEST(Gradients, AreTheRecordedExactOnes) {
     for (const auto& [leg, off] : worst) RecordProperty(name(leg), fmt::format("{:.1e}", off));
 }
 
+// Outputs of a group have the derivatives that they have alone, to the last bit; trim included.
+TEST(Gradients, OfGroupsAreThoseOfEachGroupAlone) {
+    Asked all = asked(file_of("chrono_mcpherson_preload"));
+    all.varying.numbers.resize(12);
+    const std::string branch = all.model.branches.front().name;
+    const std::vector<GradientGroup> groups{
+        {{all.outputs.begin(), all.outputs.begin() + 4},
+         {.stations = {{branch, {0}}}, .branches = {branch}}},
+        {{all.outputs.begin() + 2, all.outputs.begin() + 9}, {.points = 1}}};
+    const auto together = gradients(all.scene, all.trimmed, all.model, all.varying, groups);
+    ASSERT_EQ(together.size(), groups.size());
+    const auto same = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+        return a.rows() == b.rows() &&
+               ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
+    };
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const auto alone = gradients(all.scene, all.trimmed, all.model, all.varying,
+                                     groups[g].outputs, groups[g].options);
+        ASSERT_EQ(together[g].sides.size(), alone.sides.size());
+        EXPECT_EQ(together[g].outputs.size(), groups[g].outputs.size());
+        for (std::size_t s = 0; s < alone.sides.size(); ++s) {
+            const SideGradients &one = together[g].sides[s], &other = alone.sides[s];
+            EXPECT_EQ(one.name, other.name);
+            EXPECT_EQ(one.a, other.a);
+            EXPECT_GT(one.worst.compared, 0);
+            EXPECT_EQ(one.worst.compared, other.worst.compared);
+            ASSERT_EQ(one.legs.size(), other.legs.size());
+            for (std::size_t l = 0; l < one.legs.size(); ++l) {
+                ASSERT_EQ(one.legs[l].at.size(), other.legs[l].at.size());
+                for (std::size_t k = 0; k < one.legs[l].at.size(); ++k)
+                    EXPECT_TRUE(same(one.legs[l].at[k], other.legs[l].at[k])) << one.name;
+            }
+        }
+    }
+}
+
 // Against extrapolated differences of whole solutions, trim included.
 TEST(Gradients, AreTheDifferencesOfScenesWithANumberSet) {
     struct Case {

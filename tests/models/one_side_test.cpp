@@ -115,6 +115,29 @@ TEST(OneSide, VariedSceneEqualsReadingItWithSettings) {
     }
 }
 
+TEST(OneSide, ManyReadingsKeepTheSettingsOfOtherNumbers) {
+    const std::string text = reader::read_text(file, reader::Pipes::allowed).text;
+    const reader::ParsedScene parsed(text, "axle.yaml", std::nullopt);
+    const std::vector<Setting> others{{"points.upper_ball_left.z@right", "0.27"}};
+    const std::vector<double> fine{90e3}, wrong{-1};
+    reader::VariedScene varied(parsed, {"springs.coil_left.rate"}, others);
+    std::vector<Setting> all = others;
+    all.push_back({"springs.coil_left.rate", "90e3"});
+    EXPECT_EQ(as_drawn(varied.read(fine)), as_drawn(parsed.read(all)));
+    EXPECT_EQ(point(varied.read(fine), "upper_ball_right").z(), 0.27);
+    const auto message = [](const auto& read) {
+        try {
+            (void)read();
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    all.back().value = "-1";
+    EXPECT_EQ(message([&] { return varied.read(wrong); }),
+              message([&] { return parsed.read(all); }));
+}
+
 TEST(OneSide, NumberWithoutASideIsRejectedWithAMessage) {
     const auto says = [](const Setting& setting, const std::string& what,
                          const std::string& scene) {

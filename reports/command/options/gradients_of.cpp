@@ -72,13 +72,12 @@ std::map<std::string, std::vector<double>> stations(const std::vector<std::strin
 
 }  // namespace
 
-compare::Gradients gradients_of(const std::string& file, const Settings& settings,
-                                const LoadedScene& loaded,
-                                std::span<const compare::Channel> outputs,
-                                const compare::VaryingScene& varying,
-                                const compare::GradientOptions& options) {
+std::vector<compare::Gradients> gradients_of(const std::string& file, const Settings& settings,
+                                             const LoadedScene& loaded,
+                                             const compare::VaryingScene& varying,
+                                             std::span<const compare::GradientGroup> groups) {
     return compare::gradients(read_scene(file, settings), {loaded.scene, loaded.trim}, loaded.model,
-                              varying, outputs, options);
+                              varying, groups);
 }
 
 compare::Gradients gradients_of(const std::string& file, const Settings& settings,
@@ -110,12 +109,13 @@ compare::Gradients gradients_of(const std::string& file, const Settings& setting
                                    request.branches, [](const Branch& b) { return b.name; });
     std::vector<std::string> of_branches;
     for (const Branch& branch : branches) of_branches.push_back(branch.name);
-    return gradients_of(file, settings, loaded, outputs, varying,
-                        {.points = request.points,
-                         .stations = stations(request.at, model),
-                         .branches = of_branches,
-                         .threads = request.threads,
-                         .progress = progress});
+    const compare::GradientGroup group{std::move(outputs),
+                                       {.points = request.points,
+                                        .stations = stations(request.at, model),
+                                        .branches = of_branches,
+                                        .threads = request.threads,
+                                        .progress = progress}};
+    return std::move(gradients_of(file, settings, loaded, varying, std::span(&group, 1)).front());
 }
 
 }  // namespace elastocheck::reports

@@ -11,13 +11,12 @@
 
 namespace elastocheck::reports {
 
-// Derivatives of the outputs by numbers of the file with these settings; the trim of a trimmed scene
-// is part of the function.
-compare::Gradients gradients_of(const std::string& file, const Settings& settings,
-                                const LoadedScene& loaded,
-                                std::span<const compare::Channel> outputs,
-                                const compare::VaryingScene& varying,
-                                const compare::GradientOptions& options);
+// Derivatives of groups of outputs by numbers of the file with these settings; the trim of a trimmed
+// scene is part of the function.
+std::vector<compare::Gradients> gradients_of(const std::string& file, const Settings& settings,
+                                             const LoadedScene& loaded,
+                                             const compare::VaryingScene& varying,
+                                             std::span<const compare::GradientGroup> groups);
 
 // What `sensitivity` is asked for, as on its command line.
 struct GradientsRequest {
