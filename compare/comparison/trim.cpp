@@ -179,7 +179,7 @@ std::optional<VectorXd> change_beside(const TrimProblem& problem, const VectorXd
     along.model.branches = {along.branch};
     constexpr std::array both{1.0, -1.0};
     const EquilibriumPath path =
-        walk_through(along, problem.solver, both, [&](const Equilibrium& state) {
+        solve_at(along, problem.solver, both, [&](const Equilibrium& state) {
             missed[state.load > 0 ? 0 : 1] = values(problem, state) - problem.target;
         });
     failed = {path.outcome, path.detail, {}, {}};
@@ -188,7 +188,8 @@ std::optional<VectorXd> change_beside(const TrimProblem& problem, const VectorXd
 }
 
 // J, one column per step h: change of the conditions with an adjustment. Empty where a leg failed.
-std::optional<MatrixXd> responses(const TrimProblem& problem, const VectorXd& p, TrimAttempt& failed) {
+std::optional<MatrixXd> responses(const TrimProblem& problem, const VectorXd& p,
+                                  TrimAttempt& failed) {
     MatrixXd J(static_cast<Index>(problem.channels.size()), p.size());
     for (Index k = 0; k < p.size(); ++k) {
         const auto change = change_beside(problem, p, k, failed);

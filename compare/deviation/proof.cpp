@@ -26,7 +26,7 @@ void add(Tally& tally, double load, Unit unit, const Certificate& certificate) {
         ++(certificate.state == ProofState::excluded ? tally.excluded : tally.open);
         if (tally.not_proved.empty())
             tally.not_proved = fmt::format(
-                "{} at {:.6g} {}{}{}", name(certificate.answer), in_unit(unit) * load, symbol(unit),
+                "{} at {:.6g} {}{}{}", name(certificate.state), in_unit(unit) * load, symbol(unit),
                 certificate.detail.empty() ? "" : ": ", certificate.detail);
         return;
     }

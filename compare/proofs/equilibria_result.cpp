@@ -16,7 +16,7 @@ std::vector<ColumnOf<FoundEquilibrium>> found_columns() {
              "from that of the branch, or from the end of the branch", "mm"},
             {"turned", three, [](const Found& f) { return in_unit(Unit::deg) * f.angle; },
              "likewise", "deg"},
-            {"proof", words, [](const Found& f) { return name(f.proof.answer); }},
+            {"proof", words, [](const Found& f) { return name(f.proof.state); }},
             {"within", size, [](const Found& f) { return 1e3 * f.proof.error.length; },
              "proved distance to the true equilibrium, at most", "mm"},
             {"alone within", size, [](const Found& f) { return 1e3 * f.proof.unique.length; },
@@ -71,7 +71,7 @@ Result result_of(const Model& model, const AllEquilibria& all) {
         elastocheck::name(all.outcome), all.detail.empty() ? "" : ": ", all.detail);
     for (const auto& one : all.list)
         if (one.proof.state != reference::certificate::ProofState::proved)
-            list.notes.push_back(fmt::format("{}: {}", name(one.proof.answer), one.proof.detail));
+            list.notes.push_back(fmt::format("{}: {}", name(one.proof.state), one.proof.detail));
     result.tables = {std::move(list), poses(model, all)};
     result.notes.push_back(
         fmt::format("{} starts with deflation; completeness is not proved", all.starts));

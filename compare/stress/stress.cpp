@@ -399,7 +399,7 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
                                    .empty());
         const bool other =
             known.proved && as_there &&
-            certify(run.side.model, run.side.branch, found.states[k], run.tolerance).answer ==
+            certify(run.side.model, run.side.branch, found.states[k], run.tolerance).state ==
                 ProofState::proved;
         (other ? elsewhere : breaks) = std::move(why);
     }

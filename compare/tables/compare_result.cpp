@@ -20,9 +20,10 @@
 namespace elastocheck::compare {
 namespace {
 
-// Displayed channels: every main one, and the worst force and moment component of each joint.
+// Displayed channels: every main one, the worst force and moment component of each joint, and the
+// worst rate of a unit, or each.
 std::vector<std::size_t> shown(const Comparison& all, const BranchComparison& branch,
-                               const Reading& reading) {
+                               const Reading& reading, bool each_rate) {
     std::vector<std::size_t> rows;
     for (std::size_t c = 0; c < all.channels.size(); ++c)
         if (all.channels[c].main && branch.determined[c]) rows.push_back(c);
@@ -30,6 +31,7 @@ std::vector<std::size_t> shown(const Comparison& all, const BranchComparison& br
         const Channel& channel = all.channels[c];
         if (channel.main || channel.kinematic() || !branch.determined[c]) continue;
         if (!rows.empty() && !all.channels[rows.back()].main &&
+            (!each_rate || !channel.joints().empty()) &&
             all.channels[rows.back()].joints() == channel.joints() &&
             all.channels[rows.back()].unit == channel.unit) {
             if (reading.channels[c].max > reading.channels[rows.back()].max) rows.back() = c;
@@ -215,7 +217,7 @@ std::string about(const Model& model, const Comparison& comparison) {
 
 // Deviations of the recursion, and the distance of the references. Readers see the unit of `at` in
 // the headings.
-Table deviation_table(const Comparison& all, const BranchComparison& branch) {
+Table deviation_table(const Comparison& all, const BranchComparison& branch, bool each_rate) {
     using enum Digits;
     const Reading &load = branch.deviation.equal_parameter,
                   &travel = branch.deviation.equal_abscissa,
@@ -253,8 +255,8 @@ Table deviation_table(const Comparison& all, const BranchComparison& branch) {
         {"uncertainty", size, [&](C c) { return doubt.channels[c].max; },
          "distance of the references, largest over the branch"}};
     const bool compared = !load.channels.empty() && !doubt.channels.empty();
-    Table result =
-        table("deviation", columns, compared ? shown(all, branch, load) : std::vector<C>{});
+    Table result = table("deviation", columns,
+                         compared ? shown(all, branch, load, each_rate) : std::vector<C>{});
     if (!compared) {
         result.notes.push_back("nothing compared: " +
                                (load.channels.empty() ? load.not_compared : doubt.not_compared));

@@ -14,10 +14,11 @@ namespace elastocheck::compare {
 // `assessment` is of the comparison. The verdict has no sentence.
 Result result_of(const Model& model, const Comparison& comparison, const Assessment& assessment);
 
-// Its tables, also of the page. Deviations of the recursion on a branch, of the main outputs and the
-// largest component of each joint; agreement of the references, a branch a row; residuals of the
+// Its tables, also of the page. Deviations of the recursion on a branch, of the main outputs, the
+// largest component of each joint and the worst rate, or each; agreement of the references, a branch a row; residuals of the
 // states of each leg in the equations of the others; proofs; outcome and work of each leg.
-Table deviation_table(const Comparison& comparison, const BranchComparison& branch);
+Table deviation_table(const Comparison& comparison, const BranchComparison& branch,
+                      bool each_rate = false);
 Table agreement_table(const Comparison& comparison);
 Table residual_table(const Comparison& comparison);
 Table proof_table(const Comparison& comparison);

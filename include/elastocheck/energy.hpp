@@ -1,10 +1,10 @@
 // Reference leg 2: minimisation of the potential energy subject to the full nonlinear constraints,
-// by NLopt.
+// by NLopt, for large models by Newton steps of a sparse quadratic model.
 //
 //   V(q; a) → min   subject to   Φ(q; a) = 0
 //
-// The solver, SLSQP, is dense: its cost grows with the cube of the scene and is predicted before it
-// starts. Judging states of other legs is sparse, for models of any size.
+// SLSQP is dense: its cost grows with the cube of the scene; that of the sparse steps with the bodies
+// and the fill of their factors. Both are predicted before they start. Judging states of other legs is sparse, for models of any size.
 //
 // Units are SI: m, N, rad; the parameter a in Branch::unit. Calls share no state: any number of
 // threads may solve and judge at once, also on one model.

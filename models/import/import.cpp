@@ -5,7 +5,6 @@
 #include <charconv>
 
 #include "elastocheck/read_scene.hpp"
-#include "models/import/mechanism/mechanism.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"

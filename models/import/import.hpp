@@ -70,6 +70,18 @@ Draft import_points(std::string_view text, const std::string& file, const Option
 // Chooses the mechanism and its roles in `options`, and drops the axle that it has read.
 Draft import_assetto(std::string_view text, const std::string& file, Options& options);
 
+// ---- Mechanisms made of named points by templates of roles (mechanism/mechanisms.yaml).
+
+// Gives the points of a draft, whose sources have their names in the file, the roles of the template
+// options.as, and adds its bodies, joints, wheel and branches: rigid, without springs. Notes the point of
+// each role and those without one. Throws SceneError for roles without a point, or with several.
+void make_mechanism(const std::string& file, const Options& options, Draft& draft);
+
+// Names of the templates; and the one that words such as those of a file ("Double Wishbone, damper to
+// lower wishbone") mean, empty if none.
+const std::vector<std::string>& mechanisms();
+std::string mechanism_called(std::string_view words);
+
 // Signs of x, y and z of a table of hardpoints in the axes of a scene. Throws SceneError for axes that
 // are not among axes_of_tables.
 std::array<double, 3> directions(const std::string& axes, const std::string& file);

@@ -99,8 +99,9 @@ std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
         const std::size_t was = entry.find(" was ");
         if (was == entry.npos || entry.find(' ') != was || entry.find(' ', was + 5) != entry.npos)
             return "";
-        if (std::ranges::none_of(
-                edits, [&](const Edit& edit) { return edit.setting->path == entry.substr(0, was); }))
+        if (std::ranges::none_of(edits, [&](const Edit& edit) {
+                return edit.setting->path == entry.substr(0, was);
+            }))
             kept += (kept.empty() ? "" : ", ") + entry;
         from = end + 2;
     }

@@ -135,8 +135,7 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>& res
     };
     turn(0, 0);
     turn(1, 1);
-    k.coupled = !K_local.template topRightCorner < 3;
-    3 > ().isZero(0);
+    k.coupled = !K_local.template topRightCorner<3, 3>().isZero(0);
     if (k.coupled)
         turn(0, 1);
     else
@@ -167,10 +166,7 @@ void add_stiffness(const ElementStiffness<Real>& e, Target& target) {
         Matrix6<Real> K;
         Matrix3<Real> moment;
         for (int k = 0; k < 3; ++k) moment.col(k) = s_a.cross(F_b.col(k));
-        if (e.rotational) {
-            moment += e.K.template bottomRightCorner < 3;
-            3 > ();
-        }
+        if (e.rotational) moment += e.K.template bottomRightCorner<3, 3>();
         if (e.coupled) moment -= C.transpose() * tilde(s_b);
         K << K_T, F_b, F_a.transpose(), moment;
         return K;

@@ -42,7 +42,8 @@ Residuals residuals(const Model& given_model, const Branch& branch,
     const ConstraintValues values = constraints(model, prescribed, chart);
     const VectorXd S = scales.coordinates(coordinates(model));
     const VectorXd left = left_over(scaled(values.Phi_q, scales.rows(model), S),
-                                    S.cwiseProduct(potential(model, prescribed, chart).gradient));
+                                    S.cwiseProduct(potential(model, prescribed, chart).gradient))
+                              .left;
 
     Residuals worst;
     int row = 0;

@@ -33,7 +33,7 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
         t.failure = {Outcome::not_conservative, *what};
         return t;
     }
-    if (const double operations = cost_of(model, 1).operations(); operations > most_operations) {
+    if (const double operations = dense_cost(model, 1).operations(); operations > most_operations) {
         t.failure = {
             Outcome::too_large,
             fmt::format(
@@ -49,7 +49,7 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     const Path path{
         model, options, t.scales, t.course, turning_bushings(model, t.course), std::abs(state.load),
         unused};
-    t.state = state_at(path, state.load, state.poses);
+    t.state = dense_state_at(path, state.load, state.poses);
     if (!t.state.at.left.allFinite() || !t.state.at.Phi.allFinite() || !t.state.H.allFinite()) {
         t.failure = {Outcome::not_finite, "the state has no finite potential"};
         return t;

@@ -16,7 +16,7 @@ using By = compare::Variant::Construction;
 struct Extreme {
     const char *scene, *label;
     std::string_view settings;  // PATH=VALUE, in the units of the file: mm
-    By known = By::nothing;     // by construction of the scene
+    By known = By::unknown;     // by construction of the scene
 };
 constexpr Extreme table[]{
     {"two_hinges", "axes at 1e-1 rad", "points.skew.x=100", By::nothing_moves},

@@ -33,7 +33,7 @@ json limits_of(const Prepared& at, compare::Unit unit) {
         constexpr certificate::Tolerance anywhere{1, 1, 1e9, 1e9};
         const auto found = certificate::certify_limit_point(at.sides[side].model,
                                                             at.sides[side].branch, *last, anywhere);
-        list.push_back({{"answer", name(found.answer)},
+        list.push_back({{"answer", name(found.state)},
                         {"detail", found.detail},
                         {"from", in_unit(unit) * found.from},
                         {"to", in_unit(unit) * found.to}});
@@ -57,7 +57,7 @@ json prove(Session& session, const Request& request, int first, int count) {
         const auto found = certificate::certify(on.model, on.branch, state, claim);
         answer["stations"].push_back(
             {{"a", compare::parameter_in(compare::unit_of(on.branch.unit), state.load)},
-             {"answer", name(found.answer)},
+             {"answer", name(found.state)},
              {"detail", found.detail},
              {"error_mm", millimetres(found.error.length)},
              {"unique_mm", millimetres(found.unique.length)},

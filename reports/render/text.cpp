@@ -87,7 +87,9 @@ std::vector<ShownColumn> shown_columns(const Table& table, std::string (*written
                 largest = std::max(largest, value != nullptr ? *value : 0);
         for (const auto& row : table.rows) {
             const auto* value = std::get_if<double>(&row[c]);
-            if (largest > 0) shown.back().shades.push_back(value != nullptr ? *value / largest : 0);
+            if (largest > 0)
+                shown.back().shades.push_back(value != nullptr && *value > 0 ? *value / largest
+                                                                             : 0);
             shown.back().cells.push_back(value != nullptr ? written(*value, of.digits)
                                                           : std::get<std::string>(row[c]));
         }

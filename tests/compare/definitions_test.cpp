@@ -76,8 +76,8 @@ TEST(Definitions, OfTheSteeringAxisAreThoseOfALineByHand) {
 }
 
 Curve curve_of(const Model& model, const Branch& branch, const std::vector<Channel>& channels) {
-    return walk(model, channels, branch, sides_of(model, branch, 4),
-                {.leg = Leg::equilibrium, .every = 1})
+    return solve_branch(model, channels, branch, sides_of(model, branch, 4),
+                        {.leg = Leg::equilibrium, .every = 1})
         .curve;
 }
 

@@ -19,7 +19,11 @@ export const check = (met, what) => { if (!met) { failures.push(what); console.e
 export const near = (a, b, bound, what) => check(Math.abs(a - b) <= bound, `${what}: ${a} is not ${b} within ${bound}`);
 export const browser = await Browser.start();
 export const run = expression => browser.run(expression);
-export const idle = () => browser.until('isIdle()', 'the solver is idle');
+// A move of the mouse is handled with the next frame.
+export const idle = async () => {
+  await run('new Promise(done => requestAnimationFrame(() => setTimeout(done)))');
+  await browser.until('isIdle()', 'the solver is idle');
+};
 export const wait = seconds => new Promise(resolve => setTimeout(resolve, 1e3 * seconds));
 export const pictureOf = async (name, full) => {
   if (pictures) await browser.picture(path.join(pictures, name + '.png'), full);

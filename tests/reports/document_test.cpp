@@ -99,8 +99,8 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
 TEST(Document, EveryChannelSaysWhatItIs) {
     const json d = Made().document();
     std::set<std::string> rates;  // of the state and how it answers
-    for (const auto& row : result_in(d["scenes"][0], "compare")["tables"]["rates"]["rows"])
-        rates.insert(row[0].get<std::string>());
+    const json table = result_in(d["scenes"][0], "compare")["tables"]["rates"];
+    for (const auto& row : table["rows"]) rates.insert(row[0].get<std::string>());
     EXPECT_GT(rates.size(), 20u);
     for (const auto& channel : d["scenes"][0]["channels"]) {
         EXPECT_FALSE(channel["definition"].get<std::string>().empty()) << channel;

@@ -49,7 +49,18 @@ struct Solved {
         json readings = json::array();
         for (const auto& reading : found.found.readings)
             readings.push_back(objects(table_json(deviation_table(found, reading, comparison))));
-        return {{"readings", readings},
+        json columns, branches = json::array();
+        const compare::Points& points = found.measurement.table.points;
+        if (points.abscissa) columns[comparison.channels[*points.abscissa].name] = points.at;
+        for (const auto& column : found.found.columns)
+            columns[comparison.channels[column.channel].name] = column.values;
+        for (const auto& place : found.found.places) {
+            const auto b = static_cast<std::size_t>(place.branch);
+            branches.push_back(place.branch < 0 ? "" : comparison.branches[b].branch);
+        }
+        return {{"columns", columns},
+                {"branch", branches},
+                {"readings", readings},
                 {"loops", objects(table_json(loop_table(found, comparison)))},
                 {"findings", found.found.explanations},
                 {"left_out", found.left_out},
@@ -442,8 +453,8 @@ TEST(Measurement, AMissingValueIsNotDrawn) {
 }
 
 TEST(Measurement, AByteOrderMarkIsNoPartOfTheFirstName) {
-    EXPECT_EQ(measured("\xEF\xBB\xBFtravel_mm,toe_deg\r\n50,-1.8\r\n"),
-              measured("travel_mm,toe_deg\n50,-1.8\n"));
+    EXPECT_EQ(measured("\xEF\xBB\xBFtravel_mm,toe_deg\r\n50,-1.8\r\n").dump(),
+              measured("travel_mm,toe_deg\n50,-1.8\n").dump());
     EXPECT_EQ(refusal("\xFF\xFEt"), "kc.csv: is UTF-16; save it as CSV in UTF-8");
 }
 

@@ -1,10 +1,10 @@
-#include "models/import/mechanism/mechanism.hpp"
-
+// Makes a mechanism of named points: recognises the role of each by the words of its name.
 #include <algorithm>
 #include <map>
 #include <set>
 
 #include "mechanism_embedded.hpp"  // generated: text of mechanisms.yaml
+#include "models/import/import.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "models/import/import.hpp"
-#include "models/import/mechanism/mechanism.hpp"
 #include "models/import/property/columns.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"

@@ -65,7 +65,7 @@ struct System {
     double farthest = 1;
     int bodies = 0, rows = 0;  // nb, m
     bool conservative = true;  // no follower, no formulation without energy
-    int corners() const { return 2 * static_cast<int>(apart.size()); }
+    int corners() const { return 2 * static_cast<int>(separated.size()); }
     int n() const { return 7 * bodies + rows + corners(); }
     int pose(BodyId body) const { return 7 * body; }
     int reaction(std::size_t constraint) const { return 7 * bodies + first_row[constraint]; }

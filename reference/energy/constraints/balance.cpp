@@ -64,13 +64,38 @@ Balance balance(const Model& model, const Prescribed& prescribed, const Scales& 
                    constraints(model, prescribed, chart));
 }
 
+Balance sparse_balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
+                       const Chart& chart) {
+    const VectorXd S = scales.coordinates(coordinates(model)), D = scales.rows(model);
+    const ConstraintValues values = constraints(model, prescribed, chart);
+    auto [left, lambda] =
+        left_over(scaled(values.Phi_q, D, S),
+                  S.cwiseProduct(potential(model, prescribed, chart).gradient) / scales.energy());
+    Balance at;
+    at.lambda = std::move(lambda), at.left = std::move(left);
+    at.Phi = D.cwiseProduct(values.Phi);
+    return at;
+}
+
+Blocks scaled(Blocks H, const Scales& scales) {
+    const VectorXd S = scales.coordinates(H.size);
+    for (auto& block : H.blocks) block.M *= S[block.row] * S[block.column] / scales.energy();
+    return H;
+}
+
 MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
                  const std::vector<Pose>& centre, const VectorXd& lambda) {
     const VectorXd S = scales.coordinates(coordinates(model));
+    const MatrixXd H = hessian_blocks(model, prescribed, scales, centre, lambda).dense();
+    return S.asDiagonal() * (0.5 * (H + H.transpose())) * S.asDiagonal() / scales.energy();
+}
+
+Blocks hessian_blocks(const Model& model, const Prescribed& prescribed, const Scales& scales,
+                      const std::vector<Pose>& centre, const VectorXd& lambda) {
     const VectorXd lambda_D = scales.rows(model).cwiseProduct(lambda) * scales.energy();  // SI
     const Chart chart = chart_about(centre);
     const auto stress = stresses(model, prescribed, chart);
-    MatrixXd H = stiffness(model, prescribed, chart);
+    Blocks H = stiffness(model, prescribed, chart);
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Vector6 sigma = stress.col(static_cast<Eigen::Index>(k));
         if (!sigma.isZero(0)) add_curvature(model.elastics[k].kind, sigma, chart, H);
@@ -84,7 +109,7 @@ MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales&
                       lambda_D.data() + row, H);
         row += rows(kind);
     }
-    return S.asDiagonal() * (0.5 * (H + H.transpose())) * S.asDiagonal() / scales.energy();
+    return H;
 }
 
 // Dead moment m. With g the gradient of everything but m, in ground axes: ∂V/∂φ = Jᵀ g - m with
@@ -94,28 +119,39 @@ MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales&
 // Brake force f. The lever to the patch p = r_w + u_w, whereas the chart's lever s turns with the
 // carrier: the balance -(p - r) × f changes by f × (δp - δr - φ × s) more,
 // δp = δr_w - ũ_w φ_w.
-MatrixXd load_stiffness(const Prescribed& prescribed, const Scales& scales,
-                        const std::vector<Pose>& centre) {
-    const auto n = static_cast<Eigen::Index>(6 * centre.size());
-    MatrixXd A = MatrixXd::Zero(n, n);
+Blocks load_blocks(const Prescribed& prescribed, const std::vector<Pose>& centre) {
+    Blocks A{static_cast<int>(6 * centre.size())};
+    const auto add = [&](int row, int column, const Eigen::Matrix3d& M) {
+        A.blocks.push_back({row, column, M});
+    };
     for (const auto& moment : prescribed.moments) {
         const int row = 6 * moment.body + 3;
-        A.block<3, 3>(row, row) -= 0.5 * skew(moment.m);
+        add(row, row, -0.5 * skew(moment.m));
     }
     const Chart chart = chart_about(centre);
     for (const auto& brake : prescribed.brakes) {
         const int on = 6 * brake.body, wheel = 6 * brake.patch.body;
         const Eigen::Matrix3d f = skew(brake.f);
         const Point held = dead_force(brake, chart).at;
-        A.block<3, 3>(on + 3, on) -= f;
-        A.block<3, 3>(on + 3, on + 3) += f * skew(motion(chart[held.body], held.s_local).lever);
+        add(on + 3, on, -f);
+        add(on + 3, on + 3, f * skew(motion(chart[held.body], held.s_local).lever));
         if (brake.patch.body == ground) continue;
-        A.block<3, 3>(on + 3, wheel) += f;
-        A.block<3, 3>(on + 3, wheel + 3) -=
-            f * skew(motion(chart[brake.patch.body], brake.patch.s_local).lever);
+        add(on + 3, wheel, f);
+        add(on + 3, wheel + 3,
+            -f * skew(motion(chart[brake.patch.body], brake.patch.s_local).lever));
     }
-    const VectorXd S = scales.coordinates(static_cast<int>(n));
+    return A;
+}
+
+MatrixXd load_stiffness(const Prescribed& prescribed, const Scales& scales,
+                        const std::vector<Pose>& centre) {
+    const MatrixXd A = load_blocks(prescribed, centre).dense();
+    const VectorXd S = scales.coordinates(static_cast<int>(A.rows()));
     return S.asDiagonal() * A * S.asDiagonal() / scales.energy();
+}
+
+double idle_limit(double stiffest) {
+    return idle_stiffness + 50 * std::numeric_limits<double>::epsilon() * stiffest;
 }
 
 Modes modes_of(const Balance& at, const MatrixXd& H) {
@@ -126,9 +162,12 @@ Modes modes_of(const Balance& at, const MatrixXd& H) {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
     modes.Z = free ? eigen.eigenvectors() : MatrixXd(at.along * eigen.eigenvectors());
     modes.stiffness = eigen.eigenvalues();
-    const double roundoff = 50 * std::numeric_limits<double>::epsilon();
-    modes.idle_limit = idle_stiffness + roundoff * modes.stiffness.cwiseAbs().maxCoeff();
+    modes.idle_limit = idle_limit(modes.stiffness.cwiseAbs().maxCoeff());
     return modes;
+}
+
+bool Modes::unstable() const {
+    return (count() > 0 && !(stiffness[0] >= -idle_limit)) || falling_besides > 0;
 }
 
 std::vector<int> Modes::resisting() const {
@@ -145,15 +184,31 @@ MatrixXd Modes::idle_motions() const {
     return Z(Eigen::all, which);
 }
 
+namespace {
+
+double allowed(const Scales& scales, double stiffness, double tolerance) {
+    return 1 + 8 * scales.roundoff * std::abs(stiffness) / tolerance;
+}
+
+}  // namespace
+
+double excess(const Balance& at, const VectorXd& stiffness, const Scales& scales,
+              double tolerance) {
+    double worst = largest(at.Phi);
+    if (!std::isfinite(worst) || !at.left.allFinite())
+        return std::numeric_limits<double>::quiet_NaN();
+    for (Eigen::Index i = 0; i < at.left.size(); ++i)
+        worst = std::max(worst, std::abs(at.left[i]) / allowed(scales, stiffness[i], tolerance));
+    return worst;
+}
+
 double excess(const VectorXd& left, const VectorXd& Phi, const Modes& modes, const Scales& scales,
               double tolerance) {
     if (!left.allFinite() || !Phi.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     double worst = largest(Phi);
     const VectorXd g = modes.Z.transpose() * left;
-    for (int i = 0; i < modes.count(); ++i) {
-        const double allowed = 1 + 8 * scales.roundoff * std::abs(modes.stiffness[i]) / tolerance;
-        worst = std::max(worst, std::abs(g[i]) / allowed);
-    }
+    for (int i = 0; i < modes.count(); ++i)
+        worst = std::max(worst, std::abs(g[i]) / allowed(scales, modes.stiffness[i], tolerance));
     return worst;
 }
 

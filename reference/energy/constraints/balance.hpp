@@ -14,7 +14,7 @@
 namespace elastocheck::reference::energy {
 
 // Stationarity of V + λᵀΦ. The multipliers are the least-squares ones, of minimum norm where not
-// unique.
+// unique. A sparse one has only λ, the projected gradient and Φ.
 struct Balance {
     Eigen::VectorXd lambda;  // [m], of D Φ
     Eigen::VectorXd left;    // ∂V/∂ξ + (∂DΦ/∂ξ)ᵀ λ, the projected gradient [6nb]
@@ -30,10 +30,15 @@ Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd&
                 const ConstraintValues& values);
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart);
+Balance sparse_balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
+                       const Chart& chart);
 // Orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank].
 Eigen::MatrixXd row_space(const Balance& at);
 // Shortest least-squares solution ξ of ∂DΦ/∂ξ ξ = Φ.
 Eigen::VectorXd shortest(const Balance& at, const Eigen::VectorXd& Phi);
+
+// S H S in units of F·L.
+Blocks scaled(Blocks H, const Scales& scales);
 
 // Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E, and the curvature of deformations, forces
 // and constraints at constant stress, force and λ.
@@ -45,6 +50,11 @@ Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const 
 Eigen::MatrixXd load_stiffness(const Prescribed& prescribed, const Scales& scales,
                                const std::vector<Pose>& centre);
 
+// The sums of both before they are scaled, SI.
+Blocks hessian_blocks(const Model& model, const Prescribed& prescribed, const Scales& scales,
+                      const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
+Blocks load_blocks(const Prescribed& prescribed, const std::vector<Pose>& centre);
+
 // Modes of motion that the constraints allow: eigenvectors of the reduced Hessian (reduced to
 // `along`).
 struct Modes {
@@ -52,12 +62,16 @@ struct Modes {
     Eigen::VectorXd stiffness;  // ascending [f]
     double idle_limit = 0;      // a stiffness up to this is indistinguishable from zero
 
+    // where only the softest modes are known: how many others let the energy fall
+    int falling_besides = 0;
+
     int count() const { return static_cast<int>(stiffness.size()); }
     bool idle(int mode) const { return std::abs(stiffness[mode]) <= idle_limit; }
     std::vector<int> resisting() const;    // the modes that are not idle
     Eigen::MatrixXd idle_motions() const;  // [6nb × idle modes]
-    bool unstable() const { return count() > 0 && !(stiffness[0] >= -idle_limit); }
+    bool unstable() const;
 };
+double idle_limit(double stiffest);
 Modes modes_of(const Balance& at, const Eigen::MatrixXd& H);
 
 // Acceptance measure, to be ≤ tolerance: the largest of the constraints and of the projected
@@ -65,6 +79,10 @@ Modes modes_of(const Balance& at, const Eigen::MatrixXd& H);
 // |Zᵀg| ≤ tolerance + roundoff · stiffness.
 double excess(const Eigen::VectorXd& left, const Eigen::VectorXd& Phi, const Modes& modes,
               const Scales& scales, double tolerance);
+
+// The same where only the softest modes are known: coordinate by coordinate, with `stiffness` of each.
+double excess(const Balance& at, const Eigen::VectorXd& stiffness, const Scales& scales,
+              double tolerance);
 
 // Largest absolute entry; NaN if any entry is NaN, 0 if there is none.
 double largest(const Eigen::Ref<const Eigen::VectorXd>& v);

@@ -5,7 +5,6 @@
 
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
-#include "reference/energy/potential/curvature.hpp"
 #include "reference/energy/potential/rotation.hpp"
 
 namespace elastocheck::reference::energy {
@@ -166,7 +165,7 @@ ConstraintValues constraints(const Model& model, const Prescribed& prescribed, c
 }
 
 void add_curvature(const ConstraintKind& kind, double offset, const Chart& chart,
-                   const double* lambda, Eigen::MatrixXd& H) {
+                   const double* lambda, Blocks& H) {
     const auto lever = [&](const Point& p) -> Carried {
         return {p.body, motion(chart[p.body], p.s_local).lever};
     };

@@ -6,6 +6,7 @@
 #include "elastocheck/model.hpp"
 #include "reference/energy/constraints/jacobian.hpp"
 #include "reference/energy/potential/chart.hpp"
+#include "reference/energy/potential/curvature.hpp"
 #include "reference/energy/potential/prescribed.hpp"
 
 namespace elastocheck::reference::energy {
@@ -20,7 +21,7 @@ ConstraintValues constraints(const Model& model, const Prescribed& prescribed, c
 // Adds λᵀ ∂²Φ/∂x² of one constraint to H [6nb × 6nb], at the centre of the chart; `lambda` of its
 // rows, `offset` as in Prescribed.
 void add_curvature(const ConstraintKind& kind, double offset, const Chart& chart,
-                   const double* lambda, Eigen::MatrixXd& H);
+                   const double* lambda, Blocks& H);
 
 // ∂/∂a of both where `prescribed` moves with `rate`.
 struct ConstraintRates {

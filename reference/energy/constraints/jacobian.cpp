@@ -8,12 +8,8 @@ namespace elastocheck::reference::energy {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
-
 Sparse sparse_transposed(const Jacobian& Phi_q) {
-    std::vector<Eigen::Triplet<double, SuiteSparse_long>> entries;
+    std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(6 * Phi_q.slopes.size());
     for (const auto& slope : Phi_q.slopes)
         for (int k = 0; k < 3; ++k) {
@@ -23,6 +19,26 @@ Sparse sparse_transposed(const Jacobian& Phi_q) {
     Sparse J_t(Phi_q.columns, Phi_q.rows);
     J_t.setFromTriplets(entries.begin(), entries.end());
     return J_t;
+}
+
+namespace {
+
+using Long = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
+
+// The shortest of the solutions that differ from λ by the null space of Φ_qᵀ P = Q [R₁ R₂; 0 0]:
+// the columns of P [-R₁⁻¹ R₂; 1].
+VectorXd shortest(const Eigen::SPQR<Long>& qr, const VectorXd& lambda) {
+    const Eigen::Index rank = qr.rank(), redundant = lambda.size() - rank;
+    if (redundant == 0) return lambda;
+    const Long R = qr.matrixR();
+    MatrixXd null = MatrixXd::Zero(lambda.size(), redundant);
+    const Long R_1 = R.topLeftCorner(rank, rank);
+    MatrixXd R_2 = R.topRightCorner(rank, redundant);
+    R_1.triangularView<Eigen::Upper>().solveInPlace(R_2);
+    null.topRows(rank) = -R_2;
+    null.bottomRows(redundant).setIdentity();
+    null = (qr.colsPermutation() * null).eval();
+    return lambda - null * null.householderQr().solve(lambda);
 }
 
 }  // namespace
@@ -61,17 +77,20 @@ MatrixXd transposed(const Jacobian& Phi_q) {
     return J_t;
 }
 
-VectorXd left_over(const Jacobian& Phi_q, const VectorXd& g) {
-    if (Phi_q.slopes.empty()) return g;
-    const Sparse J_t = sparse_transposed(Phi_q);
-    if (!g.allFinite() || !J_t.coeffs().allFinite())
-        return VectorXd::Constant(g.size(), std::numeric_limits<double>::quiet_NaN());
-    Eigen::SPQR<Sparse> qr;
+LeftOver left_over(const Jacobian& Phi_q, const VectorXd& g) {
+    if (Phi_q.slopes.empty()) return {g, VectorXd::Zero(Phi_q.rows)};
+    const Long J_t = sparse_transposed(Phi_q).cast<double>();
+    if (!g.allFinite() || !J_t.coeffs().allFinite()) {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        return {VectorXd::Constant(g.size(), nan), VectorXd::Constant(Phi_q.rows, nan)};
+    }
+    Eigen::SPQR<Long> qr;
     qr.setPivotThreshold(rank_threshold);
     qr.compute(J_t);
     VectorXd rotated = qr.matrixQ().transpose() * g;
+    const VectorXd minus_g = -g, lambda = qr.solve(minus_g);
     rotated.head(qr.rank()).setZero();
-    return qr.matrixQ() * rotated;
+    return {qr.matrixQ() * rotated, shortest(qr, lambda)};
 }
 
 }  // namespace elastocheck::reference::energy

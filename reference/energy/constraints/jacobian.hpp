@@ -32,10 +32,16 @@ Eigen::VectorXd transposed_times(const Jacobian& Phi_q, const Eigen::VectorXd& l
 Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& B, const Jacobian& Phi_q);
 Eigen::MatrixXd transposed(const Jacobian& Phi_q);  // Φ_qᵀ [6nb × m]
 
-// Projects g onto the orthogonal complement of the row space of Φ_q: the gradient left by the
-// least-squares multipliers. By Householder transformations of Φ_qᵀ as a sparse matrix, at the cost
-// of its fill-in, which for chains and trees is proportional to the number of bodies. Rows of Φ_q
-// are of order one.
-Eigen::VectorXd left_over(const Jacobian& Phi_q, const Eigen::VectorXd& g);
+using Sparse = Eigen::SparseMatrix<double>;
+Sparse sparse_transposed(const Jacobian& Phi_q);  // likewise
+
+// The projection of g onto the orthogonal complement of the row space of Φ_q, and the least-squares
+// multipliers that leave it, of minimum norm where not unique: left = g + Φ_qᵀ λ. By Householder
+// transformations of Φ_qᵀ as a sparse matrix, at the cost of its fill-in, which for chains and trees
+// is proportional to the number of bodies. Rows of Φ_q are of order one.
+struct LeftOver {
+    Eigen::VectorXd left, lambda;
+};
+LeftOver left_over(const Jacobian& Phi_q, const Eigen::VectorXd& g);
 
 }  // namespace elastocheck::reference::energy

@@ -8,6 +8,7 @@
 
 #include "models/kinds.hpp"
 #include "reference/energy/constraints/constraints.hpp"
+#include "reference/energy/constraints/quadratic.hpp"
 #include "reference/energy/potential/potential.hpp"
 
 namespace elastocheck::reference::energy {
@@ -68,12 +69,13 @@ double loads_size(const Prescribed& prescribed, double length) {
 // minimal over the free motion of the elements along the null space Z of J,
 //
 //   dξ = p + Z y,   p = -J⁺ Φ,   y = -(Zᵀ K Z)⁺ Zᵀ K p,   F = dξᵀ K dξ / (L |dξ|).
-double drive_size(const Model& model, const Prescribed& prescribed, const Chart& design,
-                  const Scales& scales) {
+double dense_drive_size(const Model& model, const Prescribed& prescribed, const Chart& design,
+                        const Scales& scales) {
     const VectorXd S = scales.coordinates(coordinates(model)), D = scales.rows(model);
     const ConstraintValues values = constraints(model, prescribed, design);
     const MatrixXd J_t = transposed(scaled(values.Phi_q, D, S));
-    const MatrixXd K = S.asDiagonal() * stiffness(model, prescribed, design) * S.asDiagonal();
+    const MatrixXd K =
+        S.asDiagonal() * stiffness(model, prescribed, design).dense() * S.asDiagonal();
     if (J_t.cols() == 0 || K.rows() == 0 || !J_t.allFinite() || !K.allFinite() ||
         !values.Phi.allFinite())
         return 0;
@@ -94,6 +96,21 @@ double drive_size(const Model& model, const Prescribed& prescribed, const Chart&
     const double way = dxi.norm();
     if (!(way > scales.roundoff)) return 0;
     return dxi.dot(K * dxi) / (scales.length * way) * std::min(1.0, linear_reach / way);
+}
+
+double drive_size(const Model& model, const Prescribed& prescribed, const Chart& design,
+                  const Scales& scales) {
+    if (!is_large(model)) return dense_drive_size(model, prescribed, design, scales);
+    const VectorXd S = scales.coordinates(coordinates(model)), D = scales.rows(model);
+    const ConstraintValues values = constraints(model, prescribed, design);
+    const Blocks K = scaled(stiffness(model, prescribed, design), scales);
+    if (values.Phi.size() == 0 || !values.Phi.allFinite() || !K.finite()) return 0;
+    const Quadratic elastic(K, Blocks{K.size}, scaled(values.Phi_q, D, S));
+    const VectorXd dxi =
+        elastic.least(VectorXd::Zero(K.size), D.cwiseProduct(values.Phi), MatrixXd(K.size, 0)).x;
+    const double way = dxi.norm();
+    if (!(way > scales.roundoff)) return 0;
+    return scales.force * dxi.dot(elastic.gradient(dxi)) / way * std::min(1.0, linear_reach / way);
 }
 
 // Whether anything but loads moves: neither stress nor the place of a joint depends on those.

@@ -27,6 +27,8 @@
 #include <numbers>
 
 #include "models/kinds.hpp"
+#include "reference/energy/minimise/cost.hpp"
+#include "reference/energy/minimise/descent.hpp"
 #include "reference/energy/minimise/minimise.hpp"
 #include "reference/energy/potential/rotation.hpp"
 
@@ -85,9 +87,13 @@ VectorXd resisted_increment(const Path& path, const State& from, const State& to
     return xi - idle * (idle.transpose() * xi);
 }
 
+bool without_potential(const Path& path) {
+    return path.course.start.without_potential() || path.course.rate.without_potential();
+}
+
 // A of K = H + A; empty without a load without potential.
 std::optional<MatrixXd> unsymmetric_stiffness(const Path& path, const State& state) {
-    if (!path.course.start.without_potential() && !path.course.rate.without_potential()) return {};
+    if (!without_potential(path)) return {};
     return load_stiffness(at(path.course, state.a), path.scales, state.poses);
 }
 
@@ -122,7 +128,7 @@ bool bushings_continue(const Path& path, const State& from, const State& to) {
 // Whether the prescribed loads at a push an unresisted motion.
 bool idle_mode_loaded(const Path& path, const State& from, double a) {
     const Balance then =
-        balance(path.model, at(path.course, a), path.scales, chart_about(from.poses));
+        sparse_balance(path.model, at(path.course, a), path.scales, chart_about(from.poses));
     const VectorXd push = from.modes.Z.transpose() * then.left;
     for (int i = 0; i < from.modes.count(); ++i)
         if (from.modes.idle(i) && std::abs(push[i]) > idle_push) return true;
@@ -142,8 +148,7 @@ bool is_spent(const Modes& first, const Modes& now) {
 // So w |t| keeps its value at a limit point, and goes to zero with w at a bifurcation. Under a load
 // without potential w is that of the minimum and does not classify the branch.
 Failure spent_mode(const Path& path, const Continuation& continuation, const VectorXd& t) {
-    if (unsymmetric_stiffness(path, continuation.state))
-        return Failure{Outcome::branch_lost, unstable};
+    if (without_potential(path)) return Failure{Outcome::branch_lost, unstable};
     constexpr double still_there = 0.02;
     const auto softest = path.first.idle_motions().cols();
     const double left =
@@ -204,8 +209,7 @@ VectorXd predicted(const Path& path, const Continuation& continuation, const Vec
 Attempt step(const Path& path, const Continuation& continuation, double a, const VectorXd& expected,
              const VectorXd& start) {
     const State& from = continuation.state;
-    Attempt attempt =
-        minimum_from(path, a, moved(path, from.poses, start), from.modes.idle_motions());
+    Attempt attempt = minimum_from(path, a, moved(path, from.poses, start), from.modes);
     const State& to = attempt.state;
     if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
     const VectorXd actual = resisted_increment(path, from, to);
@@ -250,18 +254,41 @@ Continuation start_continuation(const Path& path, const State& state) {
 
 namespace {
 
-Balance balance_at(const Path& path, double a, const std::vector<Pose>& poses) {
-    path.counts.evaluations += 1;
+void count_state(const Path& path) {
+    path.counts.evaluations += 2;  // the balance, the Hessian
     path.counts.factorisations += 1;
-    return balance(path.model, at(path.course, a), path.scales, chart_about(poses));
 }
 
 }  // namespace
 
+State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses) {
+    count_state(path);
+    const Prescribed prescribed = at(path.course, a);
+    const Chart chart = chart_about(poses);
+    State state{a, poses, sparse_balance(path.model, prescribed, path.scales, chart), {}, {}};
+    const Jacobian Phi_q = constraints(path.model, prescribed, chart).Phi_q;
+    state.quadratic = std::make_shared<Quadratic>(
+        scaled(hessian_blocks(path.model, prescribed, path.scales, poses, state.at.lambda),
+               path.scales),
+        scaled(load_blocks(prescribed, poses), path.scales),
+        scaled(Phi_q, path.scales.rows(path.model), coordinate_scales(path)));
+    return state;
+}
+
 State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
-    Balance at = balance_at(path, a, poses);
-    MatrixXd H = hessian(path.model, energy::at(path.course, a), path.scales, poses, at.lambda);
-    path.counts.evaluations += 1;
+    if (is_large(path.model)) {
+        State state = sparse_state_at(path, a, poses);
+        state.modes = state.quadratic->softest({});
+        return state;
+    }
+    return dense_state_at(path, a, poses);
+}
+
+State dense_state_at(const Path& path, double a, const std::vector<Pose>& poses) {
+    count_state(path);
+    const Prescribed prescribed = energy::at(path.course, a);
+    Balance at = balance(path.model, prescribed, path.scales, chart_about(poses));
+    MatrixXd H = hessian(path.model, prescribed, path.scales, poses, at.lambda);
     Modes modes = modes_of(at, H);
     return {a, poses, std::move(at), std::move(H), std::move(modes)};
 }
@@ -269,6 +296,7 @@ State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
 // p = -J⁺ Φ,   y = -W⁻¹ Zᵀ (left + H p)
 VectorXd correction(const Path& path, const State& state, const VectorXd& left,
                     const VectorXd& Phi) {
+    if (state.quadratic) return state.quadratic->least(left, Phi, state.modes.idle_motions()).x;
     const auto A = unsymmetric_stiffness(path, state);
     if (Phi.isZero(0)) return newton_increment(state, A, left);
     const VectorXd p = shortest(state.at, -Phi);
@@ -291,6 +319,9 @@ VectorXd tangent(const Path& path, const State& state) {
 }
 
 bool is_stationary(const Path& path, const State& state) {
+    if (state.quadratic)
+        return excess(state.at, state.quadratic->stiffness(), path.scales,
+                      path.options.tolerance) <= path.options.tolerance;
     const double e =
         excess(state.at.left, state.at.Phi, state.modes, path.scales, path.options.tolerance);
     return std::isfinite(e) && e <= path.options.tolerance;
@@ -323,8 +354,10 @@ Attempt corrected(const Path& path, State state) {
 }  // namespace
 
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
-                     const MatrixXd& idle) {
+                     const Modes& near) {
+    if (is_large(path.model)) return descend(path, a, start, near);
     const Options& options = path.options;
+    const MatrixXd idle = near.idle_motions();
     const Prescribed prescribed = at(path.course, a);
     const int per_chart =
         std::max(10, options.evaluation_limit / std::max(1, options.recentre_limit));

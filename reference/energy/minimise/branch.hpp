@@ -1,12 +1,14 @@
 // Continuation of a branch of constrained minima.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium_path.hpp"
 #include "reference/energy/constraints/balance.hpp"
+#include "reference/energy/constraints/quadratic.hpp"
 #include "reference/energy/minimise/stability.hpp"
 
 namespace elastocheck::reference::energy {
@@ -28,6 +30,8 @@ struct State {
     Balance at;
     Eigen::MatrixXd H;
     Modes modes;
+    // of a large model (cost.hpp), instead of H and of all modes but the softest
+    std::shared_ptr<const Quadratic> quadratic = {};
 };
 
 // Constant data of a branch: everything but the parameter.
@@ -61,17 +65,20 @@ State state_at(const Path& path, double a, const std::vector<Pose>& poses);
 // options.tolerance.
 bool is_stationary(const Path& path, const State& state);
 
-// Minimises at parameter a from `start`, chart after chart, until stationary. `idle` motions
-// [6nb × their number] are held (minimise.hpp).
+// Minimises at parameter a from `start`, chart after chart, until stationary. Idle motions of `near`,
+// the modes of the last equilibrium, are held (minimise.hpp).
 struct Attempt {
     State state;
     std::optional<Failure> failure;
 };
-Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
-                     const Eigen::MatrixXd& idle);
+Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const Modes& near);
 
 // Poses after the increment ξ from `from`.
 std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const Eigen::VectorXd& xi);
+
+State dense_state_at(const Path& path, double a, const std::vector<Pose>& poses);
+// The same without modes, for a large model.
+State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses);
 
 // Newton correction ξ for a projected gradient `left` and a constraint residual Φ [6nb], without
 // idle motion.

@@ -1,5 +1,6 @@
 // Predicted cost of the energy leg in floating-point operations. SLSQP and its coordinate
-// transformation are dense: the cost grows with the cube of the number of coordinates.
+// transformation are dense: the cost grows with the cube of the number of coordinates. That of a
+// large model (quadratic.hpp) grows with the bodies and the fill of a sparse factor (cost.cpp).
 //
 // Leading powers, with n = 6nb coordinates, m rows of Φ and k = n - m motions:
 //
@@ -38,6 +39,8 @@ struct Cost {
 
 // For a branch with this number of values.
 Cost cost_of(const Model& model, std::size_t values);
+// The same if it were solved densely, as responses of states are.
+Cost dense_cost(const Model& model, std::size_t values);
 
 // Limit of predicted operations, about a minute of a desktop computer.
 inline constexpr double most_operations = 1e11;

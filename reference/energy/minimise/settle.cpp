@@ -16,7 +16,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <cmath>
 
 namespace elastocheck::reference::energy {
@@ -88,7 +87,7 @@ std::string joint_of_row(const Model& model, int row) {
 std::optional<Failure> follow(const Path& settling, State& state) {
     state = state_at(settling, 1, design_poses(settling.model));
     if (!is_stationary(settling, state)) {
-        const Attempt closed = minimum_from(settling, 1, state.poses, state.modes.idle_motions());
+        const Attempt closed = minimum_from(settling, 1, state.poses, state.modes);
         if (closed.failure) return closed.failure;
         state = closed.state;
     }
@@ -118,10 +117,11 @@ std::optional<std::string> contradicting_joint(const Path& path, double a,
         const VectorXd Phi = D.cwiseProduct(values.Phi);
         const double error = largest(Phi);
         if (!std::isfinite(error) || error <= path.options.tolerance) return {};
-        Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
-        J.setThreshold(rank_threshold);
-        J.compute(transposed(scaled(values.Phi_q, D, S)).transpose());
-        VectorXd x = S.cwiseProduct(J.solve(-Phi));
+        const Blocks none{coordinates(path.model)};
+        VectorXd x =
+            S.cwiseProduct(Quadratic(none, none, scaled(values.Phi_q, D, S))
+                               .least(VectorXd::Zero(none.size), Phi, MatrixXd(none.size, 0))
+                               .x);
         double after = INFINITY;
         for (int halved = 0; halved <= closing_halvings && !(after <= stagnant * Phi.norm());
              ++halved) {
@@ -141,7 +141,8 @@ std::optional<std::string> contradicting_joint(const Path& path, double a,
 
 std::optional<Failure> settle(const Path& path, State& state) {
     state = state_at(path, 0, design_poses(path.model));
-    if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite())
+    if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite() ||
+        !state.modes.stiffness.allFinite())
         return Failure{Outcome::not_finite, "the design pose has no finite potential"};
     if (!within_laws(path.model, path.turning, state.poses))
         return Failure{Outcome::branch_lost, law_ended};

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "models/overloaded.hpp"
-#include "reference/energy/potential/curvature.hpp"
 #include "reference/energy/potential/laws.hpp"
 #include "reference/energy/potential/relative_rotation.hpp"
 #include "reference/energy/potential/rotation.hpp"
@@ -174,7 +173,7 @@ Carried lever_at(const AtPoint& p, const Chart& chart) {
 
 // ∂²|D|/∂D² = (1 - n nᵀ)/|D|
 void add_geometric(const AxialSpring& spring, const Vector6& stress, const Chart& chart,
-                   MatrixXd& H) {
+                   Blocks& H) {
     const Vector3d D = motion(chart[spring.j.body], spring.j.s_local).p -
                        motion(chart[spring.i.body], spring.i.s_local).p;
     const double l = D.norm();
@@ -193,7 +192,7 @@ void add_geometric(const AxialSpring& spring, const Vector6& stress, const Chart
 //
 //   (φ_i × (γ × n) + ½ γ × (γ × n))·D + δD·(γ × n),   γ = Γ (φ_j - φ_i) here
 //   m·(second order of γ),                            m = A_Iᵀ (n × D), so that g gains Pᵀ m
-void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& chart, MatrixXd& H) {
+void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& chart, Blocks& H) {
     const BodyId i = bushing.i.body, j = bushing.j.body;
     const Carried u_i = lever_at(bushing.i, chart), u_j = lever_at(bushing.j, chart);
     const Vector3d D =
@@ -312,21 +311,24 @@ DeadForce dead_force(const BrakeForce& brake, const Chart& chart) {
 }
 
 void add_curvature(const ElasticKind& element, const Vector6& stress, const Chart& chart,
-                   MatrixXd& H) {
+                   Blocks& H) {
     std::visit([&](const auto& kind) { add_geometric(kind, stress, chart, H); }, element);
 }
 
-void add_curvature(const DeadForce& force, const Chart& chart, MatrixXd& H) {
+void add_curvature(const DeadForce& force, const Chart& chart, Blocks& H) {
     add_curvature_along(-force.f, lever_at(force.at, chart), H);
 }
 
-MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart) {
-    MatrixXd H = MatrixXd::Zero(coordinates(model), coordinates(model));
+Blocks stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart) {
+    Blocks H{coordinates(model)};
     for_each_element(model, prescribed, chart, [&]<int N>(int, const Element<N>& e) {
         const auto add_block = [&](BodyId a, const Matrix<double, N, 6>& E_a, BodyId b,
                                    const Matrix<double, N, 6>& E_b) {
-            if (a != ground && b != ground)
-                H.block<6, 6>(6 * a, 6 * b) += E_a.transpose() * e.stiffness * E_b;
+            if (a == ground || b == ground) return;
+            const Matrix6 K = E_a.transpose() * e.stiffness * E_b;
+            for (const int row : {0, 3})
+                for (const int column : {0, 3})
+                    H.blocks.push_back({6 * a + row, 6 * b + column, K.block<3, 3>(row, column)});
         };
         add_block(e.i, e.E_i, e.i, e.E_i);
         add_block(e.i, e.E_i, e.j, e.E_j);

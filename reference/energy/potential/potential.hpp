@@ -12,6 +12,7 @@
 #pragma once
 
 #include "reference/energy/potential/chart.hpp"
+#include "reference/energy/potential/curvature.hpp"
 #include "reference/energy/potential/prescribed.hpp"
 
 namespace elastocheck::reference::energy {
@@ -37,11 +38,11 @@ DeadForce dead_force(const BrakeForce& brake, const Chart& chart);
 // constant stress σ (row 0 of springs), Σ σ ∂²e/∂x², and those of a force's -f·p. With
 // σ = ∂U/∂e they are the geometric part of the Hessian; the rest is `stiffness`.
 void add_curvature(const ElasticKind& element, const Vector6& stress, const Chart& chart,
-                   Eigen::MatrixXd& H);
-void add_curvature(const DeadForce& force, const Chart& chart, Eigen::MatrixXd& H);
+                   Blocks& H);
+void add_curvature(const DeadForce& force, const Chart& chart, Blocks& H);
 
 // Σ Eᵀ K E at the centre [6nb × 6nb], K = s ∂²u/∂e².
-Eigen::MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart);
+Blocks stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart);
 
 // ∂U/∂e of every element at the centre, row 0 of springs [6 × elements].
 Eigen::Matrix<double, 6, Eigen::Dynamic> stresses(const Model& model, const Prescribed& prescribed,

@@ -158,10 +158,12 @@ Table summary(const std::list<ScenePart>& parts) {
     Table table = words_table(
         "Summary: how far the references agree, the cheapest fast method within the tolerance, and "
         "the largest errors of the published recursion",
-        {"scene", "distance of the references", "cheapest method within the tolerance",
+        {"scene", "distance of the references [mm]", "cheapest method within the tolerance",
          "its work, of the full solution", "published: position, at equal load or drive",
          "position, at equal travel", "angle, at equal load or drive", "angle, at equal travel",
          "wheel rate", "force, moment or rate, of its extent"});
+    for (std::size_t c = 1; c < table.columns.size(); ++c)
+        table.columns[c].words = c == 2;  // numbers, some with their unit
     for (const auto& part : parts) {
         const auto apart = compare::worst_disagreement(part.scene.comparison, compare::Unit::mm);
         const auto rows = method_rows(part.scene);
@@ -175,15 +177,18 @@ Table summary(const std::list<ScenePart>& parts) {
         for (const auto& worst : {judgement.other, judgement.other_across})
             if (worst && worst->extent > 0) other = std::max(other, worst->max / worst->extent);
         const auto& rate = judgement.wheel_rate;
-        table.rows.push_back(
-            {part.scene.scene.name, !part.scene.conclusive() ? "not judged" : size(apart),
-             none ? "–" : chosen->method + ", " + chosen->setting,
-             none ? "–" : percent(chosen->cost), size(judgement.position),
-             size(judgement.position_across), size(judgement.angle), size(judgement.angle_across),
-             !rate ? "–"
-                   : fmt::format("{} too {}", percent(std::abs(rate->off)),
-                                 rate->off < 0 ? "soft" : "stiff"),
-             other < 0 ? "–" : percent(other)});
+        table.rows.push_back({part.scene.scene.name,
+                              !part.scene.conclusive() ? "not judged"
+                              : apart                  ? number(apart->max, 2)
+                                                       : "–",
+                              none ? "–" : chosen->method + ", " + chosen->setting,
+                              none ? "–" : percent(chosen->cost), size(judgement.position),
+                              size(judgement.position_across), size(judgement.angle),
+                              size(judgement.angle_across),
+                              !rate ? "–"
+                                    : fmt::format("{} too {}", percent(std::abs(rate->off)),
+                                                  rate->off < 0 ? "soft" : "stiff"),
+                              other < 0 ? "–" : percent(other)});
     }
     return table;
 }

@@ -207,7 +207,7 @@ std::optional<Section> deviation_section(const SceneAnalyses& scene) {
         for (const Unit unit : {Unit::mm, Unit::deg})
             if (auto made = group(scene, sweep, unit)) section.figures.push_back(std::move(*made));
     for (const auto& branch : scene.comparison.branches) {
-        Table& table = section.tables.emplace_back(deviation_table(scene.comparison, branch));
+        Table& table = section.tables.emplace_back(deviation_table(scene.comparison, branch, true));
         table.caption =
             fmt::format("Deviation of the published recursion from the full solution, branch {}",
                         branch.branch);

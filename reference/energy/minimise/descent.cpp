@@ -1,0 +1,68 @@
+#include "reference/energy/minimise/descent.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double last_step = 1e-10, known_step = 1e-9;  // of L or 1 rad: as in branch.cpp
+constexpr double quadratic_step = 1e-6;  // likewise: from here on Newton's method needs no watch
+constexpr int shortenings = 12;          // of a step, each by half
+constexpr double share_of_fall = 1e-4;   // of the predicted fall of the energy (Armijo)
+
+// By how much V + λᵀΦ + ½ |Φ|² rises with the step x.
+double rise(const Path& path, const State& from, const VectorXd& x) {
+    const Prescribed prescribed = at(path.course, from.a);
+    const VectorXd D = path.scales.rows(path.model);
+    Chart chart = chart_about(from.poses);
+    move_to(chart, path.scales.coordinates(coordinates(path.model)).cwiseProduct(x));
+    const ConstraintValues values = constraints(path.model, prescribed, chart);
+    path.counts.evaluations += 1;
+    return potential(path.model, prescribed, chart).change / path.scales.energy() +
+           from.at.lambda.dot(D.cwiseProduct(values.dPhi)) +
+           0.5 * (D.cwiseProduct(values.Phi).squaredNorm() - from.at.Phi.squaredNorm());
+}
+
+VectorXd shortened(const Path& path, const State& from, VectorXd x) {
+    const double slope = from.at.left.dot(x) - from.at.Phi.squaredNorm();
+    if (!(slope < 0) || largest(x) <= quadratic_step) return x;
+    double part = 1;
+    for (int i = 0; i < shortenings; ++i, part *= 0.5)
+        if (rise(path, from, part * x) <= share_of_fall * part * slope) break;
+    return part * x;
+}
+
+}  // namespace
+
+Attempt descend(const Path& path, double a, const std::vector<Pose>& start, const Modes& near) {
+    const Eigen::MatrixXd idle = near.idle_motions();
+    State state = sparse_state_at(path, a, start);
+    double before = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < path.options.recentre_limit; ++i) {
+        path.counts.iterations += 1;
+        const VectorXd x = state.quadratic->least(state.at.left, state.at.Phi, idle).x;
+        const double far = largest(x);
+        if (!std::isfinite(far))
+            return {state, Failure{Outcome::not_finite, "a number is not finite"}};
+        const bool stalled = far <= known_step && far > 0.5 * before;
+        if ((far <= last_step || stalled) && is_stationary(path, state)) {
+            state.modes = state.quadratic->softest(near);
+            state.poses = moved(path, state.poses, x);
+            return {std::move(state), {}};
+        }
+        before = far;
+        state = sparse_state_at(path, a, moved(path, state.poses, shortened(path, state, x)));
+    }
+    state.modes = near;
+    return {state,
+            Failure{Outcome::iteration_limit,
+                    fmt::format("the minimum is determined only to {:.1g} of the model's size",
+                                before)}};
+}
+
+}  // namespace elastocheck::reference::energy
