@@ -496,8 +496,10 @@ Comparison compare(const Model& model, const Options& options, const std::vector
         for (std::size_t k = 0; k < model.branches.size(); ++k)
             jobs.push_back(
                 {fmt::format("{}: {} leg", model.branches[k].name, name(leg)), [&, k, leg] {
-                     const SolverSettings solver{
-                         .leg = leg, .recursion = options.recursion, .every = options.every};
+                     const SolverSettings solver{.leg = leg,
+                                                 .recursion = options.recursion,
+                                                 .every = options.every,
+                                                 .energy = options.energy};
                      LegRun& found = runs[k][static_cast<std::size_t>(leg)];
                      found = solve(k, solver);
                      if (leg == Leg::energy && is_not_applicable(found.outcome))

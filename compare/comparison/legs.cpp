@@ -61,7 +61,8 @@ EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solve
             return reference::equilibrium::solve(model, branch, grid(branch, solver.every), {},
                                                  visit);
         case Leg::energy:
-            return reference::energy::solve(model, branch, grid(branch, solver.every), {}, visit);
+            return reference::energy::solve(model, branch, grid(branch, solver.every),
+                                            solver.energy, visit);
         case Leg::series:
             return recursion(side, {.method = recursive::find_method("series").value()}, 1,
                              solver.every, visit);

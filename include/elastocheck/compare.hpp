@@ -254,6 +254,7 @@ using Progress = std::function<void(std::string_view what, double done)>;
 struct Options {
     recursive::Options recursion = {};  // method, steps (0: as each branch says) and the like
     int every = 1;                      // compares every `every`-th step (SolverSettings)
+    reference::energy::Options energy = {};
     Agreement agreement = {};
     std::string abscissa = {};  // name of a channel; empty: default_abscissa
     // prove that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; a disproved landmark

@@ -4,7 +4,8 @@
 //   V(q; a) → min   subject to   Φ(q; a) = 0
 //
 // SLSQP is dense: its cost grows with the cube of the scene; that of the sparse steps with the bodies
-// and the fill of their factors. Both are predicted before they start. Judging states of other legs is sparse, for models of any size.
+// and the fill of their factors. Both are predicted before they start. Judging states of other legs is
+// sparse, for models of any size.
 //
 // Units are SI: m, N, rad; the parameter a in Branch::unit. Calls share no state: any number of
 // threads may solve and judge at once, also on one model.
@@ -22,6 +23,8 @@ struct Options {
     double tolerance = 1e-12;
     int evaluation_limit = 2000;  // per equilibrium, requested or internal
     int recentre_limit = 20;      // charts, likewise
+    // predicted operations beyond which it is not solved, about a minute of a desktop computer
+    double operation_limit = 1e11;
 };
 
 // Equilibria at `values` of the branch's parameter, in the order of the visit. They are minima on
@@ -42,8 +45,7 @@ struct Options {
 //   iteration_limit           Options' limits were met first
 //   not_conservative          a follower load or a bushing's formulation, named, has no potential:
 //                             not solved
-//   too_large                 the predicted operations exceed the limit (both in cost.hpp): not
-//                             solved
+//   too_large                 the predicted operations (cost.hpp) exceed Options' limit: not solved
 //
 // Reactions of redundant joints are not unique; those of minimum norm are returned. The reaction of
 // a driven joint is the effort of its driver: jack force, rack force, steering moment. Counts:

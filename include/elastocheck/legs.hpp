@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/recursive.hpp"
@@ -40,6 +41,7 @@ struct SolverSettings {
     recursive::Options recursion = {};
     int refine = 1;
     int every = 1;
+    reference::energy::Options energy = {};
 };
 
 // Runs one branch side by any leg. Ends before the first point at which an element is deformed

@@ -84,12 +84,12 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         return result;
     }
     if (const double operations = cost_of(model, values.size()).operations();
-        operations > most_operations) {
+        operations > options.operation_limit) {
         result.outcome = Outcome::too_large;
         result.detail = fmt::format(
             "branch '{}': about {:.1g} operations for {} coordinates, the limit of the energy leg "
             "is {:.1g}",
-            branch.name, operations, coordinates(model), most_operations);
+            branch.name, operations, coordinates(model), options.operation_limit);
         return result;
     }
     const auto fail = [&](const Failure& failure, const std::string& where,

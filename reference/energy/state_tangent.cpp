@@ -33,12 +33,13 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
         t.failure = {Outcome::not_conservative, *what};
         return t;
     }
-    if (const double operations = dense_cost(model, 1).operations(); operations > most_operations) {
+    if (const double operations = dense_cost(model, 1).operations();
+        operations > Options{}.operation_limit) {
         t.failure = {
             Outcome::too_large,
             fmt::format(
                 "about {:.1g} operations for {} coordinates, the limit of the energy leg is {:.1g}",
-                operations, coordinates(model), most_operations)};
+                operations, coordinates(model), Options{}.operation_limit)};
         return t;
     }
     const Options options;

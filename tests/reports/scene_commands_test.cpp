@@ -173,28 +173,11 @@ TEST(Inspect, ShowsTheBeginningOfLongListsAndAllWhenVerbose) {
 
 // ---- too large for the energy leg
 
-TEST(TooLarge, IsSaidAndTheEnergyLegBearsWitness) {
+TEST(TooLarge, IsSaidByTheEnergyLegWithoutSolving) {
     const Folder folder;
-    const std::string scene = folder.write("chain.yaml", chain_of(150)),
-                      out = (folder.path / "out").string();
-    expect_says("solve " + scene + " --method energy", 3,
-                {.err = {"too large: branch 'push': about 3e+11 operations for 900 coordinates"}});
-    expect_says(
-        "compare " + scene + " -o " + out, 0,
-        {.out = {
-             "energy       too large", "series       converged",
-             "or series where the scene is too large for it",
-             "the equilibrium leg and series judge each other; branch 'push': about",
-             "the energy leg judges the states: the equilibrium leg's states have residuals of ",
-             "conclusive: "}});
-    const auto result = nlohmann::json::parse(text_of(out + "/result.json"));
-    const auto& branch = result["scenes"][0]["branches"][0];
-    EXPECT_EQ(branch["witness"]["leg"], "energy");
-    for (const char* unit : {"force_N", "moment_Nm", "constraint_mm"})
-        EXPECT_LE(branch["witness"]["left"][unit].get<double>(),
-                  branch["witness"]["at_most"][unit].get<double>())
-            << unit;
-    expect_parts(branch["why_not_energy"].get<std::string>(), {"900 coordinates"});
+    const std::string scene = folder.write("chain.yaml", chain_of(150));
+    expect_says("solve " + scene + " --method energy --set branches.push.steps=60000", 3,
+                {.err = {"too large: branch 'push': about ", "operations for 900 coordinates"}});
 }
 
 }  // namespace

@@ -42,7 +42,4 @@ Cost cost_of(const Model& model, std::size_t values);
 // The same if it were solved densely, as responses of states are.
 Cost dense_cost(const Model& model, std::size_t values);
 
-// Limit of predicted operations, about a minute of a desktop computer.
-inline constexpr double most_operations = 1e11;
-
 }  // namespace elastocheck::reference::energy
