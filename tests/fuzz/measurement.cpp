@@ -4,6 +4,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "reports/page/sections.hpp"
+#include "reports/render/render.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace elastocheck::fuzz {
@@ -47,7 +48,7 @@ void measurement(std::string_view input) {
                 scene.model, scene.comparison, {},
                 reports::read_measurement(input, "fuzz.csv", scene.model, how));
             expect_plain("the document",
-                         reports::measured_json(*scene.measured, scene.comparison).dump());
+                         reports::json_of(result_of(*scene.measured, scene.comparison)).dump());
             if (scene.measured->found.compared < 0) throw Fault("fewer than none compared");
             (void)reports::measured_section(scene);
         } catch (const reports::MeasurementError& error) {

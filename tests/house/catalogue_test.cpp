@@ -17,11 +17,11 @@ namespace fs = std::filesystem;
 
 // Words that are also the name of something else in these files.
 const std::map<std::string, std::set<std::string>> other_meanings{
-    {"travel",  // a load case, or what a branch drives
-     {"reports/command/import_command.cpp", "reports/command/options/load_cases.cpp",
-      "reports/given/headings.cpp", "reports/given/wheels.cpp", "reports/page/common.cpp",
-      "reports/page/common.hpp", "reports/page/sections/inputs/suspension.cpp",
-      "reports/page/sections/kinematics.cpp"}},
+    {"travel",  // a load case, what a branch drives, or the column of a wheel rate
+     {"compare/tables/compare_result.cpp", "reports/command/import_command.cpp",
+      "reports/command/options/load_cases.cpp", "reports/given/headings.cpp",
+      "reports/given/wheels.cpp", "reports/page/common.cpp", "reports/page/common.hpp",
+      "reports/page/sections/inputs/suspension.cpp", "reports/page/sections/kinematics.cpp"}},
     {"compression", {"compare/comparison/trim.cpp"}},  // of a spring, in a message
     {"wheel_rate",                                     // a field of a judgement
      {"reports/page/report/report.cpp", "reports/tables/judgement.cpp"}}};

@@ -50,14 +50,14 @@ std::string joined(const Places& places) {
 }
 
 TEST(TypeNames, StandOnceInANamespace) {
-    const fs::path root = ELASTOCHECK_ROOT;
+    const fs::path tree = ELASTOCHECK_ROOT;
     Definitions definitions;
     for (const char* folder : {"include", "models", "recursive", "reference", "compare", "reports"})
-        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+        for (const auto& entry : fs::recursive_directory_iterator(tree / folder)) {
             const auto extension = entry.path().extension();
             if (extension != ".cpp" && extension != ".hpp") continue;
             std::ifstream source(entry.path());
-            add_definitions(source, fs::relative(entry.path(), root).generic_string(), definitions);
+            add_definitions(source, fs::relative(entry.path(), tree).generic_string(), definitions);
         }
     EXPECT_GT(definitions.size(), 500u);
     for (const auto& [name, places] : definitions)

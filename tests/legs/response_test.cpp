@@ -98,7 +98,9 @@ TEST_P(LinearResponse, PinnedBarEqualsItsClosedForm) {
                    m(4, -3, 1);
     VectorXd expected = VectorXd::Zero(6);
     expected[4] = (tip.cross(f) + m).y() * std::cos(theta) / (k * L * L);
-    EXPECT_LE(distance(one(side, end_of(side), UnitWrench{{0, {L, 0, 0}}, f, m}), expected), 1e-11);
+    EXPECT_LE(
+        relative_distance(one(side, end_of(side), UnitWrench{{0, {L, 0, 0}}, f, m}), expected),
+        1e-11);
 }
 
 // At rest: dr of the mount's centre is f/k, dπ = (s × f + m)/k_R.
@@ -109,7 +111,7 @@ TEST_P(LinearResponse, OffsetBushingEqualsItsClosedForm) {
     VectorXd expected(6);
     expected << f.cwiseQuotient(Vector3d(2e5, 3e5, 5e5)),
         (s.cross(f) + m).cwiseQuotient(Vector3d(400, 500, 700));
-    EXPECT_LE(distance(one(side, state, UnitWrench{{0, s}, f, m}), expected), 1e-13);
+    EXPECT_LE(relative_distance(one(side, state, UnitWrench{{0, s}, f, m}), expected), 1e-13);
 }
 
 // θ in the plane of the bar: V'' = k_R + F L sin θ at k_R θ = F L cos θ.
@@ -123,7 +125,7 @@ TEST_P(LinearResponse, PendulumEqualsItsClosedForm) {
     const Vector3d along(0.8, 0.6, 0);
     VectorXd expected(6);
     expected << turn * L * (-std::sin(theta) * along + std::cos(theta) * Z), turn * along.cross(Z);
-    EXPECT_LE(distance(one(side, end_of(side), UnitWrench{{0}, Z}), expected), 1e-11);
+    EXPECT_LE(relative_distance(one(side, end_of(side), UnitWrench{{0}, Z}), expected), 1e-11);
 }
 
 // A slider between a spring along its guide and a taut one across it: its stiffness is k + T/l.
@@ -153,9 +155,9 @@ TEST_P(LinearResponse, FourBarCrankEqualsItsClosedForm) {
         VectorXd expected = VectorXd::Zero(12);
         expected[4] = 1;
         expected[10] = Y.cross(B).dot(C - B) / Y.cross(Vector3d(C - D)).dot(C - B);
-        EXPECT_LE(
-            distance(one(side, state, std::get<Motion>(side.branch.drivers[0].what)), expected),
-            1e-11)
+        EXPECT_LE(relative_distance(one(side, state, std::get<Motion>(side.branch.drivers[0].what)),
+                                    expected),
+                  1e-11)
             << state.load;
     }
 }
@@ -215,7 +217,8 @@ TEST_P(LinearResponse, ConsistentRedundantJointsDoNotChangeIt) {
         {"second hinge", Revolute{{0, 0.3 * Y}, {ground, 0.3 * Y}, {0, Y}, ground_y}});
     const Equilibrium state = end_of(side_of(once));
     const UnitWrench lift{{0, 0.8 * X}, {0.2, 1, 1}, {1, 2, 3}};
-    EXPECT_LE(distance(one(side_of(twice), state, lift), one(side_of(once), state, lift)), 1e-12);
+    EXPECT_LE(relative_distance(one(side_of(twice), state, lift), one(side_of(once), state, lift)),
+              1e-12);
 }
 
 TEST_P(LinearResponse, NonFiniteOrForeignInputIsRejected) {

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using support::distance, support::at_wheel, support::bare, support::OneWay, support::stacked,
-    support::way_of;
+using support::relative_distance, support::at_wheel, support::bare, support::OneWay,
+    support::stacked, support::way_of;
 
 Method rung(const char* name) { return find_method(name).value(); }
 
@@ -64,7 +64,7 @@ TEST(Respond, MethodsWithTheSameMatrixGiveTheSameResponse) {
         EXPECT_EQ(one(way, state, side, method),
                   std::holds_alternative<Linear>(method.kind) ? linear : consistent)
             << method.name;
-    EXPECT_GT(distance(linear, consistent), 1e-3);
+    EXPECT_GT(relative_distance(linear, consistent), 1e-3);
 }
 
 // The orders that a state leaves serve the next one: the same response, and no search for an order
@@ -83,7 +83,7 @@ TEST(Respond, PivotOrdersAreReusedAtTheNextState) {
             linear_response(way.model, way.branch, bare(state), {&side, 1}, rung("series"), kept);
         ASSERT_EQ(response.outcome, Outcome::converged) << response.detail;
         searches += before != orders();
-        EXPECT_LE(distance(stacked(response.increments[0]), one(way, state, side)), 1e-10);
+        EXPECT_LE(relative_distance(stacked(response.increments[0]), one(way, state, side)), 1e-10);
     }
     EXPECT_GE(searches, 1) << "the first state leaves its own";
     EXPECT_LE(searches, 3);
@@ -99,8 +99,8 @@ TEST(Respond, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
     const auto response = linear_response(way.model, way.branch, state, both, rung("series"));
     ASSERT_EQ(response.increments.size(), 3u) << response.detail;
     EXPECT_EQ(stacked(response.increments[0]), one(way, state, both[0]));
-    EXPECT_LE(distance(stacked(response.increments[0]) + stacked(response.increments[1]),
-                       stacked(response.increments[2])),
+    EXPECT_LE(relative_distance(stacked(response.increments[0]) + stacked(response.increments[1]),
+                                stacked(response.increments[2])),
               1e-13);
 }
 

@@ -106,6 +106,9 @@ const Line lines[] = {
      "$E study $SCENES/../studies/mcpherson.yaml --count 16 -o studied --csv rows.csv --quiet && "
      "rm -r studied"},
     {"live", "$E live $SCENES/pendulum.yaml -o live.html"},  // without its component an error
+    {"loads",
+     "printf 'case,patch_force_z\\nA,6000.5\\n' > c.csv && $E loads $SCENES/mcpherson.yaml c.csv "
+     "-o loads.csv"},
     {"man", "$E man"},
     // Errors are reported with line and number.
     {"inspect",

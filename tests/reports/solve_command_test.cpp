@@ -90,7 +90,7 @@ TEST(SolveCommand, WritesTheDefinitionsThatASceneAsksFor) {
     };
     EXPECT_EQ(asked("{roll_centre_height: planes, camber: [kingpin, lateral]}"),
               ",roll_centre_height@planes [mm],camber@kingpin [deg],camber@lateral [deg]");
-    EXPECT_EQ(asked("planes"), ",roll_centre_height@planes [mm]");
+    EXPECT_EQ(asked("planes"), ",roll_centre_height@planes [mm],anti_dive@planes [%]");
     EXPECT_EQ(asked("[sae]"),
               ",mechanical_trail@ground_axes [mm],scrub_radius@ground_axes [mm],"
               "front_view_swing_arm@patch [mm],roll_centre_height@forces [mm]");

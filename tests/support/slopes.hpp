@@ -41,7 +41,7 @@ inline Eigen::VectorXd stacked(const std::vector<Increment>& increments) {
 }
 
 // Of the largest entry of b; infinite where they are not alike.
-inline double distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+inline double relative_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return a.size() == b.size() ? (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff()
                                 : INFINITY;
 }
@@ -88,11 +88,11 @@ inline void expect_slope(const Eigen::VectorXd& answer, const OneWay& way,
                           fine = slope(way, disturbance, h / 2, solve);
     // What is of second order falls to a quarter, where it is more than rounding, and without it what is left is of
     // fourth.
-    const double missed = distance(coarse, answer);
+    const double missed = relative_distance(coarse, answer);
     if (missed > 1e-5) {
-        EXPECT_NEAR(missed / distance(fine, answer), 4, 0.5) << where;
+        EXPECT_NEAR(missed / relative_distance(fine, answer), 4, 0.5) << where;
     }
-    EXPECT_LE(distance((4 * fine - coarse) / 3, answer), missed * missed + 1e-6) << where;
+    EXPECT_LE(relative_distance((4 * fine - coarse) / 3, answer), missed * missed + 1e-6) << where;
 }
 
 }  // namespace elastocheck::support

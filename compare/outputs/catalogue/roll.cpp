@@ -134,8 +134,6 @@ const Entry of_roll[] = {
         no_rate, roll_stiffness,
         {.elsewhere = "suspension roll rate with springs, bar and bushings",
          .reads_free = true,
-         .key = true,
-         .explained = true,
          .cause = "roll"}),
     Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "

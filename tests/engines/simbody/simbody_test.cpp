@@ -96,10 +96,10 @@ std::map<std::string, double> distances(const Scene& scene, int steps,
         for (const auto& way : compare::sides_of(model, branch, steps)) {
             const EquilibriumPath found = by_simbody(way);
             for (const Leg leg : legs) {
-                const double distance =
+                const double from_leg =
                     distance(points, found, compare::solve_branch(way, {.leg = leg}));
                 double& largest = worst[branch.name];
-                if (!(distance <= largest)) largest = distance;
+                if (!(from_leg <= largest)) largest = from_leg;
             }
         }
     return worst;

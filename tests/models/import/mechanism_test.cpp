@@ -32,7 +32,7 @@ Pose wheel_at_end_of(const Scene& scene, const std::string& branch) {
     const auto found = std::ranges::find(model.branches, branch, &Branch::name);
     if (found == model.branches.end()) throw std::runtime_error("no branch " + branch);
     const auto path =
-        compare::walk(compare::sides_of(model, *found), {.leg = compare::Leg::equilibrium});
+        compare::solve_branch(compare::sides_of(model, *found), {.leg = compare::Leg::equilibrium});
     if (path.outcome != Outcome::converged) throw std::runtime_error(path.detail);
     return path.points.back().poses[static_cast<std::size_t>(scene.wheels.at(0).body)];
 }

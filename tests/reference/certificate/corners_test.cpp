@@ -148,7 +148,7 @@ TEST(CertificateEquations, SeparatedCornerHasTheSolutionsOfTheElement) {
                     const Side at = cornered({frame, angles, conjugate, offset});
                     const System plain = make_system(at.model, at.branch),
                                  apart = make_system(at.model, at.branch, Corners::separated);
-                    ASSERT_EQ(apart.apart.size(), 6U);
+                    ASSERT_EQ(apart.separated.size(), 6U);
                     Equilibrium state = at.drawn(70);
                     state.poses[0].r += Eigen::Vector3d(2e-3, 5e-5, -3e-4);
                     state.poses[0].p = Eigen::Quaterniond(Eigen::AngleAxisd(
