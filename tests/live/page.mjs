@@ -415,7 +415,7 @@ const tests = {
     // Its compliance matrices are those of the report's equilibrium leg.
     await run(`document.getElementById('matrix').open = true`);
     await browser.until(`document.querySelectorAll('#matrix td').length > 40`, 'the compliance matrix');
-    const {scenes: [{characteristics: {compliance}}]} = JSON.parse(readFileSync(path.join(report, 'result.json'), 'utf8')), at = name => compliance.columns.findIndex(c => c.name === name);
+    const {scenes: [{results}]} = JSON.parse(readFileSync(path.join(report, 'result.json'), 'utf8')), {compliance} = results.find(r => r.tables.compliance).tables, at = name => compliance.columns.findIndex(c => c.name === name);
     let compared = 0;
     for (const [point, key] of [['contact patch', 'patch'], ['wheel centre', 'centre']]) {
       const rows = compliance.rows.filter(r => r[at('leg')] === 'equilibrium' && r[at('point')] === point && r[at('a')] === 0), own = await run(`matrices.now.${key}`);
