@@ -42,6 +42,7 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
     const int steps = request.steps > 0 ? request.steps : steps_of(model);
     const auto outputs = outputs_of(request.candidate, request.scene, {steps});
     compare::Options options;
+    options.times = false;
     options.recursion.steps = request.steps;
     options.progress = progress;
     compare::Comparison comparison = compare::compare(model, options, loaded.definitions);
