@@ -104,9 +104,9 @@ const tests = {
     const top = () => run(`document.getElementById('drawing').getBoundingClientRect().top + scrollY`), place = await top();
     await typeIn('springs.coil.rate', 'abc');
     await idle();
-    await wait(.3);
+    await wait(.6); // dimming begins .3 s after the change and takes .15 s
     check(await run(`document.body.dataset.status`) === 'failed' && (await textOf('#state')).startsWith('not solved'), 'failed: ' + await textOf('#state'));
-    check(await opacity('#charts') < .6 && await opacity('#scenery') < .6 && !/41 of 41/.test(await textOf('#notes')), 'dimmed, without proofs');
+    check(await opacity('#charts') < .6 && await opacity('#scenery') < .6 && !/41 of 41/.test(await textOf('#notes')), `dimmed, without proofs: ${await opacity('#charts')}, ${await opacity('#scenery')}, ${await textOf('#notes')}`);
     check(await top() === place, 'the message moves nothing: ' + (await top() - place));
     await pictureOf('failed');
     await run('window.live.saved = undefined');
