@@ -129,11 +129,12 @@ const Entry of_roll[] = {
           {.elsewhere = "migration of the roll centre in roll", .cause = "roll"}),
     Entry(
         Owner::axle, "roll_stiffness", Unit::newton_metre_per_deg,
-        "moment of opposite vertical forces at the two contact patches over the roll angle of the "
-        "wheel centres against the body, without the tyres",
+        "moment of opposite vertical forces at the patches over the roll of the wheel centres, "
+        "without the tyres",
         no_rate, roll_stiffness,
         {.elsewhere = "suspension roll rate with springs, bar and bushings",
          .reads_free = true,
+         .key = true,
          .cause = "roll"}),
     Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "

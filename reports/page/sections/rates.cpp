@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <optional>
 #include <sstream>
 
@@ -89,36 +88,22 @@ double value_of(const Design& design, const Wheel& wheel, std::string_view rate)
     return row == design.end() ? NAN : row->value;
 }
 
-// Roll stiffness of an axle from the rates of its wheels in roll: each wheel moves by half the track
-// per unit of roll, K = k t² / 2. What resists roll and not heave is the anti-roll bar's.
-void add_roll_stiffness(Table& table, const SceneAnalyses& scene, const Design& design,
-                        const std::vector<Wheel>& wheels) {
-    if (wheels.size() != 2) return;
-    const auto sweep = leading_sweep(scene);
-    if (!sweep) return;
-    const SweepCurve curve(scene, *sweep);
-    const auto track = curve.channel(std::string(compare::figure::track));
+// Of the roll stiffness of an axle the share of the anti-roll bar: what resists roll and not heave.
+void add_share_of_bar(Table& table, const Design& design, const std::vector<Wheel>& wheels) {
     double roll = 0, heave = 0;
     for (const auto& wheel : wheels) {
-        roll += value_of(design, wheel, compare::figure::wheel_rate_in_roll) / 2;
-        heave += value_of(design, wheel, compare::figure::wheel_rate) / 2;
+        roll += value_of(design, wheel, compare::figure::wheel_rate_in_roll);
+        heave += value_of(design, wheel, compare::figure::wheel_rate);
     }
-    if (track.empty() || !std::isfinite(roll)) return;
-    const double t = track[curve.start];  // [mm]; N/mm · mm² = N·mm per rad
-    const double stiffness = 1e-3 * roll * t * t / 2 * std::numbers::pi / 180;
-    table.rows.push_back(
-        {"roll stiffness at the wheels", stiffness, stiffness, "N·m/deg",
-         "moment over roll of the axle against the body, without the tyres: wheel rate in roll · "
-         "track² / 2"});
-    if (std::isfinite(heave) && roll > heave)
-        table.rows.push_back({"of it, anti-roll bar", 100 * (roll - heave) / roll,
-                              100 * (roll - heave) / roll, "%",
-                              "what resists opposed travel and not parallel travel: 1 − wheel rate "
-                              "/ wheel rate in roll"});
+    if (!(roll > heave)) return;
+    const double share = 100 * (roll - heave) / roll;
+    table.rows.push_back({"of roll stiffness, anti-roll bar", share, share, "%",
+                          "what resists opposed travel and not parallel travel: 1 − wheel rate / "
+                          "wheel rate in roll"});
 }
 
-Table rates_table(const SceneAnalyses& scene, const Design& design,
-                  const std::vector<Wheel>& wheels, bool only_key = false) {
+Table rates_table(const Design& design, const std::vector<Wheel>& wheels,
+                  bool only_key = false) {
     std::vector<Rate> rates = rates_of(design, wheels);
     std::erase_if(rates, [&](const Rate& rate) { return only_key && !rate.is_key; });
     std::vector<compare::ColumnOf<Rate>> columns{
@@ -142,7 +127,7 @@ Table rates_table(const SceneAnalyses& scene, const Design& design,
                            }});
     Table table = compare::table("", columns, rates);
     table.caption = "Rates at the design position";
-    if (wheels.size() == 2) add_roll_stiffness(table, scene, design, wheels);
+    if (wheels.size() == 2) add_share_of_bar(table, design, wheels);
     for (auto& row : table.rows) row.resize(table.columns.size());
     return table;
 }
@@ -192,7 +177,7 @@ Design design_of(const SceneAnalyses& scene) {
 
 Table key_rates(const SceneAnalyses& scene) {
     const auto design = design_of(scene);
-    Table table = design.empty() ? Table{} : rates_table(scene, design, scene.model.wheels, true);
+    Table table = design.empty() ? Table{} : rates_table(design, scene.model.wheels, true);
     table.caption =
         "Key figures at the design position (lateral forces towards the middle of the vehicle, "
         "braking to the back, traction forward; toe-in positive)";
@@ -203,7 +188,7 @@ std::optional<Section> rates_section(const SceneAnalyses& scene) {
     const auto design = design_of(scene);
     if (design.empty()) return std::nullopt;
     Section section{.id = "rates", .title = "Rates", .part = Part::behaviour};
-    section.tables.push_back(rates_table(scene, design, scene.model.wheels));
+    section.tables.push_back(rates_table(design, scene.model.wheels));
     return section;
 }
 
