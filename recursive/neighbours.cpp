@@ -108,7 +108,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             }
             Equilibrium& there = result.states.emplace_back(state);
             const auto inputs = inputs_at<double>(*k.model, k.model->branches.front(), state.load);
-            record(*k.model, inputs, q, q, lambda, state.load, there);
+            record(*k.model, inputs, q, {lambda, q}, there);
         }
     }
     return all;

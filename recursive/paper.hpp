@@ -39,8 +39,8 @@ std::vector<PaperStep<Real>> paper(const Model& model, const Branch& branch, int
     for (int k = 1; k <= N; ++k) {
         const Inputs<Real> next = inputs_at<Real>(model, branch, static_cast<Real>(k) * da);
         external_force<Real>(model, branch, next, q, f_ext);
-        add_stored_rate<Real>(model, branch, inputs, Drive::rate, da, q, stored.setZero());
-        add_constraint_rate<Real>(model, branch, inputs, Drive::rate, -da, q, driven.setZero());
+        add_stored_rate<Real>({model, branch, inputs, Drive::rate, da, q}, stored.setZero());
+        add_constraint_rate<Real>({model, branch, inputs, Drive::rate, -da, q}, driven.setZero());
 
         assemble<Real>(model, inputs, q, system.M, Phi);
         factorise(system);

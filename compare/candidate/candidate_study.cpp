@@ -95,7 +95,7 @@ Study study_candidate(const Model& model, const std::string& name,
                                                    : "a load stands there twice, or is no number");
             }
             if (study.not_studied.empty())
-                study_levels(study, all, studied, side.steps, curves, known, nan);
+                study_levels(study, all, studied, {side.steps, curves, known, nan});
             result.branches.push_back(std::move(b));
         }
     return result;

@@ -405,19 +405,24 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
 
 namespace {
 
-// Deviations between the runs of one branch, the k-th of the model.
+// The runs of one branch by all legs.
+struct SolvedBranch {
+    const Branch& branch;
+    const std::vector<BranchSide>& sides;
+    std::vector<LegRun> runs;
+};
+
+// Deviations between the runs. `requested_abscissa`: of the channels, or -1.
 BranchComparison compare_runs(const Model& model, const std::vector<Channel>& channels,
-                              const std::vector<BranchSide>& sides, std::vector<LegRun> runs,
-                              std::vector<bool> determined, std::size_t k, int requested_abscissa,
-                              const Options& options) {
-    const Branch& branch = model.branches[k];
+                              SolvedBranch solved, int requested_abscissa, const Options& options) {
+    const auto& [branch, sides, runs] = solved;
     BranchComparison b;
     b.branch = branch.name;
     b.unit = unit_of(branch.unit);
     for (const auto& side : sides) b.steps += side.branch.steps;
     b.every = options.every;
-    b.determined = std::move(determined);
-    b.runs = std::move(runs);
+    b.determined = active_channels(channels, sides.front().model);
+    b.runs = std::move(solved.runs);
     if (const LegRun& energy = b.run(Leg::energy); is_not_applicable(energy.outcome)) {
         b.second = Leg::series;
         b.why_not_energy = energy.detail;
@@ -512,10 +517,10 @@ Comparison compare(const Model& model, const Options& options, const std::vector
     for (std::size_t k = 0; k < model.branches.size(); ++k)
         jobs.push_back({fmt::format("{}: deviations", model.branches[k].name), [&, k] {
                             if (series[k]) runs[k].push_back(std::move(*series[k]));
-                            result.branches[k] = compare_runs(
-                                model, result.channels, sides[k], std::move(runs[k]),
-                                active_channels(result.channels, sides[k].front().model), k,
-                                requested, options);
+                            result.branches[k] =
+                                compare_runs(model, result.channels,
+                                             {model.branches[k], sides[k], std::move(runs[k])},
+                                             requested, options);
                         }});
     run_jobs(jobs, options.threads, part(options.progress, 0.9, 1));
     for (const BranchComparison& b : result.branches)

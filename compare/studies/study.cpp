@@ -145,9 +145,9 @@ void add_order(ChannelStudy& study, const std::vector<int>& steps,
     study.as_formal = agrees_with_formal(study.order.order, study.order.order_error, formal);
 }
 
-ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curve>& levels,
-                           const References& references, std::size_t channel, double formal, int by,
+ChannelStudy study_channel(const StudiedLevels& levels, std::size_t channel, int by,
                            const Span& span) {
+    const auto& [steps, curves, references, formal] = levels;
     ChannelStudy result;
     const auto truth = at_stations(references.truth.curve, channel, by, span);
     result.uncertainty =
@@ -157,7 +157,7 @@ ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curv
     result.range = std::max(high, start) - std::min(low, start);
 
     std::vector<std::vector<double>> values;
-    for (const auto& level : levels) values.push_back(at_stations(level, channel, by, span));
+    for (const auto& curve : curves) values.push_back(at_stations(curve, channel, by, span));
     result.end = at_station(steps, values, stations - 1, formal, result.uncertainty);
     const auto limit = own_limit(steps, values, formal);
     if (result.end.behaviour == Behaviour::converging && result.end.limit != limit.back()) {
@@ -245,8 +245,9 @@ MethodStudy study_method(Solves& solves, const StudiedSide& side, const recursiv
     m.constraint_order = order_of(Phi, 1e-12);
     if (!m.not_studied.empty()) return m;
 
-    study_levels(m, solves.channels, main_channels(solves.channels), side.steps, levels, side.known,
-                 std::max(method.formal_order, 1.0));  // to its own limit
+    const double to_own_limit = std::max(method.formal_order, 1.0);
+    study_levels(m, solves.channels, main_channels(solves.channels),
+                 {side.steps, levels, side.known, to_own_limit});
     return m;
 }
 
@@ -280,15 +281,13 @@ StudiedBranch studied_branch(const BranchSide& side, const std::vector<Channel>&
 }
 
 void study_levels(MethodStudy& study, const std::vector<Channel>& all,
-                  const std::vector<std::size_t>& studied, const std::vector<int>& steps,
-                  const std::vector<Curve>& levels, const References& references,
-                  double formal_order) {
-    std::vector<const Curve*> curves{&references.truth.curve, &references.other.curve};
-    for (const auto& level : levels) curves.push_back(&level);
+                  const std::vector<std::size_t>& studied, const StudiedLevels& levels) {
+    std::vector<const Curve*> curves{&levels.references.truth.curve,
+                                     &levels.references.other.curve};
+    for (const auto& curve : levels.curves) curves.push_back(&curve);
     const auto read = [&](int by, std::vector<ChannelStudy>& reading) {
         const Span span = common_span(by, curves);
-        for (const std::size_t c : studied)
-            reading.push_back(study_channel(steps, levels, references, c, formal_order, by, span));
+        for (const std::size_t c : studied) reading.push_back(study_channel(levels, c, by, span));
     };
     read(parameter, study.equal_parameter);
     const Abscissa by = common_abscissa(all, curves);
@@ -400,7 +399,7 @@ BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
         for (const std::size_t c : main_channels(channels)) {
             GapShare share;
             for (unsigned bits = 0; bits < combinations; ++bits) {
-                const auto s = study_channel(steps, levels[bits], known, c, 1, by, span);
+                const auto s = study_channel({steps, levels[bits], known, 1}, c, by, span);
                 share.combinations.push_back(s.gap);
                 // At the round-off floor the limit is the finest value; without a convergence
                 // estimate the spread is the band.

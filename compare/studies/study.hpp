@@ -89,13 +89,16 @@ Study study(const Model& model, const StudyOptions& options = {});
 // are their base times powers of two.
 Study study(Solves& solves, const StudyOptions& options);
 
-// Studies one method on one branch side from given levels: curves of `all` channels in the order of
-// `steps`, made by any solver. `studied`: positions in `all` of the main channels to study. Formal
-// order: NaN if unknown.
+// One method on one branch side with several step counts, made by any solver.
+struct StudiedLevels {
+    const std::vector<int>& steps;
+    const std::vector<Curve>& curves;  // one a step count
+    const References& references;
+    double formal_order;  // NaN if unknown
+};
+// Studies the levels. `studied`: positions in `all` channels of the curves of the main ones to study.
 void study_levels(MethodStudy& study, const std::vector<Channel>& all,
-                  const std::vector<std::size_t>& studied, const std::vector<int>& steps,
-                  const std::vector<Curve>& levels, const References& references,
-                  double formal_order);
+                  const std::vector<std::size_t>& studied, const StudiedLevels& levels);
 
 // Reasons why the references cannot be used in a study: a failure, or too large a
 // distance between them.

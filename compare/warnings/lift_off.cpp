@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "compare/outputs/curve.hpp"
@@ -56,9 +57,16 @@ double load_on(const Pusher& of, const BranchSide& side, const Equilibrium& stat
     return of.end - deformation(kind, of.element, side.branch, state)[of.axis];
 }
 
-// The zero between a and b by false position (Illinois), NaN where the leg does not solve there.
-double place(const Pusher& of, const BranchSide& side, Leg leg, double a, double f_a, double b,
-             double f_b) {
+// A parameter and the load there.
+struct LoadAt {
+    double a = 0, load = 0;
+};
+
+// The zero between two parameters by false position (Illinois), NaN where the leg does not solve
+// there.
+double place(const Pusher& of, const BranchSide& side, Leg leg, LoadAt from, LoadAt to) {
+    auto [a, f_a] = from;
+    auto [b, f_b] = to;
     for (int k = 0; k < 60 && std::abs(b - a) > 1e-9 * std::abs(side.branch.to); ++k) {
         const double c = a + f_a / (f_a - f_b) * (b - a);
         double f_c = std::numeric_limits<double>::quiet_NaN();
@@ -88,11 +96,7 @@ std::vector<LiftOff> lift_offs(const Model& model, const Branch& branch, Leg leg
     for (const BranchSide& side : sides) {
         const auto pushing = pushers(side.model);
         if (pushing.empty()) continue;
-        struct Last {  // where it was loaded or off
-            double a = 0, load = 0;
-            bool known = false;
-        };
-        std::vector<Last> lasts(pushing.size());
+        std::vector<std::optional<LoadAt>> lasts(pushing.size());  // where it was loaded or off
         const auto note = [&](const std::string& what, double a) {
             const Unit unit = unit_of(branch.unit);
             list.push_back({what, parameter_in(unit, a), unit});
@@ -102,13 +106,13 @@ std::vector<LiftOff> lift_offs(const Model& model, const Branch& branch, Leg leg
                 const Pusher& of = pushing[p];
                 const double now = load_on(of, side, state);
                 if (std::abs(now) <= touching) continue;
-                Last& last = lasts[p];
-                if (last.known && (last.load > 0) != (now > 0))
+                auto& last = lasts[p];
+                if (last && (last->load > 0) != (now > 0))
                     note(now > 0 ? of.returns : of.leaves,
-                         place(of, side, leg, last.a, last.load, state.load, now));
-                else if (!last.known && now < 0 && (state.load != 0 || &side == sides.data()))
+                         place(of, side, leg, *last, {state.load, now}));
+                else if (!last && now < 0 && (state.load != 0 || &side == sides.data()))
                     note(of.leaves, 0);
-                last = {state.load, now, true};
+                last = {state.load, now};
             }
         });
     }

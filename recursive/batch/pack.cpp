@@ -7,6 +7,7 @@
 #include "recursive/diagnosis/length.hpp"
 #include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"
+#include "recursive/series/polynomial.hpp"
 #include "recursive/series/sides.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "recursive/stepping/stability.hpp"
@@ -15,23 +16,10 @@
 
 namespace elastocheck::recursive::batch {
 namespace {
-// A lane whose smallest pivot at the design position, over the largest, is below this fraction of
-// the design's ratio leaves: it may have an idle mode or a redundancy that the design has not.
-constexpr double min_share_of_ratio = 1e-3;
-// Strain up to which a held mode is exactly idle, or a combination exactly redundant.
-constexpr double exactly_idle = 1e-12;
 // Relative correction of x_1 above which all coefficients of a lane are corrected. The scalar path
 // does so from 1e-13 on, which costs half as much again; x_1 itself is always corrected here, and of
 // the higher orders, a fraction of the travel, 3e-12 is below the tolerance of the series.
 constexpr double loses_digits = 30 * series::loses_digits;
-constexpr double largest_multiplier = 1e4;  // as in the scalar path
-constexpr int max_coordinates = 300;        // of a stability test with a dense matrix
-
-double value(const Vector<double>& c, double tau) {
-    double sum = 0;
-    for (Eigen::Index k = c.size(); k-- > 0;) sum = sum * tau + c[k];
-    return sum;
-}
 
 void go(SteppingState& s, Drive drive, double to) {
     go_to(s, drive == Drive::start ? Parameters{to, 0} : Parameters{1, to});
@@ -44,14 +32,7 @@ void move_to(Slot& slot, Drive drive, double tau) {
     series::horner(slot.c.x, tau, slot.x);
     series::displace(slot.from, slot.x, s.q);
     s.lambda = slot.x.tail(s.m());
-    go(s, drive, value(slot.c.load, tau));
-}
-
-bool loads_idle(SteppingState& s, double missed) {
-    if (s.system.held.idle == 0) return false;
-    external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
-    s.applied -= (1 - s.parameters.t) * s.R_d;
-    return check_idle_load(s, s.q, missed) != Outcome::converged;
+    go(s, drive, series::polynomial(slot.c.load, tau));
 }
 
 // The deformations of the curves, as polynomials of the last expansion.
@@ -61,29 +42,6 @@ void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int at) {
         for (int k = 0; k <= e.order(); ++k)
             slot.deformations(k, static_cast<Eigen::Index>(c)) =
                 lane(series::deformation(e, slot.curves[c].elastic, slot.curves[c].axis, k), at);
-}
-
-// Whether an idle mode may be unstable under load: the first look of negative_idle_stiffness().
-bool may_push_idle(SteppingState& s) {
-    constexpr double noticed = 1e-6;
-    const double stiffness = min_of_idle(s);
-    if (!(stiffness < 0)) return false;
-    external_force<double>(s.model, s.branch, s.inputs, s.q, s.upper);
-    elastic_force<double>(s.model, s.inputs, s.q, s.force);
-    const double acts = size_of_force(s, s.upper) + size_of_force(s, s.force);
-    return !(stiffness >= -noticed * acts / s.length);
-}
-
-// Whether the determinant, 1 at τ = 0, may have a zero inside: as lost_inside() begins.
-bool may_dip(double in_middle, double at_end) {
-    constexpr double dips = 0.5, curved = 0.02;
-    if (!(in_middle > 0)) return true;
-    const auto [lowest, highest] = std::minmax({1., in_middle, at_end});
-    const double before = 2 * (in_middle - 1), behind = 2 * (at_end - in_middle),
-                 bend = behind - before, there = 0.25 - before / (2 * bend),
-                 least = 1 + there * (before + bend * (there - 0.5));
-    const double deep = std::max(dips * std::min(1.0, at_end), curved * (highest - lowest));
-    return bend > 0 && there > 0 && there < 1 && least < deep;
 }
 
 }  // namespace
@@ -132,11 +90,6 @@ Mask Pack::going() const {
     Mask mask{};
     for (std::size_t k = 0; k < slots.size(); ++k) mask[k] = slots[k].inside && slots[k].going;
     return mask;
-}
-template <class Visit>
-void Pack::each(const Mask& mask, Visit&& visit) {
-    for (std::size_t k = 0; k < slots.size(); ++k)
-        if (mask[k] && slots[k].inside) visit(slots[k], static_cast<int>(k));
 }
 
 void Pack::follow(std::span<const Model* const> variants) {
@@ -208,77 +161,6 @@ void Pack::follow_group(std::size_t group) {
     solve_branch(group, Drive::rate, !settles);
 }
 
-void Pack::assemble(int at) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
-    SteppingState& s = *slot.s;
-    assemble_consistent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
-    load_matrix(at);
-}
-// Scales and borders the matrix of a lane.
-void Pack::load_matrix(int at) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
-    SteppingState& s = *slot.s;
-    for (const int k : outside)
-        if (s.system.M.values[static_cast<std::size_t>(k)] != 0) slot.inside = false;
-    set_border(s.system);
-    const SparseLU<double>& of = s.system.lu;
-    for (std::size_t e = 0; e < lu.values.size(); ++e)
-        set_lane(lu.values[e], at,
-                 s.system.M.values[static_cast<std::size_t>(of.source[e])] * of.factor[e]);
-}
-
-// Factorises the matrices of all lanes, and updates and checks the held directions of those
-// in the mask.
-void Pack::factorise(const Mask& mask, bool at_design) {
-    eliminate(lu);
-    const SaddlePoint<double>& of = design.system;
-    for (int c = 0; c < of.held.size(); ++c) {
-        std::fill(rhs.begin(), rhs.end(), Lanes(0));
-        rhs[static_cast<std::size_t>(of.n + of.m + c)] = 1;
-        solve(lu, rhs.data(), solution.data());
-        each(mask, [&](Slot& slot, int at) {
-            Held<double>& held = slot.s->system.held;
-            for (int e = held.begin(c); e < held.end(c); ++e) {
-                const int row = held.row[static_cast<std::size_t>(e)];
-                held.value[static_cast<std::size_t>(e)] =
-                    lane(solution[static_cast<std::size_t>(row)], at) * of.scale[row];
-            }
-        });
-    }
-    each(mask, [&](Slot& slot, int at) {
-        SteppingState& s = *slot.s;
-        ++s.counts.factorisations;
-        orthonormalise(s.system);
-        const double ratio = lane(lu.min_pivot, at) / lane(lu.largest_pivot, at);
-        const bool regular = lane(lu.finite, at) == 0 && is_regular(s, ratio) &&
-                             lane(lu.largest_multiplier, at) <= largest_multiplier &&
-                             check_factors(s, s.q, ratio) == Outcome::converged;
-        slot.inside = regular && (!at_design || (ratio > min_share_of_ratio * design.pivot_ratio &&
-                                                 strain_of_held(s, s.q) <= exactly_idle));
-    });
-}
-
-void Pack::load_rhs(int at) {
-    const SteppingState& s = *slots[static_cast<std::size_t>(at)].s;
-    const int n = s.n(), m = s.m();
-    const auto put = [&](int k, double of) {
-        set_lane(rhs[static_cast<std::size_t>(k)], at, of * s.system.scale[k]);
-    };
-    for (int k = 0; k < n; ++k) put(k, s.upper[k]);
-    for (int k = 0; k < m; ++k) put(n + k, s.lower[k]);
-    for (int k = n + m; k < n + m + s.system.borders(); ++k)
-        set_lane(rhs[static_cast<std::size_t>(k)], at, 0);
-}
-void Pack::back_substitute(const Mask& mask) {
-    solve(lu, rhs.data(), solution.data());
-    each(mask, [&](Slot& slot, int at) {
-        SteppingState& s = *slot.s;
-        for (int k = 0; k < s.n() + s.m(); ++k)
-            s.x[k] = lane(solution[static_cast<std::size_t>(k)], at) * s.system.scale[k];
-        ++s.counts.iterations;
-    });
-}
-
 // The pieces of the curves of a lane, in the equations and the inputs.
 void Pack::use_pieces(series::Equations<Lanes>& e, int at) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
@@ -309,8 +191,9 @@ void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
         SteppingState& s = *slot.s;
         for (const auto& end : to) {
             go(s, drive, end[static_cast<std::size_t>(at)]);
-            slot.inside =
-                slot.inside && !(drive == Drive::start ? loads_idle_mode(s) : loads_idle(s, 0));
+            slot.inside = slot.inside && !(drive == Drive::start
+                                               ? loads_idle_mode(s)
+                                               : check_idle_load_here(s, 0) != Outcome::converged);
         }
         go(s, drive, 0);
         if (!slot.inside) return;
@@ -432,208 +315,6 @@ void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive,
     if (!whole && nearest.radius < close && straight_ahead) slot.inside = false;
 }
 
-// Newton corrections at the ends of the ranges; the last factors serve the next expansion.
-void Pack::correct_ends(Drive drive, const LaneEnds& to) {
-    Mask correcting = going();
-    each(correcting, [&](Slot& slot, int at) {
-        move_to(slot, drive, slot.reached);
-        if (slot.last) go(*slot.s, drive, to[static_cast<std::size_t>(at)]);
-        slot.before = std::numeric_limits<double>::infinity();
-    });
-    for (int k = 0; k < 8 && std::ranges::count(correcting, true) > 0; ++k) {
-        each(correcting, [&](Slot&, int at) { assemble(at); });
-        factorise(correcting, false);
-        each(correcting, [&](Slot& slot, int at) {
-            residual_at(*slot.s, slot.s->q, slot.s->lambda);
-            load_rhs(at);
-        });
-        back_substitute(correcting);
-        for (std::size_t at = 0; at < slots.size(); ++at) {
-            Slot& slot = slots[at];
-            correcting[at] = correcting[at] && slot.inside;
-            if (!correcting[at]) continue;
-            SteppingState& s = *slot.s;
-            const double size = std::sqrt(size_of_solution(s));
-            if (!s.x.allFinite() || loads_idle(s, size)) {
-                slot.inside = correcting[at] = false;
-                continue;
-            }
-            if (k == 0) slot.error = size;
-            if (!(size < slot.before)) {  // at rounding level
-                correcting[at] = false;
-                continue;
-            }
-            slot.before = size;
-            s.dq = s.x.head(s.n());
-            advance(s.q, s.dq);
-            s.lambda += s.x.tail(s.m());
-            const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
-            // No expansion starts at the end of a branch: its error is known, that is enough.
-            correcting[at] = !(slot.last && drive == Drive::rate) &&
-                             !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
-        }
-    }
-    each(going(), [&](Slot& slot, int) {
-        SteppingState& s = *slot.s;
-        if (!(slot.error <= 10 * options.series.tolerance)) slot.inside = false;
-        if (has_redundancy(s)) {
-            residual_at(s, s.q, s.lambda);
-            if (is_inconsistent(s, s.q)) slot.inside = false;
-        }
-    });
-}
-
-// As min_stiffness() of one variant: the same iteration with the factors of the lanes.
-std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, Matrix<Lanes>& U) {
-    constexpr int vectors = 3, first_turns = 5, turns = 2;
-    std::array<LeastStiffness, Lanes::count> found{};
-    const int n = design.system.n;
-    const int free =
-        design.diagnosis.degrees_of_freedom() - static_cast<int>(design.diagnosis.idle.size());
-    if (free <= 0) return found;
-    Vector<Lanes> W(n), W2(n);
-    for (int k = 0; k < n; ++k) {
-        W[k] = 1;
-        each(mask, [&](Slot& slot, int at) { set_lane(W[k], at, slot.s->system.weight[k]); });
-        W2[k] = W[k] * W[k];
-    }
-    const auto inner = [&](const Matrix<Lanes>& A, Eigen::Index a, const Matrix<Lanes>& B,
-                           Eigen::Index b) {
-        Lanes sum = 0;
-        for (int k = 0; k < n; ++k) sum += A(k, a) * W2[k] * B(k, b);
-        return sum;
-    };
-    const auto orthonormalise_columns = [&] {
-        constexpr double zero_tolerance = 1e-9;
-        for (Eigen::Index c = 0; c < U.cols(); ++c) {
-            const Lanes whole = inner(U, c, U, c);
-            for (int pass = 0; pass < 2; ++pass)
-                for (Eigen::Index b = 0; b < c; ++b) {
-                    const Lanes part = inner(U, b, U, c);
-                    for (int k = 0; k < n; ++k) U(k, c) -= part * U(k, b);
-                }
-            const Lanes left = inner(U, c, U, c), inverse = 1 / sqrt(left);
-            for (int k = 0; k < n; ++k) U(k, c) *= inverse;
-            // one variant alone drops the dependent vector
-            each(mask, [&](Slot& slot, int at) {
-                if (!(lane(left, at) > zero_tolerance * zero_tolerance * lane(whole, at)))
-                    slot.inside = false;
-            });
-        }
-    };
-    const bool begins = U.cols() == 0;
-    if (begins) {
-        U.resize(n, std::min(vectors, free));
-        for (Eigen::Index c = 0; c < U.cols(); ++c)
-            for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / W[k];
-        orthonormalise_columns();
-    }
-    const SaddlePoint<double>& of = design.system;
-    Matrix<Lanes> V(n, U.cols()), H(U.cols(), U.cols());
-    for (int turn = begins ? first_turns : turns; turn > 0; --turn) {
-        std::fill(rhs.begin(), rhs.end(), Lanes(0));
-        for (Eigen::Index c = 0; c < U.cols(); ++c) {
-            for (int k = 0; k < n; ++k)
-                rhs[static_cast<std::size_t>(k)] = U(k, c) * W2[k] * Lanes(of.scale[k]);
-            solve(lu, rhs.data(), solution.data());
-            for (int k = 0; k < n; ++k)
-                V(k, c) = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
-        }
-        if (turn == 1)
-            for (Eigen::Index a = 0; a < U.cols(); ++a)
-                for (Eigen::Index b = 0; b < U.cols(); ++b) H(a, b) = inner(U, a, V, b);
-        U = V;
-        orthonormalise_columns();
-    }
-    each(mask, [&](Slot&, int at) {
-        Eigen::MatrixXd one(H.rows(), H.cols());
-        for (Eigen::Index k = 0; k < H.size(); ++k) one.data()[k] = lane(H.data()[k], at);
-        found[static_cast<std::size_t>(at)] = detail::min_of(one);
-    });
-    return found;
-}
-
-// Whether the start is stable by the tests of stability.hpp; a lane in which one of
-// them fails leaves.
-void Pack::judge_start(Matrix<Lanes>& softest) {
-    const int n = design.system.n;
-    const auto least = min_stiffness(inside(), softest);
-    if (n > max_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
-    each(inside(), [&](Slot& slot, int at) {
-        const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
-        slot.inside = of_energy && mu > 0 && !may_push_idle(*slot.s);
-    });
-    definite.setZero(n, n);
-    each(inside(), [&](Slot& slot, int at) {
-        const SteppingState& s = *slot.s;
-        const SaddleMatrix<double>& M = s.system.M;
-        const Vector<double>& W = s.system.weight;
-        const auto add = [&](Eigen::Index i, Eigen::Index j, double by) {
-            set_lane(definite(i, j), at, lane(definite(i, j), at) + by);
-        };
-        double stiffness = 0;
-        for_each_entry(M, [&](int i, int j, int entry) {
-            if (i >= n || j >= n) return;
-            const double K = M.values[static_cast<std::size_t>(entry)] / (W[i] * W[j]);
-            stiffness = std::max(stiffness, std::abs(K));
-            add(std::max(i, j), std::min(i, j), i == j ? K : K / 2);
-        });
-        for (int row = 0; row < M.m; ++row) {
-            std::array<double, 12> r{};
-            std::array<int, 12> place{};
-            double square = 0;
-            std::size_t count = 0;
-            for (int end = 0; end < 2; ++end) {
-                const BodyId b =
-                    M.ends[static_cast<std::size_t>(row)][static_cast<std::size_t>(end)];
-                for (int k = 0; b != ground && k < 6; ++k, ++count) {
-                    place[count] = 6 * b + k;
-                    r[count] = M.part(row, end)[k] / W[6 * b + k];
-                    square += r[count] * r[count];
-                }
-            }
-            const double by = square > 0 ? stiffness / square : 0;
-            for (std::size_t i = 0; i < count; ++i)
-                for (std::size_t j = 0; j < count; ++j)
-                    if (place[i] >= place[j]) add(place[i], place[j], by * r[i] * r[j]);
-        }
-        const double rounding = 16 * std::numeric_limits<double>::epsilon() * n;
-        for (int k = 0; k < n; ++k) add(k, k, rounding * stiffness);
-        const Held<double>& held = s.system.held;
-        for (int c = 0; c < held.idle; ++c) {
-            int most = -1;
-            double size = 0;
-            for (int e = held.begin(c); e < held.end(c); ++e) {
-                const auto k = static_cast<std::size_t>(e);
-                if (const double here = std::abs(held.value[k] * W[held.row[k]]); here > size) {
-                    most = held.row[k];
-                    size = here;
-                }
-            }
-            if (most >= 0) add(most, most, stiffness);
-        }
-    });
-    const Lanes min_of_all = min_pivot(definite);
-    each(inside(), [&](Slot& slot, int at) { slot.inside = lane(min_of_all, at) > 0; });
-}
-
-// Stability at the ends of the ranges, and of the determinant between.
-void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
-    std::array<LeastStiffness, Lanes::count> least{};
-    if (stable) least = min_stiffness(going(), softest);
-    each(going(), [&](Slot& slot, int at) {
-        const double log_end = log_determinant(lu, at);
-        slot.inside = static_cast<int>(lane(lu.sign, at)) == slot.side &&
-                      !any_reversed(slot.s->model, slot.from, slot.s->q);
-        if (stable) {
-            const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
-            slot.inside = slot.inside && of_energy && mu > 0 && !may_push_idle(*slot.s) &&
-                          !may_dip(slot.in_middle, std::exp2(log_end - slot.log_begin));
-        }
-        slot.log_begin = log_end;
-    });
-}
-
 // The points of the branch in the accepted range.
 void Pack::sample(int at, std::size_t branch) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
@@ -667,8 +348,8 @@ void Pack::sample(int at, std::size_t branch) {
         to_point.load = load_at(slot.next + k);
         if (options.wrenches) {
             go(s, Drive::rate, to_point.load);
-            record(s.model, s.inputs, point, point, Vector<double>(at_tau.tail(s.m())),
-                   to_point.load, to_point);
+            const Vector<double> lambda = at_tau.tail(s.m());
+            record(s.model, s.inputs, point, {lambda, point}, to_point);
         } else {
             for (BodyId b = 0; b < point.bodies(); ++b)
                 to_point.poses[static_cast<std::size_t>(b)] = {point[b].r, point[b].p};

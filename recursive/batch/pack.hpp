@@ -81,7 +81,10 @@ struct Pack {
     Mask inside() const;
     Mask going() const;
     template <class Visit>
-    void each(const Mask& mask, Visit&& visit);
+    void each(const Mask& mask, Visit&& visit) {
+        for (std::size_t k = 0; k < slots.size(); ++k)
+            if (mask[k] && slots[k].inside) visit(slots[k], static_cast<int>(k));
+    }
 
     void prepare(int at, const Branch& branch);
     void follow_group(std::size_t group);

@@ -542,25 +542,6 @@ Diagnosis diagnose(const Model& model) {
     return result;
 }
 
-namespace {
-
-// "'a'", "'a' and 'b'", "'a', 'b' and 'c'"
-std::string listed(const std::vector<std::string>& names) {
-    std::string all;
-    for (std::size_t k = 0; k < names.size(); ++k)
-        all += (k == 0 ? "" : k + 1 < names.size() ? ", " : " and ") + ("'" + names[k] + "'");
-    return all;
-}
-std::string moving(const std::vector<std::string>& outputs) {
-    return outputs.empty() ? "moves no output" : "moves " + listed(outputs);
-}
-// The body of "strut: rotation about ...".
-std::string body_of(const IdleMode& mode) {
-    return mode.description.substr(0, mode.description.find(": "));
-}
-
-}  // namespace
-
 std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diagnosis) {
     std::vector<std::string> lines;
     if (diagnosis.redundant.empty()) return lines;
@@ -586,37 +567,6 @@ std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diag
                                             listed(joints)));
         }
     return lines;
-}
-
-std::string undecided(const Model& model, const Diagnosis& diagnosis) {
-    const auto in_doubt = std::ranges::find_if(diagnosis.redundant, &Redundancy::undecided);
-    if (in_doubt == diagnosis.redundant.end()) return {};
-    return fmt::format(
-        "whether joint '{}' is redundant is undecidable: the independent part of one of its "
-        "equations is {:.1e}, more than rounding and less than {:.0e}; make it exactly redundant "
-        "or clearly independent",
-        model.joints[static_cast<std::size_t>(in_doubt->joint)].name, in_doubt->left,
-        rank_threshold);
-}
-
-std::vector<std::string> told_idle_modes(const Diagnosis& diagnosis) {
-    std::vector<std::string> lines, spinning;
-    for (const IdleMode& mode : diagnosis.idle)
-        if (mode.spins && mode.outputs.empty()) spinning.push_back(body_of(mode));
-    const bool together = spinning.size() > 1;
-    for (const IdleMode& mode : diagnosis.idle)
-        if (!(together && mode.spins && mode.outputs.empty()))
-            lines.push_back(mode.description + ", " + moving(mode.outputs));
-    if (together)
-        lines.push_back((spinning.size() == 2 ? "both " : "") + listed(spinning) +
-                        " rotate about their own axis, which " + moving({}));
-    return lines;
-}
-
-std::string idle_modes(const Diagnosis& diagnosis) {
-    std::string all;
-    for (const auto& line : told_idle_modes(diagnosis)) all += (all.empty() ? "" : "; ") + line;
-    return all;
 }
 
 }  // namespace elastocheck::recursive

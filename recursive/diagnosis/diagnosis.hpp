@@ -64,13 +64,16 @@ struct Diagnosis {
 
 Diagnosis diagnose(const Model& model);
 
+// "'a'", "'a' and 'b'", "'a', 'b' and 'c'"
+std::string listed(const std::vector<std::string>& names);
+
 // Names the joint for which the rank decision is within rounding, as text; empty where
 // there is none.
 std::string undecided(const Model& model, const Diagnosis& diagnosis);
 
 // Idle modes as text, one a line: "strut: rotation about ..., moves no output"; modes of the same
 // kind together: "both 'a' and 'b' spin about themselves, moves no output".
-std::vector<std::string> told_idle_modes(const Diagnosis& diagnosis);
+std::vector<std::string> describe_idle_modes(const Diagnosis& diagnosis);
 // The same in one line.
 std::string idle_modes(const Diagnosis& diagnosis);
 

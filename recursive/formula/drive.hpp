@@ -15,6 +15,17 @@ Real speed(const Driver& driver, Drive drive) {
     return static_cast<Real>(drive == Drive::start ? driver.start : driver.rate);
 }
 
+// A change of the drivers by `amount` of their drive, at q and these inputs.
+template <class Real>
+struct DriverChange {
+    const Model& model;
+    const Branch& branch;
+    const Inputs<Real>& inputs;
+    Drive drive = Drive::rate;
+    Real amount = 1;
+    const State<Real>& q;
+};
+
 // Adds amount · ∂f_ext/∂a to `force` [6nb].
 template <class Real>
 void add_load_rate(const Branch& branch, Drive drive, Real amount, const State<Real>& q,
@@ -26,8 +37,8 @@ void add_load_rate(const Branch& branch, Drive drive, Real amount, const State<R
 
 // amount · ∂f_elast/∂a, element by element: add(element number, (F, M) on its body j).
 template <class Real, class Add>
-void for_each_stored_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                          Drive drive, Real amount, const State<Real>& q, Add&& add) {
+void for_each_stored_rate(const DriverChange<Real>& change, Add&& add) {
+    const auto& [model, branch, inputs, drive, amount, q] = change;
     for (const auto& driver : branch.drivers) {
         const Real by = amount * speed<Real>(driver, drive);
         std::visit(overloaded{
@@ -56,19 +67,17 @@ void for_each_stored_rate(const Model& model, const Branch& branch, const Inputs
 }
 // Adds amount · ∂f_elast/∂a to `force` [6nb].
 template <class Real>
-void add_stored_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                     Drive drive, Real amount, const State<Real>& q, Vector<Real>& force) {
-    for_each_stored_rate<Real>(model, branch, inputs, drive, amount, q,
-                               [&](std::size_t k, const ElementForce<Real>& stored) {
-                                   const auto [i, j] = bodies_of(model.elastics[k].kind);
-                                   add_element_force<Real>(i, j, stored, force);
-                               });
+void add_stored_rate(const DriverChange<Real>& change, Vector<Real>& force) {
+    for_each_stored_rate<Real>(change, [&](std::size_t k, const ElementForce<Real>& stored) {
+        const auto [i, j] = bodies_of(change.model.elastics[k].kind);
+        add_element_force<Real>(i, j, stored, force);
+    });
 }
 
 // amount · ∂/∂a of the driven rows: add(row number, ∂row/∂c, change of c).
 template <class Real, class Add>
-void for_each_row_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                       Drive drive, Real amount, const State<Real>& q, Add&& add) {
+void for_each_row_rate(const DriverChange<Real>& change, Add&& add) {
+    const auto& [model, branch, inputs, drive, amount, q] = change;
     for (const auto& driver : branch.drivers)
         if (const int joint = driven_joint(driver.what); joint >= 0) {
             const std::size_t k = constraint_of(model, {joint});
@@ -78,22 +87,19 @@ void for_each_row_rate(const Model& model, const Branch& branch, const Inputs<Re
 }
 // Adds amount · ∂Φ/∂a to `Phi` [m].
 template <class Real>
-void add_constraint_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                         Drive drive, Real amount, const State<Real>& q, Vector<Real>& Phi) {
-    for_each_row_rate<Real>(model, branch, inputs, drive, amount, q,
+void add_constraint_rate(const DriverChange<Real>& change, Vector<Real>& Phi) {
+    for_each_row_rate<Real>(change,
                             [&](int row, const Row<Real>& d, Real by) { Phi[row] += by * d.Phi; });
 }
 // Adds amount · ∂(Φ_qᵀ λ)/∂a to `force` [6nb]: a driven length or angle scales or rotates the rows
 // along which λ acts.
 template <class Real>
-void add_reaction_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                       Drive drive, Real amount, const State<Real>& q, const Vector<Real>& lambda,
+void add_reaction_rate(const DriverChange<Real>& change, const Vector<Real>& lambda,
                        Vector<Real>& force) {
-    for_each_row_rate<Real>(
-        model, branch, inputs, drive, amount, q, [&](int row, const Row<Real>& d, Real by) {
-            if (d.i != ground) force.template segment<6>(6 * d.i) += by * lambda[row] * d.on_i();
-            if (d.j != ground) force.template segment<6>(6 * d.j) += by * lambda[row] * d.on_j();
-        });
+    for_each_row_rate<Real>(change, [&](int row, const Row<Real>& d, Real by) {
+        if (d.i != ground) force.template segment<6>(6 * d.i) += by * lambda[row] * d.on_i();
+        if (d.j != ground) force.template segment<6>(6 * d.j) += by * lambda[row] * d.on_j();
+    });
 }
 
 }  // namespace elastocheck::recursive

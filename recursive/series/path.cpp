@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "recursive/diagnosis/finite.hpp"
-#include "recursive/formula/parameter.hpp"
-#include "recursive/series/expand.hpp"
-#include "recursive/series/pieces.hpp"
+#include "recursive/series/continuation.hpp"
+#include "recursive/series/events.hpp"
+#include "recursive/series/polynomial.hpp"
 #include "recursive/series/sides.hpp"
 #include "recursive/stepping/recording.hpp"
 #include "recursive/stepping/settle.hpp"
@@ -15,102 +15,6 @@
 
 namespace elastocheck::recursive::series {
 namespace {
-
-double polynomial(const Eigen::VectorXd& c, double tau) {
-    double value = 0;
-    for (Eigen::Index k = c.size(); k-- > 0;) value = value * tau + c[k];
-    return value;
-}
-double slope(const Eigen::VectorXd& c, double tau) {
-    double value = 0;
-    for (Eigen::Index k = c.size(); k-- > 1;) value = value * tau + static_cast<double>(k) * c[k];
-    return value;
-}
-
-// Bisection: τ in [from, to] where f changes sign, to the last bit. Pre: f(from) and f(to) differ
-// in sign.
-template <class Function>
-double bisect(Function f, double from, double to) {
-    const bool below = f(from) < 0;
-    for (int k = 0; k < 200 && from != to; ++k) {
-        const double middle = from + (to - from) / 2;
-        if (middle == from || middle == to) break;
-        ((f(middle) < 0) == below ? from : to) = middle;
-    }
-    return to;
-}
-
-// First τ in (0, reach] at which f changes its sign, sampled at `pieces` intervals.
-template <class Function>
-std::optional<double> first_zero(Function f, double reach) {
-    constexpr int pieces = 64;
-    double from = 0, at = f(0);
-    for (int k = 1; k <= pieces; ++k) {
-        const double to = reach * k / pieces, value = f(to);
-        if (value == 0) return to;
-        if (at != 0 && (value < 0) != (at < 0)) return bisect(f, from, to);
-        from = to;
-        at = value;
-    }
-    return std::nullopt;
-}
-
-// One continuation: t from 0 to 1 while the start settles, or a from 0 to the branch's end.
-struct Continuation {
-    SteppingState& s;
-    const recursive::Series& options;
-    Equations<double> e;
-    Coefficients<double> c;
-    std::vector<Followed>& curves;
-    Near near;
-    double to;   // of the parameter
-    double end;  // the last one that is followed: `to`, or before a driven length is zero
-    // a_1 of the next expansion; by arc length its sign, where `ahead` is zero
-    double first;
-    double per_unit;       // metres equivalent to an error of one unit of the parameter
-    Vector<double> ahead;  // x'(τ) at the end of the last expansion: the forward direction
-    // a'(τ) at the end of the last expansion: positive where the parameter increases
-    double heading = 0;
-    // sign of the determinant at the start; by arc length of the matrix bordered by x'
-    int side = 0;
-    Matrix<double> softest = {};
-    bool stable = false;   // whether the start is stable; then every later point must be
-    double log_begin = 0;  // log₂ |determinant| at the start of the expansion
-    // determinant() at the midpoint of the expansion; -1 if the matrix is singular there
-    double in_middle = 1;
-    bool reversed = false;  // an element, at the end of the last expansion
-    Vector<double> x;       // value of the polynomial
-    Path path;
-
-    Continuation(SteppingState& s_, std::vector<Followed>& curves_,
-                 const recursive::Series& options_, Drive drive)
-        : s(s_),
-          options(options_),
-          e(equations<double>(s.model, s.branch, options.order, drive)),
-          c(reserve_coefficients<double>(s.n() + s.m(), options.order)),
-          curves(curves_),
-          near{s.length, 0.1 * options.tolerance, 10 * options.tolerance},
-          to(drive == Drive::start ? 1 : s.branch.to),
-          end(drive == Drive::start ? 1 : s.end),
-          first(to),
-          per_unit(s.length / std::abs(to)),
-          ahead(Vector<double>::Zero(s.n() + s.m())) {
-        e.G_d = -s.R_d;
-        e.Phi_d = s.Phi_d;
-        for (const auto& curve : curves) follow(curve);
-    }
-    void follow(const Followed& curve) {
-        follow_on(curve, e);
-        follow_on(curve, s.inputs);
-    }
-    bool by_arc() const { return options.arc_length && e.drive == Drive::rate; }
-    double at() const { return parameter(s, e.drive); }
-    void go_to(double value) {
-        recursive::go_to(s, e.drive == Drive::start ? recursive::Parameters{value, 0}
-                                                    : recursive::Parameters{1, value});
-        s.a = s.parameters.a;
-    }
-};
 
 double largest_force(const SteppingState& s) { return s.upper.cwiseAbs().maxCoeff(); }
 double largest_violation(const SteppingState& s) {
@@ -122,14 +26,6 @@ bool became_inconsistent(SteppingState& s) {
     if (!has_redundancy(s)) return false;
     residual_at(s, s.q, s.lambda);
     return is_inconsistent(s, s.q);
-}
-
-// Whether the forces at the present configuration load an idle mode.
-Outcome check_idle_load_here(Continuation& w, double missed) {
-    if (w.s.system.held.idle == 0) return Outcome::converged;
-    external_force<double>(w.s.model, w.s.branch, w.s.inputs, w.s.q, w.s.applied);
-    w.s.applied -= (1 - w.s.parameters.t) * w.s.R_d;
-    return check_idle_load(w.s, w.s.q, missed);
 }
 
 // Newton corrections at the present point; the last factors serve the next expansion. The first
@@ -167,7 +63,7 @@ Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
         }
         if (!s.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
-        if (const Outcome outcome = check_idle_load_here(w, std::max(size, slid));
+        if (const Outcome outcome = check_idle_load_here(w.s, std::max(size, slid));
             outcome != Outcome::converged)
             return outcome;
         if (k == 0) error = std::max(size, slid);
@@ -188,22 +84,6 @@ std::vector<Pose> poses_of(const State<double>& q) {
     for (BodyId b = 0; b < q.bodies(); ++b) poses.push_back({q[b].r, q[b].p});
     return poses;
 }
-
-// A crossing of a knot, by the number of the curve.
-struct Crossing {
-    std::size_t curve = 0;
-    int direction = 0;
-};
-
-// Range of τ in which the present expansion is used, whether the branch ends there, and knots
-// crossed there.
-struct End {
-    double tau = 0;
-    bool last = false;
-    std::vector<Crossing> over;
-    // deformations outside their piece from the start: the expansion is invalid
-    std::vector<Crossing> at_once;
-};
 
 // Shortens the range to where the first deformation leaves its piece.
 void stop_at_knots(const Continuation& w, End& end) {
@@ -266,53 +146,6 @@ Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singul
     return Outcome::converged;
 }
 
-// x'(τ) of the polynomial with the columns c.
-Vector<double> derivative(const Eigen::MatrixXd& c, double tau) {
-    Vector<double> d = Vector<double>::Zero(c.rows());
-    for (Eigen::Index k = c.cols() - 1; k >= 1; --k)
-        d = d * tau + static_cast<double>(k) * c.col(k);
-    return d;
-}
-
-// Sets the state to the polynomial about `from` at τ.
-void move_to(Continuation& w, const State<double>& from, double tau) {
-    horner(w.c.x, tau, w.x);
-    displace(from, w.x, w.s.q);
-    w.s.lambda = w.x.tail(w.s.m());
-    w.go_to(polynomial(w.c.load, tau));
-}
-
-// Sign of the determinant at the present point. With arc length it is multiplied by the sign of
-// `rises`, the rate of the parameter along the path: at limit points both signs change.
-int side(const Continuation& w, double rises) {
-    return w.by_arc() && rises < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation;
-}
-// Sign of the parameter's rate at the end of the last expansion, from the factors there. The sign
-// of the polynomial's a' is not used: near a limit point it changes slightly before or after that
-// of the determinant, by rounding or by the tolerance.
-double rises_ahead(const Continuation& w) {
-    const auto W2 = w.s.system.weight.head(w.s.n()).array().square();
-    return (w.ahead.head(w.s.n()).array() * W2 * w.c.unit.head(w.s.n()).array()).sum();
-}
-
-// Whether the equilibrium whose factors are in s.system is past a singular point of the path: the
-// determinant has changed its sign, or the least stiffness is negative (two modes that become
-// unstable at once leave the determinant's sign unchanged).
-bool is_past(Continuation& w, double rises) {
-    if (side(w, rises) != w.side) return true;
-    if (!w.stable) return false;
-    const LeastStiffness least = min_stiffness(w.s, w.softest);
-    return (least.of_energy && least.value < 0) ||
-           negative_idle_stiffness(w.s, w.s.q, w.s.lambda) < 0;
-}
-
-// |determinant| at the present point over that at the start of the expansion; negative if its sign
-// differs from that at the start of the path.
-double determinant(const Continuation& w) {
-    const double size = std::exp2(log_determinant(w.s.system) - w.log_begin);
-    return side(w, w.to) == w.side ? size : -size;
-}
-
 // Evaluates the expansion about `from` at its midpoint and end, corrects the end by Newton's method
 // and fills the certificate `judged`. If the error at the end is too large, the range is shortened
 // and the evaluation repeated.
@@ -346,22 +179,6 @@ Outcome accept_expansion(Continuation& w, const State<double>& from, End& end,
     return Outcome::branch_lost;
 }
 
-// Finds limit points of a(τ) in the last range. A limit point at the seam of two expansions may
-// appear at the end of one and the start of the next, or in neither. The test is therefore whether
-// the sign of a' differs from before.
-void look_for_turns(Continuation& w, double reach) {
-    constexpr int pieces = 64;
-    const auto rises = [&](double t) { return slope(w.c.load, t); };
-    if (w.path.expansions.empty()) w.heading = rises(0);
-    for (int k = 1; k <= pieces; ++k) {
-        const double from = reach * (k - 1) / pieces, to = reach * k / pieces;
-        if (rises(to) * w.heading >= 0) continue;
-        const double turn = rises(from) * w.heading > 0 ? bisect(rises, from, to) : from;
-        w.path.limits.push_back(polynomial(w.c.load, turn));
-        w.heading = rises(to);
-    }
-}
-
 // Starts at the design position with the factors of the analysis.
 Outcome begin_at_design(Continuation& w, const Analysis& analysis) {
     w.go_to(0);
@@ -376,7 +193,7 @@ Outcome begin_at_design(Continuation& w, const Analysis& analysis) {
     }
     w.go_to(w.to);  // with all forces at the end of the branch
     if (w.e.drive == Drive::start ? loads_idle_mode(w.s)
-                                  : check_idle_load_here(w, 0) != Outcome::converged)
+                                  : check_idle_load_here(w.s, 0) != Outcome::converged)
         return Outcome::loaded_idle_mode;
     w.go_to(0);
     if (w.curves.empty()) return check_factors(w.s, w.s.q, analysis.pivot_ratio);
@@ -439,80 +256,6 @@ Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
         }
         if (const Outcome o = cross_knots(w, end.at_once); o != Outcome::converged) return o;
     }
-}
-
-// Locates a bifurcation point in 0 ≤ τ ≤ reach by bisection and moves the state to it. The
-// polynomial continues smoothly past such a point. Returns the τ up to which it represents the
-// stable path; with arc length 0, since there is no bisection.
-double divide(Continuation& w, const State<double>& from, double reach) {
-    constexpr int halvings = 40;
-    double before = 0, past = reach;
-    for (int k = 0; k < halvings && !w.by_arc(); ++k) {
-        const double middle = before + (past - before) / 2;
-        move_to(w, from, middle);
-        (factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged && !is_past(w, w.to) ? before
-                                                                                         : past) =
-            middle;
-    }
-    move_to(w, from, past);
-    return before;
-}
-
-// A τ inside the expansion at which the path is unstable, although the end is stable; none if no
-// such τ is found, and then the state is left at the end.
-std::optional<double> lost_inside(Continuation& w, const State<double>& from, double reach) {
-    if (!w.stable) return std::nullopt;
-    if (w.in_middle < 0) return reach / 2;
-    const double a = w.at(), here = determinant(w);
-    const State<double> end = w.s.q;
-    const Vector<double> lambda_end = w.s.lambda;
-    bool moved = false;
-    const Dip lowest = lowest_determinant({1, w.in_middle, here}, [&](double t) {
-        moved = true;
-        move_to(w, from, t * reach);
-        return factorise_at(w.s, w.s.q, w.s.lambda) != Outcome::converged || is_past(w, w.to)
-                   ? -1
-                   : determinant(w);
-    });
-    if (lowest.value < 0) return lowest.t * reach;
-    if (moved) {
-        w.go_to(a);
-        w.s.q = end;
-        w.s.lambda = lambda_end;
-        (void)factorise_at(w.s, w.s.q, w.s.lambda);
-    }
-    return std::nullopt;
-}
-
-// The first τ at which an element reverses: a spring passes through zero length, or a bushing through
-// half a turn. The polynomial goes on smoothly where the force jumps. The state is left there.
-std::optional<double> reversed_inside(Continuation& w, const State<double>& from, double reach) {
-    constexpr int pieces = 32, halvings = 40;
-    const Model& model = w.s.model;
-    if (!any_reversed(model, from, w.s.q)) return std::nullopt;
-    const State<double> end = w.s.q;
-    const Vector<double> lambda_end = w.s.lambda;
-    const double a = w.at();
-    State<double> before = from;
-    for (int k = 1; k <= pieces; ++k) {
-        double low = reach * (k - 1) / pieces, high = reach * k / pieces;
-        move_to(w, from, high);
-        if (!any_reversed(model, before, w.s.q)) {
-            before = w.s.q;
-            continue;
-        }
-        for (int n = 0; n < halvings; ++n) {
-            const double middle = (low + high) / 2;
-            move_to(w, from, middle);
-            (any_reversed(model, before, w.s.q) ? high : low) = middle;
-        }
-        move_to(w, from, low);
-        return low;
-    }
-    w.go_to(a);  // an element has only turned far
-    w.s.q = end;
-    w.s.lambda = lambda_end;
-    return std::nullopt;
 }
 
 // Maximum number of expansions: the option's number, and as many again for each crossing of a knot;
@@ -664,53 +407,6 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
     }
 }
 
-}  // namespace
-
-namespace {
-
-bool same(const LoadKind& a, const LoadKind& b) {
-    return std::visit(
-        overloaded{
-            [](const DeadForce& x, const DeadForce& y) {
-                return x.at.body == y.at.body && x.at.s_local == y.at.s_local && x.f == y.f;
-            },
-            [](const DeadMoment& x, const DeadMoment& y) { return x.body == y.body && x.m == y.m; },
-            [](const FollowerForce& x, const FollowerForce& y) {
-                return x.at.body == y.at.body && x.at.s_local == y.at.s_local &&
-                       x.f_local == y.f_local;
-            },
-            [](const FollowerMoment& x, const FollowerMoment& y) {
-                return x.body == y.body && x.m_local == y.m_local;
-            },
-            [](const BrakeForce& x, const BrakeForce& y) {
-                return x.body == y.body && x.patch.s_local == y.patch.s_local && x.f == y.f;
-            },
-            [](const auto&, const auto&) { return false; }},
-        a, b);
-}
-
-bool is_same(const elastocheck::Driven& a, const elastocheck::Driven& b) {
-    return std::visit(
-        overloaded{[](const Load& l, const Load& m) { return same(l.kind, m.kind); },
-                   [](const Motion& m, const Motion& n) { return m.joint == n.joint; },
-                   [](const FreeLength& f, const FreeLength& g) { return f.elastic == g.elastic; },
-                   [](const Preload& p, const Preload& r) {
-                       return p.elastic == r.elastic && p.direction == r.direction;
-                   },
-                   [](const auto&, const auto&) { return false; }},
-        a, b);
-}
-
-}  // namespace
-
-bool same_drivers(const Branch& a, const Branch& b) {
-    return std::ranges::equal(a.drivers, b.drivers, [](const Driver& x, const Driver& y) {
-        return x.start == y.start && x.rate == y.rate && is_same(x.what, y.what);
-    });
-}
-
-namespace {
-
 SteppingState series_state(const Model& model, const Branch& branch, const Analysis& analysis) {
     SteppingState s(model, branch, analysis);
     s.consistent = true;
@@ -790,11 +486,6 @@ std::vector<Driver> start_values(const Branch& branch) {
                          [](const Driver& driver) { return driver.start != 0; });
     return list;
 }
-bool same_values(std::span<const Driver> a, std::span<const Driver> b) {
-    return std::ranges::equal(a, b, [](const Driver& x, const Driver& y) {
-        return x.start == y.start && is_same(x.what, y.what);
-    });
-}
 
 // Follows one side. `begun`: empty, or of another side with the same drivers; filled where the side
 // may be begun alike.
@@ -830,7 +521,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
         s.system.held.value = (*begun)->held;
         Continuation w(s, curves, options, Drive::rate);
         w.go_to(w.to);  // with all forces at the end of the branch
-        const Outcome loaded = check_idle_load_here(w, 0);
+        const Outcome loaded = check_idle_load_here(w.s, 0);
         w.go_to(0);
         return finish(w, loaded == Outcome::converged ? follow_to_end(w, nullptr, begun) : loaded);
     }
@@ -898,135 +589,6 @@ std::vector<Path> follow_sides(const Model& model, std::span<const Branch> sides
 
 Path follow(const Model& model, const Branch& branch, const recursive::Series& options) {
     return follow(model, branch, options, analyse(model));
-}
-
-namespace {
-
-// Tolerance on τ at a load where the load is the parameter: rounding of the reach and of the load
-// itself, which is larger in τ for short expansions.
-double slack(const Expansion& x, double load) {
-    constexpr double eps = std::numeric_limits<double>::epsilon();
-    return 1e-12 * x.reach + 4 * eps * (std::abs(load) + std::abs(x.load[0])) / std::abs(x.load[1]);
-}
-
-}  // namespace
-
-std::optional<Place> find(const Path& path, double load) {
-    for (std::size_t k = 0; k < path.expansions.size(); ++k) {
-        const Expansion& x = path.expansions[k];
-        const double from = x.load[0], to = polynomial(x.load, x.reach);
-        const bool linear = x.load.size() < 3 || x.load.tail(x.load.size() - 2).isZero(0);
-        // The end is reached within rounding only.
-        const double rounding = 1e-12 * std::abs(to - from);
-        if (linear) {
-            const double tau = (load - from) / x.load[1];
-            if (tau >= -slack(x, load) && tau <= x.reach + slack(x, load))
-                return Place{k, std::clamp(tau, 0.0, x.reach)};
-        } else {
-            if (std::abs(load - from) <= rounding) return Place{k, 0};
-            if (const auto tau =
-                    first_zero([&](double t) { return polynomial(x.load, t) - load; }, x.reach))
-                return Place{k, *tau};
-            if (k + 1 == path.expansions.size() && std::abs(load - to) <= rounding)
-                return Place{k, x.reach};
-        }
-    }
-    return std::nullopt;
-}
-
-Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path, Place place) {
-    const Expansion& expansion = path.expansions[place.expansion];
-    Vector<double> x;
-    horner(expansion.x, place.tau, x);
-    const State<double> from = state_of<double>(expansion.start);
-    State<double> q = from;
-    displace(from, x, q);
-    Equilibrium point{0, expansion.start, std::vector<Wrench>(model.joints.size()), 0};
-    const double a = polynomial(expansion.load, place.tau);
-    record(model, inputs_at<double>(model, branch, a), q, q,
-           Vector<double>(x.tail(constraint_rows(model))), a, point);
-    return point;
-}
-
-EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points,
-                       const Visit& visit) {
-    constexpr std::size_t at_once = 64;  // points, so that memory does not grow with their number
-    EquilibriumPath result;
-    result.outcome = path.outcome;
-    result.detail = path.detail;
-    result.counts = path.counts;
-    if (path.expansions.empty()) return result;
-    Recording recording(model, points + 1, result, visit);
-    double whole = 0, before = 0;  // τ summed over expansions
-    for (const auto& expansion : path.expansions) whole += expansion.reach;
-    std::vector<double> loads, taus;
-    Matrix<double> powers, x;
-    Vector<double> lambda(constraint_rows(model));
-    const Inputs<double> drawn = inputs_as_drawn<double>(model);
-    Inputs<double> inputs;
-    set_inputs<double>(model, branch, drawn, 1, 0, inputs);
-    // Of the driven inputs, wrenches depend on joint offsets only.
-    const bool moves = std::ranges::any_of(
-        branch.drivers, [](const Driver& driver) { return driven_joint(driver.what) >= 0; });
-    for (std::size_t k = 0; k < path.expansions.size();) {
-        const Expansion& expansion = path.expansions[k];
-        const bool last = k + 1 == path.expansions.size();
-        taus.clear();
-        loads.clear();
-        for (std::size_t next = recording.reached; next < recording.points && taus.size() < at_once;
-             ++next) {
-            // Same expression as in the other methods, to the last bit: curves are compared at
-            // equal loads only.
-            const double load = branch.to * static_cast<double>(next) / points;
-            double tau = path.arc_length ? whole * static_cast<double>(next) / points - before
-                                         : (load - expansion.load[0]) / expansion.load[1];
-            const double rounding =
-                path.arc_length ? 1e-12 * expansion.reach : slack(expansion, load);
-            const bool beyond = tau > expansion.reach + rounding;
-            if (beyond && !(last && path.arc_length && next + 1 == recording.points)) break;
-            tau = std::clamp(tau, 0.0, expansion.reach);
-            taus.push_back(tau);
-            loads.push_back(path.arc_length ? polynomial(expansion.load, tau) : load);
-        }
-        // Evaluates many points of the expansion at once: [x_0 ... x_p] [1 τ ... τ^p]ᵀ.
-        powers.resize(expansion.x.cols(), static_cast<Eigen::Index>(taus.size()));
-        for (Eigen::Index c = 0; c < powers.cols(); ++c) {
-            double power = 1;
-            for (Eigen::Index row = 0; row < powers.rows();
-                 ++row, power *= taus[static_cast<std::size_t>(c)])
-                powers(row, c) = power;
-        }
-        x.noalias() = expansion.x * powers;
-        const State<double> from = state_of<double>(expansion.start);
-        State<double> q = from;
-        for (Eigen::Index c = 0; c < x.cols(); ++c) {
-            const double load = loads[static_cast<std::size_t>(c)];
-            displace(from, x.col(c), q);
-            lambda = x.col(c).tail(lambda.size());
-            if (moves) set_inputs<double>(model, branch, drawn, 1, load, inputs);
-            recording.keep(model, inputs, q, q, lambda, load);
-        }
-        if (taus.size() == at_once) continue;  // the expansion may hold more points
-        before += expansion.reach;
-        ++k;
-    }
-    recording.finish();
-    return result;
-}
-
-Rates rates(const Path& path, Place place) {
-    const Expansion& expansion = path.expansions[place.expansion];
-    Vector<double> x;
-    horner(expansion.x, place.tau, x);
-    const Vector<double> dx = derivative(expansion.x, place.tau) / slope(expansion.load, place.tau);
-    Rates result;
-    for (std::size_t b = 0; b < expansion.start.size(); ++b) {
-        const auto row = static_cast<Eigen::Index>(6 * b);
-        const Eigen::Vector3d g = x.segment<3>(row + 3) / 2, dg = dx.segment<3>(row + 3) / 2;
-        result.dr.push_back(dx.segment<3>(row));
-        result.omega.push_back(2 / (1 + g.squaredNorm()) * (dg + g.cross(dg)));
-    }
-    return result;
 }
 
 }  // namespace elastocheck::recursive::series

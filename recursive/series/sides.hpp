@@ -12,6 +12,9 @@ namespace elastocheck::recursive::series {
 // their range only.
 bool same_drivers(const Branch& a, const Branch& b);
 
+// Whether two lists drive the same quantities to the same values at load factor 0.
+bool same_values(std::span<const Driver> a, std::span<const Driver> b);
+
 // The paths of several branches. Those in sequence with the same drivers share the settled start and
 // the expansion there, whose coefficient x_k is r^k times as large where the range is r times as
 // long. Models with curves and paths by arc length share nothing. The results are those of follow(),

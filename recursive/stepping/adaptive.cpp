@@ -33,136 +33,171 @@ double share_of_reactions(SteppingState& s, const ContinuationSettings& settings
     return allowed > 0 ? change / allowed : 0;
 }
 
-// Records the points at equal increments of the parameter up to `to`. Pre: the state
-// has just settled.
-Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& recording) {
-    const ContinuationSettings settings{Drive::rate, method.length_tolerance,
-                                        method.angle_tolerance};
-    const std::size_t last = recording.points - 1, &reached = recording.reached;
-    const auto parameter = [&](std::size_t k) {
-        return to * static_cast<double>(k) / static_cast<double>(last);
-    };
-    const auto keep = [&](const State<double>& q, const Vector<double>& lambda, double a) {
-        go_to(s, {1, a});
-        recording.keep(s.model, s.inputs, q, q, lambda, a);
-    };
+// A bend of the path may be sharper than a short step: an imperfect column turns aside within 1e-9
+// of its load.
+constexpr double short_step = 1e-7,  // of the branch
+    shortest_step = 1e-12;
 
-    Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
-    Vector<double> lambda = s.lambda, curvature = Vector<double>::Zero(s.n()),
-                   lambda_curvature = Vector<double>::Zero(s.m());
-    State<double> q = s.q;
-    double size = 0;
-    // The factors are those of the last correction of settling.
-    differentiate(s, settings, node);
-    const int orientation = node.orientation;
-    // A bend of the path may be sharper than a short step: an imperfect column turns aside within
-    // 1e-9 of its load. The reason why the branch ends is judged at the first short step that is
-    // refused; a later one overrides it if the first was refused only for its interpolation error.
-    constexpr double short_step = 1e-7,  // of the branch
-        shortest_step = 1e-12;
+// A sweep with steps of its own choice, from the state, which has just settled.
+struct Sweep {
+    SteppingState& s;
+    ContinuationSettings settings;
+    double to;
+    Recording& recording;
+    Stride stride;
+    int orientation = 0;  // sign of the determinant at the start
+    double h;             // of the next step
+    double log_here = 0;  // log₂ |determinant| at the node
+    Matrix<double> softest = {};
+    int changes = 0;       // of pieces since the last accepted step
     bool refused = false;  // a short step at refused_at, past which the path has not gone on
     double refused_at = 0;
     Outcome ended = Outcome::branch_lost;  // why
     bool by_error = false;                 // refused only for its interpolation error
-    double h = to / 8;
-    int changes = 0;  // of pieces since the last accepted step
-    // Factorisation and derivative at the node on the present pieces.
-    const auto begin_anew = [&]() -> Outcome {
-        go_to(s, settings.at(node.p));
-        external_force<double>(s.model, s.branch, s.inputs, node.q, s.applied);
-        if (const Outcome outcome = factorise_at(s, node.q, node.lambda);
-            outcome != Outcome::converged)
-            return outcome;
-        differentiate(s, settings, node);
-        curvature.setZero();
-        lambda_curvature.setZero();
-        return node.orientation == orientation ? Outcome::converged : Outcome::limit_point;
-    };
-    if (!s.curves.empty()) {
-        take_pieces(s, settings, node, h * 1e-3, q);
-        if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
+
+    bool is_done() const { return recording.reached >= recording.points; }
+};
+
+void keep(Sweep& w, const State<double>& q, const Vector<double>& lambda, double a) {
+    go_to(w.s, {1, a});
+    w.recording.keep(w.s.model, w.s.inputs, q, q, lambda, a);
+}
+
+// Factorisation and derivative at the node on the present pieces.
+Outcome begin_anew(Sweep& w) {
+    Node& node = w.stride.node;
+    go_to(w.s, w.settings.at(node.p));
+    external_force<double>(w.s.model, w.s.branch, w.s.inputs, node.q, w.s.applied);
+    if (const Outcome outcome = factorise_at(w.s, node.q, node.lambda);
+        outcome != Outcome::converged)
+        return outcome;
+    differentiate(w.s, w.settings, node);
+    w.stride.curvature.setZero();
+    w.stride.lambda_curvature.setZero();
+    w.log_here = log_determinant(w.s.system);
+    return node.orientation == w.orientation ? Outcome::converged : Outcome::limit_point;
+}
+
+bool is_unstable(Sweep& w) {
+    const LeastStiffness least = min_stiffness(w.s, w.softest);
+    return (least.of_energy && least.value < 0) ||
+           negative_idle_stiffness(w.s, w.stride.next.q, w.stride.next.lambda) < 0;
+}
+
+// Judges the middle of a step that Newton's method accepts, and its stability: the error of the
+// interpolation, in units of the tolerance; infinite where the middle is not solved.
+Outcome judge_step(Sweep& w, Trial& trial, double log_next, double& error) {
+    auto& [node, next, curvature, lambda_curvature, q, lambda] = w.stride;
+    if (is_unstable(w)) trial.verdict = Verdict::past_singular_point;
+    if (is_inconsistent_at(w.s, next, q, lambda)) return Outcome::inconsistent_constraints;
+    between(node, next, 0.5, q, lambda);
+    double size = 0;
+    trial.outcome = correct(w.s, w.settings, q, lambda, node.p + (next.p - node.p) / 2, size);
+    if (trial.outcome != Outcome::converged) return Outcome::converged;
+    error = std::max(
+        {trial.left, size, share_of_reactions(w.s, w.settings, q, node.lambda, next.lambda)});
+    const bool turned = w.s.system.lu.orientation != node.orientation;
+    const bool dips = determinant_dips(w.log_here, log_determinant(w.s.system), log_next);
+    if (trial.verdict == Verdict::accepted && (turned || dips))
+        trial.verdict = turned ? Verdict::past_singular_point : Verdict::nearly_singular;
+    return Outcome::converged;
+}
+
+// Records the points of the step and goes on to its end.
+void take_step(Sweep& w, double log_next) {
+    auto& [node, next, curvature, lambda_curvature, q, lambda] = w.stride;
+    const double step = next.p - node.p, last = static_cast<double>(w.recording.points - 1);
+    while (!w.is_done()) {
+        const double at = w.to * static_cast<double>(w.recording.reached) / last;
+        const double t = (at - node.p) / step;
+        if (t > 1 && next.p != w.to) break;
+        between(node, next, std::min(t, 1.0), q, lambda);
+        keep(w, q, lambda, at);
     }
-    double log_here = log_determinant(s.system);
-    Matrix<double> softest;
-    const auto unstable = [&] {
-        const LeastStiffness least = min_stiffness(s, softest);
-        return (least.of_energy && least.value < 0) ||
-               negative_idle_stiffness(s, next.q, next.lambda) < 0;
-    };
+    curvature = (next.dq - node.dq) / step;
+    lambda_curvature = (next.dlambda - node.dlambda) / step;
+    std::swap(node, next);
+    w.log_here = log_next;
+    w.s.a = node.p;
+    w.changes = 0;
+    if (std::abs(node.p - w.refused_at) > std::abs(w.to) * short_step) w.refused = false;
+}
+
+// Whether the branch ends after a step that was refused or is followed by a short one. The reason is
+// judged at the first short step that is refused; a later one overrides it if the first was refused
+// only for its interpolation error.
+bool ends(Sweep& w, const Trial& trial, double step, bool judged) {
+    if (std::abs(w.h) > std::abs(w.to) * short_step || w.is_done()) return false;
+    const Outcome reason = end_reason(trial, w.stride.node, w.stride.curvature, step, w.s.length);
+    if (!w.refused) w.refused_at = w.stride.node.p;
+    const bool better = w.ended == Outcome::branch_lost || (w.by_error && !judged);
+    if (!w.refused || (better && reason != Outcome::branch_lost)) {
+        w.ended = reason;
+        w.by_error = judged;
+    }
+    w.refused = true;
+    return !(std::abs(w.h) > std::abs(w.to) * shortest_step);
+}
+
+// One step, accepted or refused; an outcome other than `converged` where the branch ends.
+Outcome try_next(Sweep& w) {
+    const Node &node = w.stride.node, &next = w.stride.next;
+    w.stride.next.p = std::abs(w.s.end - node.p) < std::abs(w.h) * 1.1 ? w.s.end : node.p + w.h;
+    KnotCrossing met;
+    Trial trial = step_to_knot(w.s, w.settings, w.stride, met);
+    const double step = next.p - node.p;
+    if (step == 0) {  // the node lies on a knot
+        piece_of(w.s, *met.curve) += met.side;
+        if (++w.changes > 2 * static_cast<int>(w.s.curves.size())) return Outcome::limit_point;
+        return begin_anew(w);
+    }
+    double error = std::numeric_limits<double>::infinity();
+    if (trial.verdict == Verdict::accepted) {
+        const double log_next = log_determinant(w.s.system);
+        if (const Outcome o = judge_step(w, trial, log_next, error); o != Outcome::converged)
+            return o;
+        if (trial.verdict == Verdict::accepted && error <= 1) {
+            take_step(w, log_next);
+            if (met.curve && !w.is_done()) {  // on with the step size that the knot shortened
+                take_pieces(w.s, w.settings, node, w.h * 1e-3, w.stride.q);
+                return begin_anew(w);
+            }
+        }
+    }
+    const bool judged = trial.verdict == Verdict::accepted && std::isfinite(error);
+    const double change = judged ? 0.85 * std::pow(std::max(error, 1e-8), -0.25) : 0.3;
+    w.h = step * std::clamp(change, 0.1, 4.0);
+    return ends(w, trial, step, judged) ? w.ended : Outcome::converged;
+}
+
+// Records the points at equal increments of the parameter up to `to`. Pre: the state
+// has just settled.
+Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& recording) {
+    const Node start{s.q, s.lambda, {}, {}, 0, 0};
+    Sweep w{.s = s,
+            .settings = {Drive::rate, method.length_tolerance, method.angle_tolerance},
+            .to = to,
+            .recording = recording,
+            .stride = {start, start, Vector<double>::Zero(s.n()), Vector<double>::Zero(s.m()), s.q,
+                       s.lambda},
+            .h = to / 8};
+    Node& node = w.stride.node;
+    // The factors are those of the last correction of settling.
+    differentiate(s, w.settings, node);
+    w.orientation = node.orientation;
+    if (!s.curves.empty()) {
+        take_pieces(s, w.settings, node, w.h * 1e-3, w.stride.q);
+        if (const Outcome outcome = begin_anew(w); outcome != Outcome::converged) return outcome;
+    }
+    w.log_here = log_determinant(s.system);
     if (const Outcome outcome = check_start_stability(s, start_stability(s));
         outcome != Outcome::converged)
         return outcome;
-    keep(node.q, node.lambda, 0);
-
-    for (int steps = 0; reached <= last; ++steps) {
+    keep(w, node.q, node.lambda, 0);
+    for (int steps = 0; !w.is_done(); ++steps) {
         if (steps == max_steps) return Outcome::iteration_limit;
         if (node.p == s.end && s.end != to) return Outcome::inconsistent_constraints;
-        next.p = std::abs(s.end - node.p) < std::abs(h) * 1.1 ? s.end : node.p + h;
-        KnotCrossing met;
-        Trial trial =
-            step_to_knot(s, settings, node, curvature, lambda_curvature, next, q, lambda, met);
-        const double step = next.p - node.p;
-        if (step == 0) {  // the node lies on a knot
-            piece_of(s, *met.curve) += met.side;
-            if (++changes > 2 * static_cast<int>(s.curves.size())) return Outcome::limit_point;
-            if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
-            log_here = log_determinant(s.system);
-            continue;
-        }
-        double error = std::numeric_limits<double>::infinity();
-        if (trial.verdict == Verdict::accepted) {
-            const double log_next = log_determinant(s.system);
-            if (unstable()) trial.verdict = Verdict::past_singular_point;
-            if (is_inconsistent_at(s, next, q, lambda)) return Outcome::inconsistent_constraints;
-            between(node, next, 0.5, q, lambda);
-            trial.outcome = correct(s, settings, q, lambda, node.p + step / 2, size);
-            if (trial.outcome == Outcome::converged) {
-                error = std::max({trial.left, size,
-                                  share_of_reactions(s, settings, q, node.lambda, next.lambda)});
-                const bool turned = s.system.lu.orientation != node.orientation;
-                const bool dips = determinant_dips(log_here, log_determinant(s.system), log_next);
-                if (trial.verdict == Verdict::accepted && (turned || dips))
-                    trial.verdict =
-                        turned ? Verdict::past_singular_point : Verdict::nearly_singular;
-            }
-            if (trial.verdict == Verdict::accepted && error <= 1) {
-                for (; reached <= last;) {
-                    const double at = parameter(reached);
-                    const double t = (at - node.p) / step;
-                    if (t > 1 && next.p != to) break;
-                    between(node, next, std::min(t, 1.0), q, lambda);
-                    keep(q, lambda, at);
-                }
-                curvature = (next.dq - node.dq) / step;
-                lambda_curvature = (next.dlambda - node.dlambda) / step;
-                std::swap(node, next);
-                log_here = log_next;
-                s.a = node.p;
-                changes = 0;
-                if (std::abs(node.p - refused_at) > std::abs(to) * short_step) refused = false;
-                if (met.curve && reached <= last) {
-                    take_pieces(s, settings, node, h * 1e-3, q);
-                    if (const Outcome outcome = begin_anew(); outcome != Outcome::converged)
-                        return outcome;
-                    log_here = log_determinant(s.system);
-                    continue;  // with the step size that the knot shortened
-                }
-            }
-        }
-        const bool judged = trial.verdict == Verdict::accepted && std::isfinite(error);
-        const double change = judged ? 0.85 * std::pow(std::max(error, 1e-8), -0.25) : 0.3;
-        h = step * std::clamp(change, 0.1, 4.0);
-        if (!(std::abs(h) > std::abs(to) * short_step) && reached <= last) {
-            const Outcome reason = end_reason(trial, node, curvature, step, s.length);
-            if (!refused) refused_at = node.p;
-            const bool better = ended == Outcome::branch_lost || (by_error && !judged);
-            if (!refused || (better && reason != Outcome::branch_lost)) {
-                ended = reason;
-                by_error = judged;
-            }
-            refused = true;
-            if (!(std::abs(h) > std::abs(to) * shortest_step)) return ended;
-        }
+        if (const Outcome outcome = try_next(w); outcome != Outcome::converged) return outcome;
     }
     return Outcome::converged;
 }

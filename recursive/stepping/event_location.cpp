@@ -79,21 +79,22 @@ KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& setting
 }
 
 // Moves `next`, an equilibrium near the knot with its derivative, onto the knot. Returns false
-// where the iteration leaves the interval between the node at p and `limit`. The factors are those
-// of `next`.
+// where the iteration leaves the interval between the node and `limit`. The factors are those of
+// `next`.
 bool land(SteppingState& s, const ContinuationSettings& settings, const KnotCrossing& knot,
-          double p, double limit, Node& next, State<double>& q) {
+          double limit, Stride& stride) {
     const CurvePlace& at = *knot.curve;
-    const double step = next.p - p;
+    Node& next = stride.next;
+    const double p = stride.node.p, step = next.p - p;
     for (int k = 0; k < 5; ++k) {
         go_to(s, settings.at(next.p));
         const double x = deflection(s.model, s.inputs, next.q, at);
         if (std::abs(x - knot.knot) <= slack(settings, at)) return true;
         const double ahead = step * 1e-4;
-        q = next.q;
-        advance(q, ahead * next.dq);
+        stride.q = next.q;
+        advance(stride.q, ahead * next.dq);
         go_to(s, settings.at(next.p + ahead));
-        const double rate = (deflection(s.model, s.inputs, q, at) - x) / ahead;
+        const double rate = (deflection(s.model, s.inputs, stride.q, at) - x) / ahead;
         const double dp = (knot.knot - x) / rate;
         if (!(std::abs(dp) <= std::abs(step)) || !((next.p + dp - p) * step > 0) ||
             !((limit - next.p - dp) * step >= 0))
@@ -113,19 +114,21 @@ bool land(SteppingState& s, const ContinuationSettings& settings, const KnotCros
 
 }  // namespace
 
-Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, const Node& node,
-                   const Vector<double>& curvature, const Vector<double>& lambda_curvature,
-                   Node& next, State<double>& q, Vector<double>& lambda, KnotCrossing& met) {
+Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Stride& stride,
+                   KnotCrossing& met) {
+    const Node& node = stride.node;
+    Node& next = stride.next;
+    const auto &curvature = stride.curvature, &lambda_curvature = stride.lambda_curvature;
     met = {};
     if (s.curves.empty()) return try_step(s, settings, node, curvature, lambda_curvature, next);
     const double whole = next.p;
-    KnotCrossing expected =
-        first_meeting(s, settings, node.p, whole - node.p, q, [&](double t, State<double>& at) {
-            const double h = t * (whole - node.p);
-            s.dq = h * node.dq + h * h / 2 * curvature;
-            at = node.q;
-            advance(at, s.dq);
-        });
+    KnotCrossing expected = first_meeting(s, settings, node.p, whole - node.p, stride.q,
+                                          [&](double t, State<double>& at) {
+                                              const double h = t * (whole - node.p);
+                                              s.dq = h * node.dq + h * h / 2 * curvature;
+                                              at = node.q;
+                                              advance(at, s.dq);
+                                          });
     double h = whole - node.p;
     Trial trial;
     for (int k = 0; k < 4; ++k) {
@@ -136,15 +139,15 @@ Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, const
         }
         trial = try_step(s, settings, node, curvature, lambda_curvature, next);
         if (trial.verdict != Verdict::accepted) return trial;
-        const bool landed = expected.curve && land(s, settings, expected, node.p, whole, next, q);
+        const bool landed = expected.curve && land(s, settings, expected, whole, stride);
         if (expected.curve && !landed && k == 0) {  // the path misses the knot of the predictor
             expected = {};
             continue;
         }
         h = next.p - node.p;
-        const KnotCrossing earlier =
-            first_meeting(s, settings, node.p, h, q,
-                          [&](double t, State<double>& at) { between(node, next, t, at, lambda); });
+        const KnotCrossing earlier = first_meeting(
+            s, settings, node.p, h, stride.q,
+            [&](double t, State<double>& at) { between(node, next, t, at, stride.lambda); });
         if (!earlier.curve) {
             if (landed) met = expected;
             return trial;

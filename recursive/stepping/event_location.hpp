@@ -33,11 +33,18 @@ struct KnotCrossing {
     double knot = 0;
 };
 
-// The step of continuation.hpp from `node` to next.p on the present pieces, shortened to the first
-// knot reached, which `met` returns. q and lambda are workspace.
-Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, const Node& node,
-                   const Vector<double>& curvature, const Vector<double>& lambda_curvature,
-                   Node& next, State<double>& q, Vector<double>& lambda, KnotCrossing& met);
+// A step of continuation.hpp from `node` to `next`; z'' of its predictor, and workspace.
+struct Stride {
+    Node node, next;
+    Vector<double> curvature, lambda_curvature;  // z'' at the node
+    State<double> q;
+    Vector<double> lambda;
+};
+
+// The step from the node to next.p on the present pieces, shortened to the first knot reached,
+// which `met` returns.
+Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Stride& stride,
+                   KnotCrossing& met);
 
 // Selects for every curve the piece that the path follows from the node on: the piece of its
 // deflection or, on a knot, the piece a little ahead.

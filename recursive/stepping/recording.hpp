@@ -28,7 +28,8 @@ struct Recording {
     void keep(const Model& model, const Inputs<double>& inputs, const State<double>& q,
               const State<double>& where_lambda_acts, const Vector<double>& lambda, double load) {
         Equilibrium& point = path.points[visit ? 0 : reached];
-        record(model, inputs, q, where_lambda_acts, lambda, load, point);
+        point.load = load;
+        record(model, inputs, q, {lambda, where_lambda_acts}, point);
         ++reached;
         if (visit) visit(point);
     }

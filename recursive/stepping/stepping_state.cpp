@@ -150,6 +150,13 @@ Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed)
                                                              : Outcome::loaded_idle_mode;
 }
 
+Outcome check_idle_load_here(SteppingState& s, double missed) {
+    if (s.system.held.idle == 0) return Outcome::converged;
+    external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
+    s.applied -= (1 - s.parameters.t) * s.R_d;
+    return check_idle_load(s, s.q, missed);
+}
+
 Outcome factorise_at(SteppingState& s, const State<double>& q, const Vector<double>& lambda) {
     if (s.consistent)
         assemble_consistent<double>(s.model, s.branch, s.inputs, q, lambda, s.system.M, s.Phi);
@@ -198,10 +205,10 @@ void drive_at(SteppingState& s, Drive drive, double amount, const State<double>&
     s.force.setZero();
     s.lower.setZero();
     add_load_rate<double>(s.branch, drive, amount, q, s.upper);
-    add_stored_rate<double>(s.model, s.branch, s.inputs, drive, amount, q, s.force);
-    add_reaction_rate<double>(s.model, s.branch, s.inputs, drive, amount, q, lambda, s.force);
+    add_stored_rate<double>({s.model, s.branch, s.inputs, drive, amount, q}, s.force);
+    add_reaction_rate<double>({s.model, s.branch, s.inputs, drive, amount, q}, lambda, s.force);
     s.upper -= s.force;
-    add_constraint_rate<double>(s.model, s.branch, s.inputs, drive, -amount, q, s.lower);
+    add_constraint_rate<double>({s.model, s.branch, s.inputs, drive, -amount, q}, s.lower);
     if (drive == Drive::start) {
         s.upper += amount * s.R_d;
         s.lower -= amount * s.Phi_d;
@@ -209,9 +216,8 @@ void drive_at(SteppingState& s, Drive drive, double amount, const State<double>&
 }
 
 void record(const Model& model, const Inputs<double>& inputs, const State<double>& q,
-            const State<double>& where_lambda_acts, const Vector<double>& lambda, double load,
-            Equilibrium& point) {
-    point.load = load;
+            const Acting& reactions, Equilibrium& point) {
+    const auto& [lambda, where_lambda_acts] = reactions;
     for (std::size_t b = 0; b < point.poses.size(); ++b) {
         point.poses[b].r = q[static_cast<BodyId>(b)].r;
         point.poses[b].p = q[static_cast<BodyId>(b)].p;

@@ -244,6 +244,9 @@ Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_rat
 // from equilibrium [m], which blurs the decision as |Φ| does.
 Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed);
 
+// The same for the forces at the present configuration.
+Outcome check_idle_load_here(SteppingState& s, double missed);
+
 // Assembles and factorises the method's matrix at (q, λ) with the present inputs, and checks it.
 Outcome factorise_at(SteppingState& s, const State<double>& q, const Vector<double>& lambda);
 
@@ -287,9 +290,13 @@ inline void back_substitute(SteppingState& s) {
     ++s.counts.iterations;
 }
 
-// λ acts at the configuration of its solve: for the published sums one step before q.
+// λ and the configuration of its solve, where it acts: for the published sums one step before q.
+struct Acting {
+    const Vector<double>& lambda;
+    const State<double>& where;
+};
+// Fills the poses, wrenches and |Φ| of a point.
 void record(const Model& model, const Inputs<double>& inputs, const State<double>& q,
-            const State<double>& where_lambda_acts, const Vector<double>& lambda, double load,
-            Equilibrium& point);
+            const Acting& reactions, Equilibrium& point);
 
 }  // namespace elastocheck::recursive

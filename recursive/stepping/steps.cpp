@@ -61,7 +61,7 @@ void store(SteppingState& s, const Follow& follow) {
 // the stored forces.
 void store_driven(SteppingState& s, const Follow& follow, Drive drive, double amount) {
     if (follow.lever && follow.axis) return elastic_force<double>(s.model, s.inputs, s.q, s.stored);
-    for_each_stored_rate<double>(s.model, s.branch, s.inputs, drive, amount, s.q,
+    for_each_stored_rate<double>({s.model, s.branch, s.inputs, drive, amount, s.q},
                                  [&](std::size_t k, const ElementForce<double>& force) {
                                      const auto [i, j] = bodies_of(s.model.elastics[k].kind);
                                      add_element_force<double>(i, j, force, s.stored);
@@ -94,7 +94,7 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
     const Parameters here = s.parameters;
     if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
         s.lower.setZero();
-        add_constraint_rate<double>(s.model, s.branch, s.inputs, drive, -amount, s.q, s.lower);
+        add_constraint_rate<double>({s.model, s.branch, s.inputs, drive, -amount, s.q}, s.lower);
         if (drive == Drive::start) s.lower -= amount * s.Phi_d;
     }
     go_to(s, next);

@@ -202,7 +202,7 @@ std::string inspection(const Inspected& inspected) {
     line(
         "\nidle modes (as drawn no joint and no rate resists them; they are held, and reported "
         "here)");
-    const auto idle = recursive::told_idle_modes(d);
+    const auto idle = recursive::describe_idle_modes(d);
     for (const auto& mode : std::span(idle).first(shown(idle.size()))) line("  {}", mode);
     rest(idle.size(), "modes");
     if (d.idle.empty()) line("  none");

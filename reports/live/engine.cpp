@@ -132,7 +132,7 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
                                                      full, true, known->responses, rows);
     json result = {{"name", branch.name}, {"unit", symbol(compare::unit_of(branch.unit))}};
     result.update(outcome_json(path));
-    result["idle"] = recursive::told_idle_modes(known->analysis->diagnosis);
+    result["idle"] = recursive::describe_idle_modes(known->analysis->diagnosis);
     result["points"] = rows.rows.size();
     result["at"] = rows.append_to(numbers);
     const auto start = std::ranges::min_element(

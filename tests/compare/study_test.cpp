@@ -69,7 +69,7 @@ TEST(Study, OrderIsThatOfTheLargestErrorOnTheBranch) {
     std::vector<Curve> levels;
     for (const int N : steps) levels.push_back(made(1. / N));
     MethodStudy study;
-    study_levels(study, all, {0}, steps, levels, known, 2);
+    study_levels(study, all, {0}, {steps, levels, known, 2});
     const ChannelStudy& found = study.equal_parameter.front();
     EXPECT_EQ(found.behaviour, Behaviour::converging);
     EXPECT_NEAR(found.end.order, 3, 0.05);

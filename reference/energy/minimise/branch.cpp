@@ -364,8 +364,7 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
     long evaluations = 0;
     State state = state_at(path, a, start);
     for (int i = 0; i < options.recentre_limit && evaluations < options.evaluation_limit; ++i) {
-        const Minimisation m = minimise(path.model, prescribed, path.scales, state.poses, state.at,
-                                        state.H, state.modes, idle, options.tolerance, per_chart);
+        const Minimisation m = minimise(path, state, idle, per_chart);
         evaluations += m.evaluations;
         path.counts.iterations += 1;
         path.counts.evaluations += m.evaluations;

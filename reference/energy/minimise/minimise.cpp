@@ -174,20 +174,22 @@ void constraint_vector(unsigned m, double* result, unsigned n, const double* y, 
 
 }  // namespace
 
-Minimisation minimise(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                      const std::vector<Pose>& centre, const Balance& at, const MatrixXd& H,
-                      const Modes& free, const MatrixXd& idle, double tolerance,
+Minimisation minimise(const Path& path, const State& centre, const MatrixXd& idle,
                       int evaluation_limit) {
+    const Model& model = path.model;
+    const Scales& scales = path.scales;
+    const Balance& at = centre.at;
+    const Prescribed prescribed = elastocheck::reference::energy::at(path.course, centre.a);
     const int rank = static_cast<int>(at.independent.size());
-    const MatrixXd H_held = H + holding * idle * idle.transpose();
-    const Modes modes = idle.cols() > 0 ? modes_of(at, H_held) : free;
+    const MatrixXd H_held = centre.H + holding * idle * idle.transpose();
+    const Modes modes = idle.cols() > 0 ? modes_of(at, H_held) : centre.modes;
     const MatrixXd T = round_coordinates(at, H_held, modes);
     const int n = static_cast<int>(T.cols());
     Problem p{.model = model,
               .prescribed = prescribed,
               .scales = scales,
               .at = at,
-              .tolerance = tolerance,
+              .tolerance = path.options.tolerance,
               .evaluation_limit = evaluation_limit,
               .modes = modes,
               .idle = idle,
@@ -195,8 +197,8 @@ Minimisation minimise(const Model& model, const Prescribed& prescribed, const Sc
               .lambda = at.lambda,
               .D = scales.rows(model),
               .row_scale = VectorXd::Ones(rank),
-              .chart = chart_about(centre),
-              .best = {centre, std::numeric_limits<double>::quiet_NaN(), 0}};
+              .chart = chart_about(centre.poses),
+              .best = {centre.poses, std::numeric_limits<double>::quiet_NaN(), 0}};
     if (n == 0) {
         evaluate(p, VectorXd(0));
         return p.best;

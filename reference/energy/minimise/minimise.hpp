@@ -2,7 +2,7 @@
 // NLopt.
 #pragma once
 
-#include "reference/energy/constraints/balance.hpp"
+#include "reference/energy/minimise/branch.hpp"
 
 namespace elastocheck::reference::energy {
 
@@ -12,13 +12,11 @@ struct Minimisation {
     long evaluations = 0;
 };
 
-// In the chart about `centre`, starting there, in coordinates that make H the unit matrix along the
-// constraints; `free` are the modes of H. Stops at a point well within `tolerance`, at stagnation,
-// or at the limit. NLopt's status is not used. Where an idle motion (columns of `idle`, in ξ) leads
-// through a family of equal minima, the nearest is taken.
-Minimisation minimise(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                      const std::vector<Pose>& centre, const Balance& at, const Eigen::MatrixXd& H,
-                      const Modes& free, const Eigen::MatrixXd& idle, double tolerance,
+// In the chart about the poses of `centre`, starting there, in coordinates that make its H the unit
+// matrix along the constraints. Stops at a point well within the options' tolerance, at stagnation,
+// or at the limit of evaluations. NLopt's status is not used. Where an idle motion (columns of
+// `idle`, in ξ) leads through a family of equal minima, the nearest is taken.
+Minimisation minimise(const Path& path, const State& centre, const Eigen::MatrixXd& idle,
                       int evaluation_limit);
 
 }  // namespace elastocheck::reference::energy

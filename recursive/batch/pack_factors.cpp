@@ -1,0 +1,146 @@
+// The matrices of the variants in the lanes: assembled, factorised, solved for corrections.
+#include <algorithm>
+#include <cmath>
+
+#include "recursive/batch/pack.hpp"
+#include "recursive/formula/recentre.hpp"
+#include "recursive/stepping/settle.hpp"
+#include "recursive/stepping/step_check.hpp"
+
+namespace elastocheck::recursive::batch {
+namespace {
+
+// A lane whose smallest pivot at the design position, over the largest, is below this fraction of
+// the design's ratio leaves: it may have an idle mode or a redundancy that the design has not.
+constexpr double min_share_of_ratio = 1e-3;
+// Strain up to which a held mode is exactly idle, or a combination exactly redundant.
+constexpr double exactly_idle = 1e-12;
+constexpr double largest_multiplier = 1e4;  // as in the scalar path
+
+}  // namespace
+
+void Pack::assemble(int at) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    SteppingState& s = *slot.s;
+    assemble_consistent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
+    load_matrix(at);
+}
+
+// Scales and borders the matrix of a lane.
+void Pack::load_matrix(int at) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    SteppingState& s = *slot.s;
+    for (const int k : outside)
+        if (s.system.M.values[static_cast<std::size_t>(k)] != 0) slot.inside = false;
+    set_border(s.system);
+    const SparseLU<double>& of = s.system.lu;
+    for (std::size_t e = 0; e < lu.values.size(); ++e)
+        set_lane(lu.values[e], at,
+                 s.system.M.values[static_cast<std::size_t>(of.source[e])] * of.factor[e]);
+}
+
+// Factorises the matrices of all lanes, and updates and checks the held directions of those
+// in the mask.
+void Pack::factorise(const Mask& mask, bool at_design) {
+    eliminate(lu);
+    const SaddlePoint<double>& of = design.system;
+    for (int c = 0; c < of.held.size(); ++c) {
+        std::fill(rhs.begin(), rhs.end(), Lanes(0));
+        rhs[static_cast<std::size_t>(of.n + of.m + c)] = 1;
+        solve(lu, rhs.data(), solution.data());
+        each(mask, [&](Slot& slot, int at) {
+            Held<double>& held = slot.s->system.held;
+            for (int e = held.begin(c); e < held.end(c); ++e) {
+                const int row = held.row[static_cast<std::size_t>(e)];
+                held.value[static_cast<std::size_t>(e)] =
+                    lane(solution[static_cast<std::size_t>(row)], at) * of.scale[row];
+            }
+        });
+    }
+    each(mask, [&](Slot& slot, int at) {
+        SteppingState& s = *slot.s;
+        ++s.counts.factorisations;
+        orthonormalise(s.system);
+        const double ratio = lane(lu.min_pivot, at) / lane(lu.largest_pivot, at);
+        const bool regular = lane(lu.finite, at) == 0 && is_regular(s, ratio) &&
+                             lane(lu.largest_multiplier, at) <= largest_multiplier &&
+                             check_factors(s, s.q, ratio) == Outcome::converged;
+        slot.inside = regular && (!at_design || (ratio > min_share_of_ratio * design.pivot_ratio &&
+                                                 strain_of_held(s, s.q) <= exactly_idle));
+    });
+}
+
+void Pack::load_rhs(int at) {
+    const SteppingState& s = *slots[static_cast<std::size_t>(at)].s;
+    const int n = s.n(), m = s.m();
+    const auto put = [&](int k, double of) {
+        set_lane(rhs[static_cast<std::size_t>(k)], at, of * s.system.scale[k]);
+    };
+    for (int k = 0; k < n; ++k) put(k, s.upper[k]);
+    for (int k = 0; k < m; ++k) put(n + k, s.lower[k]);
+    for (int k = n + m; k < n + m + s.system.borders(); ++k)
+        set_lane(rhs[static_cast<std::size_t>(k)], at, 0);
+}
+
+void Pack::back_substitute(const Mask& mask) {
+    solve(lu, rhs.data(), solution.data());
+    each(mask, [&](Slot& slot, int at) {
+        SteppingState& s = *slot.s;
+        for (int k = 0; k < s.n() + s.m(); ++k)
+            s.x[k] = lane(solution[static_cast<std::size_t>(k)], at) * s.system.scale[k];
+        ++s.counts.iterations;
+    });
+}
+
+// Newton corrections at the ends of the ranges; the last factors serve the next expansion.
+void Pack::correct_ends(Drive drive, const LaneEnds& to) {
+    Mask correcting = going();
+    each(correcting, [&](Slot& slot, int at) {
+        move_to(slot, drive, slot.reached);
+        if (slot.last) go(*slot.s, drive, to[static_cast<std::size_t>(at)]);
+        slot.before = std::numeric_limits<double>::infinity();
+    });
+    for (int k = 0; k < 8 && std::ranges::count(correcting, true) > 0; ++k) {
+        each(correcting, [&](Slot&, int at) { assemble(at); });
+        factorise(correcting, false);
+        each(correcting, [&](Slot& slot, int at) {
+            residual_at(*slot.s, slot.s->q, slot.s->lambda);
+            load_rhs(at);
+        });
+        back_substitute(correcting);
+        for (std::size_t at = 0; at < slots.size(); ++at) {
+            Slot& slot = slots[at];
+            correcting[at] = correcting[at] && slot.inside;
+            if (!correcting[at]) continue;
+            SteppingState& s = *slot.s;
+            const double size = std::sqrt(size_of_solution(s));
+            if (!s.x.allFinite() || check_idle_load_here(s, size) != Outcome::converged) {
+                slot.inside = correcting[at] = false;
+                continue;
+            }
+            if (k == 0) slot.error = size;
+            if (!(size < slot.before)) {  // at rounding level
+                correcting[at] = false;
+                continue;
+            }
+            slot.before = size;
+            s.dq = s.x.head(s.n());
+            advance(s.q, s.dq);
+            s.lambda += s.x.tail(s.m());
+            const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
+            // No expansion starts at the end of a branch: its error is known, that is enough.
+            correcting[at] = !(slot.last && drive == Drive::rate) &&
+                             !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
+        }
+    }
+    each(going(), [&](Slot& slot, int) {
+        SteppingState& s = *slot.s;
+        if (!(slot.error <= 10 * options.series.tolerance)) slot.inside = false;
+        if (has_redundancy(s)) {
+            residual_at(s, s.q, s.lambda);
+            if (is_inconsistent(s, s.q)) slot.inside = false;
+        }
+    });
+}
+
+}  // namespace elastocheck::recursive::batch

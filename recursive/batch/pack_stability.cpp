@@ -1,0 +1,191 @@
+// Stability of the variants in the lanes.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "recursive/batch/pack.hpp"
+#include "recursive/stepping/stability.hpp"
+#include "recursive/stepping/stiffness.hpp"
+
+namespace elastocheck::recursive::batch {
+namespace {
+
+constexpr int max_coordinates = 300;  // of a stability test with a dense matrix
+
+// Whether an idle mode may be unstable under load: the first look of negative_idle_stiffness().
+bool may_push_idle(SteppingState& s) {
+    constexpr double noticed = 1e-6;
+    const double stiffness = min_of_idle(s);
+    if (!(stiffness < 0)) return false;
+    external_force<double>(s.model, s.branch, s.inputs, s.q, s.upper);
+    elastic_force<double>(s.model, s.inputs, s.q, s.force);
+    const double acts = size_of_force(s, s.upper) + size_of_force(s, s.force);
+    return !(stiffness >= -noticed * acts / s.length);
+}
+
+// Whether the determinant, 1 at τ = 0, may have a zero inside: as lost_inside() begins.
+bool may_dip(double in_middle, double at_end) {
+    constexpr double dips = 0.5, curved = 0.02;
+    if (!(in_middle > 0)) return true;
+    const auto [lowest, highest] = std::minmax({1., in_middle, at_end});
+    const double before = 2 * (in_middle - 1), behind = 2 * (at_end - in_middle),
+                 bend = behind - before, there = 0.25 - before / (2 * bend),
+                 least = 1 + there * (before + bend * (there - 0.5));
+    const double deep = std::max(dips * std::min(1.0, at_end), curved * (highest - lowest));
+    return bend > 0 && there > 0 && there < 1 && least < deep;
+}
+
+}  // namespace
+
+// As min_stiffness() of one variant: the same iteration with the factors of the lanes.
+std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, Matrix<Lanes>& U) {
+    constexpr int vectors = 3, first_turns = 5, turns = 2;
+    std::array<LeastStiffness, Lanes::count> found{};
+    const int n = design.system.n;
+    const int free =
+        design.diagnosis.degrees_of_freedom() - static_cast<int>(design.diagnosis.idle.size());
+    if (free <= 0) return found;
+    Vector<Lanes> W(n), W2(n);
+    for (int k = 0; k < n; ++k) {
+        W[k] = 1;
+        each(mask, [&](Slot& slot, int at) { set_lane(W[k], at, slot.s->system.weight[k]); });
+        W2[k] = W[k] * W[k];
+    }
+    const auto inner = [&](const Matrix<Lanes>& A, Eigen::Index a, const Matrix<Lanes>& B,
+                           Eigen::Index b) {
+        Lanes sum = 0;
+        for (int k = 0; k < n; ++k) sum += A(k, a) * W2[k] * B(k, b);
+        return sum;
+    };
+    const auto orthonormalise_columns = [&] {
+        constexpr double zero_tolerance = 1e-9;
+        for (Eigen::Index c = 0; c < U.cols(); ++c) {
+            const Lanes whole = inner(U, c, U, c);
+            for (int pass = 0; pass < 2; ++pass)
+                for (Eigen::Index b = 0; b < c; ++b) {
+                    const Lanes part = inner(U, b, U, c);
+                    for (int k = 0; k < n; ++k) U(k, c) -= part * U(k, b);
+                }
+            const Lanes left = inner(U, c, U, c), inverse = 1 / sqrt(left);
+            for (int k = 0; k < n; ++k) U(k, c) *= inverse;
+            // one variant alone drops the dependent vector
+            each(mask, [&](Slot& slot, int at) {
+                if (!(lane(left, at) > zero_tolerance * zero_tolerance * lane(whole, at)))
+                    slot.inside = false;
+            });
+        }
+    };
+    const bool begins = U.cols() == 0;
+    if (begins) {
+        U.resize(n, std::min(vectors, free));
+        for (Eigen::Index c = 0; c < U.cols(); ++c)
+            for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / W[k];
+        orthonormalise_columns();
+    }
+    const SaddlePoint<double>& of = design.system;
+    Matrix<Lanes> V(n, U.cols()), H(U.cols(), U.cols());
+    for (int turn = begins ? first_turns : turns; turn > 0; --turn) {
+        std::fill(rhs.begin(), rhs.end(), Lanes(0));
+        for (Eigen::Index c = 0; c < U.cols(); ++c) {
+            for (int k = 0; k < n; ++k)
+                rhs[static_cast<std::size_t>(k)] = U(k, c) * W2[k] * Lanes(of.scale[k]);
+            solve(lu, rhs.data(), solution.data());
+            for (int k = 0; k < n; ++k)
+                V(k, c) = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
+        }
+        if (turn == 1)
+            for (Eigen::Index a = 0; a < U.cols(); ++a)
+                for (Eigen::Index b = 0; b < U.cols(); ++b) H(a, b) = inner(U, a, V, b);
+        U = V;
+        orthonormalise_columns();
+    }
+    each(mask, [&](Slot&, int at) {
+        Eigen::MatrixXd one(H.rows(), H.cols());
+        for (Eigen::Index k = 0; k < H.size(); ++k) one.data()[k] = lane(H.data()[k], at);
+        found[static_cast<std::size_t>(at)] = detail::min_of(one);
+    });
+    return found;
+}
+
+// Whether the start is stable by the tests of stability.hpp; a lane in which one of
+// them fails leaves.
+void Pack::judge_start(Matrix<Lanes>& softest) {
+    const int n = design.system.n;
+    const auto least = min_stiffness(inside(), softest);
+    if (n > max_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
+    each(inside(), [&](Slot& slot, int at) {
+        const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
+        slot.inside = of_energy && mu > 0 && !may_push_idle(*slot.s);
+    });
+    definite.setZero(n, n);
+    each(inside(), [&](Slot& slot, int at) {
+        const SteppingState& s = *slot.s;
+        const SaddleMatrix<double>& M = s.system.M;
+        const Vector<double>& W = s.system.weight;
+        const auto add = [&](Eigen::Index i, Eigen::Index j, double by) {
+            set_lane(definite(i, j), at, lane(definite(i, j), at) + by);
+        };
+        double stiffness = 0;
+        for_each_entry(M, [&](int i, int j, int entry) {
+            if (i >= n || j >= n) return;
+            const double K = M.values[static_cast<std::size_t>(entry)] / (W[i] * W[j]);
+            stiffness = std::max(stiffness, std::abs(K));
+            add(std::max(i, j), std::min(i, j), i == j ? K : K / 2);
+        });
+        for (int row = 0; row < M.m; ++row) {
+            std::array<double, 12> r{};
+            std::array<int, 12> place{};
+            double square = 0;
+            std::size_t count = 0;
+            for (int end = 0; end < 2; ++end) {
+                const BodyId b =
+                    M.ends[static_cast<std::size_t>(row)][static_cast<std::size_t>(end)];
+                for (int k = 0; b != ground && k < 6; ++k, ++count) {
+                    place[count] = 6 * b + k;
+                    r[count] = M.part(row, end)[k] / W[6 * b + k];
+                    square += r[count] * r[count];
+                }
+            }
+            const double by = square > 0 ? stiffness / square : 0;
+            for (std::size_t i = 0; i < count; ++i)
+                for (std::size_t j = 0; j < count; ++j)
+                    if (place[i] >= place[j]) add(place[i], place[j], by * r[i] * r[j]);
+        }
+        const double rounding = 16 * std::numeric_limits<double>::epsilon() * n;
+        for (int k = 0; k < n; ++k) add(k, k, rounding * stiffness);
+        const Held<double>& held = s.system.held;
+        for (int c = 0; c < held.idle; ++c) {
+            int most = -1;
+            double size = 0;
+            for (int e = held.begin(c); e < held.end(c); ++e) {
+                const auto k = static_cast<std::size_t>(e);
+                if (const double here = std::abs(held.value[k] * W[held.row[k]]); here > size) {
+                    most = held.row[k];
+                    size = here;
+                }
+            }
+            if (most >= 0) add(most, most, stiffness);
+        }
+    });
+    const Lanes min_of_all = min_pivot(definite);
+    each(inside(), [&](Slot& slot, int at) { slot.inside = lane(min_of_all, at) > 0; });
+}
+
+// Stability at the ends of the ranges, and of the determinant between.
+void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
+    std::array<LeastStiffness, Lanes::count> least{};
+    if (stable) least = min_stiffness(going(), softest);
+    each(going(), [&](Slot& slot, int at) {
+        const double log_end = log_determinant(lu, at);
+        slot.inside = static_cast<int>(lane(lu.sign, at)) == slot.side &&
+                      !any_reversed(slot.s->model, slot.from, slot.s->q);
+        if (stable) {
+            const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
+            slot.inside = slot.inside && of_energy && mu > 0 && !may_push_idle(*slot.s) &&
+                          !may_dip(slot.in_middle, std::exp2(log_end - slot.log_begin));
+        }
+        slot.log_begin = log_end;
+    });
+}
+
+}  // namespace elastocheck::recursive::batch
