@@ -220,6 +220,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     Definitions defs = read_definitions(scene, twins);
     defs.folder = folder;
     read_wheels(scene, defs, result.wheels);
+    add_bodies_of_bars(scene, result.wheels, defs);
     if (twins != nullptr) take_twin_bodies(*twins, defs);
     if (own != nullptr) *own = defs;
     result.bodies = defs.bodies;
@@ -227,16 +228,16 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
 
     read_section(scene, "joints", defs, Sides::both, result.joints, read_joint);
     NamedElements named;
-    read_elements(scene, "springs", defs, result.elastics, named, read_spring);
-    read_elements(scene, "bushings", defs, result.elastics, named, read_bushing);
-    read_section(scene, "stops", defs, Sides::both, result.elastics, read_stops);
-    read_elements(scene, "torsion_springs", defs, result.elastics, named, read_torsion_spring);
-    require_own_names(scene, defs, result.elastics);
     const auto with_wheels = [&](auto read) {
         return [read, &result](const std::string& name, const Cursor& at, const Definitions& d) {
             return read(name, at, d, result.wheels);
         };
     };
+    read_elements(scene, "springs", defs, result.elastics, named, with_wheels(read_spring));
+    read_elements(scene, "bushings", defs, result.elastics, named, read_bushing);
+    read_section(scene, "stops", defs, Sides::both, result.elastics, read_stops);
+    read_elements(scene, "torsion_springs", defs, result.elastics, named, read_torsion_spring);
+    require_own_names(scene, defs, result.elastics);
     read_section(scene, "static_loads", defs, Sides::both, result.static_loads,
                  with_wheels(read_static_load));
     read_gravity(scene, defs, result);
@@ -255,6 +256,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     const auto drives = add_held(scene, defs, result);
     Drivables drivable = drivables(result, defs.units, drives, named);
     add_rolling_joints(scene, result);
+    add_joints_of_bars(scene, defs, result);
     read_beams(scene, defs, result.elastics);
     read_tyres(scene, defs, drivable, result);
     check_all_held(scene, result);

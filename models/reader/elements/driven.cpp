@@ -83,15 +83,18 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
             "its free_length";
 }
 
-// A torsion spring has a preload about its axis only.
+// A torsion spring has a preload about its axis only, a spring at a wheel along z.
 void add_bushing(int k, const NamedElement& element, const Units& units, Drivables& result) {
-    const bool is_torsion = element.path.starts_with("torsion_springs.");
-    for (int axis = is_torsion ? 5 : 0; axis < 6; ++axis) {
+    const bool is_torsion = element.path.starts_with("torsion_springs."),
+               is_at_wheel = element.path.starts_with("springs."),
+               is_one = is_torsion || is_at_wheel;
+    const int first = is_torsion ? 5 : is_at_wheel ? 2 : 0;
+    for (int axis = first; axis < (is_one ? first + 1 : 6); ++axis) {
         Vector6 direction = Vector6::Unit(axis);
         if (element.is_twin) direction = reflected(direction);
         const bool is_force = axis < 3;
         const std::string field = is_force ? ".preload" : ".preload_moment";
-        const std::string letter = is_torsion ? "" : fmt::format(".{}", "xyz"[axis % 3]);
+        const std::string letter = is_one ? "" : fmt::format(".{}", "xyz"[axis % 3]);
         result.table[element.path + field + letter] = {
             is_force ? ParameterUnit::newton : ParameterUnit::newton_metre,
             is_force ? units.force : units.moment, Preload{k, direction}, 1, std::nullopt};

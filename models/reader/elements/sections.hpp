@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,15 @@ namespace elastocheck::reader {
 
 Joint read_joint(const std::string& name, const Cursor& at, const Definitions& defs);
 bool is_held(const Cursor& joint);  // `held: true`
-std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
-                                 const Definitions& defs);  // and its stops
+// And its stops. Pre: the wheels are read.
+std::vector<Elastic> read_spring(const std::string& name, const Cursor& at, const Definitions& defs,
+                                 const std::vector<Wheel>& wheels);
+// A spring that is given at a wheel or, a bar, at two; nothing for one between two points. The body of
+// a bar is added to `defs` before it is read, its joints when all others are.
+std::optional<Elastic> read_at_wheel(const std::string& name, const Cursor& at,
+                                     const Definitions& defs, const std::vector<Wheel>& wheels);
+void add_bodies_of_bars(const Cursor& scene, const std::vector<Wheel>& wheels, Definitions& defs);
+void add_joints_of_bars(const Cursor& scene, const Definitions& defs, Scene& result);
 std::vector<Elastic> read_stops(const std::string& name, const Cursor& at, const Definitions& defs);
 Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs);
 Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs);

@@ -53,10 +53,11 @@ void add_stops(const std::string& name, const Cursor& at, const AxialSpring& end
 
 }  // namespace
 
-std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
-                                 const Definitions& defs) {
+std::vector<Elastic> read_spring(const std::string& name, const Cursor& at, const Definitions& defs,
+                                 const std::vector<Wheel>& wheels) {
+    if (const auto at_wheel = read_at_wheel(name, at, defs, wheels)) return {*at_wheel};
     at.only_keys({"bodies", "from", "to", "rate", "curve", "free_length", "preload", "seats",
-                  "bump_stop", "rebound_stop"});
+                  "bump_stop", "rebound_stop", "at_wheel"});
     const AxialSpring ends = read_ends(at, defs);
     AxialSpring spring = ends;
     spring.law = read_law(at, of_springs(defs.units), defs);
