@@ -75,6 +75,8 @@ constexpr Format formats[] = {
     {".sub", "hardpoints of Adams/Car", read_by<import_subsystem>, false, "--axes --as --axle"},
     {".csv", "tables of points", read_by<import_points>, false,
      "--axes --as --axle --columns --unit"},
+    {".xlsx", "workbooks of points", read_by<import_points>, false,
+     "--axes --as --axle --columns --unit --sheet"},
     {".shk", "points of Lotus SHARK", read_by<import_points>, false, "--axes --as --axle --unit"},
     {".ini", "suspensions.ini of Assetto Corsa", import_assetto, false, "--as --axle"},
 };
@@ -92,15 +94,17 @@ void check_options(const Format& format, const Options& options, const std::stri
     for (const auto& [given, option] : {std::pair{&options.axes, "--axes"},
                                         {&options.columns, "--columns"},
                                         {&options.unit, "--unit"},
+                                        {&options.sheet, "--sheet"},
                                         {&options.axle, "--axle"},
                                         {&options.as, "--as"}})
         if (!given->empty() && format.options.find(option) == format.options.npos)
             fail(file, 0, option, "only for {}", formats_with(option));
     const bool makes = !options.as.empty() || format.read == import_assetto;
-    const bool has_parts =
-        !options.pushrod.empty() || !options.damper.empty() || !options.roles.empty();
+    const bool has_parts = !options.pushrod.empty() || !options.damper.empty() ||
+                           !options.roles.empty() || !options.rates.empty();
     if (!makes && has_parts)
-        fail(file, 0, "--as", "missing; --pushrod, --damper and --role are of a mechanism: --as {}",
+        fail(file, 0, "--as",
+             "missing; --pushrod, --damper, --role and --rates are of a mechanism: --as {}",
              fmt::join(mechanisms(), ", "));
     if (!makes && !options.axle.empty() && !format.has_bodies)
         fail(file, 0, "--axle", "of points only with --as: {}", fmt::join(mechanisms(), ", "));
@@ -145,7 +149,9 @@ Imported import_file(const std::filesystem::path& file, const Options& options) 
     if (!read.trouble.empty()) fail(name, 0, "", "{}", read.trouble);
     if (read.text.size() > largest_file)
         fail(name, 0, "", "larger than 16 MiB, the limit for a model");
-    return import_text(read.text, name, options);
+    const bool is_workbook = reader::small_letters(file.extension().string()) == ".xlsx";
+    return import_text(is_workbook ? csv_of_workbook(file, options.sheet) : read.text, name,
+                       options);
 }
 
 }  // namespace elastocheck::importer

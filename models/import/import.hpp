@@ -25,6 +25,7 @@ struct Options {
     std::string axes = {};
     // of a table of points: "name=Punkt,x=X_mm,y=3,z=D"; empty: by headings that are known
     std::string columns = {};
+    std::string sheet = {};  // of a workbook; empty: the only one with numbers
     // of the coordinates of a table of points: "mm", "cm", "m", "in"; empty: as the file says
     std::string unit = {};
     // of a vehicle of Chrono: "front" (its first), "rear" (its last), "1", "2", ...; of points of two
@@ -34,6 +35,7 @@ struct Options {
     std::string as = {};
     std::string pushrod = {}, damper = {};  // on which of its parts: "upright", "lower", "upper"
     std::vector<std::string> roles = {};    // "tie_rod_inner=NAME"
+    std::string rates = {};                 // file of a table of rates by role; empty: rigid
 };
 
 // Allowed values of `axes`. Without z it is up, where that is right-handed; elsewhere z must be given.
@@ -54,11 +56,11 @@ struct Imported {
     int bodies = 0, elements = 0, joints = 0;
 };
 
-// Selects the format by extension: .adm, .json, .sub, .csv, .shk, .ini (points). Throws SceneError "file:line:
+// Selects the format by extension: .adm, .json, .sub, .csv, .xlsx, .shk, .ini (points). Throws SceneError "file:line:
 // ..." for errors in the file and parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 
-// The same from text. `file` names it in messages and in the head of the scene, and gives the
+// The same from text, of a workbook the CSV of its sheet. `file` names it in messages and in the head of the scene, and gives the
 // format.
 Imported import_text(std::string_view text, const std::string& file, const Options& options);
 
@@ -67,15 +69,22 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
 Draft import_chrono(std::string_view text, const std::string& file, const Options& options);
 Draft import_subsystem(std::string_view text, const std::string& file, const Options& options);
 Draft import_points(std::string_view text, const std::string& file, const Options& options);
+// One sheet of a workbook (.xlsx) as CSV, a row a line, so that lines of errors are rows: the one called `sheet`, or
+// the only visible one with numbers. Formulas have the values that were saved with them.
+// Throws SceneError for files that are no workbook, and where several sheets have numbers.
+std::string csv_of_workbook(const std::filesystem::path& file, const std::string& sheet);
 // Chooses the mechanism and its roles in `options`, and drops the axle that it has read.
 Draft import_assetto(std::string_view text, const std::string& file, Options& options);
 
 // ---- Mechanisms made of named points by templates of roles (mechanism/mechanisms.yaml).
 
-// Gives the points of a draft, whose sources have their names in the file, the roles of the template
-// options.as, and adds its bodies, joints, wheel and branches: rigid, without springs. Notes the point of
+// Gives the points of a draft, whose sources have their names in the file (those of line 0 stay as they are), the roles of the template
+// options.as, and adds its bodies, joints, wheels and branches: rigid, or with options.rates. Notes the point of
 // each role and those without one. Throws SceneError for roles without a point, or with several.
 void make_mechanism(const std::string& file, const Options& options, Draft& draft);
+
+// Replaces joints at roles by bushings with the rates of a table, and adds springs beside dampers.
+void add_rates(const std::string& file, Draft& draft);
 
 // Names of the templates; and the one that words such as those of a file ("Double Wishbone, damper to
 // lower wishbone") mean, empty if none.

@@ -435,12 +435,12 @@ int export_scene(const ExportRequest& request) {
 const Command import_command{
     Group::models, "import",
     "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
-    "hardpoints .sub, tables of points .csv, points of Lotus SHARK .shk, "
+    "hardpoints .sub, tables of points .csv and .xlsx, points of Lotus SHARK .shk, "
     "suspensions.ini of Assetto Corsa",
     [](CLI::App& command) -> Run {
         const auto request = std::make_shared<ImportRequest>();
         as_file(command.add_option("FILE", request->file,
-                                   "the model (.adm, .json, .sub, .csv, .shk, .ini)"))
+                                   "the model (.adm, .json, .sub, .csv, .xlsx, .shk, .ini)"))
             ->required();
         as_file(command.add_option("-o,--output", request->output, "write the scene to this file"));
         command.add_option("--wheel", request->options.wheel,
@@ -455,17 +455,21 @@ const Command import_command{
         command.add_option("--columns", request->options.columns,
                            "columns of a table of points by heading, number or letters: "
                            "name=Punkt,x=X_mm,y=3,z=D; for sides side=COLUMN, or left.x ... "
-                           "right.z (.csv)");
-        as_word(command.add_option("--unit", request->options.unit,
-                                   "unit of a table of points whose headings do not say it (.csv)"),
+                           "right.z (.csv, .xlsx)");
+        as_word(command.add_option(
+                    "--unit", request->options.unit,
+                    "unit of a table of points whose headings do not say it (.csv, .xlsx)"),
                 {"mm", "cm", "m", "in"});
+        command.add_option("--sheet", request->options.sheet,
+                           "sheet of a workbook in which several have numbers (.xlsx)");
         command.add_option(
             "--axle", request->options.axle,
             "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ...; of points "
             "with --as: front, rear");
-        command.add_option("--as", request->options.as,
-                           "mechanism to make of points: double_wishbone, strut, five_link, "
-                           "trailing_arm; rigid, one wheel (.csv, .shk, .sub, .ini)");
+        command.add_option(
+            "--as", request->options.as,
+            "mechanism to make of points: double_wishbone, strut, five_link, "
+            "trailing_arm, live_axle; rigid without --rates (.csv, .xlsx, .shk, .sub, .ini)");
         command.add_option("--pushrod", request->options.pushrod,
                            "with --as: part on which a pushrod or pullrod to a rocker stands: "
                            "upright, lower, upper");
@@ -473,6 +477,9 @@ const Command import_command{
                            "with --as: part on which the damper stands: upright, lower, upper");
         command.add_option("--role", request->options.roles,
                            "with --as: the point of a role: tie_rod_inner=NAME");
+        as_file(command.add_option("--rates", request->options.rates,
+                                   "with --as: table of rates by role (.csv: role, x, y, z, rx, "
+                                   "ry, rz): bushings there, and springs beside the dampers"));
         command.add_flag("--allow-missing", request->options.allow_missing,
                          "warn about what a scene cannot represent instead of rejecting the file");
         add_json(command, request->as_json);

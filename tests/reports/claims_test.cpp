@@ -111,6 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Mistakes, Claims, testing::ValuesIn(claims_in("mistakes
 INSTANTIATE_TEST_SUITE_P(Loads, Claims, testing::ValuesIn(claims_in("loads.claims")), name_of);
 INSTANTIATE_TEST_SUITE_P(Solve, Claims, testing::ValuesIn(claims_in("solve.claims")), name_of);
 INSTANTIATE_TEST_SUITE_P(AtWheel, Claims, testing::ValuesIn(claims_in("at_wheel.claims")), name_of);
+INSTANTIATE_TEST_SUITE_P(Import, Claims, testing::ValuesIn(claims_in("import.claims")), name_of);
 INSTANTIATE_TEST_SUITE_P(Compare, Claims, testing::ValuesIn(claims_in("compare.claims")), name_of);
 
 }  // namespace

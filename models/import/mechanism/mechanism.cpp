@@ -58,6 +58,7 @@ struct PlacedPoint {
     SourceLocation from;
     Words words = {}, marks = {};
     bool has_role = false;
+    bool is_mirrored = false;  // the other side of a point of a file with one side
 };
 
 PlacedPoint understood(std::string name, const Vector3d& at, const SourceLocation& from) {
@@ -89,11 +90,23 @@ struct Role {
     std::string name;
     std::vector<Words> phrases = {};
     PlacedPoint* point = nullptr;
+    std::string side = {};  // of its point, where a mechanism has both
 };
+
+// What is written once for both sides, with SIDE for left and right in its names.
+std::vector<std::string> sides_of(const std::string& name) {
+    return name.find("SIDE") == name.npos ? std::vector<std::string>{""}
+                                          : std::vector<std::string>{"left", "right"};
+}
+std::string with(std::string text, std::string_view word, const std::string& by) {
+    for (std::size_t at; (at = text.find(word)) != text.npos;) text.replace(at, word.size(), by);
+    return text;
+}
 
 // Size of the longest phrase of the role that the point's name has; 0 if it has none.
 std::size_t fit(const Role& role, const PlacedPoint& point) {
     std::size_t most = 0;
+    if (role.side.empty() ? point.is_mirrored : !point.marks.contains(role.side)) return 0;
     for (const Words& phrase : role.phrases) {
         const bool has_all = std::ranges::includes(point.words, phrase);
         const bool is_of_kind =
@@ -121,6 +134,7 @@ struct Maker {
     void choose_points() {
         for (std::size_t k = 0; k < draft.points.entries().size(); ++k) {
             const Entry& entry = draft.points.entries()[k];
+            if (entry.from.line == 0) continue;  // added by an importer
             points.push_back(understood(entry.from.what, draft.points.positions()[k], entry.from));
         }
         const auto has = [&](const char* mark) {
@@ -140,17 +154,43 @@ struct Maker {
         } else if (!options.axle.empty()) {
             fail("--axle", "the names of the points are not of two axles");
         }
-        if (has("left") && has("right")) drop("right", "of the other side");
+        if (entry(made, "wheels")) {
+            if (!has("right")) mirror_points();
+        } else if (has("left") && has("right")) {
+            drop("right", "of the other side");
+        }
+    }
+
+    // Of a mechanism with both sides whose file has the left one, and points in the middle plane.
+    void mirror_points() {
+        for (std::size_t k = 0, end = points.size(); k < end; ++k) {
+            if (points[k].at.y() == 0) continue;
+            points[k].marks.insert("left");
+            PlacedPoint other = points[k];
+            other.at.y() *= -1;
+            other.marks = {"right"};
+            other.is_mirrored = true;
+            points.push_back(std::move(other));
+        }
     }
 
     void add_roles(const Value& of) {
         const Value* list = entry(of, "roles");
-        for (std::size_t k = 0; list && k < list->keys.size(); ++k) {
-            Role role{list->keys[k]};
-            for (const Value& phrase : list->items[k].items)
-                role.phrases.push_back(words_between_blanks(phrase.text));
-            roles.push_back(std::move(role));
-        }
+        for (std::size_t k = 0; list && k < list->keys.size(); ++k)
+            for (const std::string& side : sides_of(list->keys[k])) {
+                Role role{with(list->keys[k], "SIDE", side)};
+                role.side = side;
+                for (const Value& phrase : list->items[k].items)
+                    role.phrases.push_back(words_between_blanks(phrase.text));
+                roles.push_back(std::move(role));
+            }
+    }
+
+    bool is_of(const Value& group, const Role& role) const {
+        return std::ranges::any_of(entry(group, "roles")->keys, [&](const std::string& name) {
+            return role.side.empty() ? name == role.name
+                                     : with(name, "SIDE", role.side) == role.name;
+        });
     }
 
     // --role ROLE=POINT
@@ -195,11 +235,15 @@ struct Maker {
                 }
     }
 
-    bool is_found(const Value& group) const {
-        const Value& names = *entry(group, "roles");
-        return std::ranges::all_of(names.keys, [&](const std::string& name) {
-            return std::ranges::find(roles, name, &Role::name)->point != nullptr;
+    // An optional group whose points are not all there is left out.
+    bool is_kept(const Value& group) {
+        const auto lacks = [&](const Role& role) { return is_of(group, role) && !role.point; };
+        if (std::ranges::none_of(roles, lacks)) return true;
+        std::erase_if(roles, [&](const Role& role) {
+            if (is_of(group, role) && role.point) role.point->has_role = false;
+            return is_of(group, role);
         });
+        return false;
     }
 
     // A point on the axis of the rocker across its other points, if none is given.
@@ -260,12 +304,12 @@ struct Maker {
                                             {"dampers", &draft.dampers},
                                             {"branches", &draft.branches}}) {
             const Value* entries = entry(of, section);
-            for (std::size_t k = 0; entries && k < entries->keys.size(); ++k) {
-                std::string fields = entries->items[k].text;
-                if (const auto at = fields.find("PART"); at != fields.npos)
-                    fields.replace(at, 4, stands_on);
-                list->push_back({entries->keys[k], fields, {}});
-            }
+            for (std::size_t k = 0; entries && k < entries->keys.size(); ++k)
+                for (const std::string& side : sides_of(entries->keys[k]))
+                    list->push_back(
+                        {with(entries->keys[k], "SIDE", side),
+                         with(with(entries->items[k].text, "PART", stands_on), "SIDE", side),
+                         {}});
         }
     }
 
@@ -276,35 +320,42 @@ struct Maker {
             draft.notes.roles.emplace_back(role.name, role.point->from);
         }
         for (std::size_t k = 0; k < draft.points.entries().size(); ++k)
-            if (const Entry& e = draft.points.entries()[k]; e.name == "rocker_axis")
+            if (const Entry& e = draft.points.entries()[k]; e.from.line == 0)
                 written.add(draft.points.positions()[k], e.name, e.from);
         draft.points = std::move(written);
         for (const PlacedPoint& point : points)
             if (!point.has_role) draft.notes.leave_out("without a role", point.from);
     }
 
-    void write_wheel(bool has_contact) {
-        const PlacedPoint& centre = *std::ranges::find(roles, "wheel_centre", &Role::name)->point;
+    void write_wheel(const std::string& side, const std::string& more) {
+        const std::string of = side.empty() ? "" : side + "_";
+        const PlacedPoint& centre = *role_called(of + "wheel_centre").point;
         const bool left = centre.at.y() >= 0;
         if (centre.marks.contains(left ? "right" : "left"))
             reader::fail(file, centre.from.line, centre.name,
                          fmt::format("lies on the {} in the axes of --axes; choose the axes in "
                                      "which it does not, or rename the point",
                                      left ? "left" : "right"));
+        const Value* fields = side.empty() ? entry(made, "wheel") : entry(made, "wheels");
         draft.wheels.push_back(
-            {"wheel",
-             fmt::format("{{{}{}, spin_axis: {}, side: {}}}", entry(made, "wheel")->text,
-                         has_contact ? ", contact_patch: contact" : "", left ? "y" : "-y",
-                         left ? "left" : "right"),
+            {side.empty() ? "wheel" : side,
+             fmt::format("{{{}{}, spin_axis: {}, side: {}}}", with(fields->text, "SIDE", side),
+                         with(more, "SIDE", side), left ? "y" : "-y", left ? "left" : "right"),
              {}});
+    }
+
+    Role& role_called(const std::string& name) {
+        return *std::ranges::find(roles, name, &Role::name);
     }
 
     void run() {
         choose_points();
         const Value& groups = mechanism_table("groups");
-        const Value &contact = *entry(groups, "contact"), &damper = *entry(groups, "damper"),
-                    &pushrod = *entry(groups, "pushrod");
-        const Value* standard = entry(made, "damper");
+        const Value *standard = entry(made, "damper"), *list = entry(made, "optional");
+        std::vector<const Value*> optional;
+        if (!list) optional.push_back(entry(groups, "contact"));
+        for (std::size_t k = 0; list && k < list->items.size(); ++k)
+            optional.push_back(entry(groups, list->items[k].text));
         const bool has_rod = !options.pushrod.empty(),
                    may_damp = standard || !options.damper.empty();
         if (has_rod && !options.damper.empty())
@@ -313,38 +364,49 @@ struct Maker {
             has_rod    ? part("--pushrod", options.pushrod)
             : may_damp ? part("--damper", options.damper.empty() ? standard->text : options.damper)
                        : "";
+        if (!has_rod && may_damp) optional.push_back(entry(groups, "damper"));
         add_roles(made);
-        if (has_rod) add_roles(pushrod);
-        add_roles(contact);
-        if (!has_rod && may_damp) add_roles(damper);
+        if (has_rod) add_roles(*entry(groups, "pushrod"));
+        for (const Value* group : optional) add_roles(*group);
         for (const std::string& given : options.roles) give(given);
         find_points();
         if (has_rod) add_rocker_axis();
-        write_groups(contact, has_rod ? pushrod : damper, stands_on);
-    }
-
-    void write_groups(const Value& contact, const Value& spring, const std::string& stands_on) {
-        const bool has_rod = !options.pushrod.empty();
-        const bool has_contact = is_found(contact),
-                   has_spring = has_rod || (!stands_on.empty() && is_found(spring));
-        const auto drop = [&](const Value& group) {
-            for (const std::string& name : entry(group, "roles")->keys)
-                std::erase_if(roles, [&](const Role& role) {
-                    if (role.name == name && role.point) role.point->has_role = false;
-                    return role.name == name;
-                });
-        };
-        if (!has_contact) drop(contact);
-        if (!has_spring && !stands_on.empty()) drop(spring);
+        std::erase_if(optional, [&](const Value* group) { return !is_kept(*group); });
         require_points();
         write_points();
         write(made, "");
-        if (has_spring) write(spring, stands_on);
-        draft.branches.insert(draft.branches.begin(),
-                              {"travel", "{drive: travel, from: -30, to: 30, steps: 60}", {}});
-        write_wheel(has_contact);
+        if (has_rod) write(*entry(groups, "pushrod"), stands_on);
+        std::string of_wheel;
+        for (const Value* group : optional) {
+            write(*group, stands_on);
+            if (const Value* more = entry(*group, "wheel")) of_wheel += ", " + more->text;
+        }
+        if (!options.rates.empty()) add_rates(options.rates, draft);
+        const bool both = entry(made, "wheels");
+        for (const std::string& side : sides_of(both ? "SIDE" : "")) write_wheel(side, of_wheel);
+        draft.branches.insert(draft.branches.begin(), {"travel", travel(both), {}});
         draft.title += fmt::format(", {}", reader::small_letters(entry(made, "title")->text));
         draft.mirror.reset();
+    }
+
+    // Rigid links that leave an axle one motion couple its wheels: one of them is driven, and there is no roll.
+    std::string travel(bool both) {
+        const char* drive = "travel";
+        if (both) {
+            int freedoms = 6 * static_cast<int>(draft.bodies.size());
+            for (const Entry& joint : draft.joints)
+                freedoms -= joint.fields.find("distance") != joint.fields.npos    ? 1
+                            : joint.fields.find("spherical") != joint.fields.npos ? 3
+                                                                                  : 5;
+            drive = freedoms > 1 ? "[left.travel, right.travel]" : "left.travel";
+            if (freedoms <= 1) {
+                draft.branches.clear();
+                draft.notes.warn({0, "travel"},
+                                 "the rigid links leave the axle one motion: the left wheel is "
+                                 "driven and the right one follows; there is no roll");
+            }
+        }
+        return fmt::format("{{drive: {}, from: -30, to: 30, steps: 60}}", drive);
     }
 };
 

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "compare/comparison/elements.hpp"
 #include "tests/models/import/imports.hpp"
 
 namespace elastocheck {
@@ -106,7 +108,8 @@ TEST(Mechanism, OfAssettoCorsaIsThatOfItsPoints) {
                      "--axle: choose an axle of the file: front, rear"));
     options.axle = "front";
     const auto front = importer::import_text(text, "suspensions.ini", options);
-    EXPECT_EQ(front.notes.warnings.size(), 2u);  // rate, camber
+    EXPECT_EQ(front.notes.warnings.size(), 1u);  // camber
+    EXPECT_TRUE(says(front.yaml, "spring: {at_wheel: true, rate: 30, preload: 0}  # line 21"));
     const Scene hand = by_hand("double_wishbone_rigid.yaml"),
                 made = parse_scene(front.yaml, "scene");
     const Eigen::Vector3d centre = made.bodies.at(2).design.r - hand.bodies.at(2).design.r;
@@ -130,12 +133,136 @@ TEST(Mechanism, OfAssettoCorsaIsThatOfItsPoints) {
     const auto refused = [&](const std::string& what, const std::string& by) {
         return refusal_of(replaced(text, what, by), "s.ini", options);
     };
-    EXPECT_TRUE(says(refused("TYPE=ML", "TYPE=AXLE"), "s.ini:25: TYPE: 'AXLE' is not read"));
+    EXPECT_TRUE(says(refused("TYPE=ML", "TYPE=SOLID"), "s.ini:25: TYPE: 'SOLID' is not read"));
     EXPECT_TRUE(says(refused("JOINT3_TYRE", "JOINT9"), "JOINT3_TYRE: missing in [REAR]"));
     EXPECT_TRUE(says(refused("0.086,-0.156,0.0", "0.086,-0.156"), "JOINT3_TYRE: 2 numbers"));
     EXPECT_TRUE(
         says(refused("0.086,-0.156,0.0", "0.086,x,0.0"), "JOINT3_TYRE: 'x' is not a number"));
     EXPECT_TRUE(says(refused("TRACK=1.9", "TRACK"), "s.ini:26: expected [SECTION] or KEY=VALUE"));
+}
+
+// Another car: a strut whose spring stands along it, and a live axle with its bar.
+TEST(Mechanism, OfAssettoCorsaHasSpringsAndBars) {
+    const std::string text = points_named("strut_and_axle.ini");
+    importer::Options options;
+    options.axle = "front";
+    const auto front = importer::import_text(text, "s.ini", options);
+    EXPECT_TRUE(says(front.yaml, "from: strut_lower, to: strut_top, rate: 25, preload: 2500}"));
+    EXPECT_TRUE(says(notes_of(front),
+                     "Warning: line 9, FRONT: 12000 N/m between both wheels is not in the scene"));
+    EXPECT_TRUE(says(notes_of(front), "PROGRESSIVE_SPRING_RATE: 100, at the wheel, is not"));
+    options.axle = "rear";
+    const Scene axle = parse_scene(importer::import_text(text, "s.ini", options).yaml, "scene");
+    const Model model = compile(axle);
+    const auto forces = [&](const char* branch, const std::string& spring) {
+        const auto found = std::ranges::find(model.branches, branch, &Branch::name);
+        const auto sides = compare::sides_of(model, *found);
+        const auto path = compare::solve_branch(sides, {.leg = compare::Leg::equilibrium});
+        EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+        const std::vector<compare::Channel> channels = compare::element_channels(model);
+        const auto channel = std::ranges::find(channels, spring, &compare::Channel::name);
+        EXPECT_NE(channel, channels.end()) << spring;
+        if (channel == channels.end()) return std::nan("");
+        return compare::evaluate(model, *found, {&*channel, 1}, path.points.back()).at(0);
+    };
+    // 30 mm each way: the bar has 8 N/mm of 60 mm, and nothing in parallel travel
+    EXPECT_NEAR(std::abs(forces("opposite", "antiroll_bar.elastic_force_z")), 480, 1e-6);
+    EXPECT_NEAR(forces("travel", "antiroll_bar.elastic_force_z"), 0, 1e-6);
+    // the seats stand at 0.7 of the half track
+    const Pose at = wheel_at_end_of(axle, "opposite");
+    const Eigen::Vector3d seat = at.r + at.p * Eigen::Vector3d(0, -0.21, 0);
+    EXPECT_NEAR(forces("opposite", "left_spring.force"),
+                2640 + 22e3 * (0.2 - (Eigen::Vector3d(0, 0.49, 0.2) - seat).norm()), 1e-6);
+    EXPECT_NEAR(std::abs(seat.z()), 0.7 * 0.03, 1e-9);
+    const auto refused = [&](const std::string& what, const std::string& by) {
+        return refusal_of(replaced(text, what, by), "s.ini", options);
+    };
+    EXPECT_TRUE(says(refused("LINK_COUNT=4", "LINK_COUNT=2"), "s.ini:31: LINK_COUNT: 2; known"));
+    EXPECT_TRUE(says(refused("[AXLE]", "[OTHER]"), "[AXLE]: missing"));
+}
+
+TEST(Mechanism, OfALiveAxleHasBothWheelsOnOneBody) {
+    const std::string text = points_named("live_axle.csv");
+    const auto axle = [&](const std::string& table) {
+        return importer::import_text(table, "p.csv", as("live_axle"));
+    };
+    const auto middle = [](const importer::Imported& imported, const char* branch) {
+        return wheel_at_end_of(parse_scene(imported.yaml, "scene"), branch);
+    };
+    // links in the middle plane: no bar or Watt's linkage moves an axle sideways by symmetry
+    const auto three = axle(text);
+    EXPECT_GT(std::abs(middle(three, "travel").r.y() - 0.7), 1e-3);  // the Panhard rod does
+    const std::string watt = replaced(
+        replaced(text, "Panhard frame,-100,-480,60",
+                 "Watt pivot,-120,0,0\nWatt upper rocker,-120,0,80\nWatt upper frame,-120,450,80"),
+        "Panhard axle,-100,480,0", "Watt lower rocker,-120,0,-80\nWatt lower frame,-120,-450,-80");
+    EXPECT_LT(std::abs(middle(axle(watt), "travel").r.y() - 0.7), 1e-5);
+    EXPECT_NO_THROW((void)middle(three, "opposite"));
+    // of one side, mirrored; five rigid links leave one motion
+    std::string one = text;
+    for (const char* line : {"RR Lower link frame,542,-559,-127\n",
+                             "RR Lower link axle,0,-559,-127\n", "RR Wheel centre,0,-700,0\n"})
+        one = replaced(one, line, "");
+    EXPECT_LT((middle(axle(one), "travel").r - middle(three, "travel").r).norm(), 1e-12);
+    const auto five =
+        axle(replaced(replaced(text, "Upper link frame,642,0", "LR Upper link frame,642,259"),
+                      "Upper link axle,0,0",
+                      "RR Upper link axle,0,-229,127\nRR Upper link frame,642,-259,100\n"
+                      "LR Upper link axle,0,229"));
+    EXPECT_TRUE(says(notes_of(five), "leave the axle one motion"));
+    EXPECT_FALSE(says(five.yaml, "opposite"));
+    EXPECT_NO_THROW((void)middle(five, "travel"));
+    EXPECT_TRUE(says(refusal_of(replaced(text, "LR Wheel", "XX Wheel"), "p.csv", as("live_axle")),
+                     "no point for left_wheel_centre"));
+}
+
+// A row for each bushing, and one for the springs beside dampers.
+TEST(Mechanism, HasTheRatesOfATable) {
+    const support::Folder place;
+    auto options = as("strut");
+    const std::string rates =
+        "role,x [N/mm],y [N/mm],z [N/mm],rx [Nm/deg],ry [Nm/deg],rz [Nm/deg]\n"
+        "strut_top,800,800,400,1.5,1.5,0.1\narm_front,8000,7000,400,5,5,1\nspring,,,40,,,\n"
+        "tie_rod_inner,9000,9000,9000,0,0,0.1\n";
+    options.rates = place.write("rates.csv", rates);
+    const auto imported = importer::import_text(points_named("strut.csv"), "p.csv", options);
+    for (const char* part :
+         {"arm_rear: {type: spherical, bodies: [arm, ground], at: arm_rear}",
+          "frame: {z: [arm_rear, arm_front], x: z}", "rates: [8000, 7000, 400]",
+          "rotational_rates: [5000, 5000, 1000]", "frame: {z: [strut_lower, strut_top], x: x}",
+          "tie_rod: {origin: tie_rod_outer}", "to: strut_top, rate: 40}"})
+        EXPECT_TRUE(says(imported.yaml, part));
+    const Scene soft = parse_scene(imported.yaml, "scene");
+    EXPECT_EQ(soft.elastics.size(), 4u);
+    options.rates.clear();
+    const Scene rigid = made_of("strut.csv", options);
+    const double apart =
+        (wheel_at_end_of(soft, "travel").r - wheel_at_end_of(rigid, "travel").r).norm();
+    EXPECT_GT(apart, 1e-6);
+    EXPECT_LT(apart, 1e-3);
+    // rigid where all is stiff
+    options.rates = place.write("stiff.csv",
+                                "role,x [kN/mm],y [kN/mm],z [kN/mm],rx [Nm/rad]\n"
+                                "arm_front,1e6,1e6,1e6,0\narm_rear,1e6,1e6,1e6,0\n");
+    EXPECT_LT((wheel_at_end_of(made_of("strut.csv", options), "travel").r -
+               wheel_at_end_of(rigid, "travel").r)
+                  .norm(),
+              1e-9);
+    const auto refused = [&](const std::string& what, const std::string& by) {
+        options.rates = place.write("rates.csv", replaced(rates, what, by));
+        return refusal_of(points_named("strut.csv"), "p.csv", options);
+    };
+    EXPECT_TRUE(
+        says(refused("x [N/mm]", "x"), "rates.csv:1: x: no unit of a rate; allowed: [N/mm]"));
+    EXPECT_TRUE(says(refused("rz [Nm/deg]", "rz [N/mm]"), "allowed: [Nmm/deg], [Nm/deg]"));
+    EXPECT_TRUE(
+        says(refused("arm_front", "arm_frnt"),
+             "rates.csv:3: arm_frnt: is not a role here that can have rates, did you mean"));
+    EXPECT_TRUE(says(refused("arm_front", "strut_top"), "rates.csv:3: strut_top: given twice"));
+    EXPECT_TRUE(says(refused("8000", "-8000"), "rates.csv:3: arm_front: '-8000' is not a rate"));
+    EXPECT_TRUE(says(refused("role,", "what,"), "rates.csv:1: 'what' is no column"));
+    options.as.clear();
+    EXPECT_TRUE(says(refusal_of(points_named("strut.csv"), "p.csv", options), "--as: missing"));
 }
 
 TEST(Mechanism, AsksForTheRolesWithoutAPoint) {
