@@ -545,9 +545,15 @@ Diagnosis diagnose(const Model& model) {
 std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diagnosis) {
     std::vector<std::string> lines;
     if (diagnosis.redundant.empty()) return lines;
-    const Rows Phi_q = constraint_rows_of(model, inputs_as_drawn<double>(model),
-                                          design_state<double>(model), diagnosis.length)
-                           .Phi_q;
+    const Inputs<double> inputs = inputs_as_drawn<double>(model);
+    std::vector<int> drives;  // of branches: they hold nothing, but move bodies
+    for (const ModelJoint& joint : model.joints)
+        if (joint.active_only_where_driven)
+            drives.push_back(inputs.row[static_cast<std::size_t>(joint.driven)]);
+    std::ranges::sort(drives);
+    const Rows Phi_q = without(
+        constraint_rows_of(model, inputs, design_state<double>(model), diagnosis.length).Phi_q,
+        drives);
     const Rows free = Rows(null_space(without(Phi_q, repeated(Phi_q).rows)).transpose());
     std::vector<bool> moves(model.bodies.size());
     for (int k = 0; k < free.outerSize(); ++k)
