@@ -88,6 +88,37 @@ TEST(Mechanism, StandsOnARockerByAPushrod) {
     EXPECT_TRUE(says(across.yaml, "rocker_axis: [10, 460, 220]"));
 }
 
+// Other layouts of the same programs: groups of columns in inches, a listing with a pushrod, whole words.
+TEST(Mechanism, IsFoundInOtherLayouts) {
+    auto options = as("double_wishbone");
+    options.pushrod = "upper";
+    const Scene groups = made_of("optimum_groups.csv", options);
+    EXPECT_EQ(groups.dampers.size(), 1u);
+    EXPECT_NEAR(wheel_at_end_of(groups, "travel").r.z(), 0.203 + 0.03, 1e-4);
+    options = as("double_wishbone", "x-rearward,y-left,z-up");
+    options.pushrod = "lower";
+    const auto listing =
+        importer::import_text(points_named("listing_pushrod.shk"), "p.shk", options);
+    EXPECT_TRUE(says(listing.yaml, "Point rocker_pivot: line 19, Rocker axis 1st point."));
+    EXPECT_TRUE(says(listing.yaml, "Point pushrod_outer: line 11, Push rod wishbone end."));
+    EXPECT_NO_THROW((void)wheel_at_end_of(parse_scene(listing.yaml, "scene"), "travel"));
+    const char* words =
+        "Point Name,X (m),Y (m),Z (m)\nUpper Wishbone Front Pivot FL,-0.100,0.240,0.2808\n"
+        "Upper Wishbone Rear Pivot FL,0.130,0.240,0.2992\n"
+        "Lower Wishbone Front Pivot FL,-0.110,0.200,0.1225\n"
+        "Lower Wishbone Rear Pivot FL,0.140,0.200,0.1175\nUpper Ball Joint FL,0.012,0.540,0.300\n"
+        "Lower Ball Joint FL,-0.005,0.575,0.110\nTie Rod Inboard FL,0.100,0.230,0.160\n"
+        "Tie Rod Outboard FL,0.090,0.560,0.150\nWheel Center FL,0.0,0.600,0.228\n"
+        "Contact Patch FL,0.0,0.605,0.0\nMystery Bracket FL,-0.1,0.2,0.3\n";
+    options.pushrod.clear();
+    const auto named = importer::import_text(words, "p.csv", options);
+    EXPECT_TRUE(says(notes_of(named), "Left out, without a role: line 12, Mystery Bracket FL."));
+    EXPECT_NO_THROW((void)wheel_at_end_of(parse_scene(named.yaml, "scene"), "steering"));
+    // a left-handed file is never guessed
+    options.axes = "x-rearward,y-left";
+    EXPECT_TRUE(says(refusal_of(words, "p.csv", options), "x-rearward,y-left needs its z"));
+}
+
 TEST(Mechanism, OfOneAxleOfTwoInTwoRowsOfHeadings) {
     auto options = as("five_link");
     const std::string text = points_named("five_link.csv");
