@@ -153,7 +153,8 @@ std::vector<SheetText> sheets_of(const Workbook& book) {
     std::vector<SheetText> sheets;
     const auto index = book.xml("xl/workbook.xml");
     for (const auto& sheet : children(child(index.document_element(), "sheets"), "sheet"))
-        if (*sheet.attribute("state").value() == 0)  // else hidden
+        if (const std::string_view state = sheet.attribute("state").as_string("visible");
+            state == "visible")
             sheets.push_back(text_of_sheet(book, sheet.attribute("name").value(),
                                            parts[sheet.attribute("r:id").value()], strings));
     return sheets;

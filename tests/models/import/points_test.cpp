@@ -267,7 +267,7 @@ std::string workbook(const support::Folder& place, const Parts& parts) {
 // As spreadsheets save it: shared strings, formatted in parts, numbers of 17 digits, rows and cells left out.
 const Parts saved_book{
     {"xl/workbook.xml",
-     R"(<workbook xmlns:r="r"><sheets><sheet name="Notes" r:id="a"/><sheet name="Old" state="hidden" r:id="b"/>)"
+     R"(<workbook xmlns:r="r"><sheets><sheet name="Notes" state="visible" r:id="a"/><sheet name="Old" state="hidden" r:id="b"/>)"
      R"(<sheet name="Front &amp; more" r:id="c"/></sheets></workbook>)"},
     {"xl/_rels/workbook.xml.rels",
      R"(<Relationships><Relationship Id="a" Target="worksheets/sheet1.xml"/><Relationship Id="b" )"
