@@ -498,7 +498,7 @@ int judge_columns(const std::vector<Compared>& readings, const std::vector<Chann
             within = within && std::isfinite(d.max) && d.max <= worst.limit;
             if (!std::isfinite(d.max))
                 result.reasons.push_back(fmt::format(
-                    "its {} is no number at {:.6g} {} of branch '{}'", channel.name, d.at,
+                    "its {} is not a number at {:.6g} {} of branch '{}'", channel.name, d.at,
                     by_abscissa ? symbol(channels[static_cast<std::size_t>(branch.abscissa)].unit)
                                 : symbol(branch.unit),
                     branch.branch));
@@ -616,7 +616,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
     bool within = true;
     const int judged = judge_columns(readings, comparison.channels, result, within);
     if (std::ranges::any_of(candidate.points.a, [](double a) { return std::isinf(a); }))
-        result.reasons.emplace_back("where its points are is no number");
+        result.reasons.emplace_back("the parameter of a point is not a number");
     judge_states(result, within);
     note_shared(comparison, result);
     if (nothing_moves(readings)) result.reasons.emplace_back("nothing moves in it");

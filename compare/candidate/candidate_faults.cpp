@@ -57,25 +57,25 @@ constexpr double much_better = 0.01, rounding_of_range = 1e-6;
 constexpr double by_accident = 0.01;  // of a transformation that is right, at most
 constexpr int most_numbers = 5;       // of a branch: more say no more
 
-struct Written {
+struct UnitConfusion {
     double factor;
     const char* word;
 };
 constexpr double pi = std::numbers::pi;
 // Possible unit confusions, relative to the unit assumed for the column.
-constexpr std::array units{Written{1e-3, "metres for millimetres, or the like"},
-                           Written{1e3, "millimetres for metres, or the like"},
-                           Written{0.1, "centimetres for millimetres"},
-                           Written{10, "millimetres for centimetres"},
-                           Written{1 / 25.4, "inches for millimetres"},
-                           Written{25.4, "millimetres for inches"},
-                           Written{pi / 180, "radians for degrees"},
-                           Written{180 / pi, "degrees for radians"},
-                           Written{60, "minutes of arc for degrees"},
-                           Written{1 / 4.4482216152605, "pounds for newtons"},
-                           Written{1 / 9.80665, "kilograms for newtons"},
-                           Written{2, "an axle's total for a wheel's"},
-                           Written{0.5, "half of it"}};
+constexpr std::array units{UnitConfusion{1e-3, "metres for millimetres, or the like"},
+                           UnitConfusion{1e3, "millimetres for metres, or the like"},
+                           UnitConfusion{0.1, "centimetres for millimetres"},
+                           UnitConfusion{10, "millimetres for centimetres"},
+                           UnitConfusion{1 / 25.4, "inches for millimetres"},
+                           UnitConfusion{25.4, "millimetres for inches"},
+                           UnitConfusion{pi / 180, "radians for degrees"},
+                           UnitConfusion{180 / pi, "degrees for radians"},
+                           UnitConfusion{60, "minutes of arc for degrees"},
+                           UnitConfusion{1 / 4.4482216152605, "pounds for newtons"},
+                           UnitConfusion{1 / 9.80665, "kilograms for newtons"},
+                           UnitConfusion{2, "an axle's total for a wheel's"},
+                           UnitConfusion{0.5, "half of it"}};
 
 double mean(const Values& x) {
     double sum = 0;
@@ -318,7 +318,14 @@ std::optional<Explanation> explain(const Beside& b) {
     return found;
 }
 
-// A unit is named only where a model cannot be off by its factor; with others that are as near.
+// With v the column, r its reference, d = rms(v - r) and s = rms(v - mean v), the transformation
+// that leaves the smallest rms, if it leaves less than
+//
+//   v = -r      d / 4 and s / 4
+//   v = r + c   d / 4                 c = mean(v - r)
+//   v = ± f r   d / 4 and s / 4       f a unit factor > 2.5 or < 1 / 2.5, which no model is off by
+//
+// All units within the last bound are named, since several may be as near.
 std::string nearer_with(const Beside& b, const Channel& channel) {
     constexpr double quarter = 0.25, model_is_off = 2.5;
     const Values &v = b.candidate, &r = b.reference;

@@ -1,3 +1,5 @@
+// Convergence study of a candidate: its curves for increasing numbers of steps, on each branch
+// side, against the references, as for a method of the recursion (compare/studies/study.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +18,8 @@ std::string branch_of(const Model& model, const Points& points, std::size_t k) {
     return points.branch.empty() ? model.branches.front().name : points.branch[k];
 }
 
-// Points of a level on one branch side, from a = 0 on; missing channels are NaN.
+// Points of a level (one number of steps) on one branch side, from a = 0 on, in the units of `all`
+// channels; those that the candidate does not give are NaN.
 Curve curve_on(const Model& model, const BranchSide& side, const std::string& branch,
                const std::vector<Channel>& all, const Comparison& outline, const Points& points) {
     const double unit = in_unit(unit_of(side.branch.unit)), to = unit * side.branch.to;
@@ -55,33 +58,34 @@ Study study_candidate(const Model& model, const std::string& name,
         if (level.points.branch.empty() && model.branches.size() > 1)
             return refuse("a column 'branch' is needed, since the scene has several branches");
     }
-    const auto all = motion(model);
-    const Comparison by = outline(model);
+    const auto channels = motion(model);
+    const Comparison outlined = outline(model);
     std::vector<std::size_t> studied;
-    for (std::size_t c = 0; c < all.size(); ++c) {
+    for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto gives = [&](const CandidateLevel& level) {
             return std::ranges::any_of(level.points.columns, [&](const PointColumn& column) {
-                return by.channels[column.channel].name == all[c].name;
+                return outlined.channels[column.channel].name == channels[c].name;
             });
         };
-        if (all[c].main && std::ranges::all_of(levels, gives))
-            studied.push_back(c), result.channels.push_back(all[c]);
+        if (channels[c].main && std::ranges::all_of(levels, gives))
+            studied.push_back(c), result.channels.push_back(channels[c]);
     }
     if (studied.empty()) return refuse("it gives no main output");
 
     for (const auto& branch : model.branches)
         for (const auto& side : sides_with_steps(model, branch, result.steps)) {
             if (progress) progress(fmt::format("{}: references", side.name), nan);
-            const References known = references(model, all, side.branch, {side});
+            const References known = references(model, channels, side.branch, {side});
             std::ranges::move(unfit(known, side.name), std::back_inserter(result.inconclusive));
             if (!known.failures.empty()) continue;
-            BranchStudy b{studied_branch(side, all, known.truth.curve), side.steps, {}};
+            BranchStudy b{studied_branch(side, channels, known.truth.curve), side.steps, {}};
             MethodStudy& study = b.methods.emplace_back();
             study.method = name;
             std::vector<Curve> curves;
             for (std::size_t l = 0; l < levels.size(); ++l) {
                 study.constraint_error.push_back(nan);
-                curves.push_back(curve_on(model, side, branch.name, all, by, levels[l].points));
+                curves.push_back(
+                    curve_on(model, side, branch.name, channels, outlined, levels[l].points));
                 const Trend course = trend(curves.back().a);
                 bool finite = course.monotonic();
                 for (const auto& values : curves.back().values)
@@ -91,11 +95,11 @@ Study study_candidate(const Model& model, const std::string& name,
                     study.not_studied = fmt::format(
                         "with {} steps: {}", levels[l].steps,
                         curves.back().a.size() < 2 ? "fewer than two points"
-                        : course.monotonic()       ? "something is no number"
-                                                   : "a load stands there twice, or is no number");
+                        : course.monotonic()       ? "a value is not a number"
+                                                   : "a load occurs twice, or is not a number");
             }
             if (study.not_studied.empty())
-                study_levels(study, all, studied, {side.steps, curves, known, nan});
+                study_levels(study, channels, studied, {side.steps, curves, known, nan});
             result.branches.push_back(std::move(b));
         }
     return result;

@@ -1,3 +1,6 @@
+// Comparison with measured points, in three steps: the mean of a loop that goes out and back
+// replaces its points; wrong signs, units and definitions are looked for; each column is compared
+// with each leg on each branch.
 #include "compare/candidate/measured.hpp"
 
 #include <fmt/format.h>
@@ -15,27 +18,27 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double of_measured = 1e-2;  // of a column's range: what a measurement resolves
+constexpr double of_measured = 1e-2;  // of a column's range: resolution of a measurement
 
 // ---- Loops: points of a branch that go out and back.
 
-// Direction of the step to each point of one branch, +1 or -1; that of the first is that of the
-// second. A step of less than a thousandth of the range is noise of the abscissa and keeps the
-// direction.
+// Direction of the step to each point of one branch, +1 or -1; the first point has that of the
+// second. A step of less than a thousandth of the range of x is noise of the abscissa and keeps the
+// direction. x: parameter or abscissa of the points, in the order in which they were measured.
 std::vector<int> directions(const std::vector<double>& x) {
     const auto [low, high] = std::ranges::minmax(x);
     const double noise = 1e-3 * (high - low);
-    std::vector<int> way(x.size(), 0);
+    std::vector<int> direction(x.size(), 0);
     double turned_at = x.front();
-    int now = 0;
+    int current = 0;
     for (std::size_t k = 1; k < x.size(); ++k) {
         const double step = x[k] - turned_at;
-        if (std::abs(step) > noise) now = step > 0 ? 1 : -1, turned_at = x[k];
-        way[k] = now;
+        if (std::abs(step) > noise) current = step > 0 ? 1 : -1, turned_at = x[k];
+        direction[k] = current;
     }
-    for (std::size_t k = way.size(); k-- > 0;)
-        if (way[k] == 0) way[k] = k + 1 < way.size() ? way[k + 1] : 0;
-    return way;
+    for (std::size_t k = direction.size(); k-- > 0;)
+        if (direction[k] == 0) direction[k] = k + 1 < direction.size() ? direction[k + 1] : 0;
+    return direction;
 }
 
 // Value at x of a polygon through points in any order; NaN outside.
@@ -50,37 +53,39 @@ double polygon(std::vector<std::pair<double, double>> points, double x) {
     return points.size() == 1 && points.front().first == x ? points.front().second : nan;
 }
 
-// Replaces the values of a column by the mean of both ways, where a branch has two, and returns the
-// widths above zero. A point that has no counterpart on the other way, at a turning point, stays.
+// Where the points of a branch go out and back, replaces each value of a column by the mean of both
+// sweeps at its place, ½ (y(x) + y_other(x)) with y_other interpolated linearly between the points
+// of the other sweep. Returns the loops wider than zero. A point that the other sweep does not
+// reach, at the end of the loop, keeps its value.
 std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>& places,
                                    const Comparison& comparison) {
     std::vector<Hysteresis> loops;
     for (std::size_t b = 0; b < comparison.branches.size(); ++b)
         for (const bool by_parameter : {true, false}) {
             std::vector<std::size_t> points;
-            std::vector<double> at;
+            std::vector<double> x;
             for (std::size_t k = 0; k < places.size(); ++k)
                 if (places[k].branch == static_cast<int>(b) &&
                     places[k].by_parameter == by_parameter && std::isfinite(column.values[k]))
-                    points.push_back(k), at.push_back(places[k].x);
+                    points.push_back(k), x.push_back(places[k].x);
             if (points.size() < 4) continue;
-            const auto way = directions(at);
-            std::array<std::vector<std::pair<double, double>>, 2> ways;  // down, up
+            const auto direction = directions(x);
+            std::array<std::vector<std::pair<double, double>>, 2> sweeps;  // down, up
             for (std::size_t k = 0; k < points.size(); ++k)
-                ways[way[k] > 0 ? 1 : 0].emplace_back(at[k], column.values[points[k]]);
-            if (ways[0].size() < 2 || ways[1].size() < 2) continue;
+                sweeps[direction[k] > 0 ? 1 : 0].emplace_back(x[k], column.values[points[k]]);
+            if (sweeps[0].size() < 2 || sweeps[1].size() < 2) continue;
             Hysteresis loop{.branch = comparison.branches[b].branch,
                             .channel = column.channel,
                             .by_parameter = by_parameter};
             std::vector<double> mean = column.values;
             for (std::size_t k = 0; k < points.size(); ++k) {
                 const double here = column.values[points[k]],
-                             other = polygon(ways[way[k] > 0 ? 0 : 1], at[k]);
+                             other = polygon(sweeps[direction[k] > 0 ? 0 : 1], x[k]);
                 if (!std::isfinite(other)) continue;
                 ++loop.points;
                 mean[points[k]] = (here + other) / 2;
                 if (std::abs(here - other) > loop.width)
-                    loop.width = std::abs(here - other), loop.at = at[k];
+                    loop.width = std::abs(here - other), loop.at = x[k];
             }
             column.values = std::move(mean);
             if (loop.width > 0) loops.push_back(loop);
@@ -88,49 +93,58 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
     return loops;
 }
 
-// ---- Causes.
+// ---- Causes of a deviation: wrong signs, units, offsets and definitions.
 
 struct Given {
     const Comparison& comparison;
-    const Points& points;  // means of both ways
+    const Points& points;  // means of both sweeps
     const DefinedCurves& defined;
 };
 
-// The points of one branch beside a leg, and the other definitions by the equilibrium leg; NaN where
-// the leg does not reach.
+// The points of branch b, and the values of a leg at their places by interpolation of degree 5; for
+// the equilibrium leg also those of the figures by other definitions. NaN where the leg does not
+// reach.
 CandidateReading beside_leg(const Given& given, const std::vector<Place>& places, std::size_t b,
                             Leg leg) {
     const auto& [comparison, points, defined] = given;
     const Curve& curve = comparison.branches[b].run(leg).curve;
-    const std::array over{
+    const std::array x_of_leg{
         points.abscissa ? placed_by(curve, points.abscissa) : std::vector<double>{},
         placed_by(curve, {})};
     CandidateReading reading;
     for (std::size_t k = 0; k < places.size(); ++k)
         if (places[k].branch == static_cast<int>(b) && std::isfinite(places[k].x))
             reading.points.push_back(k), reading.at.push_back(places[k].x);
-    const auto along = [&](const std::vector<double>& of) {
+    const auto interpolated = [&](const std::vector<double>& y) {
         std::vector<double> values;
         for (const std::size_t k : reading.points) {
-            const auto& x = over[places[k].by_parameter ? 1 : 0];
-            values.push_back(reaches(x, places[k].x) ? interpolate(x, of, places[k].x, 6) : nan);
+            const auto& x_samples = x_of_leg[places[k].by_parameter ? 1 : 0];
+            values.push_back(
+                reaches(x_samples, places[k].x) ? interpolate(x_samples, y, places[k].x, 6) : nan);
         }
         return values;
     };
     for (const auto& column : points.columns) {
-        auto& theirs = reading.candidate.emplace_back();
-        for (const std::size_t k : reading.points) theirs.push_back(column.values[k]);
-        reading.truth.push_back(along(curve.channel(column.channel)));
+        auto& measured = reading.candidate.emplace_back();
+        for (const std::size_t k : reading.points) measured.push_back(column.values[k]);
+        reading.truth.push_back(interpolated(curve.channel(column.channel)));
     }
     if (leg == Leg::equilibrium && !defined.branches.empty())
         for (std::size_t d = 0; d < defined.channels.size(); ++d)
-            reading.defined.push_back(along(defined.branches[b].channel(d)));
+            reading.defined.push_back(interpolated(defined.branches[b].channel(d)));
     return reading;
 }
 
-// Turns the places of a branch whose columns agree better so, and says so.
+// Changes the sign of the places of a branch (parameter or abscissa x ← -x) where that explains its
+// columns better than signs of columns do, and adds the reason to `causes`. With v the measured
+// values, r the leg's at x and t the leg's at -x, s² = Σ (v - mean v)² the scatter of a column, and
+// sums over the columns with at least three points and s > 0,
+//
+//   B = Σ |v - r|² / s²     C = Σ min(|v - r|², |v + r|²) / s²     P = Σ |v - t|² / s²
+//
+// that is where √(B / columns) > 0.3,  √(P / B) < 0.25  and  P < C.
 void turn_places(const Given& given, std::vector<Place>& places, std::vector<std::string>& causes) {
-    constexpr double much = 0.3, quarter = 0.25;  // of a column's scatter; of the deviation
+    constexpr double min_deviation = 0.3, max_remainder = 0.25;
     std::vector<Place> turned = places;
     for (Place& place : turned) place.x = -place.x;
     for (std::size_t b = 0; b < given.comparison.branches.size(); ++b) {
@@ -138,12 +152,12 @@ void turn_places(const Given& given, std::vector<Place>& places, std::vector<std
         double before = 0, by_columns = 0, by_places = 0;
         int count = 0;
         const auto as_given = beside_leg(given, places, b, Leg::equilibrium),
-                   otherwise = beside_leg(given, turned, b, Leg::equilibrium);
+                   as_turned = beside_leg(given, turned, b, Leg::equilibrium);
         for (std::size_t c = 0; c < given.points.columns.size(); ++c) {
             double n = 0, sum = 0, squares = 0, as_is = 0, sign = 0, place = 0;
             for (std::size_t k = 0; k < as_given.points.size(); ++k) {
                 const double v = as_given.candidate[c][k], r = as_given.truth[c][k],
-                             t = otherwise.truth[c][k];
+                             t = as_turned.truth[c][k];
                 if (!std::isfinite(v + r + t)) continue;
                 n += 1, sum += v, squares += v * v;
                 as_is += (v - r) * (v - r), sign += (v + r) * (v + r);
@@ -155,8 +169,8 @@ void turn_places(const Given& given, std::vector<Place>& places, std::vector<std
             before += as_is / scatter, by_columns += std::min(as_is, sign) / scatter;
             by_places += place / scatter;
         }
-        if (!(before > much * much * count) || !(by_places < quarter * quarter * before) ||
-            !(by_places < by_columns))
+        if (!(before > min_deviation * min_deviation * count) ||
+            !(by_places < max_remainder * max_remainder * before) || !(by_places < by_columns))
             continue;
         const bool by_parameter = places[as_given.points.front()].by_parameter;
         causes.push_back(fmt::format(
@@ -211,7 +225,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 MeasuredRow measured_row(const std::array<CandidateReading, legs.size()>& beside, std::size_t c,
                          std::vector<bool>& used) {
     MeasuredRow row;
-    std::vector<double> at, measured;
+    std::vector<double> x, measured;
     std::array<std::vector<double>, legs.size()> values;
     for (std::size_t k = 0; k < beside[0].points.size(); ++k) {
         const auto finite = [&](const CandidateReading& leg) {
@@ -219,13 +233,12 @@ MeasuredRow measured_row(const std::array<CandidateReading, legs.size()>& beside
         };
         if (!std::ranges::all_of(beside, finite)) continue;
         used[beside[0].points[k]] = true;
-        at.push_back(beside[0].at[k]), measured.push_back(beside[0].candidate[c][k]);
+        x.push_back(beside[0].at[k]), measured.push_back(beside[0].candidate[c][k]);
         for (std::size_t l = 0; l < legs.size(); ++l) values[l].push_back(beside[l].truth[c][k]);
     }
-    for (std::size_t l = 0; l < legs.size(); ++l)
-        row.off[l] = deviation_of(measured, values[l], at);
-    row.measured_gradient = slope(at, measured);
-    row.gradient = slope(at, values[static_cast<std::size_t>(Leg::equilibrium)]);
+    for (std::size_t l = 0; l < legs.size(); ++l) row.off[l] = deviation_of(measured, values[l], x);
+    row.measured_gradient = slope(x, measured);
+    row.gradient = slope(x, values[static_cast<std::size_t>(Leg::equilibrium)]);
     return row;
 }
 

@@ -13,11 +13,12 @@ namespace elastocheck::compare {
 struct MeasuredRow {
     std::string branch;
     std::size_t channel = 0;
-    // slope of the straight line through these points, of the measured values and of the equilibrium
-    // leg's; per unit of what places them; NaN for fewer than two places
+    // slopes of the straight lines through the measured values and through those of the equilibrium
+    // leg, by least squares, in the channel's unit per unit of the parameter or abscissa; NaN where
+    // all points are at one place
     double measured_gradient = 0, gradient = 0;
-    std::array<Deviation, legs.size()>
-        off;  // of each leg from the measurement, in the order of `legs`
+    // of each leg from the measurement, in the order of `legs`
+    std::array<Deviation, legs.size()> off;
     int compared() const { return off.front().compared; }
 };
 struct MeasuredReading {
@@ -25,15 +26,15 @@ struct MeasuredReading {
     std::vector<MeasuredRow> rows;
 };
 
-// A branch that was measured in both directions: the outputs of the way out and of the way back
-// differ by friction and rubber.
+// An output of a branch that was measured in both directions: its values on the way out and on the
+// way back differ by friction and by hysteresis of the rubber.
 struct Hysteresis {
     std::string branch;
     std::size_t channel = 0;
-    double width = 0;  // largest difference of both ways, in the channel's unit
-    double at = 0;     // where it is: parameter or abscissa of the point
-    bool by_parameter = true;
-    int points = 0;  // that have both ways
+    double width = 0;          // largest difference between both directions, in the channel's unit
+    double at = 0;             // place of that difference: parameter or abscissa, in its unit
+    bool by_parameter = true;  // `at` is a parameter
+    int points = 0;            // points that both directions reach
 };
 
 struct MeasuredComparison {
@@ -56,16 +57,20 @@ struct DefinedCurves {
 DefinedCurves defined_curves(const Model& model, const Comparison& comparison);
 
 // A point is compared only with the branch it names, by its parameter and by its abscissa as far as
-// it has them. Where the points of a branch go out and back, each is compared by the mean of both
-// ways.
+// it has them. Where the points of a branch go out and back, the mean of both directions is
+// compared.
 //
-// A column whose deviation is larger than a hundredth of its range is tried as judge_candidate()
-// does, with `defined`; right means that at most a hundredth of the range remains, since it was
-// measured, and a twentieth of the deviation. A model that is not yet fitted leaves more. What then
-// remains is compared with the deviation before: a sign, a unit that is not near one or an offset is
-// named if it leaves a quarter of the root mean square, and a quarter of the column's own scatter. So
-// is the sign of what places the points of a branch, which turns all its columns at once, if it
-// explains them better than signs of columns do.
+// A column whose deviation is larger than a hundredth of its range is explained. First the sign of
+// the places of a branch is tried, which turns all its columns at once: it is changed where that
+// explains them better than signs of columns do. Then each column that still deviates is tried with
+//
+//   explain()       of judge_candidate(), with `defined`: at most a hundredth of the range of the
+//                   column remains, its resolution as a measurement, and at most a twentieth of the
+//                   deviation
+//   nearer_with()   if that finds nothing, since a model not yet fitted leaves more: a sign, an
+//                   offset or a unit factor not near one that leaves at most a quarter of the root
+//                   mean square of the deviation. A sign or unit must also leave at most a quarter
+//                   of the root mean square of the column about its mean
 //
 // Throws std::invalid_argument for a branch that is not in the comparison, or, for points without
 // names, if two branches lie on the same side.

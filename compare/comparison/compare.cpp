@@ -1,3 +1,5 @@
+// Runs the three legs on every branch, judges each state by the equations of the other legs, and
+// compares the curves: deviations of the recursion, and disagreements of the references.
 #include "compare/comparison/compare.hpp"
 
 #include <fmt/format.h>
@@ -25,8 +27,8 @@ Residuals worse(const Residuals& a, const Residuals& b) {
             compare::worse(a.force, b.force), compare::worse(a.moment, b.moment)};
 }
 
-// Time of a run that ignores its points. Steps as short as the recursion's take half as long again
-// when other work evicts their data from the caches.
+// Processor time [s] of a run whose points are ignored: other work at the points evicts data from
+// the caches, and steps as short as the recursion's then take half as long again.
 double seconds_alone(const std::vector<BranchSide>& sides, const SolverSettings& solver) {
     const double start = processor_time();
     for (const auto& side : sides) solve_branch(side, solver, [](const Equilibrium&) {});
@@ -38,36 +40,40 @@ bool has_characteristics(const std::vector<Channel>& channels) {
         channels, [](const Channel& c) { return c.kind() == ChannelKind::characteristic; });
 }
 
-// Responses at the landmarks, as the outputs there were read from them.
+// Responses at the landmarks, kept where outputs were read from them, so that they are not computed
+// again.
 struct Responses {
     std::optional<WheelResponse> front, start, back;
 };
 
 std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side,
                                       const SolverSettings& solver, const LegRun& run,
-                                      const Responses& known) {
+                                      const Responses& responses) {
     std::vector<Compliance> list;
     Analyses analyses;
-    const auto& marks = run.landmarks;
-    for (const auto& [state, read] : {std::pair{&marks.front, &known.front},
-                                      {&marks.start, &known.start},
-                                      {&marks.back, &known.back}}) {
+    const auto& landmarks = run.landmarks;
+    for (const auto& [state, known_response] : {std::pair{&landmarks.front, &responses.front},
+                                                {&landmarks.start, &responses.start},
+                                                {&landmarks.back, &responses.back}}) {
         if (!*state) continue;
         const double a = in_unit(run.curve.unit) * (*state)->load;
         if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
         const WheelResponse response =
-            *read ? **read : wheel_response(side, solver, steering_joint(model), **state, analyses);
-        Compliance& at = list.emplace_back();
-        at.a = a;
-        at.why_not = response.why_not_free;
-        at.centre = compliance(side.model, WheelPoint::centre, **state, response);
-        at.patch = compliance(side.model, WheelPoint::patch, **state, response);
-        at.reciprocity = reciprocity(side.model, at.centre);
+            *known_response
+                ? **known_response
+                : wheel_response(side, solver, steering_joint(model), **state, analyses);
+        Compliance& entry = list.emplace_back();
+        entry.a = a;
+        entry.why_not = response.why_not_free;
+        entry.centre = compliance(side.model, WheelPoint::centre, **state, response);
+        entry.patch = compliance(side.model, WheelPoint::patch, **state, response);
+        entry.reciprocity = reciprocity(side.model, entry.centre);
     }
     return list;
 }
 
-// The points of a path that ended early are still checked: each is an equilibrium or not.
+// Proofs at the landmarks, each parameter once: all of them, or the ends only. Landmarks of a path
+// that ended early are proved too, since each is an equilibrium or not.
 Tally proved(const BranchSide& side, const LegRun& run, bool ends_only) {
     Tally tally;
     std::vector<double> done;
@@ -86,11 +92,12 @@ Tally proved(const BranchSide& side, const LegRun& run, bool ends_only) {
     return tally;
 }
 
-// Parameters of the points whose states are kept.
+// Parameters of the points whose states are kept: all of up to 17, else 17 of evenly spaced
+// position.
 std::vector<double> stations_of(const std::vector<double>& requested) {
-    constexpr std::size_t most = 16;  // intervals
+    constexpr std::size_t max_intervals = 16;
     std::vector<double> stations;
-    const std::size_t last = requested.size() - 1, count = std::min(most, last);
+    const std::size_t last = requested.size() - 1, count = std::min(max_intervals, last);
     for (std::size_t k = 0; k <= count; ++k)
         stations.push_back(requested[count == 0 ? 0 : (2 * k * last + count) / (2 * count)]);
     return stations;
@@ -108,46 +115,46 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     const auto requested = requested_parameters(sides, solver.every);
     const double middle = requested[requested.size() / 2];
     const bool both_sides = sides.size() > 1;
-    auto& marks = run.landmarks;
+    auto& landmarks = run.landmarks;
     Responses responses;
-    const bool kept = solver.leg == Leg::equilibrium;
-    const auto stations = kept ? stations_of(requested) : std::vector<double>{};
+    const bool keeps_states = solver.leg == Leg::equilibrium;
+    const auto stations = keeps_states ? stations_of(requested) : std::vector<double>{};
     std::optional<LargestForces> largest;
-    if (kept) largest.emplace(model, side);
+    if (keeps_states) largest.emplace(model, side);
     static_cast<PathCurve&>(run) =
         solve_branch(model, channels, branch, sides, solver,
                      [&](const Equilibrium& state, const WheelResponse* response) {
-                         for (const Leg by : legs) {
-                             auto& worst = run.judged[static_cast<std::size_t>(by)];
-                             worst = worse(worst, judge(by, side, state));
+                         for (const Leg judging_leg : legs) {
+                             auto& worst = run.judged[static_cast<std::size_t>(judging_leg)];
+                             worst = worse(worst, judge(judging_leg, side, state));
                          }
                          run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
                          // The farthest point on either side comes last.
                          const auto mark = [&](std::optional<Equilibrium>& here,
-                                               std::optional<WheelResponse>& read) {
+                                               std::optional<WheelResponse>& known_response) {
                              here = state;
-                             read.reset();
-                             if (response != nullptr) read = *response;
+                             known_response.reset();
+                             if (response != nullptr) known_response = *response;
                          };
                          if (state.load == 0)
-                             mark(marks.start, responses.start);
+                             mark(landmarks.start, responses.start);
                          else if (both_sides && state.load * side.branch.to > 0)
-                             mark(marks.front, responses.front);
+                             mark(landmarks.front, responses.front);
                          else
-                             mark(marks.back, responses.back);
-                         if (state.load == middle) marks.middle = state;
+                             mark(landmarks.back, responses.back);
+                         if (state.load == middle) landmarks.middle = state;
                          if (largest) largest->add(state);
                          if (std::ranges::find(stations, state.load) != stations.end())
                              run.stations.push_back(state);
                      });
     std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
     if (largest) run.largest = largest->list();
-    if (!marks.front) {
-        marks.front = marks.start;
+    if (!landmarks.front) {
+        landmarks.front = landmarks.start;
         responses.front = responses.start;
     }
-    if (!marks.back) {
-        marks.back = marks.start;
+    if (!landmarks.back) {
+        landmarks.back = landmarks.start;
         responses.back = responses.start;
     }
     if (!model.wheels.empty() && has_characteristics(channels))
@@ -354,15 +361,15 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     Objections disagreements;
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         if (!branch.determined[c]) continue;
-        const double off = reading.channels[c].max,
+        const double difference = reading.channels[c].max,
                      bound = channels[c].kind() == ChannelKind::characteristic
                                  ? bound_of_characteristic(equilibrium.curve.channel(c))
                                  : bound_of(channels[c].unit, branch.bounds);
-        if (const double part = share(off, bound); !(part <= 1))
+        if (const double part = share(difference, bound); !(part <= 1))
             disagreements.add(
                 fmt::format(
                     "the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
-                    channels[c].name, off, symbol(channels[c].unit), bound),
+                    channels[c].name, difference, symbol(channels[c].unit), bound),
                 part);
     }
     if (!disagreements.empty())
@@ -434,15 +441,15 @@ BranchComparison compare_runs(const Model& model, const std::vector<Channel>& ch
     const LegRun& truth = b.run(Leg::equilibrium);
     b.abscissa =
         requested_abscissa >= 0 ? requested_abscissa : default_abscissa(channels, truth.curve);
-    const auto pair = [&](Leg a, Leg c) {
+    const auto pair_of = [&](Leg a, Leg c) {
         const Curve &of_a = b.run(a).curve, &of_c = b.run(c).curve;
         return Pair{
             a, c, at_equal_parameter(of_a, of_c),
             at_equal_abscissa(of_a, of_c, compare::abscissa(channels, b.abscissa, of_a, of_c))};
     };
-    b.deviation = pair(Leg::equilibrium, Leg::recursive);
-    b.cross_check = pair(b.second, Leg::recursive);
-    b.uncertainty = pair(Leg::equilibrium, b.second);
+    b.deviation = pair_of(Leg::equilibrium, Leg::recursive);
+    b.cross_check = pair_of(b.second, Leg::recursive);
+    b.uncertainty = pair_of(Leg::equilibrium, b.second);
     b.bounds = bounds_of(options.agreement, truth.scale);
     b.extents = extents_of(channels, truth.curve, truth.scale);
     b.inconclusive = disagreements(model, channels, branch, b);
@@ -487,11 +494,11 @@ Comparison compare(const Model& model, const Options& options, const std::vector
     std::ranges::move(sums(model), std::back_inserter(result.channels));
 
     const auto solve = [&](std::size_t k, const SolverSettings& solver) {
-        LegRun found =
+        LegRun leg_run =
             run(model, result.channels, model.branches[k], sides[k], solver, options.times);
         if (options.prove && (!options.prove_ends_only || solver.leg == Leg::equilibrium))
-            found.proved = proved(sides[k].front(), found, options.prove_ends_only);
-        return found;
+            leg_run.proved = proved(sides[k].front(), leg_run, options.prove_ends_only);
+        return leg_run;
     };
     std::vector<std::vector<LegRun>> runs(model.branches.size(), std::vector<LegRun>(legs.size()));
     std::vector<std::optional<LegRun>> series(model.branches.size());
@@ -505,9 +512,9 @@ Comparison compare(const Model& model, const Options& options, const std::vector
                                                  .recursion = options.recursion,
                                                  .every = options.every,
                                                  .energy = options.energy};
-                     LegRun& found = runs[k][static_cast<std::size_t>(leg)];
-                     found = solve(k, solver);
-                     if (leg == Leg::energy && is_not_applicable(found.outcome))
+                     LegRun& leg_run = runs[k][static_cast<std::size_t>(leg)];
+                     leg_run = solve(k, solver);
+                     if (leg == Leg::energy && is_not_applicable(leg_run.outcome))
                          series[k] = solve(k, {.leg = Leg::series, .every = options.every});
                  }});
     run_jobs(jobs, options.threads, part(options.progress, 0, 0.9));

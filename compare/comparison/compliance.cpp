@@ -26,6 +26,8 @@ struct ResponseCase {
     Equilibrium state;
 };
 
+// The free model of compliance.hpp: without jacks and tyres, whose forces at this state act as
+// static loads.
 ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
     ResponseCase free{side.model, side.branch, state};
     const auto push = [&](const Point& at, double force) {
@@ -57,7 +59,7 @@ ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
 ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
     for (const Wheel& wheel : std::span(freed_case.model.wheels).first(wheels)) {
         const Point centre{wheel.body, wheel.centre_local};
-        const Vector3d here = position(freed_case.state.poses, centre);
+        const Vector3d at_state = position(freed_case.state.poses, centre);
         const int joint = static_cast<int>(freed_case.model.joints.size());
         freed_case.model.joints.push_back(
             {.name = wheel.name + " jack",
@@ -66,30 +68,32 @@ ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
              .at = centre,
              .driven = static_cast<int>(freed_case.model.constraints.size())});
         freed_case.model.constraints.push_back(
-            {joint, PointInPlane{centre, {ground, here}, {ground, Vector3d::UnitZ()}, 0}});
+            {joint, PointInPlane{centre, {ground, at_state}, {ground, Vector3d::UnitZ()}, 0}});
         freed_case.state.reactions.emplace_back();
     }
     return freed_case;
 }
 
-// Unit forces and moments at the wheel centres, then forces at the patches.
-// The longitudinal one brakes: the carrier holds a rolling wheel.
+// Unit disturbances, per wheel: forces [1 N] along x, y, z and moments [1 N·m] about them at the
+// centre, then forces at the patch. The longitudinal force at the patch of a wheel that rolls
+// brakes: the carrier takes its moment.
 std::vector<Disturbance> causes_at(const Model& model, const Equilibrium& state,
                                    bool with_patches) {
-    std::vector<Disturbance> list;
+    std::vector<Disturbance> disturbances;
     for (const Wheel& wheel : model.wheels) {
         const Point centre{wheel.body, wheel.centre_local};
         const Vector3d d = position(state.poses, wheel.contact) - position(state.poses, centre);
         for (int k = 0; k < 3; ++k)
-            list.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
+            disturbances.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
         for (int k = 0; k < 3; ++k)
-            list.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
+            disturbances.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
         for (int k = 0; with_patches && k < 3; ++k)
-            list.push_back(k == 0 && wheel.rolls()
-                               ? UnitWrench{centre, Vector3d::Unit(k), d.cross(Vector3d::Unit(k))}
-                               : UnitWrench{wheel.contact, Vector3d::Unit(k), Vector3d::Zero()});
+            disturbances.push_back(
+                k == 0 && wheel.rolls()
+                    ? UnitWrench{centre, Vector3d::Unit(k), d.cross(Vector3d::Unit(k))}
+                    : UnitWrench{wheel.contact, Vector3d::Unit(k), Vector3d::Zero()});
     }
-    return list;
+    return disturbances;
 }
 
 // A force f at the patch is f at the centre and the moment d x f, d from centre to patch.
@@ -106,14 +110,16 @@ Motions at_patch_of(const std::array<Motions, causes>& solved, const Vector3d& d
     return sum;
 }
 
-std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& all,
+// The motions of all bodies, sorted by wheel and cause (order of causes_at()). Where they were
+// solved without patches, those of the forces there are the sums of at_patch_of().
+std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& solved,
                                                   const Model& model, const Equilibrium& state,
                                                   bool with_patches) {
-    const std::size_t each = with_patches ? causes : at_patch;
+    const std::size_t per_wheel = with_patches ? causes : at_patch;
     std::vector<std::array<Motions, causes>> list(model.wheels.size());
     for (std::size_t w = 0; w < list.size(); ++w) {
         const Wheel& wheel = model.wheels[w];
-        for (std::size_t k = 0; k < each; ++k) list[w][k] = all[each * w + k];
+        for (std::size_t k = 0; k < per_wheel; ++k) list[w][k] = solved[per_wheel * w + k];
         const Vector3d d = position(state.poses, wheel.contact) -
                            position(state.poses, wheel.body, wheel.centre_local);
         for (int axis = 0; !with_patches && axis < 3; ++axis)
@@ -224,16 +230,16 @@ Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibri
     Eigen::MatrixXd C(6 * n, 6 * n);
     for (Eigen::Index j = 0; j < n; ++j)
         for (int k = 0; k < 6; ++k) {
-            const auto& by = response.free[static_cast<std::size_t>(j)]
-                                          [static_cast<std::size_t>(k < 3 ? force + k : k)];
+            const auto& motions = response.free[static_cast<std::size_t>(j)]
+                                               [static_cast<std::size_t>(k < 3 ? force + k : k)];
             for (Eigen::Index i = 0; i < n; ++i) {
                 const Subject wheel{model, &state, static_cast<std::size_t>(i)};
                 const bool centre = point == WheelPoint::centre;
                 C.block<6, 1>(6 * i, 6 * j + k)
-                    << wheel.moved_by(by, centre ? wheel.centre() : wheel.patch()),
-                    wheel.turned_by(by);
+                    << wheel.moved_by(motions, centre ? wheel.centre() : wheel.patch()),
+                    wheel.turned_by(motions);
                 // as the longitudinal force, that of a braked wheel
-                if (!centre) C(6 * i, 6 * j + k) = wheel.moved_by(by, wheel.braked()).x();
+                if (!centre) C(6 * i, 6 * j + k) = wheel.moved_by(motions, wheel.braked()).x();
             }
         }
     return C;
@@ -246,8 +252,8 @@ double reciprocity(const Model& model, const Eigen::MatrixXd& C) {
         const double radius = drawn_arm(model, model.wheels[w]).norm();
         if (radius > 0) size.segment<3>(static_cast<Eigen::Index>(6 * w + 3)).setConstant(radius);
     }
-    const Eigen::MatrixXd even = size.asDiagonal() * C * size.asDiagonal();
-    return (even - even.transpose()).cwiseAbs().maxCoeff() / even.cwiseAbs().maxCoeff();
+    const Eigen::MatrixXd scaled = size.asDiagonal() * C * size.asDiagonal();
+    return (scaled - scaled.transpose()).cwiseAbs().maxCoeff() / scaled.cwiseAbs().maxCoeff();
 }
 
 double in_table_units(const Eigen::MatrixXd& C, Eigen::Index row, Eigen::Index column) {

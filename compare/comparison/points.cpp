@@ -51,33 +51,35 @@ bool reaches(const std::vector<double>& over, double x) {
 std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                              const std::vector<std::string>& names, const std::vector<double>& x,
                              std::optional<std::size_t> channel) {
-    const auto& all = comparison.branches;
-    std::vector<int> result;
+    const auto& branches = comparison.branches;
+    std::vector<int> positions;
     if (!names.empty()) {
         for (const auto& name : names) {
-            const auto found = std::ranges::find(all, name, &BranchComparison::branch);
-            if (found == all.end())
+            const auto match = std::ranges::find(branches, name, &BranchComparison::branch);
+            if (match == branches.end())
                 throw std::invalid_argument(fmt::format("the scene has no branch '{}'", name));
-            result.push_back(static_cast<int>(found - all.begin()));
+            positions.push_back(static_cast<int>(match - branches.begin()));
         }
-        return result;
+        return positions;
     }
-    for (std::size_t a = 0; a < all.size(); ++a)
+    for (std::size_t a = 0; a < branches.size(); ++a)
         for (std::size_t b = 0; b < a; ++b)
             if (!on_opposite_sides(model.branches[a], model.branches[b]))
                 throw std::invalid_argument(
                     fmt::format("branches '{}' and '{}' are on the same side; each point needs the "
                                 "name of its branch",
-                                all[b].branch, all[a].branch));
-    std::vector<std::vector<double>> over;
-    for (const auto& branch : all)
-        over.push_back(placed_by(branch.run(Leg::equilibrium).curve, channel));
-    for (const double at : x) {
-        const auto found = std::ranges::find_if(
-            over, [&](const std::vector<double>& of_branch) { return reaches(of_branch, at); });
-        result.push_back(found == over.end() ? -1 : static_cast<int>(found - over.begin()));
+                                branches[b].branch, branches[a].branch));
+    std::vector<std::vector<double>> x_of_branches;
+    for (const auto& branch : branches)
+        x_of_branches.push_back(placed_by(branch.run(Leg::equilibrium).curve, channel));
+    for (const double place : x) {
+        const auto match = std::ranges::find_if(
+            x_of_branches,
+            [&](const std::vector<double>& of_branch) { return reaches(of_branch, place); });
+        positions.push_back(
+            match == x_of_branches.end() ? -1 : static_cast<int>(match - x_of_branches.begin()));
     }
-    return result;
+    return positions;
 }
 
 std::vector<Place> places_of(const Model& model, const Comparison& comparison,

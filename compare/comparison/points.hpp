@@ -1,5 +1,5 @@
-// External points, measured or computed: their branches, their positions on them, and
-// their output values.
+// Points of another program or of a measurement: the branch of each, its place on that branch by
+// the parameter or by an abscissa, and its output values.
 #pragma once
 
 #include <limits>
@@ -11,7 +11,8 @@
 
 namespace elastocheck::compare {
 
-// Converts changes to absolute positions and angles.
+// Converts changes from the design position to absolute positions and angles: adds the value of the
+// design position to each value of a column with PointColumn::change.
 std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
                                        std::vector<PointColumn> columns);
 
@@ -33,10 +34,10 @@ struct Place {
 std::vector<Place> places_of(const Model& model, const Comparison& comparison,
                              const Points& points);
 
-// Values of a leg that place points: its parameter, or a channel; empty where the channel
-// is not monotonic.
+// Values along the curve by which points are placed: of its parameter, or of a channel. Empty where
+// the channel is not strictly monotonic.
 std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel);
-// Whether x lies within the range of a monotonic sequence, up to 1e-9 of it.
+// Whether x lies within the range of a monotonic sequence, up to 1e-9 of that range.
 bool reaches(const std::vector<double>& over, double x);
 
 }  // namespace elastocheck::compare

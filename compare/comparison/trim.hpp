@@ -11,26 +11,28 @@
 
 namespace elastocheck::compare {
 
-// What the conditions read, in SI after division by the unit: an angle, or a coordinate counted from
-// the design position.
+// The outputs that the conditions of the trim read, one each: an angle, or a coordinate counted
+// from the design position. In the units of the channels, mm and deg.
 std::vector<Channel> condition_channels(const Model& model, const Trim& trim);
 
-// The scene with the adjustments p as plain data, in the units of the adjusted quantities [SI], and
-// without its trim.
+// The scene with the adjustments p added to the adjusted quantities, and without its trim. p: one
+// entry per Trim::adjust, in the SI unit of Trim::Adjustment::unit.
 Scene with_adjusted(Scene scene, const Eigen::VectorXd& p);
 
-// Where a trim of a similar scene ended: its adjustments, in the units of the adjusted quantities
-// [SI], and the changes of the conditions by a step of each [conditions × adjustments].
+// Where a trim of a similar scene ended.
 struct TrimStart {
-    Eigen::VectorXd p;
+    Eigen::VectorXd p;  // adjustments, as in with_adjusted()
+    // [conditions × adjustments]: change of each condition [m, rad] with a step h of each
+    // adjustment (elastocheck/trim.hpp)
     Eigen::MatrixXd J;
 };
 
-// trim() by the series alone, without a second reference: `confirmed` of its conditions is NaN, and
-// `confirmed_by` is the series. For a program without the references. With a `start` the equations
-// are solved from there by the method of Broyden where it converges, to the same accuracy, else as by
-// trim(); a start of another size, such as an empty one, is not used. A trim that is reached
-// replaces it.
+// trim() by the series alone, for a program without the references. No second reference confirms
+// it: `confirmed` of its conditions is NaN, and `confirmed_by` is the series.
+//
+// With a `start` the equations are solved from there by Broyden's method, to the same accuracy;
+// where that does not converge, as by trim(). A start of another size, such as an empty one, is not
+// used. A trim that is reached replaces `start`.
 Trimmed trim_by_series(const Scene& scene, TrimStart* start = nullptr);
 
 // The same by the equilibrium leg.

@@ -1,4 +1,5 @@
-// A trim with the preloads of the bushings as they are: a step of a trim that balances them.
+// One trim with the preloads of the bushings as they are. A trim that balances the bushings
+// (balanced_trim.cpp) repeats it with corrected preloads.
 #pragma once
 
 #include "compare/comparison/legs.hpp"
@@ -6,20 +7,22 @@
 
 namespace elastocheck::compare {
 
-constexpr double acceptable = 1e-9;  // [m, rad]: of a condition, where Newton's method stagnates
+// [m, rad]: |c| that is accepted where Newton's method on the conditions comes no nearer to zero.
+constexpr double acceptable = 1e-9;
 
-// A trimmed scene as it settles.
+// The equilibrium of a trimmed scene at a = 0.
 struct SettledTrim {
-    BranchSide held;
+    BranchSide held;  // a branch without motion, whose drivers hold the adjustments that were found
     Equilibrium state;
 };
 
-// Pre: scene.trim. By one leg; confirmed by the energy leg or, where that does not apply, by the
-// series. `start` and `settles` may be null.
+// Pre: scene.trim. Solves the trim equations by the leg `solver`. With `confirm` the energy leg
+// confirms the result or, where that does not apply, the series. `start`: as for trim_by_series();
+// `settles` receives the settled state of a trim that is reached. Both may be null.
 Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
                   SettledTrim* settles);
 
-// What the conditions are counted from, as drawn and as requested, difference [m, rad].
+// Requested value minus the value as drawn, per condition [m, rad].
 Eigen::VectorXd requested_from_drawn(const Scene& scene);
 
 }  // namespace elastocheck::compare

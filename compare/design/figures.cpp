@@ -32,9 +32,13 @@ struct NearTrim : TrimStart {
     bool by_equilibrium = false;
 };
 
-// By the equilibrium leg, with a trim from that of a similar scene, which it replaces: by the series,
-// or, where the start settles past a limit point, by the equilibrium leg; neither is confirmed. Without
-// values where the scene does not exist: a negative rate, points that meet.
+// Figures of the scene with the numbers p, by the equilibrium leg. NaN where there is no such scene
+// (a negative rate, points that meet).
+//
+// A trim of the scene starts from that of a similar scene, `near`, and replaces it. It is solved by
+// the series, or by the equilibrium leg where the start settles past a limit point, which the
+// series does not reach: first by the leg that reached the last trim, then by the other one. No
+// second reference confirms it.
 FigureValues values_at(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
                        NearTrim& near) {
     try {
@@ -53,29 +57,30 @@ FigureValues values_at(const Varied& varied, std::span<const Figure> figures, co
     }
 }
 
-// Values at points near the first one, from whose trim those of the others start; that of the first from
-// the last one that there was.
+// Values at points near the first one. The trim of the first point starts from that of the last
+// first point, and the trims of the others start from that of the first. A value at the same first
+// point is kept.
 struct SolvedFigures {
     Varied varied;
     std::vector<Figure> figures;
     int threads;
     NearTrim near = {};
-    VectorXd first = {}, value = {};
+    VectorXd first = {}, value = {};  // the last first point, and the figures there
 
     std::vector<VectorXd> operator()(const std::vector<VectorXd>& points) {
         if (first.size() != points[0].size() || first != points[0]) {
             value = values_at(varied, figures, points[0], near).value;
             first = points[0];
         }
-        std::vector<VectorXd> all(points.size(), value);
+        std::vector<VectorXd> values(points.size(), value);
         std::vector<Job> jobs;
         for (std::size_t k = 1; k < points.size(); ++k)
             jobs.push_back({"", [&, k] {
                                 NearTrim start = near;
-                                all[k] = values_at(varied, figures, points[k], start).value;
+                                values[k] = values_at(varied, figures, points[k], start).value;
                             }});
         run_jobs(jobs, threads, {});
-        return all;
+        return values;
     }
 };
 
@@ -118,12 +123,12 @@ std::string why_not_solved(const Varied& varied, std::span<const Figure> figures
 
 std::string why_still(const Varied& varied, const Figure& figure) {
     const Scene scene = varied.scene(varied.start);
-    std::vector<Figure> all;  // outputs of the state at the same station
+    std::vector<Figure> outputs_there;  // outputs of the state at the same station
     for (const Channel& channel : channels(compile(scene))) {
-        all.push_back(figure);
-        all.back().name = channel.name;
+        outputs_there.push_back(figure);
+        outputs_there.back().name = channel.name;
     }
-    const Figures outputs = solved_figures(varied, all);
+    const Figures outputs = solved_figures(varied, outputs_there);
     const MatrixXd rate = outputs.gradient(varied.start);
     std::vector<std::string> reasons;
     for (std::size_t i = 0; i < varied.numbers.size(); ++i) {
@@ -135,9 +140,10 @@ std::string why_still(const Varied& varied, const Figure& figure) {
             if (!part.empty() && path.find("." + part + ".") != std::string::npos)
                 why = fmt::format("{} is left out: {}", what, reason);
         }
-        for (std::size_t k = all.size(); k-- > 0;)
+        for (std::size_t k = outputs_there.size(); k-- > 0;)
             if (std::abs(rate(static_cast<Index>(k), static_cast<Index>(i))) > 0)
-                why = fmt::format("it moves {}, for example, and not {}", all[k].name, figure.name);
+                why = fmt::format("it moves {}, for example, and not {}", outputs_there[k].name,
+                                  figure.name);
         reasons.push_back(path + ": " + why);
     }
     return fmt::format("{}", fmt::join(reasons, "\n  "));
@@ -150,20 +156,22 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures, const 
     bool judged = false;
     const Trimmed trimmed = trim(scene);
     for (const auto leg : {Leg::energy, Leg::series}) {
-        const FigureValues found = of_trimmed(trimmed, figures, leg);
-        (leg == Leg::energy ? result.energy : result.series) = found.value;
-        if (found.not_applicable) continue;
+        const FigureValues computed = of_trimmed(trimmed, figures, leg);
+        (leg == Leg::energy ? result.energy : result.series) = computed.value;
+        if (computed.not_applicable) continue;
         judged = true;
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const auto i = static_cast<Index>(k);
-            const double apart = std::abs(found.value[i] - values[i]);
-            if (why.empty() && std::isfinite(apart) && !(apart <= legs_agree * movement[i]))
+            const double difference = std::abs(computed.value[i] - values[i]);
+            if (why.empty() && std::isfinite(difference) &&
+                !(difference <= legs_agree * movement[i]))
                 why = fmt::format("{}: the {} differs by {:.2g} {}", figures[k].name,
-                                  leg == Leg::energy ? "energy leg" : "series", apart,
+                                  leg == Leg::energy ? "energy leg" : "series", difference,
                                   figures[k].unit);
         }
-        if (why.empty()) why = found.why_not;
-        if (why.empty() && !found.value.allFinite()) why = "a figure has no value by another leg";
+        if (why.empty()) why = computed.why_not;
+        if (why.empty() && !computed.value.allFinite())
+            why = "a figure has no value by another leg";
     }
     if (why.empty() && !judged) why = "no other leg applies to the scene";
     result.confirmed = why.empty();

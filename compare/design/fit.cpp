@@ -15,12 +15,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// The letters and formulas are those of fit.hpp.
+
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double least_singular = 1e-6;  // of the largest: below, a combination is not determined
 constexpr double least_part = 1e-3;      // of a number in an undetermined combination
 constexpr double least_noise = 1e-9;     // of the range of a column: exact data
-constexpr int reweighted = 2;
-constexpr int most_robust_passes = 60;
+constexpr int noise_updates = 2;         // estimates of s_c after the first fit
+constexpr int max_robust_passes = 60;
 constexpr double numbers_stay = 1e-6;     // in steps, from one robust pass to the next
 constexpr double cauchy_width = 2.385;    // c
 constexpr double normal_median = 1.4826;  // standard deviation over median |.|
@@ -40,11 +42,15 @@ double range_of(const VectorXd& values) {
     return range > 0 ? range : std::max(std::abs(values[0]), 1.0);
 }
 
-// √(ψ(u) / u) per value.
+// √(ψ(u) / u) per value: the factor of a residual whose square is weighted by ψ(u) / u.
 VectorXd loss_weights(const VectorXd& u) {
     return (1 + (u / cauchy_width).array().square()).rsqrt();
 }
-// Factor of the covariance of a robust fit; NaN where the loss does not determine the numbers.
+// Factor K² [Σ ψ² / (N - n)] / [mean ψ']² of the covariance of a robust fit, with
+//
+//   v = (u/c)²,   ψ = u / (1 + v),   ψ' = (1 - v) / (1 + v)²   (`slope`)
+//
+// NaN where mean ψ' ≤ 0: the loss does not determine the numbers.
 double robust_factor(const VectorXd& u, Index n) {
     const double N = static_cast<double>(u.size());
     const Eigen::ArrayXd v = (u / cauchy_width).array().square();
@@ -55,25 +61,26 @@ double robust_factor(const VectorXd& u, Index n) {
     return K * K * psi.square().sum() / (N - static_cast<double>(n)) / (mean * mean);
 }
 
-// The undetermined combinations and the intervals; J [values × numbers]: ∂u/∂x.
-void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measured, Fitted& found) {
+// The undetermined combinations of numbers (S_k ≤ 1e-6 S_1), and the intervals t √C_ii `step` of
+// the others. J [values × numbers]: ∂u/∂x.
+void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measured, Fitted& fitted) {
     const Index n = J.cols();
     const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeFullV);
-    VectorXd& S = found.singular_values = VectorXd::Zero(n);
+    VectorXd& S = fitted.singular_values = VectorXd::Zero(n);
     S.head(svd.singularValues().size()) = svd.singularValues();
     const Index determined = (S.array() > least_singular * S[0]).count();
-    found.undetermined = svd.matrixV().rightCols(n - determined);
+    fitted.undetermined = svd.matrixV().rightCols(n - determined);
     const VectorXd variance =
         (svd.matrixV().leftCols(determined) * S.head(determined).cwiseInverse().asDiagonal())
             .rowwise()
             .squaredNorm();
-    const double factor = measured.robust && found.freedom > 0 ? robust_factor(u, determined) : 1;
-    found.interval =
-        student_95(found.freedom) * (factor * variance).cwiseSqrt().cwiseProduct(measured.step);
+    const double factor = measured.robust && fitted.freedom > 0 ? robust_factor(u, determined) : 1;
+    fitted.interval =
+        student_95(fitted.freedom) * (factor * variance).cwiseSqrt().cwiseProduct(measured.step);
     for (Index i = 0; i < n; ++i)
-        if (found.freedom < 1 || !std::isfinite(factor) ||
-            (found.undetermined.array().row(i).abs() > least_part).any())
-            found.interval[i] = unlimited;
+        if (fitted.freedom < 1 || !std::isfinite(factor) ||
+            (fitted.undetermined.array().row(i).abs() > least_part).any())
+            fitted.interval[i] = unlimited;
 }
 
 }  // namespace
@@ -100,75 +107,79 @@ Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& 
     const auto number_at = [&](const VectorXd& x) -> VectorXd {
         return within({range.low, range.high}, measured.step.cwiseProduct(x));
     };
-    VectorXd noise(N), loss = VectorXd::Ones(N), residual(N), u = VectorXd::Zero(N);
+    // per value: s_c, √(ψ(u) / u), f - y and u
+    VectorXd noise(N), loss_weight = VectorXd::Ones(N), residual(N), u = VectorXd::Zero(N);
     LeastSquares problem{
         [&](const VectorXd& x) -> VectorXd {
             return (figures.value(number_at(x)) - measured.value)
-                .cwiseProduct(loss)
+                .cwiseProduct(loss_weight)
                 .cwiseQuotient(noise);
         },
         [&](const VectorXd& x) -> MatrixXd {
-            return loss.cwiseQuotient(noise).asDiagonal() * figures.gradient(number_at(x)) *
+            return loss_weight.cwiseQuotient(noise).asDiagonal() * figures.gradient(number_at(x)) *
                    measured.step.asDiagonal();
         },
         {range.low.cwiseQuotient(measured.step), range.high.cwiseQuotient(measured.step)}};
     problem.about = within(problem.box, range.start.cwiseQuotient(measured.step));
-    Fitted found{.p = range.start};
+    Fitted fitted{.p = range.start};
     const VectorXd before = figures.value(number_at(problem.about));
     if (!before.allFinite()) {
-        found.why_not = "the start";
-        return found;
+        fitted.why_not = "the start";
+        return fitted;
     }
+    // of the degrees of freedom: N_c - n N_c / N = share N_c
     const double share = 1 - static_cast<double>(n) / static_cast<double>(N);
-    found.freedom = std::numeric_limits<int>::max();
-    for (const auto& at : places) {
-        const VectorXd values = measured.value(at);
-        noise(at).setConstant(range_of(values));
-        found.columns.push_back(
-            {0, root_mean_square(before(at) - values), static_cast<int>(at.size())});
-        found.freedom =
-            std::min(found.freedom, static_cast<int>(share * static_cast<double>(at.size())));
+    fitted.freedom = std::numeric_limits<int>::max();
+    for (const auto& rows : places) {
+        const VectorXd values = measured.value(rows);
+        noise(rows).setConstant(range_of(values));
+        fitted.columns.push_back(
+            {0, root_mean_square(before(rows) - values), static_cast<int>(rows.size())});
+        fitted.freedom =
+            std::min(fitted.freedom, static_cast<int>(share * static_cast<double>(rows.size())));
     }
 
     Minimum nearest{.x = problem.about};
+    // Robust: until the numbers stay. Else: fits with s_c from the range, and two with estimates.
     bool stays = !measured.robust || N <= n;
-    for (int pass = 0; pass <= (measured.robust ? most_robust_passes : reweighted); ++pass) {
+    for (int pass = 0; pass <= (measured.robust ? max_robust_passes : noise_updates); ++pass) {
         const VectorXd last = nearest.x;
         nearest = minimise(problem, last);
-        residual = nearest.residual.cwiseProduct(noise).cwiseQuotient(loss);
+        residual = nearest.residual.cwiseProduct(noise).cwiseQuotient(loss_weight);
         if (N <= n) break;
         stays = stays ||
-                (pass > reweighted && (nearest.x - last).cwiseAbs().maxCoeff() <= numbers_stay);
+                (pass > noise_updates && (nearest.x - last).cwiseAbs().maxCoeff() <= numbers_stay);
         if (measured.robust && stays) break;
-        for (const auto& at : places) {
-            const VectorXd off = residual(at);
-            noise(at).setConstant(std::max(
-                least_noise * range_of(measured.value(at)),
-                (measured.robust ? normal_median * median_size(off) : root_mean_square(off)) /
-                    std::sqrt(share)));
+        for (const auto& rows : places) {
+            const VectorXd deviation = residual(rows);
+            noise(rows).setConstant(
+                std::max(least_noise * range_of(measured.value(rows)),
+                         (measured.robust ? normal_median * median_size(deviation)
+                                          : root_mean_square(deviation)) /
+                             std::sqrt(share)));
         }
-        if (measured.robust) loss = loss_weights(residual.cwiseQuotient(noise));
+        if (measured.robust) loss_weight = loss_weights(residual.cwiseQuotient(noise));
     }
     if (N > n) u = residual.cwiseQuotient(noise);
     for (std::size_t c = 0; c < places.size(); ++c) {
-        found.columns[c].noise = noise[places[c].front()];
-        found.columns[c].outliers =
+        fitted.columns[c].noise = noise[places[c].front()];
+        fitted.columns[c].outliers =
             static_cast<int>((u(places[c]).array().abs() > outlying).count());
     }
-    found.p = number_at(nearest.x);
-    found.converged = nearest.converged && stays;
+    fitted.p = number_at(nearest.x);
+    fitted.converged = nearest.converged && stays;
     for (Index i = 0; i < n; ++i)
-        found.at_limit.push_back(nearest.x[i] <= problem.box.low[i] ||
-                                 nearest.x[i] >= problem.box.high[i]);
-    const MatrixXd rate = figures.gradient(found.p);
+        fitted.at_limit.push_back(nearest.x[i] <= problem.box.low[i] ||
+                                  nearest.x[i] >= problem.box.high[i]);
+    const MatrixXd rate = figures.gradient(fitted.p);
     if (rate.allFinite()) {
         set_intervals(noise.cwiseInverse().asDiagonal() * rate * measured.step.asDiagonal(), u,
-                      measured, found);
-        return found;
+                      measured, fitted);
+        return fitted;
     }
-    found.converged = false;
-    found.why_not = "the result";
-    return found;
+    fitted.converged = false;
+    fitted.why_not = "the result";
+    return fitted;
 }
 
 Proposal proposal(const MatrixXd& gradient, const VectorXd& extent, const VectorXd& combination) {

@@ -10,30 +10,33 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// of |r|² and of the scaled x
+// The search has converged below these relative changes of |r|² and of the scaled x.
 constexpr double least_decrease = 1e-14, least_change = 1e-10;
-constexpr double beside = 1e-6;  // |Δx| to a point without residuals at which a search ends
+// It has not where it ends at most this |Δx| from a point at which the residuals are not finite.
+constexpr double undefined_within = 1e-6;
 
-// -1, 1: x is at this bound, beyond which the sum of squares decreases.
+// The bound at which x_i is held, -1 the lower or 1 the upper, beyond which the sum of squares
+// would decrease; else 0. `descent` is -∂(½ |r|²)/∂x_i.
 int held(const Box& box, const VectorXd& x, Index i, double descent) {
     return descent < 0 && x[i] <= box.low[i] ? -1 : descent > 0 && x[i] >= box.high[i] ? 1 : 0;
 }
 
-// [r; w (x - about)] at P(x), as Eigen's method calls it.
+// [r; w (x - about)] at P(x), and its Jacobian `df` without the columns of held numbers: names and
+// return values are those that Eigen's method calls; a negative one ends the search.
 struct Stacked {
     const LeastSquares& problem;
-    MatrixXd first;      // ∂r/∂x at the start, for the first step
-    double weight;       // w
-    Index rows;          // of the stack
-    VectorXd last = {};  // of the last call
-    VectorXd none = {};  // last point without residuals
+    MatrixXd first;                // ∂r/∂x at the start, for the first step
+    double weight;                 // w
+    Index rows;                    // of the stack
+    VectorXd last = {};            // stack of the last call
+    VectorXd last_undefined = {};  // last point at which the residuals were not finite
 
     int values() const { return static_cast<int>(rows); }
     int operator()(const VectorXd& x, VectorXd& stacked) {
         const VectorXd at = within(problem.box, x);
         stacked << problem.residual(at), weight * (at - problem.about);
         last = stacked;
-        if (!stacked.allFinite()) none = at;
+        if (!stacked.allFinite()) last_undefined = at;
         return 0;
     }
     int df(const VectorXd& x, MatrixXd& J) {
@@ -54,28 +57,29 @@ VectorXd within(const Box& box, const VectorXd& x) {
 
 Minimum minimise(const LeastSquares& problem, VectorXd start) {
     namespace Status = Eigen::LevenbergMarquardtSpace;
-    Minimum found{.x = std::move(start)};
-    found.residual = problem.residual(found.x);
-    const MatrixXd J = problem.jacobian(found.x);
-    if (!found.residual.allFinite() || !J.allFinite()) return found;
-    const double size = J.size() > 0 ? J.colwise().norm().maxCoeff() : 0;
-    found.converged = !(size > 0);
-    if (found.converged) return found;
-    Stacked stacked{problem, J, problem.pull * size, J.rows() + J.cols()};
+    Minimum minimum{.x = std::move(start)};
+    minimum.residual = problem.residual(minimum.x);
+    const MatrixXd J = problem.jacobian(minimum.x);
+    if (!minimum.residual.allFinite() || !J.allFinite()) return minimum;
+    const double largest_column = J.size() > 0 ? J.colwise().norm().maxCoeff() : 0;
+    minimum.converged = !(largest_column > 0);
+    if (minimum.converged) return minimum;
+    Stacked stacked{problem, J, problem.pull * largest_column, J.rows() + J.cols()};
     Eigen::LevenbergMarquardt<Stacked> method(stacked);
     method.parameters.ftol = least_decrease, method.parameters.xtol = least_change;
-    auto status = method.minimizeInit(found.x);
-    bool ends = false;  // where the residuals do
+    auto status = method.minimizeInit(minimum.x);
+    bool meets_undefined = false;
     do {
-        status = method.minimizeOneStep(found.x);
-        found.x = within(problem.box, found.x);
-        ends = stacked.none.size() > 0 && (found.x - stacked.none).norm() <= beside;
-    } while (!ends && status == Status::Running &&
-             !method.fvec.head(found.residual.size()).isZero(0));
-    found.residual = method.fvec.head(found.residual.size());
-    found.converged =
-        !ends && status != Status::TooManyFunctionEvaluation && status != Status::UserAsked;
-    return found;
+        status = method.minimizeOneStep(minimum.x);
+        minimum.x = within(problem.box, minimum.x);
+        meets_undefined = stacked.last_undefined.size() > 0 &&
+                          (minimum.x - stacked.last_undefined).norm() <= undefined_within;
+    } while (!meets_undefined && status == Status::Running &&
+             !method.fvec.head(minimum.residual.size()).isZero(0));
+    minimum.residual = method.fvec.head(minimum.residual.size());
+    minimum.converged = !meets_undefined && status != Status::TooManyFunctionEvaluation &&
+                        status != Status::UserAsked;
+    return minimum;
 }
 
 std::vector<int> limits_reached(const LeastSquares& problem, const Minimum& at) {

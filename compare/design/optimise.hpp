@@ -4,10 +4,11 @@
 //
 //   minimise  F = |x|² / 2  (the smallest change)  or  f_k / g   over  c ≤ 0,  low ≤ p ≤ high
 //
-// g of a goal is the largest |∂f_j/∂x| of its figures at the start. From each start first solve_for():
-// to numbers within the bands, or to the nearest ones. From there SLSQP of NLopt minimises F where
-// that is not done. Its status is no evidence: a result counts by its excess over the bands and by the
-// conditions of Karush, Kuhn and Tucker,
+// f_j are the figures, p the numbers, p_0 their start. g of a goal is the largest |∂f_j/∂x| of its
+// figures at the start; c has one entry for each bound of a figure. From each start solve_for()
+// goes to numbers within the bands, or to the nearest ones if there are none. If F is not at its
+// minimum there, SLSQP of NLopt minimises it from there. Its status is no evidence: a result counts
+// by its excess over the bands and by the conditions of Karush, Kuhn and Tucker,
 //
 //   ∇F + Σ λ_i ∇c_i = 0,   λ_i ≥ 0,   over the active bands and limits of numbers
 //
@@ -37,8 +38,8 @@ struct Bound {
     Eigen::Index which = 0;  // number or figure
     bool upper = false;
     double bound = 0;  // in the unit of the number or figure
-    // decrease of the cost per unit by which the bound is relaxed, to first order; the ranges that
-    // scale the change stay the same
+    // λ_i / g: decrease of the cost per unit by which the bound is relaxed, to first order; the
+    // ranges that scale the change x stay the same
     double price = 0;
 };
 

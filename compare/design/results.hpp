@@ -16,11 +16,11 @@ namespace elastocheck::compare {
 struct SolvedFor {
     const Varied& varied;
     std::vector<Figure> wanted = {};
-    Eigen::VectorXd target = {};
+    Eigen::VectorXd target = {};  // per figure, in its unit
     SearchStart start = {};
     Solution solution = {};
-    Eigen::VectorXd after = {};  // the figures at its numbers
-    Confirmation by = {};
+    Eigen::VectorXd after = {};  // figures at the numbers of the solution, in their units
+    Confirmation by = {};        // of `after` by the other legs
     bool met() const { return after.allFinite() && solution.excess() <= met_within; }
 };
 Result result_of(const SolvedFor& solved);
@@ -30,10 +30,11 @@ struct Goal {
     std::vector<Figure> points = {};  // in the order of their places
     double low = -INFINITY, high = INFINITY;
     std::string where = {};  // the place of its point, or "travel from -80 to 80 mm"
-    // of a curve: what its points lie on, "travel" in mm, or a branch by its parameter
+    // of a curve: the output or the branch whose parameter places its points ("travel"), and its
+    // unit
     std::string along = {}, along_unit = {};
-    double along_factor = 1;     // from Figure::at to the unit
-    bool any_branch = false;     // its points lie on the branches that reach their places
+    double along_factor = 1;     // from Figure::at to that unit
+    bool any_branch = false;     // each point lies on the branch that reaches its place
     int line = 0;                // of the file
     std::string not_moved = {};  // reason why no number moves it; the search leaves it out
 
@@ -47,27 +48,28 @@ struct Between {
 struct OptimisedScene {
     const Varied& varied;
     std::vector<Goal> goals = {};
-    std::optional<Figure> minimised = {};  // none: the change
+    std::optional<Figure> minimised = {};  // if none, the change of the numbers is minimised
     // of the figures: the points of the goals in order, then the minimised one
     std::vector<Figure> figures = {};
     Optimum optimum = {};
-    std::vector<Search> searches = {};  // before points were added
-    Confirmation by = {};
+    std::vector<Search> searches = {};  // those before points were added between the goals' points
+    Confirmation by = {};               // of the figures by the other legs
     std::optional<Between> between = {};
     std::optional<CertifyStudy> certificate = {};  // if the bands are met
 };
 Result result_of(const OptimisedScene& scene);
 
-// An output that was not measured and tells an undetermined combination apart.
+// An output that was not measured, and that would determine a combination of numbers that the
+// measured outputs leave undetermined.
 struct ProposedOutput {
-    Figure figure = {};  // without a name: none moves with the combination
-    Proposal by = {};
+    Figure figure = {};  // without a name if no output moves with the combination
+    Proposal by = {};    // how far it moves
 };
 struct FittedScene {
     Varied varied;
     Measured measured;
-    std::vector<Channel> columns;
-    std::vector<std::string> left_out;
+    std::vector<Channel> columns;       // outputs that are fitted
+    std::vector<std::string> left_out;  // columns and rows that are not, and why
     Fitted fitted = {};
     std::vector<ProposedOutput> proposed = {};  // per undetermined combination
 };
@@ -76,7 +78,7 @@ Result result_of(const FittedScene& fit);
 struct ToleratedScene {
     ToleratedNumbers tolerances = {};
     std::vector<Figure> figures = {};
-    std::vector<double> nominal = {};
+    std::vector<double> nominal = {};  // values of the figures, in their units
     std::vector<Scatter> scatter = {};
     std::vector<std::string> missing = {};  // reasons why requested figures have no scatter
 };

@@ -12,8 +12,8 @@
 
 namespace elastocheck::compare {
 
-// Deviation of b from a, number by number; `at` gives the places. The caller sets `range` from the
-// whole of a.
+// Deviation b - a, number by number; `at` gives the place of each (parameter or abscissa). NaN if a
+// value is not finite. The caller sets Deviation::range from the whole of a.
 Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,
                        const std::vector<double>& at);
 
@@ -30,11 +30,12 @@ double interpolate(const std::vector<double>& x, const std::vector<double>& y, d
 
 // ---- The worst of the main channels, by unit.
 
-// Lengths in mm and angles in deg: an error, an uncertainty.
+// The largest deviation of the main channels of each unit: an error or an uncertainty.
 struct Accuracy {
-    double mm = 0;     // positions
-    double deg = 0;    // toe and camber; 0 where a scene has no angles
-    double share = 0;  // of forces and moments, relative to their extents; 0 where not evaluated
+    double mm = 0;   // positions [mm]
+    double deg = 0;  // toe and camber [deg]; 0 where a scene has no angles
+    // forces and moments, each relative to its extent (tolerance.hpp) [-]; 0 where not evaluated
+    double share = 0;
 };
 double worse(double a, double b);  // the larger; NaN counts as larger than any number
 Accuracy worse(const Accuracy& a, const Accuracy& b);

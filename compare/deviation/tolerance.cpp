@@ -23,20 +23,22 @@ bool is_wrench(const Channel& channel) {
 }  // namespace
 
 Tolerance parse_tolerance(std::string_view text, ToleranceParts allowed) {
-    const bool shares = allowed != ToleranceParts::motion,
-               forces = allowed == ToleranceParts::with_forces;
+    const bool allows_share = allowed != ToleranceParts::motion,
+               allows_forces = allowed == ToleranceParts::with_forces;
     const auto refuse = [&](std::string_view why) {
         throw std::invalid_argument(fmt::format(
             "tolerance '{}': {}; allowed: {}, each above 0, such as 0.01mm,0.001deg{}", text, why,
-            forces   ? "a length in mm, an angle in deg, a force in N, a moment in Nm, a share of "
-                       "all other "
-                       "outputs in %, or some of these"
-            : shares ? "a length in mm, an angle in deg, a share of all other outputs in %, or "
-                       "some of these"
-                     : "a length in mm, an angle in deg or both",
-            forces   ? ",1N,1%"
-            : shares ? ",1%"
-                     : ""));
+            allows_forces
+                ? "a length in mm, an angle in deg, a force in N, a moment in Nm, a share of "
+                  "all other "
+                  "outputs in %, or some of these"
+            : allows_share
+                ? "a length in mm, an angle in deg, a share of all other outputs in %, or "
+                  "some of these"
+                : "a length in mm, an angle in deg or both",
+            allows_forces  ? ",1N,1%"
+            : allows_share ? ",1%"
+                           : ""));
     };
     const auto trim = [](std::string_view word) {
         while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
@@ -44,14 +46,15 @@ Tolerance parse_tolerance(std::string_view text, ToleranceParts allowed) {
         return word;
     };
     Tolerance result;
-    const std::pair<std::string_view, double*> known[] = {{"mm", &result.mm},
+    // in the order in which ToleranceParts allows them: the first two, three or all
+    const std::pair<std::string_view, double*> parts[] = {{"mm", &result.mm},
                                                           {"deg", &result.deg},
                                                           {"%", &result.share},
                                                           {"N", &result.newton},
                                                           {"Nm", &result.newton_metre}};
-    for (std::string_view rest = text;;) {
-        const auto comma = rest.find(',');
-        const std::string_view word = trim(rest.substr(0, comma));
+    for (std::string_view remaining = text;;) {
+        const auto comma = remaining.find(',');
+        const std::string_view word = trim(remaining.substr(0, comma));
         if (word.empty()) refuse("a number with its unit is missing");
         double value = 0;
         const auto [end, error] = read_decimal(word.data(), word.data() + word.size(), value);
@@ -61,17 +64,17 @@ Tolerance parse_tolerance(std::string_view text, ToleranceParts allowed) {
             refuse(fmt::format("'{}' is not a finite number above 0", word));
         const std::string_view unit =
             trim(word.substr(static_cast<std::size_t>(end - word.data())));
-        const auto* const of =
-            std::ranges::find(known, unit, [](const auto& entry) { return entry.first; });
-        if (of >= known + (forces ? 5 : shares ? 3 : 2))
+        const auto* const entry = std::ranges::find(
+            parts, unit, [](const auto& unit_and_value) { return unit_and_value.first; });
+        if (entry >= parts + (allows_forces ? 5 : allows_share ? 3 : 2))
             refuse(unit.empty() ? fmt::format("'{}' has no unit", word)
                                 : fmt::format("'{}' is not a unit of it", unit));
-        if (std::isfinite(*of->second)) refuse(fmt::format("{} is given twice", unit));
-        *of->second = of->second == &result.share ? value / 100 : value;
-        if (comma == rest.npos) break;
-        rest.remove_prefix(comma + 1);
+        if (std::isfinite(*entry->second)) refuse(fmt::format("{} is given twice", unit));
+        *entry->second = entry->second == &result.share ? value / 100 : value;
+        if (comma == remaining.npos) break;
+        remaining.remove_prefix(comma + 1);
     }
-    if (shares && std::isinf(result.share)) result.share = default_share;
+    if (allows_share && std::isinf(result.share)) result.share = default_share;
     return result;
 }
 
@@ -82,11 +85,15 @@ bool is_motion(const Channel& channel) {
 std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve& truth,
                                const Scale& acts) {
     constexpr double no_force = 1e-12;  // [N]: lower limit where no force acts
-    constexpr double of_value = 0.1, of_what_acts = 1e-3, of_rounding = 1.6e3, of_unit = 1e-3;
+    // The factors of tolerance.hpp: a tenth of the largest |value|; F / 1000 + 1600 ε k X; a
+    // thousandth of the unit.
+    constexpr double share_of_value = 0.1, share_of_force = 1e-3, multiple_of_rounding = 1.6e3,
+                     share_of_unit = 1e-3;
     const double force =
-        of_what_acts * std::max(acts.force, no_force) + of_rounding * acts.round_off;
+        share_of_force * std::max(acts.force, no_force) + multiple_of_rounding * acts.round_off;
     std::vector<double> extents;
-    std::map<std::pair<std::vector<int>, Unit>, double> of_wrench;
+    // of the component with the largest one; the force and the moment of a joint are two wrenches
+    std::map<std::pair<std::vector<int>, Unit>, double> extents_of_wrenches;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const Channel& channel = channels[c];
         double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -94,23 +101,25 @@ std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve
             low = std::min(low, point[c]);
             high = std::max(high, point[c]);
         }
-        const double part = channel.kind() == ChannelKind::characteristic ? 1 : of_value;
-        double extent = truth.values.empty()
-                            ? 0
-                            : std::max(high - low, part * std::max(std::abs(low), std::abs(high)));
+        const double share_of_largest =
+            channel.kind() == ChannelKind::characteristic ? 1 : share_of_value;
+        double extent =
+            truth.values.empty()
+                ? 0
+                : std::max(high - low, share_of_largest * std::max(std::abs(low), std::abs(high)));
         switch (channel.unit) {
             case Unit::newton: extent = std::max(extent, force); break;
             case Unit::newton_metre: extent = std::max(extent, force * acts.length); break;
-            default: extent = std::max(extent, of_unit);
+            default: extent = std::max(extent, share_of_unit);
         }
         extents.push_back(extent);
         if (!is_wrench(channel)) continue;
-        double& whole = of_wrench[{channel.joints(), channel.unit}];
-        whole = std::max(whole, extent);
+        double& extent_of_wrench = extents_of_wrenches[{channel.joints(), channel.unit}];
+        extent_of_wrench = std::max(extent_of_wrench, extent);
     }
     for (std::size_t c = 0; c < channels.size(); ++c)
         if (is_wrench(channels[c]))
-            extents[c] = of_wrench[{channels[c].joints(), channels[c].unit}];
+            extents[c] = extents_of_wrenches[{channels[c].joints(), channels[c].unit}];
     return extents;
 }
 

@@ -29,8 +29,8 @@ constexpr Plausible movement{0, 50, "is a preload or a trim missing, or a rate i
 constexpr Plausible spring_force{
     -20, infinity, "it is in tension: does a load point down, or is its preload missing?"};
 constexpr Plausible bushing_displacement{0, 20, "is its rate in another unit?"};
-// Figures of a wheel that together turn negative where x points rearward.
-constexpr double clearly = -0.5;  // [deg], [mm], [%]
+// Caster, mechanical trail and anti-dive or anti-lift are all below this where x points rearward.
+constexpr double clearly_negative = -0.5;  // [deg], [mm], [%]
 
 // ---- The state at rest.
 
@@ -86,7 +86,7 @@ std::vector<PrintedValue> of_wheels(const AtRest& state, const Entry& entry) {
             list.push_back({place_of(wheel), *value, symbol(entry.unit)});
     return list;
 }
-// Of the wheel centres, from the drawing.
+// Distances of the wheel centres from where they are drawn.
 std::vector<PrintedValue> movements(const AtRest& state) {
     std::vector<PrintedValue> list;
     for (std::size_t w = 0; w < state.model.wheels.size(); ++w) {
@@ -124,7 +124,7 @@ std::string words_of(const Plausible& range) {
                                      : fmt::format("{:g} to {:g}", range.from, range.to);
 }
 
-// The first reading out of the range, with the number of others.
+// Adds the first value outside of the range to the list, with the number of the others.
 void judge(const std::vector<PrintedValue>& readings, const std::string& output,
            const Plausible& range, std::vector<Implausible>& list) {
     int more = -1;
@@ -143,7 +143,8 @@ std::optional<Implausible> rearward(const AtRest& state, const Wheel& wheel) {
     const auto caster = find(figure::caster), trail = find(figure::mechanical_trail);
     const bool front = find(figure::anti_dive).has_value();
     const auto anti = find(front ? figure::anti_dive : figure::anti_lift);
-    if (!caster || !trail || !anti || *caster > clearly || *trail > clearly || *anti > clearly)
+    if (!caster || !trail || !anti || *caster > clearly_negative || *trail > clearly_negative ||
+        *anti > clearly_negative)
         return std::nullopt;
     return Implausible{
         place_of(wheel),
@@ -170,7 +171,8 @@ struct Drawn {
     std::vector<Connection> connections{};
     std::map<BodyId, std::vector<Attached>> points{};
 
-    // of a body without those of one connection
+    // Both of the points of a body, without those of the connection `without`: the distance of the
+    // nearest from p, and the largest distance of two of them [m].
     double nearest(BodyId body, const Vector3d& p, std::size_t without) const {
         double least = infinity;
         if (const auto of = points.find(body); of != points.end())
@@ -221,34 +223,37 @@ Drawn drawn(const Scene& scene) {
     return all;
 }
 
-constexpr double by_far = 2;
+constexpr double much_farther = 2;  // ratio of distances
 
-// Of a link by the sum of both distances; of a body between two joints, whose neighbours may be long,
-// by each.
+// Warning if the ends i and j of a link or body are more than twice as far from the other points of
+// their own bodies (`own`) as from those of the body of the other end (`other`); else empty. For a
+// link the sums of both ends are compared. For a body between two joints (`by_each`) the distances
+// of each end are compared too, since the bodies at these joints may be long.
 std::string exchanged_ends(const Drawn& d, const std::string& name, const Attached& i,
                            const Attached& j, bool by_each) {
     const double own = d.nearest(i.body, i.at, i.connection),
                  other = d.nearest(j.body, i.at, j.connection),
                  own_j = d.nearest(j.body, j.at, j.connection),
                  other_j = d.nearest(i.body, j.at, i.connection);
-    if (!(std::isfinite(own + own_j) && own + own_j > by_far * (other + other_j))) return {};
-    if (by_each && !(own > by_far * other && own_j > by_far * other_j)) return {};
+    if (!(std::isfinite(own + own_j) && own + own_j > much_farther * (other + other_j))) return {};
+    if (by_each && !(own > much_farther * other && own_j > much_farther * other_j)) return {};
     return fmt::format(
         "'{}': its end on '{}' is {:.0f} mm from the other points of '{}' and {:.0f} mm from those "
         "of '{}'; are its ends exchanged?",
         name, d.name(i.body), 1e3 * own, d.name(i.body), 1e3 * other, d.name(j.body));
 }
 
-// Of the first two joints of a body on other bodies that are exchanged; a hub has many.
+// Warning for the first two joints of a body whose other bodies are exchanged; else empty. Bodies
+// with more than eight joints (a hub or subframe) are not examined.
 std::string exchanged_joints(const Drawn& d, BodyId body) {
-    constexpr std::size_t most = 8;
+    constexpr std::size_t max_joints = 8;
     std::vector<Attached> ends;  // on the other bodies
     for (const auto& point : d.points.at(body)) {
         if (point.connection == std::string::npos) continue;
         const Connection& c = d.connections[point.connection];
         if (!c.is_link()) ends.push_back(c.i.body == body ? c.j : c.i);
     }
-    if (ends.size() > most) return {};
+    if (ends.size() > max_joints) return {};
     for (std::size_t k = 0; k < ends.size(); ++k)
         for (std::size_t l = 0; l < k; ++l)
             if (ends[k].body != ends[l].body)
@@ -258,19 +263,22 @@ std::string exchanged_joints(const Drawn& d, BodyId body) {
     return {};
 }
 
-std::string wrong_body(const Drawn& d, const std::string& name, const Attached& of,
+// Warning if a joint's point is more than 1 m, and more than twice their extent, from the other
+// points of its body, and less than half as far from those of its other body; else empty.
+std::string wrong_body(const Drawn& d, const std::string& name, const Attached& end,
                        const Attached& other) {
-    constexpr double distinct = 1e-3, far = 1;  // [m]
-    const double away = d.nearest(of.body, of.at, of.connection);
-    if (of.body == ground || !std::isfinite(away) || away <= far) return {};
-    const double size = d.extent(of.body, of.connection),
-                 near = d.nearest(other.body, of.at, other.connection);
-    if (size <= distinct || away <= by_far * size || away <= by_far * near) return {};
+    constexpr double distinct = 1e-3, min_distance = 1;  // [m]
+    const double away = d.nearest(end.body, end.at, end.connection);
+    if (end.body == ground || !std::isfinite(away) || away <= min_distance) return {};
+    const double extent = d.extent(end.body, end.connection),
+                 near = d.nearest(other.body, end.at, other.connection);
+    if (extent <= distinct || away <= much_farther * extent || away <= much_farther * near)
+        return {};
     return fmt::format(
         "'{}' is {:.0f} mm from the other points of '{}', which extend over {:.0f} mm, and {:.0f} "
         "mm from those of '{}'; is '{}' the body meant?",
-        name, 1e3 * away, d.name(of.body), 1e3 * size, 1e3 * near, d.name(other.body),
-        d.name(of.body));
+        name, 1e3 * away, d.name(end.body), 1e3 * extent, 1e3 * near, d.name(other.body),
+        d.name(end.body));
 }
 
 }  // namespace
