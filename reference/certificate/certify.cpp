@@ -37,44 +37,46 @@ struct Box {
     VectorXd r;
     std::vector<Interval> J;  // Jacobian over the box
 };
-// If a box does not pass, the next one is larger, with the inverse at the middle of the Jacobian:
-// across the knot of a stop it differs from the inverse at ỹ.
-Box smallest(const Problem& problem, Approximate& at, double a) {
+// Searches r with |Y F(ỹ)| + |I - Y F'(ỹ ± r)| r < r, from r = 1.5 |Y F(ỹ)| on (`defect`). If a box
+// does not pass, the next one is larger, with Y the inverse of the middle of its Jacobian: across
+// the knot of a stop that differs from the inverse at ỹ. `least` keeps
+// r above 0, as the strict inequality needs.
+Box smallest(const Problem& problem, Approximate& approximate, double a) {
     constexpr int trials = 8;
     constexpr double least = 1e-20;
-    const auto F = evaluate(problem, thin(at.y), Interval(a), Slopes::no).E;
-    Box found;
-    VectorXd first = step(at.Y, F);
-    if (!first.allFinite()) return found;
-    found.r = (1.5 * first).cwiseMax(least);
-    for (int trial = 0; trial < trials && !found.proved; ++trial) {
-        found.J = evaluate(problem, box(at.y, found.r), Interval(a), Slopes::yes).J;
+    const auto F = evaluate(problem, thin(approximate.y), Interval(a), Slopes::no).E;
+    Box result;
+    VectorXd defect = step(approximate.Y, F);
+    if (!defect.allFinite()) return result;
+    result.r = (1.5 * defect).cwiseMax(least);
+    for (int trial = 0; trial < trials && !result.proved; ++trial) {
+        result.J = evaluate(problem, box(approximate.y, result.r), Interval(a), Slopes::yes).J;
         if (trial > 0) {
-            at.Y = inverse(middle(found.J, problem.size()));
-            first = step(at.Y, F);
-            if (!first.allFinite()) return found;
+            approximate.Y = inverse(middle(result.J, problem.size()));
+            defect = step(approximate.Y, F);
+            if (!defect.allFinite()) return result;
         }
-        const Contraction rest = contraction(at.Y, found.J);
-        if (!rest.finite) return found;
+        const Contraction rest = contraction(approximate.Y, result.J);
+        if (!rest.finite) return result;
         // First by fixed-point iteration, which suffices where F' hardly changes; then by
         // a linear solve.
         VectorXd r;
         if (trial == 0) {
-            r = (first * 1.01).cwiseMax(least);
-            for (int k = 0; k < 3; ++k) r = ((first + rest(r)) * 1.01).cwiseMax(least);
-            if (!all_less((first + rest(r)) * (1 + 1e-14), r)) r = {};
+            r = (defect * 1.01).cwiseMax(least);
+            for (int k = 0; k < 3; ++k) r = ((defect + rest(r)) * 1.01).cwiseMax(least);
+            if (!all_less((defect + rest(r)) * (1 + 1e-14), r)) r = {};
         } else {
-            r = passing(first, rest);
+            r = passing(defect, rest);
         }
-        if (r.size() > 0 && (r.array() <= found.r.array()).all()) {
-            found.r = r;
-            found.proved = true;
+        if (r.size() > 0 && (r.array() <= result.r.array()).all()) {
+            result.r = r;
+            result.proved = true;
         } else {
-            found.r = r.size() > 0 ? (2 * r).cwiseMax(found.r).eval() : 4 * found.r;
-            if (!found.r.allFinite()) return found;
+            result.r = r.size() > 0 ? (2 * r).cwiseMax(result.r).eval() : 4 * result.r;
+            if (!result.r.allFinite()) return result;
         }
     }
-    return found;
+    return result;
 }
 
 // ---- Large box for uniqueness
@@ -87,7 +89,7 @@ Box smallest(const Problem& problem, Approximate& at, double a) {
 // with the reactions of [y*] in the columns of the poses, and y = y* where I - Y S is a
 // contraction: |I - Y S| v < v for some v > 0.
 //
-// Smallest max (|I - Y S| v / v) found by power iteration.
+// Smallest max_i (|I - Y S| v)_i / v_i found by power iteration; below 1 the box contracts.
 double shrinks(const Contraction& rest, VectorXd v) {
     constexpr int iterations = 12;
     double least = std::numeric_limits<double>::infinity();
@@ -101,14 +103,16 @@ double shrinks(const Contraction& rest, VectorXd v) {
     return least;
 }
 
-// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes. Any
-// Y will do: that of ỹ first, and where it fails the inverse at the middle of the Jacobian.
+// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes; 0
+// if none does. Any Y will do: that of ỹ first, and where it fails the inverse at the middle of the
+// Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a ratio of
+// 0.85.
 double alone(const Problem& problem, const Approximate& at, double a, const VectorXd& small) {
-    const VectorXd& found = at.y;
+    const VectorXd& centre = at.y;
     const System& system = problem.system;
     constexpr int trials = 8;
     constexpr double largest = 0.05, enough = 0.6, aim = 0.85, corner = 0.2;
-    double t = 2e-3, best = 0, failed = std::numeric_limits<double>::infinity();
+    double t = 2e-3, proved_t = 0, failed_t = std::numeric_limits<double>::infinity();
     for (int trial = 0; trial < trials; ++trial) {
         VectorXd r = small;
         for (int b = 0; b < system.bodies; ++b) {
@@ -116,7 +120,7 @@ double alone(const Problem& problem, const Approximate& at, double a, const Vect
             r.segment<4>(system.pose(b) + 3).setConstant(t);
         }
         r = r.cwiseMax(small);  // p* ∈ [p]
-        std::vector<Interval> y = box(found, r);
+        std::vector<Interval> y = box(centre, r);
         if (!system.separated.empty()) {
             const auto x = deformations(system, {y.begin(), y.begin() + system.n()}, Interval(a));
             for (std::size_t k = 0; k < system.separated.size(); ++k)
@@ -124,24 +128,25 @@ double alone(const Problem& problem, const Approximate& at, double a, const Vect
                     x[system.separated[k].element][system.separated[k].axis];
         }
         const auto J = evaluate(problem, y, Interval(a), Slopes::yes).J;
-        double by = shrinks(contraction(at.Y, J), r);
-        if (!(by < 1))
-            by = shrinks(contraction(inverse(middle(J, problem.size())), J), std::move(r));
-        if (by < 1) {
-            best = std::max(best, t);
-            t = std::min({largest, t * aim / std::max(by, 1e-3), 0.7 * failed});
-            if (by > enough || t < 1.3 * best) break;
+        double ratio = shrinks(contraction(at.Y, J), r);
+        if (!(ratio < 1))
+            ratio = shrinks(contraction(inverse(middle(J, problem.size())), J), std::move(r));
+        if (ratio < 1) {
+            proved_t = std::max(proved_t, t);
+            t = std::min({largest, t * aim / std::max(ratio, 1e-3), 0.7 * failed_t});
+            if (ratio > enough || t < 1.3 * proved_t) break;
         } else {
             // The new t is in proportion; not with a corner in the box, which must shrink until it
             // excludes the corner.
-            const double longest = std::isfinite(failed) ? corner : aim,
-                         shorter = std::isfinite(by) ? std::clamp(aim / by, 0.01, longest) : 0.05;
-            failed = std::min(failed, t);
+            const double longest = std::isfinite(failed_t) ? corner : aim,
+                         shorter =
+                             std::isfinite(ratio) ? std::clamp(aim / ratio, 0.01, longest) : 0.05;
+            failed_t = std::min(failed_t, t);
             t *= shorter;
-            if (t <= best || t < 1e-13) break;
+            if (t <= proved_t || t < 1e-13) break;
         }
     }
-    return best;
+    return proved_t;
 }
 
 // The part of that box around the state.
@@ -227,15 +232,16 @@ Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
 
 // ---- Messages
 
+// Names of the elements with a deformation whose enclosure contains a knot of its curve.
 std::string on_knots(const System& system, const std::vector<Interval>& z, const Interval& a) {
     std::string names;
-    const auto all = deformations(system, z, a);
-    for (std::size_t e = 0; e < all.size(); ++e) {
-        bool on = false;
+    const auto x = deformations(system, z, a);
+    for (std::size_t e = 0; e < x.size(); ++e) {
+        bool is_on_knot = false;
         each_curve(system.model->elastics[e].kind, [&](std::size_t k, const Curve& curve) {
-            on |= bounded(all[e][k]) && over_a_knot(curve, all[e][k]);
+            is_on_knot |= bounded(x[e][k]) && over_a_knot(curve, x[e][k]);
         });
-        if (on)
+        if (is_on_knot)
             names +=
                 fmt::format("{}'{}'", names.empty() ? "" : ", ", system.model->elastics[e].name);
     }
@@ -249,29 +255,29 @@ void say(std::string& detail, const std::string& more) {
 }
 
 Certificate certify(const System& system, const Equilibrium& state, const Tolerance& tolerance) {
-    const StateAt at = state_at(system, state);
+    const StateAt mapped = state_at(system, state);
     Certificate certificate;
     certificate.unique = {0, 0, 0, 0};
     const auto open = [&](const std::string& why) {
         certificate.detail = why;
         return certificate;
     };
-    if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
+    if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
     if (const auto why = why_not_tried(system); !why.empty()) return open(why);
 
-    auto [problem, found, there] = equilibrium_near(system, at.z, state.load);
+    auto [problem, approximate, there] = equilibrium_near(system, mapped.z, state.load);
     const Interval a = state.load;
 
-    if (found.settled && found.y.allFinite()) {
-        const Box smallest_box = smallest(problem, found, state.load);
+    if (approximate.settled && approximate.y.allFinite()) {
+        const Box smallest_box = smallest(problem, approximate, state.load);
         if (smallest_box.proved) {
             const VectorXd& r = smallest_box.r;
-            const auto all = box(found.y, r);
-            const std::vector<Interval> z(all.begin(), all.begin() + system.n());
-            certificate.error = distance(at, z);
-            certificate.centre = centre_of(at, found.y.head(system.n()));
-            const VectorXd mu =
-                (found.y.tail(problem.border.count()).cwiseAbs() + r.tail(problem.border.count()));
+            const auto enclosure = box(approximate.y, r);
+            const std::vector<Interval> z(enclosure.begin(), enclosure.begin() + system.n());
+            certificate.error = distance(mapped, z);
+            certificate.centre = centre_of(mapped, approximate.y.head(system.n()));
+            const VectorXd mu = (approximate.y.tail(problem.border.count()).cwiseAbs() +
+                                 r.tail(problem.border.count()));
             const Held held = held_by(system, problem.border, mu);
             certificate.held = held.held;
             certificate.gap = held.gap;
@@ -279,7 +285,8 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.state = ProofState::proved;
-                certificate.unique = unique_around(at, found, alone(problem, found, state.load, r));
+                certificate.unique =
+                    unique_around(mapped, approximate, alone(problem, approximate, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
                 certificate.detail = statement(system, problem.border, held, "state");
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
@@ -291,7 +298,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             }
         }
     }
-    if (none_within(at, tolerance)) {
+    if (none_within(mapped, tolerance)) {
         certificate.state = ProofState::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail = fmt::format(
@@ -313,7 +320,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                             redundant_joints(system, problem.border), certificate.gap));
         return certificate;
     }
-    if (!found.settled) return open("Newton's method does not converge near the state");
+    if (!approximate.settled) return open("Newton's method does not converge near the state");
     if (!std::isfinite(certificate.error.length))
         return open(
             "Krawczyk's operator contracts in no box: the stiffness is too close to singular for "

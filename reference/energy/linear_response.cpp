@@ -68,25 +68,25 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     const StateTangent tangent = tangent_at(model, branch, state);
     if (tangent.failure) return fail(tangent.failure->outcome, tangent.failure->what);
     const Chart chart = chart_about(tangent.state.poses);
-    const auto answered_to = [&](const Prescribed& rate) {
+    const auto solution_for = [&](const Prescribed& rate) {
         VectorXd b = gradient_rate(model, tangent.prescribed, rate, chart);
-        if (rate.offset.isZero(0)) return answer(tangent, b, {});
+        if (rate.offset.isZero(0)) return solve_tangent(tangent, b, {});
         const ConstraintRates rates = constraint_rates(model, tangent.prescribed, rate, chart);
         b += transposed_times(rates.Phi_qa, tangent.lambda);
-        return answer(tangent, b, rates.Phi_a);
+        return solve_tangent(tangent, b, rates.Phi_a);
     };
-    if (answered_to(tangent.course.rate).outcome == Outcome::loaded_idle_mode)
+    if (solution_for(tangent.course.rate).outcome == Outcome::loaded_idle_mode)
         return fail(Outcome::singular,
                     "the stiffness of a motion vanishes, the branch turns back here");
     Response response;
     for (const auto& disturbance : disturbances) {
-        const Answer answered = answered_to(rate_of(model, disturbance));
-        if (answered.outcome != Outcome::converged)
-            return fail(answered.outcome, name_of(model, disturbance) + ": " + answered.what);
+        const TangentSolution solution = solution_for(rate_of(model, disturbance));
+        if (solution.outcome != Outcome::converged)
+            return fail(solution.outcome, name_of(model, disturbance) + ": " + solution.what);
         auto& increments = response.increments.emplace_back(model.bodies.size());
         for (std::size_t b = 0; b < increments.size(); ++b) {
-            const auto at = static_cast<Eigen::Index>(6 * b);
-            increments[b] = {answered.x.segment<3>(at), answered.x.segment<3>(at + 3)};
+            const auto row = static_cast<Eigen::Index>(6 * b);
+            increments[b] = {solution.x.segment<3>(row), solution.x.segment<3>(row + 3)};
         }
     }
     return response;

@@ -20,7 +20,7 @@ bool turns_back(const Model& model, const StateTangent& at) {
     const ConstraintRates rates = constraint_rates(model, at.prescribed, rate, chart);
     const VectorXd b = gradient_rate(model, at.prescribed, rate, chart) +
                        transposed_times(rates.Phi_qa, at.lambda);
-    return answer(at, b, rate.offset.isZero(0) ? VectorXd() : rates.Phi_a).outcome ==
+    return solve_tangent(at, b, rate.offset.isZero(0) ? VectorXd() : rates.Phi_a).outcome ==
            Outcome::loaded_idle_mode;
 }
 
@@ -41,18 +41,19 @@ Equilibrium solved(const Model& model, const StateTangent& tangent, const Condit
     std::vector<Pose> at = tangent.state.poses;
     VectorXd lambda = tangent.lambda;
     double first = 0;
-    bool met = false, last = false;
+    bool has_met = false, last = false;
     for (int step = 0; step < chord_steps && !last; ++step) {
-        last = met;
+        last = has_met;
         Chart chart = chart_about(at);
         const Conditions there = conditions(model, tangent, lambda, chart);
-        const Answer answered = answer(tangent, there.b - here.b, there.Phi - here.Phi, not_judged);
-        if (answered.outcome != Outcome::converged) break;
-        lambda += multiplier_rates(tangent, answered);
-        move_to(chart, answered.x);
+        const TangentSolution solution =
+            solve_tangent(tangent, there.b - here.b, there.Phi - here.Phi, not_judged);
+        if (solution.outcome != Outcome::converged) break;
+        lambda += multiplier_rates(tangent, solution);
+        move_to(chart, solution.x);
         at = poses(chart);
-        if (step == 0) first = answered.x.norm();
-        met = answered.x.norm() <= chord_met * first;
+        if (step == 0) first = solution.x.norm();
+        has_met = solution.x.norm() <= chord_met * first;
     }
     const Chart chart = chart_about(at);
     const ConstraintValues values = constraints(
@@ -79,9 +80,9 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     double reach = 1;
     for (const Pose& pose : tangent.state.poses) reach = std::max(reach, pose.r.norm());
     const double stiffest = tangent.K.size() > 0 ? tangent.K.cwiseAbs().maxCoeff() : 0;
-    std::vector<NeighbourStates> all;
+    std::vector<NeighbourStates> list;
     for (const Neighbours& stencil : stencils) {
-        NeighbourStates& result = all.emplace_back();
+        NeighbourStates& result = list.emplace_back();
         Conditions change{VectorXd::Zero(here.b.size()), VectorXd::Zero(here.Phi.size())};
         for (const Neighbour& k : stencil) {
             const Conditions there = conditions(*k.model, tangent, tangent.lambda, chart);
@@ -92,15 +93,15 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
         const double rounding = last_digits * amplification(stencil);
         for (double& row : change.Phi)
             if (std::abs(row) <= reach * rounding) row = 0;
-        const Answer answered = answer(
+        const TangentSolution solution = solve_tangent(
             tangent, change.b, change.Phi.isZero(0) ? VectorXd() : change.Phi, stiffest * rounding);
-        if (answered.outcome != Outcome::converged) {
-            result.outcome = answered.outcome, result.detail = answered.what;
+        if (solution.outcome != Outcome::converged) {
+            result.outcome = solution.outcome, result.detail = solution.what;
             continue;
         }
         for (const Neighbour& k : stencil) result.states.push_back(solved(*k.model, tangent, here));
     }
-    return all;
+    return list;
 }
 
 }  // namespace elastocheck::reference::energy

@@ -16,9 +16,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rest_on_idle = 1e-8;  // of the disturbance: smallest load on an idle mode
+constexpr double rest_on_idle = 1e-8;  // of the disturbance: largest load on an idle mode
 constexpr double unanswered = 1e-3;    // of the disturbance: remainder before the last correction
-constexpr double open = 1e-9;  // of an offset's rate: largest part that redundant joints may leave
+constexpr double open = 1e-9;          // of Φ_rate: largest part that redundant joints may leave
 
 }  // namespace
 
@@ -71,8 +71,8 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     return t;
 }
 
-Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_rate,
-              double rounding) {
+TangentSolution solve_tangent(const StateTangent& at, const VectorXd& b_SI,
+                              const VectorXd& Phi_rate, double rounding) {
     VectorXd t = VectorXd::Zero(b_SI.size());
     if (Phi_rate.size() > 0) {
         const VectorXd driven_rate = -at.D.cwiseProduct(Phi_rate);
@@ -93,20 +93,20 @@ Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_
         left = b + at.K * t;
     };
     correct();
-    const double remains = at.Z.cols() > 0 ? largest(at.Z.transpose() * left) : 0;
+    const double remainder = at.Z.cols() > 0 ? largest(at.Z.transpose() * left) : 0;
     correct();
     if (!t.allFinite()) return {Outcome::not_finite, "the response is not finite", {}, {}};
     // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
-    if (!(remains <= unanswered * size))
+    if (!(remainder <= unanswered * size))
         return {Outcome::singular, "the stiffness of a motion vanishes", {}, {}};
     if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size + rounding))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}, {}};
     return {Outcome::converged, "", at.S.cwiseProduct(t), std::move(left)};
 }
 
-VectorXd multiplier_rates(const StateTangent& at, const Answer& answer) {
-    if (at.lambda.size() == 0 || answer.left.size() == 0) return VectorXd::Zero(at.lambda.size());
-    const VectorXd dlambda = at.state.at.qr.solve(-answer.left);
+VectorXd multiplier_rates(const StateTangent& at, const TangentSolution& solution) {
+    if (at.lambda.size() == 0 || solution.left.size() == 0) return VectorXd::Zero(at.lambda.size());
+    const VectorXd dlambda = at.state.at.qr.solve(-solution.left);
     return at.scales.energy() * at.D.cwiseProduct(dlambda);
 }
 

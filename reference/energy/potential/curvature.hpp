@@ -1,5 +1,7 @@
 // Second derivatives of positions and directions by the coordinates of a chart, at its centre.
 //
+// Body b has the coordinates δx = (δr, φ) in the rows 6b ... 6b + 5: a displacement [m] and a
+// rotation vector [rad], ground axes. ũ is the matrix of the cross product, ũ a = u × a (`skew`).
 // With p = r_c + δr + exp(φ) u, exp(φ) u = u + φ × u + ½ φ × (φ × u) + ...:
 //
 //   δp = δr + φ × u = P δx,   P = [1, -ũ],
@@ -38,17 +40,20 @@ struct Carried {
 
 Eigen::Matrix3d turn_curvature(const Eigen::Vector3d& f, const Eigen::Vector3d& u);  // T(f, u)
 
-// M by rows of δr (0) or φ (3) of one body and columns of another: xᵀ M y, so Mᵀ as well.
+// M at the rows of x and the columns of y, and Mᵀ at the rows of y and the columns of x: the mixed
+// second derivative M of xᵀ M y. x is δr (`rows` 0) or φ (`rows` 3) of body a; y likewise of body
+// b, by `columns`.
 void add_pair(BodyId a, int rows, BodyId b, int columns, const Eigen::Matrix3d& M, Blocks& H);
 
-// f·p, f constant, p at lever `at`; likewise f·u of a direction.
+// f·p, f constant, p the point at lever `at`; or f·u, u a direction `at`: f·δ²p is the same.
 void add_curvature_along(const Eigen::Vector3d& f, const Carried& at, Blocks& H);
 
-// g(D), D = p - p', f and M its first and second derivative.
+// g(D), D = p - p', p the point at lever `at` and p' that at `minus`; f [3] and M [3 × 3] are the
+// first and second derivative of g.
 void add_curvature_of_difference(const Eigen::Vector3d& f, const Eigen::Matrix3d& M,
                                  const Carried& at, const Carried& minus, Blocks& H);
 
-// n·D, n a direction carried by a body, D = p - p'.
+// n·D, n a direction carried by a body, D = p - p' of the points at the levers `at` and `minus`.
 void add_curvature_of_offset(const Carried& n, const Eigen::Vector3d& D, const Carried& at,
                              const Carried& minus, Blocks& H);
 
