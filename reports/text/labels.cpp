@@ -9,7 +9,10 @@
 namespace elastocheck::reports {
 namespace {
 
-constexpr double gap = 2;  // [px] between boxes
+// All lengths in px: the gap between boxes; the distance of points that compete for places; the
+// distance of a label from its point up to which no leader is drawn; the longer distance that is
+// preferred to covering a line.
+constexpr double gap = 2, crowd = 60, without_leader = 15, cost_of_crossing = 22;
 
 // Whether the segment a b intersects the box (Liang & Barsky 1984): the part of 0 ... 1 within each
 // pair of sides in turn.
@@ -76,24 +79,26 @@ double text_width(std::string_view text, double size) {
 }
 
 std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, const Paper& paper) {
-    // Points in crowded places first.
+    // Points in crowded places first. Each label goes to the free place of least cost, its distance
+    // from the point and a penalty for each line that it covers, among 16 directions at 9
+    // distances.
     std::vector<std::size_t> order(labels.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    const auto company = [&](std::size_t k) {
+    const auto neighbours = [&](std::size_t k) {
         return std::ranges::count_if(labels, [&](const Label& other) {
-            return std::hypot(other.at.x - labels[k].at.x, other.at.y - labels[k].at.y) < 60;
+            return std::hypot(other.at.x - labels[k].at.x, other.at.y - labels[k].at.y) < crowd;
         });
     };
-    std::ranges::stable_sort(order, std::ranges::greater{}, company);
+    std::ranges::stable_sort(order, std::ranges::greater{}, neighbours);
 
     std::vector<Box> taken = paper.taken;
     std::vector<std::array<PaperPoint, 2>> leaders;
     std::vector<std::optional<Box>> placed(labels.size());
     for (const auto k : order) {
         const Label& label = labels[k];
-        double best = std::numeric_limits<double>::infinity();
-        std::optional<Box> found;
-        std::array<PaperPoint, 2> leader{};
+        double best_cost = std::numeric_limits<double>::infinity();
+        std::optional<Box> best_box;
+        std::array<PaperPoint, 2> best_leader{};
         for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0, 125.0, 160.0})
             for (int direction = 0; direction < 16; ++direction) {
                 const double angle = 2 * std::numbers::pi * direction / 16;
@@ -107,31 +112,33 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
                 if (box.left < 0 || box.bottom < 0 || box.right > paper.width ||
                     box.top > paper.height)
                     continue;
-                const Box roomy = wider(box, gap);
-                if (std::ranges::any_of(taken,
-                                        [&](const Box& other) { return overlap(roomy, other); }))
+                const Box box_with_gap = wider(box, gap);
+                if (std::ranges::any_of(
+                        taken, [&](const Box& other) { return overlap(box_with_gap, other); }))
                     continue;
-                const PaperPoint near{std::clamp(label.at.x, box.left, box.right),
-                                      std::clamp(label.at.y, box.bottom, box.top)};
+                const PaperPoint nearest{std::clamp(label.at.x, box.left, box.right),
+                                         std::clamp(label.at.y, box.bottom, box.top)};
                 // Leaders must not cross words, nor words cover leaders.
-                if (reach > 15 && std::ranges::any_of(taken, [&](const Box& other) {
-                        return crosses(label.at, near, other) &&
+                if (reach > without_leader && std::ranges::any_of(taken, [&](const Box& other) {
+                        return crosses(label.at, nearest, other) &&
                                !crosses(label.at, label.at, wider(other, gap));
                     }))
                     continue;
-                if (std::ranges::any_of(leaders,
-                                        [&](const auto& l) { return crosses(l[0], l[1], roomy); }))
+                if (std::ranges::any_of(
+                        leaders, [&](const auto& l) { return crosses(l[0], l[1], box_with_gap); }))
                     continue;
                 double cost = reach;
                 for (const auto& line : paper.lines)
-                    if (crosses(line[0], line[1], roomy)) cost += 22;
-                if (cost < best) best = cost, found = box, leader = {label.at, near};
+                    if (crosses(line[0], line[1], box_with_gap)) cost += cost_of_crossing;
+                if (cost < best_cost)
+                    best_cost = cost, best_box = box, best_leader = {label.at, nearest};
             }
-        placed[k] = found;
-        if (!found) continue;
-        taken.push_back(*found);
-        if (std::hypot(leader[1].x - leader[0].x, leader[1].y - leader[0].y) > 15)
-            leaders.push_back(leader);
+        placed[k] = best_box;
+        if (!best_box) continue;
+        taken.push_back(*best_box);
+        if (std::hypot(best_leader[1].x - best_leader[0].x, best_leader[1].y - best_leader[0].y) >
+            without_leader)
+            leaders.push_back(best_leader);
     }
     return placed;
 }

@@ -22,25 +22,25 @@ std::string differences(const Model& model, const Branch& branch, const Equilibr
                         const Equilibrium& truth) {
     auto main = compare::channels(model);
     std::erase_if(main, [](const Channel& c) { return !c.main || !c.kinematic(); });
-    const auto is = compare::evaluate(model, branch, main, state),
-               right = compare::evaluate(model, branch, main, truth);
+    const auto given = compare::evaluate(model, branch, main, state),
+               expected = compare::evaluate(model, branch, main, truth);
     std::string text;
     for (const auto unit : {compare::Unit::mm, compare::Unit::deg}) {
         const Channel* worst = nullptr;
-        double off = 0;
+        double largest = 0;
         for (std::size_t c = 0; c < main.size(); ++c) {
-            const double by = compare::worse(std::abs(is[c] - right[c]), off);
-            if (main[c].unit != unit || (worst != nullptr && by == off)) continue;
-            worst = &main[c], off = by;
+            const double distance = compare::worse(std::abs(given[c] - expected[c]), largest);
+            if (main[c].unit != unit || (worst != nullptr && distance == largest)) continue;
+            worst = &main[c], largest = distance;
         }
         if (worst != nullptr)
-            text += fmt::format("{}{:.2g} {} ({})", text.empty() ? "" : " and ", off, symbol(unit),
-                                worst->name);
+            text += fmt::format("{}{:.2g} {} ({})", text.empty() ? "" : " and ", largest,
+                                symbol(unit), worst->name);
     }
     return text;
 }
 
-// Whether a recorded parameter is the end of a branch side, but for rounding.
+// Whether a recorded parameter is the end of a branch side, up to rounding.
 bool is_end(const Branch& side, double load) {
     return std::abs(load - side.to) <= 1e-12 * std::abs(side.to);
 }
@@ -87,25 +87,28 @@ SolvedBranch solve_branch(const Model& model, const Branch& branch,
                           const std::function<void(compare::Row)>& hand_over) {
     const auto sides = compare::sides_of(model, branch, solver.recursion.steps);
     compare::Analyses analyses;
-    std::vector<std::optional<Equilibrium>> last(sides.size());
-    const auto read = [&](const Equilibrium& state) {
-        const auto w =
+    // the last state of each side; the start a = 0 belongs to a side until that has another state
+    std::vector<std::optional<Equilibrium>> last_states(sides.size());
+    const auto row_at = [&](const Equilibrium& state) {
+        const auto index =
             static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
-        if (!last[w] || state.load != 0) last[w] = state;
+        if (!last_states[index] || state.load != 0) last_states[index] = state;
         auto row = compare::row_of(model, channels, sides.front(), solver, state, analyses);
         found(state, row);
         return row;
     };
-    SolvedBranch solved{compare::solve_branch(sides, solver, read, hand_over)};
+    SolvedBranch solved{compare::solve_branch(sides, solver, row_at, hand_over)};
+    // a method with steps of equal size has no error control
     const bool approximate =
         solver.leg == compare::Leg::recursive && recursive::has_steps(solver.recursion.method);
-    for (std::size_t w = 0; w < sides.size(); ++w) {
-        if (!last[w]) continue;
-        const bool ends = is_end(sides[w].branch, last[w]->load);
-        if (ends && approximate) solved.ends.emplace_back(sides[w], *last[w]);
-        if (!ends && solved.softest_motion.empty() && solved.path.outcome != Outcome::converged)
-            solved.softest_motion =
-                recursive::softest_motion(sides[w].model, sides[w].branch, *last[w]);
+    for (std::size_t index = 0; index < sides.size(); ++index) {
+        if (!last_states[index]) continue;
+        const bool reaches_end = is_end(sides[index].branch, last_states[index]->load);
+        if (reaches_end && approximate) solved.ends.emplace_back(sides[index], *last_states[index]);
+        if (!reaches_end && solved.softest_motion.empty() &&
+            solved.path.outcome != Outcome::converged)
+            solved.softest_motion = recursive::softest_motion(
+                sides[index].model, sides[index].branch, *last_states[index]);
     }
     return solved;
 }
@@ -114,7 +117,7 @@ std::string error_at_end(const Model& model, compare::BranchSide side, const Equ
     const compare::Unit unit = compare::unit_of(side.branch.unit);
     const std::string where =
         fmt::format("at {:g} {}, the end", compare::in_unit(unit) * side.branch.to, symbol(unit));
-    side.branch.steps = 1;
+    side.branch.steps = 1;  // only the end is solved
     std::optional<Equilibrium> truth;
     const EquilibriumPath path = compare::solve_branch(
         side, {.leg = compare::Leg::equilibrium}, [&](const Equilibrium& found) { truth = found; });
