@@ -96,7 +96,7 @@ const Explanation* explained(const CandidateJudgement& judgement, const char* na
     return nullptr;
 }
 
-TEST(Candidate, ThatIsTheReferencePassesAndNoNumberOfItIsOff) {
+TEST(Candidate, ReferenceAsCandidatePassesWithoutDeviation) {
     for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
         const auto judgement = judged(table_of(leg));
         EXPECT_EQ(judgement.verdict, Grade::pass) << texts(judgement);
@@ -111,7 +111,7 @@ TEST(Candidate, ThatIsTheReferencePassesAndNoNumberOfItIsOff) {
     }
 }
 
-TEST(Candidate, ThatIsTheRecursionGetsItsNumbersDigitForDigit) {
+TEST(Candidate, RecursionAsCandidateHasTheDeviationsOfTheRecursion) {
     const auto judgement = judged(table_of(Leg::recursive));
     EXPECT_EQ(judgement.verdict, Grade::fail);
     int compared = 0;
@@ -141,7 +141,7 @@ TEST(Candidate, ThatIsTheRecursionGetsItsNumbersDigitForDigit) {
 }
 
 // A column changed in one of these ways fails, and the change is found, in numbers and words.
-TEST(Candidate, AFaultOfAColumnIsNamed) {
+TEST(Candidate, TransformedColumnFailsAndItsTransformIsNamed) {
     const double drawn_z =
         evaluate(solved().model, solved().comparison.channels,
                  design_state(solved().model))[solved().channel("wheel_centre_z")];
@@ -193,7 +193,7 @@ TEST(Candidate, TwoExchangedColumnsAreNamed) {
         << judgement.hints[0];
 }
 
-TEST(Candidate, WrongFromTheMiddleOfABranchOnIsReportedFromThere) {
+TEST(Candidate, ColumnWrongFromAPointOnIsReportedWithItsLastRightPoint) {
     Candidate candidate = table_of(Leg::equilibrium);
     auto& toe = values(candidate, "toe");
     double last_right = 0;
@@ -212,7 +212,7 @@ TEST(Candidate, WrongFromTheMiddleOfABranchOnIsReportedFromThere) {
     EXPECT_EQ(found->at, last_right);
 }
 
-TEST(Candidate, ThatIsSmoothlyWrongIsExplainedByNothing) {
+TEST(Candidate, SmoothErrorHasNoExplanation) {
     for (const double power : {1.5, 2., 3., 4., 5., 6.}) {
         Candidate candidate = table_of(Leg::equilibrium);
         auto& toe = values(candidate, "toe");
@@ -224,7 +224,7 @@ TEST(Candidate, ThatIsSmoothlyWrongIsExplainedByNothing) {
     }
 }
 
-TEST(Candidate, WithWhatIsNoNumberIsNotJudged) {
+TEST(Candidate, NonNumericValueOrPlaceIsNotJudged) {
     for (const char* name : {"toe", "wheel_centre_x", "travel"}) {
         Candidate candidate = table_of(Leg::equilibrium);
         values(candidate, name)[7] = INFINITY;  // as a reader passes a value that is not a number
@@ -236,7 +236,7 @@ TEST(Candidate, WithWhatIsNoNumberIsNotJudged) {
     EXPECT_EQ(judged(candidate).verdict, Grade::not_judged);
 }
 
-TEST(Candidate, OfFewerPointsIsJudgedOnTheseAndReportsWhatIsMissing) {
+TEST(Candidate, PartOfTheBranchesIsJudgedAndTheRestReportedAsMissing) {
     const Candidate all = table_of(Leg::equilibrium);
     Candidate part = only(all, [&](std::size_t k) {
         return all.points.branch[k] == "jounce" && all.points.a[k] <= 1500;
@@ -253,7 +253,7 @@ TEST(Candidate, OfFewerPointsIsJudgedOnTheseAndReportsWhatIsMissing) {
 
 // Missing data never counts as correct: points without loads that end early, a gap in one column,
 // points at the ends alone, a point beyond the end.
-TEST(Candidate, MissingPartsAreReportedHoweverTheyAreMissing) {
+TEST(Candidate, MissingPointsColumnsAndEndsAreReported) {
     const Candidate all = table_of(Leg::equilibrium);
     const std::size_t travel = solved().channel("travel");
     const auto without_loads = [&](double share) {
@@ -303,7 +303,7 @@ TEST(Candidate, MissingPartsAreReportedHoweverTheyAreMissing) {
 
 // With the default tolerance a given force is judged by a share of its extent; a force that is not
 // given does not count as correct.
-TEST(Candidate, WhoseForceIsOffFailsThoughItsPositionsAreRight) {
+TEST(Candidate, WrongForceFailsBesideRightPositions) {
     const auto without = judged(table_of(Leg::equilibrium));
     EXPECT_EQ(without.others, 0);
     EXPECT_TRUE(without.has_forces);
@@ -325,7 +325,7 @@ TEST(Candidate, WhoseForceIsOffFailsThoughItsPositionsAreRight) {
     EXPECT_EQ(right.verdict, Grade::pass) << texts(right);
 }
 
-TEST(Candidate, InWhichNothingMovesIsNotJudged) {
+TEST(Candidate, ConstantColumnsAreNotJudged) {
     Candidate candidate = table_of(Leg::equilibrium);
     const double all_over[] = {1, 2, 3, 4, 5, 6};
     std::size_t c = 0;
@@ -344,7 +344,7 @@ TEST(Candidate, InWhichNothingMovesIsNotJudged) {
 }
 
 // As Ackermann straight ahead: the reason names the output, not its points.
-TEST(Candidate, WhoseOnlyOutputHasNoValueSomewhereIsNotJudged) {
+TEST(Candidate, UndefinedOnlyOutputIsNotJudged) {
     Comparison comparison = solved().comparison;
     const std::size_t toe = solved().channel("toe");
     for (auto& branch : comparison.branches) branch.determined[toe] = false;
@@ -358,7 +358,7 @@ TEST(Candidate, WhoseOnlyOutputHasNoValueSomewhereIsNotJudged) {
 }
 
 // Points at a = 0 alone agree with the reference, but are no evidence.
-TEST(Candidate, WhosePointsAllLieAtTheBeginningIsNotJudged) {
+TEST(Candidate, PointsAtZeroParameterAloneAreNotJudged) {
     const Candidate all = table_of(Leg::equilibrium);
     const Candidate right = only(all, [&](std::size_t k) { return all.points.a[k] == 0; });
     ASSERT_FALSE(right.points.a.empty());
@@ -372,7 +372,7 @@ TEST(Candidate, WhosePointsAllLieAtTheBeginningIsNotJudged) {
     EXPECT_EQ(judged(wrong).verdict, Grade::fail);
 }
 
-TEST(Candidate, OfWhichNothingIsComparedIsNotJudged) {
+TEST(Candidate, NothingComparedIsNotJudged) {
     Candidate nowhere = table_of(Leg::equilibrium);
     for (double& a : nowhere.points.a) a += 1e6;
     for (double& t : values(nowhere, "travel")) t += 1e6;
@@ -387,7 +387,7 @@ TEST(Candidate, OfWhichNothingIsComparedIsNotJudged) {
               Grade::not_judged);
 }
 
-TEST(Candidate, AtLoadsOfItsOwnIsHeldAgainstTheReferenceThere) {
+TEST(Candidate, CandidateAtOtherLoadsIsComparedWithTheReferenceSolvedThere) {
     // Every third point, and others between the recursion's points; the reference is solved there.
     Candidate candidate;
     candidate.name = "mysolver";
@@ -417,7 +417,7 @@ TEST(Candidate, AtLoadsOfItsOwnIsHeldAgainstTheReferenceThere) {
 
 // ---- States and solvers.
 
-TEST(Candidate, AsAFunctionIsALeg) {
+TEST(Candidate, LegAsASolverFunctionIsJudgedAsThatLeg) {
     const auto& all = solved().comparison;
     const auto run = [&](Leg leg) {
         const CandidateSolver solver = [&](const Model& model, const Branch& branch,
@@ -451,7 +451,7 @@ TEST(Candidate, AsAFunctionIsALeg) {
     }
 }
 
-TEST(Candidate, AStateThatIsMovedLeavesTheForceOfItsStiffness) {
+TEST(Candidate, DisplacedStateHasTheResidualOfItsStiffness) {
     const auto& all = solved().comparison;
     const BranchSide side = sides_of(solved().model, solved().model.branches[0], 4).front();
     const auto path = solve_branch(side, {.leg = Leg::equilibrium});
@@ -468,7 +468,7 @@ TEST(Candidate, AStateThatIsMovedLeavesTheForceOfItsStiffness) {
     EXPECT_EQ(moved.leftovers[0].truth.front().force, at_rest.leftovers[0].truth.front().force);
 }
 
-TEST(Candidate, WhoseSolverGivesUpIsNotJudged) {
+TEST(Candidate, SolverThatFailsIsNotJudged) {
     const CandidateSolver nothing = [](const Model&, const Branch&, std::span<const double>) {
         return EquilibriumPath{Outcome::iteration_limit, "gave up", {}, {}};
     };
@@ -485,7 +485,7 @@ TEST(Candidate, WhoseSolverGivesUpIsNotJudged) {
     EXPECT_EQ(nan.verdict, Grade::not_judged) << texts(nan);
 }
 
-TEST(Candidate, TolerancesHaveForcesWhereTheseAreJudged) {
+TEST(Candidate, TolerancesInNewtonsAreAcceptedOnlyWithForces) {
     const Tolerance all = parse_tolerance("0.01mm,0.001deg,1N,2Nm", ToleranceParts::with_forces);
     EXPECT_EQ(all.newton, 1);
     EXPECT_EQ(all.newton_metre, 2);

@@ -60,7 +60,7 @@ struct ByHand {
 };
 
 // In the design position of a wheel without toe: the steering axis leans by (-0.05, -0.05) over 0.2.
-TEST(Definitions, OfTheSteeringAxisAreThoseOfALineByHand) {
+TEST(Definitions, SteeringAxisFiguresEqualThoseOfALineByHand) {
     const ByHand at(0.02);
     // at the road, 0.3 below the centre: 0.2 below the lower end
     EXPECT_NEAR(at("mechanical_trail@ground_axes"), 1e3 * (0.02 + 0.25 * 0.2), 1e-9);
@@ -129,7 +129,7 @@ vehicle: {wheelbase: 2.6, cg_height: 0.5, axle: AXLE, brake_share: 0.7, drive_sh
 
 // With one rate k of both wheels in roll a couple of forces F on the track t turns the axle by
 // φ = 2 F / (k t):  F t / φ = k t² / 2. The roll centre of the mirrored state is the mirrored one.
-TEST(Definitions, OfAnAxleInRollAgreeWithItsWheelRatesAndItsMirrorImage) {
+TEST(Definitions, RollStiffnessFollowsFromWheelRatesAndRollCentreIsMirrored) {
     const Model model = compile(trim(support::scene("front_axle")).scene);
     const auto roll = std::ranges::find(model.branches, "roll", &Branch::name);
     ASSERT_NE(roll, model.branches.end());
@@ -170,7 +170,7 @@ TEST(Definitions, TurningCircleIsTwiceTheWheelbaseOverTheSineOfTheOuterAngle) {
 
 // Steered by 20 deg about the vertical: the wheel's plane turns with the axis, so that the angles
 // seen across and along the wheel stay, while those seen along the ground axes change.
-TEST(Definitions, SeenInTheWheelsPlaneDoNotChangeBySteeringAboutTheVertical) {
+TEST(Definitions, FiguresInTheWheelPlaneDoNotChangeBySteeringAboutTheVertical) {
     ByHand at(0);
     const double caster = at("caster"), kingpin = at("kingpin_inclination");
     at.turn(Vector3d::UnitZ(), 20 / degrees);
@@ -180,7 +180,7 @@ TEST(Definitions, SeenInTheWheelsPlaneDoNotChangeBySteeringAboutTheVertical) {
     EXPECT_NEAR(at("toe@lateral"), at("toe"), 1e-9) << "no camber: the axis is the spin axis";
 }
 
-TEST(Definitions, OfCamberByHand) {
+TEST(Definitions, CamberFiguresEqualThoseByHand) {
     ByHand at(-0.05);  // top inwards
     EXPECT_NEAR(at("camber@kingpin"), at("camber"), 1e-12);
     // of a left wheel inwards is to the right
@@ -274,7 +274,7 @@ wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y
 }
 
 // One wheel on an upright without toe, rigid links: every figure from another one by hand.
-TEST(DefinitionRates, OfARigidWheelFollowFromEachOther) {
+TEST(DefinitionRates, RatesOfAWheelOnRigidLinksFollowFromEachOther) {
     const AtDesign at = at_design("double_wishbone_rigid");
     const Wheel& wheel = at.model.wheels[0];
     const auto state = design_state(at.model);
@@ -305,7 +305,7 @@ TEST(DefinitionRates, OfARigidWheelFollowFromEachOther) {
     expect_near(at("traction_force_steer@patch"), -at("braking_force_steer"), "the same force");
 }
 
-TEST(DefinitionRates, OfAnAxleFollowFromHeaveRollAndSingleWheels) {
+TEST(DefinitionRates, RatesOfAnAxleFollowFromHeaveRollAndSingleWheels) {
     const AtDesign at = at_design("front_axle");
     const double half =
         std::abs(at.values[static_cast<std::size_t>(find_channel(at.outputs, "track"))]) /
@@ -339,7 +339,7 @@ TEST(DefinitionRates, OfAnAxleFollowFromHeaveRollAndSingleWheels) {
 }
 
 // A force at the wheel centre is one at the patch of a wheel whose patch is its centre.
-TEST(DefinitionRates, AtTheCentreAreThoseOfAPatchAtTheCentre) {
+TEST(DefinitionRates, ForceAtTheCentreEqualsThatAtAPatchInTheCentre) {
     const AtDesign at = at_design("double_wishbone");
     Model moved = at.model;
     moved.wheels[0].contact.s_local = moved.wheels[0].centre_local;
@@ -390,7 +390,7 @@ double by_difference(const Model& model) {
     return -(toe.back() - toe.front()) / (path.curve.a.back() - path.curve.a.front()) * 1e3;
 }
 
-TEST(DefinitionRates, OnATyreAndAtConstantLoadAreDifferencesOfSolvedStates) {
+TEST(DefinitionRates, RatesOnATyreAndAtConstantLoadEqualDifferencesOfStates) {
     const Model free = with_tyre(""),
                 tyre = with_tyre(
                     "tyres: {t: {rate: 200000, preload: 3000}}\nstatic_loads: "
@@ -432,7 +432,7 @@ struct Slopes {
 };
 
 // Both wheels driven or braked: the toe of solved states under these forces.
-TEST(DefinitionRates, OfForcesOnBothWheelsAreDifferencesOfSolvedStates) {
+TEST(DefinitionRates, RatesOfForcesOnBothWheelsEqualDifferencesOfStates) {
     const Model model = compile(trim(support::scene("front_axle")).scene);
     const AtDesign at(model);
     for (const auto& [branch, figure] : {std::pair{"traction", "traction_force_steer@both"},
@@ -451,7 +451,7 @@ TEST(DefinitionRates, OfForcesOnBothWheelsAreDifferencesOfSolvedStates) {
 }
 
 // The motion ratios of springs and dampers, by their definitions from solved states ± 0.1 mm.
-TEST(DefinitionRates, OfMotionAreDifferencesOfSolvedStates) {
+TEST(DefinitionRates, MotionRatiosEqualDifferencesOfStates) {
     for (const char* scene : {"double_wishbone_rigid", "multi_link"}) {
         Model model = compile(trim(support::scene(scene)).scene);
         // a contact patch beside the wheel, which rises otherwise than the centre
@@ -484,7 +484,7 @@ TEST(DefinitionRates, OfMotionAreDifferencesOfSolvedStates) {
 
 // Per cent of what, and where the brake torque goes: Milliken's figure by hand from the swing arm.
 // The patch is 0.3 m below the centre, and moves forward by 0.3 / arm less per travel.
-TEST(DefinitionRates, OfAntiDiveByHand) {
+TEST(DefinitionRates, AntiDiveFiguresEqualThoseByHand) {
     const Model model = with_tyre(
         "vehicle: {wheelbase: 2.7, cg_height: 0.55, axle: front, brake_share: 0.7, drive_share: "
         "0.4}");
@@ -507,7 +507,7 @@ TEST(DefinitionRates, OfAntiDiveByHand) {
 }
 
 // Two wheels turned by hand; l / j = 2.
-TEST(DefinitionRates, OfAckermannByHand) {
+TEST(DefinitionRates, AckermannFiguresEqualThoseByHand) {
     Model model;
     for (const int side : {1, -1}) {
         Wheel wheel;
@@ -594,7 +594,7 @@ struct Judged {
 // Each definition in turn stands in a column of its figure, as it is and with a sign, a unit or an
 // offset, and is named among the explanations; unless a simpler one explains it (it differs by its
 // sign or an offset there) or it is the figure itself there.
-TEST(Definitions, InAColumnAreRecognisedWithSignUnitAndOffset) {
+TEST(Definitions, OtherDefinitionInAColumnIsNamedWithSignUnitAndOffset) {
     std::set<std::string> recognised, simpler, same;
     std::vector<std::pair<Model, std::string>> runs;
     for (const auto& [scene, branch] : {std::pair{"double_wishbone_rigid", "steering"},
@@ -702,7 +702,7 @@ TEST(Definitions, InAColumnAreRecognisedWithSignUnitAndOffset) {
 
 // A column that hardly moves says nothing about a curve that does: with a small factor and an offset
 // every curve would fit it.
-TEST(Definitions, AndFactorsDoNotExplainAColumnThatHardlyMoves) {
+TEST(Definitions, ColumnThatHardlyMovesIsNotExplainedByADefinitionAndAFactor) {
     Beside b;
     for (int k = 0; k <= 20; ++k) {
         const double x = 0.1 * (k - 10);
@@ -760,7 +760,7 @@ std::string table_of_definitions() {
     return text;
 }
 
-TEST(Definitions, AreThoseOfTheirPage) {
+TEST(Definitions, CatalogueEqualsItsPage) {
     std::ifstream file(ELASTOCHECK_DEFINITIONS "/README.md");
     const std::string page{std::istreambuf_iterator<char>(file), {}};
     const std::string table = table_of_definitions();
@@ -778,7 +778,7 @@ TEST(Definitions, AreThoseOfTheirPage) {
 }
 
 // Of 1000 smooth wrong columns at most 1 % are explained by a definition.
-TEST(Definitions, DoNotExplainWrongColumns) {
+TEST(Definitions, WrongColumnIsNotExplainedByADefinition) {
     const Judged at(compile(trim(support::scene("double_wishbone_rigid")).scene), "steering");
     std::mt19937 random(7);
     std::uniform_real_distribution<double> in(-1, 1);
@@ -844,7 +844,7 @@ Beside few_points(const Judged& at, std::size_t c, std::size_t count) {
 
 // Of 1000 wrong columns of 3, 4 and 5 points each, straight, smooth or without order, judged to a
 // hundredth of the range of the reference, at most 1 % are explained by anything.
-TEST(Definitions, AndTransformationsDoNotExplainShortWrongColumns) {
+TEST(Definitions, WrongColumnOfFewPointsIsNotExplained) {
     const Judged at(compile(trim(support::scene("double_wishbone_rigid")).scene), "steering");
     std::mt19937 random(11);
     std::uniform_real_distribution<double> in(-1, 1);
@@ -883,7 +883,7 @@ TEST(Definitions, AndTransformationsDoNotExplainShortWrongColumns) {
 
 // The straight rest of a trail, 5.3 times as steep as the reference, is a slope that could be anything;
 // what is planted is found with three points too.
-TEST(Definitions, AndTransformationsThatArePlantedAreFoundInShortColumns) {
+TEST(Definitions, PlantedTransformationIsFoundInAColumnOfFewPoints) {
     const Judged at(compile(trim(support::scene("double_wishbone_rigid")).scene), "steering");
     int definitions_found = 0;
     for (const std::size_t count : {3, 4, 5})

@@ -167,7 +167,7 @@ TEST(SolveFor, NamesTheWishesThatConflictAndTheLimitThatPreventsOne) {
     EXPECT_EQ(limited.solution.at_limit, (std::vector<int>{1, -1}));
 }
 
-TEST(SolveFor, KnowsWhereNothingMovesOrThereIsNoValue) {
+TEST(SolveFor, StillFiguresAndMissingValuesAreReported) {
     const SearchRange range{list_of({0}), list_of({-1}), list_of({2})};
     const Figures still = closed([](const VectorXd& p) { return list_of({p[0], 1}); }, 1);
     EXPECT_EQ(start_of(still, range).still, (std::vector<bool>{false, true}));
@@ -176,7 +176,7 @@ TEST(SolveFor, KnowsWhereNothingMovesOrThereIsNoValue) {
 }
 
 // p, which exists above 0.3, is wished to be 0: a point beside the end of the values is no nearest one.
-TEST(SolveFor, ASearchThatEndsBesidePointsWithoutValuesHasNotConverged) {
+TEST(SolveFor, SearchEndingBesideUndefinedPointsHasNotConverged) {
     const Figures ends =
         closed([](const VectorXd& p) { return list_of({p[0] > 0.3 ? p[0] : std::nan("")}); }, 1);
     const Solved found = solved(ends, list_of({0}), {list_of({0.8}), list_of({-1}), list_of({1})});
@@ -185,7 +185,7 @@ TEST(SolveFor, ASearchThatEndsBesidePointsWithoutValuesHasNotConverged) {
 }
 
 // Numbers beside which there may be nearer ones, or a smaller change, are not judged.
-TEST(SolveFor, AndOptimiseDoNotJudgeWhereTheSearchHasNotConverged) {
+TEST(SolveFor, UnconvergedSearchIsNotJudged) {
     const Varied varied{{list_of({0.5}), list_of({0}), list_of({1})}, {{"p", 0.5, "m"}}};
     for (const bool met : {false, true})
         for (const bool converged : {false, true}) {
@@ -211,7 +211,7 @@ TEST(SolveFor, AndOptimiseDoNotJudgeWhereTheSearchHasNotConverged) {
 }
 
 // Trims near the first point of a call start from its trim.
-TEST(Figures, RatesAskForTheirPointFirst) {
+TEST(Figures, GradientEvaluatesItsPointFirst) {
     std::vector<VectorXd> first;
     const Figures figures{[&](const std::vector<VectorXd>& points) {
                               first.push_back(points.front());
@@ -229,7 +229,7 @@ TEST(Figures, RatesAskForTheirPointFirst) {
 // Two upright springs: z = 400 + F / (k_1 + k_2) mm.
 const std::vector<std::string> rates{"springs.first.rate", "springs.second.rate"};
 
-TEST(Figures, OfTwoSpringsAreTheClosedForm) {
+TEST(Figures, ValuesAndRatesOfTwoSpringsEqualTheirClosedForm) {
     const Figures springs = solved_figures(varied_of("parallel_springs", rates),
                                            {{.name = "centre_z", .branch = "up", .at = 3000},
                                             {.name = "centre_z", .branch = "up", .at = 1500},
@@ -249,7 +249,7 @@ TEST(Figures, OfTwoSpringsAreTheClosedForm) {
 // Those of `sensitivity`, which solves no state again; a figure over travel is at a place that moves,
 //
 //   dy/dp = ∂y/∂p - (∂y/∂a) / (∂x/∂a) ∂x/∂p
-TEST(Figures, HaveTheRatesOfTheDerivativesByTheLegsEquations) {
+TEST(Figures, RatesEqualTheDerivativesByTheLegsEquations) {
     const std::vector<std::string> paths{"points.tie_rod_inner.z", "points.arm_rear.y",
                                          "springs.K1_coil.rate"};
     const Varied varied = varied_of("mcpherson", paths);
@@ -294,7 +294,7 @@ TEST(Figures, HaveTheRatesOfTheDerivativesByTheLegsEquations) {
         }
 }
 
-TEST(Figures, OfEveryLegAreTheSameAndAFigureOverAnOutputIsAtItsPlace) {
+TEST(Figures, FiguresOfAllLegsAgreeAlsoOverAnOutput) {
     const Scene scene = support::scene("mcpherson");
     const std::vector<Figure> figures{{.name = "toe", .branch = "jounce", .at = 2000},
                                       {.name = "bump_steer", .branch = "jounce", .at = 2000},
@@ -481,7 +481,7 @@ TEST(Optimise, FindsTheLeastOfTwoMinimaFromSeveralStarts) {
     EXPECT_EQ(found.p, from(wells, goals, range, 5).p);
 }
 
-TEST(Optimise, LeavesAGoalThatDoesNotMoveOutAndDoesNotMinimiseIt) {
+TEST(Optimise, StillGoalIsLeftOutAndNotMinimised) {
     const Figures still = closed([](const VectorXd& p) { return list_of({p[0], 7}); }, 1);
     const SearchRange range{list_of({0}), list_of({-1}), list_of({2})};
     Goals goals{.low = list_of({0.5, 6}), .high = list_of({1, 8}), .goal = {0, 1}};
@@ -494,7 +494,7 @@ TEST(Optimise, LeavesAGoalThatDoesNotMoveOutAndDoesNotMinimiseIt) {
 }
 
 // Beyond p = 1.5 there is no value: at the limit, and at some starts. An exception passes SLSQP.
-TEST(Optimise, StaysWhereTheFiguresHaveValuesAndPassesOnAnException) {
+TEST(Optimise, SearchStaysWhereFiguresAreDefinedAndPropagatesExceptions) {
     const Figures partly = closed(
         [](const VectorXd& p) { return list_of({p[0] < 1.5 ? p[0] * p[0] : std::nan("")}); }, 1);
     const Goals goals{.low = list_of({1}), .high = list_of({2}), .goal = {0}};

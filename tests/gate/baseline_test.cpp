@@ -36,7 +36,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-TEST(Baseline, IsReadAndWrittenWithoutChangingALetter) {
+TEST(Baseline, ReadingAndWritingKeepsTheText) {
     for (const auto& scene : support::scene_names()) {
         const BaselineText was = text_of(committed(scene)),
                            is = baseline_text(read_baseline(committed(scene)));
@@ -158,7 +158,7 @@ TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     EXPECT_TRUE(compare::changes(file.numbers, again.numbers).empty());
 }
 
-TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlaceAndANullIsNoNumber) {
+TEST(Baseline, InvalidBaselineIsRejectedWithItsPlaceAndNullIsNaN) {
     BaselineFile file = read_baseline(committed("single_bushing"));
     file.baseline.accepted.series[0].values.assign(11, std::nan(""));
     EXPECT_TRUE(std::isnan(
@@ -235,7 +235,7 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlaceAndANullIsNoNumber) {
         refused({review, text}, answer);
 }
 
-TEST(Baseline, FiguresAndCurvesAreOfOneAcceptance) {
+TEST(Baseline, FiguresAndCurvesOfDifferentAcceptancesAreRejected) {
     const support::Folder folder;
     const auto path = folder.path / "b.json";
     const BaselineFile good = read_baseline(committed("pinned_bar"));
@@ -267,7 +267,7 @@ TEST(Baseline, FiguresAndCurvesAreOfOneAcceptance) {
     EXPECT_THROW(read_baseline(path), FileError);
 }
 
-TEST(Baseline, BuildsAreTheSameOnlyWhenNothingThatRoundsDiffers) {
+TEST(Baseline, BuildsWithEqualCompilerFlagsAndCpuAreTheSame) {
     const Provenance here = provenance();
     EXPECT_EQ(distance(here, here).kind, ToleranceClass::same_build);
     Provenance other = here;
@@ -285,7 +285,7 @@ TEST(Baseline, BuildsAreTheSameOnlyWhenNothingThatRoundsDiffers) {
     EXPECT_EQ(distance(here, other).kind, ToleranceClass::cross_build);
 }
 
-TEST(Baseline, OnlyWhatIsCommittedCanHaveBeenReviewed) {
+TEST(Baseline, UncommittedBaselineIsNotReviewed) {
     const support::Folder folder;
     const auto git = [&](const std::string& arguments) {
         return support::says(

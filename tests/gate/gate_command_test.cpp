@@ -52,7 +52,7 @@ compare::Series& first_moving(BaselineFile& file) {  // a curve whose end is not
 }
 
 // Of the judgement itself: tests/gate/judge_test.cpp.
-TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
+TEST(GateCommand, EachDamageOfABaselineHasItsExitCode) {
     const BaselineText good = reports::baseline_text(as_committed);
     struct Case {
         const char* what;
@@ -116,7 +116,7 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
 }
 
 // "Bump steer at most 2 deg/m", as a person writes it.
-TEST(GateCommand, AFigureIsLimitedAtTheDesignPositionAndOverABranchAndMisspeltNamesAreHelped) {
+TEST(GateCommand, LimitsOnFiguresAreJudgedAndMisspeltNamesCorrected) {
     const BaselineFile axle = reports::read_baseline(baselines / "front_axle.json");
     const Folder folder;
     const auto judged = [&](const std::string& limit) {
@@ -147,7 +147,7 @@ TEST(GateCommand, AFigureIsLimitedAtTheDesignPositionAndOverABranchAndMisspeltNa
                             "there is no branch 'paralel', did you mean 'parallel'?"});
 }
 
-TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
+TEST(GateCommand, MissingBaselineIsNotJudgedAndMissingSceneIsBadInput) {
     const Folder folder;
     const std::string there = " --baseline " + folder.path.string();
     expect_said(gate(scene + there), 3, {.out = {"there is no baseline"}});
@@ -158,7 +158,7 @@ TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
     expect_said(gate(scene + " --reason why"), 2);
 }
 
-TEST(GateCommand, AcceptNeedsAReasonAndAPerson) {
+TEST(GateCommand, AcceptRequiresAReasonAndIsRefusedInCi) {
     const Folder folder;
     const std::string accept = scene + " --baseline " + folder.path.string() + " --accept";
     for (const char* reason : {"", " --reason ''", " --reason ' '"})
@@ -168,7 +168,7 @@ TEST(GateCommand, AcceptNeedsAReasonAndAPerson) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
-TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
+TEST(GateCommand, AcceptedScenePassesAndAChangedOneFails) {
     const Folder folder;
     const std::string own = folder.write("own.yaml", text_of(scene)),
                       baseline = folder.path / "baselines/own.json";
@@ -223,7 +223,7 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     expect_said(gate(own), 0);
 }
 
-TEST(GateCommand, AcceptsNeitherWhatBreaksALimitNorWhatProvesNothing) {
+TEST(GateCommand, AcceptIsRefusedBeyondALimitOrIfNotJudged) {
     const Folder folder;
     const std::string own = folder.write("own.yaml", text_of(scenes + "/pinned_bar.yaml")),
                       baseline = folder.path / "baselines/own.json";
@@ -254,7 +254,7 @@ TEST(GateCommand, AcceptsNeitherWhatBreaksALimitNorWhatProvesNothing) {
     EXPECT_FALSE(std::filesystem::exists(folder.path / "baselines/arch.json"));
 }
 
-TEST(GateCommand, InCiABaselineOfTheSameRunJudgesNothing) {
+TEST(GateCommand, BaselineOfTheSameRunIsNotJudgedInCi) {
     const Folder folder;
     const std::string own = folder.write("own.yaml", text_of(scene));
     const auto git = [&](const std::string& arguments) {

@@ -80,7 +80,7 @@ TEST(GateReport, ExitCodesAreRanked) {
     EXPECT_EQ(exit_code({passed(), empty}), 3);
 }
 
-TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
+TEST(GateReport, OffenceTextHasPlaceOldNewDifferenceAndRatio) {
     EXPECT_EQ(describe(offence(0.5)),
               "branch 'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 0.5 deg, "
               "difference -0.5, "
@@ -100,7 +100,7 @@ TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
                  {"FAILED: 2 of 14 numbers out of tolerance, in 1 of 2 scenes"});
 }
 
-TEST(GateReport, JUnitTellsFailuresFromErrorsAndKeepsTheStoryInTheText) {
+TEST(GateReport, JUnitSeparatesFailuresFromErrors) {
     const std::string xml = junit({passed(), failed(), unjudged()});
     EXPECT_TRUE(well_formed(xml)) << xml;
     for (const char* part :
@@ -118,7 +118,7 @@ TEST(GateReport, JUnitTellsFailuresFromErrorsAndKeepsTheStoryInTheText) {
     EXPECT_TRUE(well_formed(junit({failed(), odd})));
 }
 
-TEST(GateReport, TheFieldsOfTheSceneThatChangedAreNamedEverywhere) {
+TEST(GateReport, ChangedNumbersOfTheSceneAreListedInEveryFormat) {
     GatedScene scene = failed();
     scene.changed = {{Number{"points.tie_rod_inner.z", -0.06, "m"},
                       Number{"points.tie_rod_inner.z", -0.055, "m"}},
@@ -136,7 +136,7 @@ TEST(GateReport, TheFieldsOfTheSceneThatChangedAreNamedEverywhere) {
     expect_parts(gate_table(scene), {"... and 15 more numbers of the scene"});
 }
 
-TEST(GateReport, TheOrderOverAllScenesIsTheOneOfEach) {
+TEST(GateReport, OffencesOfAllScenesHaveTheOrderOfOneScene) {
     GatedScene rounding = failed(), moved = failed();
     rounding.verdict.offences = {offence(1.26)};  // 1 tolerance, half of what is noticed
     rounding.verdict.offences[0].channel = "bush.force_z", rounding.verdict.offences[0].unit = "N";
@@ -150,7 +150,7 @@ TEST(GateReport, TheOrderOverAllScenesIsTheOneOfEach) {
 }
 
 // Everything of everything is wrong, under names as long as they may be.
-TEST(GateReport, JUnitStaysSmallWhateverFailsAndSaysWhatIsLeftOut) {
+TEST(GateReport, JUnitIsLimitedInSizeAndCountsWhatIsOmitted) {
     const auto wrong = [](std::size_t scenes, std::size_t branches, std::size_t numbers,
                           std::size_t length) {
         GatedScene scene = unjudged();
@@ -198,7 +198,7 @@ TEST(GateReport, JUnitStaysSmallWhateverFailsAndSaysWhatIsLeftOut) {
     expect_parts(xml, {}, {"more"});
 }
 
-TEST(GateReport, TheSummarySaysTheVerdictFirstAndFoldsTheRest) {
+TEST(GateReport, SummaryBeginsWithTheVerdictAndFoldsTheRest) {
     const std::string page = step_summary({passed(), failed(), unjudged()});
     EXPECT_TRUE(page.starts_with(
         "# elastocheck gate: FAILED\n\nFAILED: 2 of 14 numbers out of tolerance, in 1 of 3"))
@@ -215,7 +215,7 @@ TEST(GateReport, TheSummarySaysTheVerdictFirstAndFoldsTheRest) {
     expect_parts(step_summary({passed()}), {}, {"accepted |"});
 }
 
-TEST(GateReport, TheSummaryStaysBelowAMebibyteHoweverMuchIsWrong) {
+TEST(GateReport, SummaryStaysBelowOneMebibyte) {
     GatedScene scene = failed();
     scene.file = std::string(1000, '|');
     scene.reason = scene.differs = std::string(1000, '&');

@@ -50,7 +50,7 @@ double& value(Measurement& m, Quantity quantity, const std::string& channel, std
     throw std::logic_error(channel);
 }
 
-TEST(Gate, WhatIsAsAcceptedPassesAndEveryNumberIsCounted) {
+TEST(Gate, AcceptedMeasurementPassesAndEveryNumberIsCounted) {
     const GateVerdict verdict = judged(baseline(), measurement());
     EXPECT_EQ(verdict.grade(), Grade::pass);
     EXPECT_EQ(verdict.compared, 2 * (3 + 3 + 1 + 3 + 1));
@@ -58,7 +58,7 @@ TEST(Gate, WhatIsAsAcceptedPassesAndEveryNumberIsCounted) {
 
 // Of its channel, else its unit, in the class; relative to the accepted curve's range, of a deviation to
 // that of the reference.
-TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
+TEST(Gate, DifferenceOfTheTolerancePassesAndOneUlpMoreFails) {
     struct Edge {
         Quantity quantity;
         const char* channel;
@@ -104,7 +104,7 @@ TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
         }
 }
 
-TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
+TEST(Gate, IncomparableNumbersNeverPass) {
     struct Damage {
         const char* what;
         std::function<void(Baseline&, Measurement&)> inflict;
@@ -183,7 +183,7 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
     }
 }
 
-TEST(Gate, NumbersElsewhereAreNotComparedWithTheAcceptedOnes) {
+TEST(Gate, NumbersAtOtherParametersAreNotCompared) {
     Measurement m = measurement();
     m.branches[0].a.back() = 30;
     value(m, Quantity::recursive, "toe", 2) = 9;
@@ -194,7 +194,7 @@ TEST(Gate, NumbersElsewhereAreNotComparedWithTheAcceptedOnes) {
     EXPECT_TRUE(verdict.offences.empty());
 }
 
-TEST(Gate, ASeriesOfABranchThatNobodyListsIsNotAPass) {
+TEST(Gate, SeriesOfAnUnlistedBranchIsNotJudged) {
     Baseline b = baseline();
     b.accepted.series[0].branch = "nowhere";
     EXPECT_EQ(judged(b, measurement()).grade(), Grade::not_judged);
@@ -203,7 +203,7 @@ TEST(Gate, ASeriesOfABranchThatNobodyListsIsNotAPass) {
     EXPECT_EQ(judged(baseline(), m).grade(), Grade::not_judged);
 }
 
-TEST(Gate, ABrokenLimitIsBrokenWhateverElseCouldNotBeJudged) {
+TEST(Gate, ExceededLimitFailsBesideIncomparableNumbers) {
     Measurement m = measurement();
     value(m, Quantity::recursive, "toe", 1) = 7;
     value(m, Quantity::recursive, "travel", 1) = nan;
@@ -215,7 +215,7 @@ TEST(Gate, ABrokenLimitIsBrokenWhateverElseCouldNotBeJudged) {
     EXPECT_EQ(judged(baseline(), m).grade(), Grade::fail) << "exchanged channels";
 }
 
-TEST(Gate, AnAbsoluteLimitGatesAccuracyEvenWhereNothingChanged) {
+TEST(Gate, AbsoluteLimitFailsOnUnchangedNumbers) {
     Baseline b = baseline();
     b.limits.push_back({Quantity::deviation_at_equal_abscissa, "toe", 0.5});
     GateVerdict verdict = judged(b, measurement());
@@ -236,7 +236,7 @@ std::vector<std::string> order(const GateVerdict& verdict) {
     return channels;
 }
 
-TEST(Gate, WhatAnEngineerNoticesComesFirst) {
+TEST(Gate, OffencesAreOrderedByTheirNoticeableChange) {
     Baseline b = baseline();
     for (const char* channel : {"bush.force_z", "coil.force_z"})
         for (const char* branch : {"in", "out"})
@@ -285,7 +285,7 @@ Baseline car() {
     return b;
 }
 
-TEST(Gate, AFigureIsLimitedOnBothSidesAtTheDesignPositionOrAtEveryPointOfABranch) {
+TEST(Gate, FigureHasTwoSidedLimitsAtDesignOrOverABranch) {
     struct Case {
         Limit limit;
         std::size_t broken;
@@ -322,7 +322,7 @@ TEST(Gate, AFigureIsLimitedOnBothSidesAtTheDesignPositionOrAtEveryPointOfABranch
     }
 }
 
-TEST(Gate, ALimitThatSaysNothingOrIsOnNothingIsNotAPass) {
+TEST(Gate, InvalidOrUnmatchedLimitIsNotJudged) {
     for (const Limit& limit :
          {Limit{Quantity::equilibrium, "bump_steer", nan, 0, "deg/m"},
           Limit{Quantity::equilibrium, "bump_steer", 1, nan, "deg/m"},
@@ -363,7 +363,7 @@ TEST(Gate, StationsAreFiveEvenlySpacedAndTheDesignPosition) {
 }
 
 // From -110 m to -476 m is next to nothing.
-TEST(Gate, ASwingArmIsKeptAsItsReciprocalAndAnEndlessOneAsZero) {
+TEST(Gate, SwingArmIsStoredAsItsReciprocalAndAnInfiniteOneAsZero) {
     const Model model = compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml"));
     Comparison comparison = compare(model);
     const auto channel = [&](const char* name) {
@@ -392,7 +392,7 @@ TEST(Gate, ASwingArmIsKeptAsItsReciprocalAndAnEndlessOneAsZero) {
     EXPECT_EQ(arms, 2 * 3);  // of each leg, and the range
 }
 
-TEST(Gate, WhereABaselineDoesNotSayWhatIsNoticedTheUsualIs) {
+TEST(Gate, MissingPhysicalToleranceHasItsDefault) {
     Baseline b = baseline();
     b.tolerances[ToleranceClass::physical].erase("deg");
     b.tolerances[ToleranceClass::physical]["mm"] = {nan, 0};
@@ -407,7 +407,7 @@ TEST(Gate, WhereABaselineDoesNotSayWhatIsNoticedTheUsualIs) {
         << verdict.offences[1].channel;
 }
 
-TEST(Changes, AreNamedWithOldAndNewAndWhatCameOrWent) {
+TEST(Changes, ChangedAddedAndRemovedNumbersAreListed) {
     const std::vector<Number> was{
         {"points.a.z", -0.06, "m"}, {"springs.coil.rate", 28, "N/mm"}, {"left", 3, ""}},
         is{{"new", 7, "N"}, {"points.a.z", -0.055, "m"}, {"springs.coil.rate", 28, "N/mm"}};

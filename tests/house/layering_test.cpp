@@ -216,13 +216,13 @@ TEST(Layering, ThePageReadsNoJson) {
 
 // A visit that asks what a kind can do, instead of saying what is done with each, leaves a new
 // kind out silently.
-TEST(Layering, NoKindIsLeftOutSilently) {
+TEST(Layering, VisitorsAreExhaustive) {
     static const std::regex asked(R"(if\s+constexpr\s*\(\s*!?\s*requires\b)");
     EXPECT_TRUE(std::regex_search("if constexpr (requires { point.s_local; }) {", asked));
     for (const auto& [file, text] : sources()) EXPECT_FALSE(std::regex_search(text, asked)) << file;
 }
 
-TEST(Layering, AlarmRings) {
+TEST(Layering, ForbiddenIncludesAreDetected) {
     EXPECT_EQ(
         violations("recursive/a.cpp", "#include \"elastocheck/model.hpp\"\n#include <Eigen/Core>\n")
             .size(),

@@ -440,7 +440,7 @@ TEST_P(EveryMethod, DrivenLengthThatVanishesEndsTheBranch) {
     EXPECT_EQ(solve(leg(), shortened_rod(0.09), 60).outcome, Outcome::converged);
 }
 
-TEST_P(EveryMethod, MirroredStateHasAResidual) {
+TEST_P(EveryMethod, StateOfTheOtherAssemblyHasAConstraintResidual) {
     const OneWay side = shortened_rod(0.15);
     Equilibrium mirrored = solve({Leg::equilibrium}, shortened_rod(0.05), 1).points.back();
     mirrored.load = -0.15;

@@ -155,7 +155,7 @@ TEST_P(Stops, StrutOnStopsDoesNotDependOnTheOutputPoints) {
 
 // Wherever the points lie: a point may be predicted almost on the knot, and the next step must end
 // on it all the same.
-TEST_P(Stops, KnotsArePassedWithAnyNumberOfPoints) {
+TEST_P(Stops, KnotsOfCurvesArePassedWithAnyNumberOfSteps) {
     const Scene s = support::scene("mcpherson_strut");
     for (const std::size_t n : {0u, 1u}) {
         const OneWay side = side_of(s, n);

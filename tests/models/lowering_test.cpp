@@ -219,7 +219,8 @@ TEST(Lowering, RowsVanishUnderLargeMotionsThatTheJointAllows) {
     });
 }
 
-TEST(Lowering, ListsIndependentMotionsOnly) {  // checks that the table above lists all freedoms
+TEST(Lowering,
+     FreeMotionsOfAJointAreLinearlyIndependent) {  // checks that the table above lists all freedoms
     sweep([&](const Place& place, const Lowered& joint, const auto&, const Poses& design) {
         if (place.i == ground || joint.freedoms.empty()) return;
         const Pose& pose = design[static_cast<std::size_t>(place.i)];

@@ -146,7 +146,7 @@ std::vector<Row> double_wishbone() {
     add("camber", "below 1e-10 deg", "`camber@front_view`: atan2(e_z, e_y)");
     return rows;
 }
-TEST(Outside, DoubleWishboneInClosedForm) { (void)double_wishbone(); }
+TEST(Outside, DoubleWishboneAgreesWithItsClosedForm) { (void)double_wishbone(); }
 
 // Height of the roll centre above the patch: the line from the patch to the instant centre, which
 // is where the planes of both wishbones meet in the transverse plane x = 0 of the drawn wheel
@@ -306,7 +306,7 @@ std::vector<Row> formula_rear() {
                       "(`motion_ratio@patch_path`) 0.1 to 0.4 %"));
     return rows;
 }
-TEST(Outside, TableOfAFormulaRearAxle) { (void)formula_rear(); }
+TEST(Outside, FormulaRearAxleAgreesWithItsPublishedTable) { (void)formula_rear(); }
 
 // The printed static figures of a kinematics program; the last digit printed is 0.01.
 std::vector<Row> listing() {
@@ -356,7 +356,7 @@ std::vector<Row> listing() {
     }
     return rows;
 }
-TEST(Outside, StaticFiguresOfAListing) { (void)listing(); }
+TEST(Outside, StaticFiguresAgreeWithTheOutputOfAKinematicsProgram) { (void)listing(); }
 
 // reports/validation/outside.md shows these numbers.
 TEST(Outside, NumbersAreThoseOfTheCommittedPage) {

@@ -135,7 +135,7 @@ TEST(RandomScene, HasEveryJointElementAndDriverSomewhere) {
 // No leg or method is wrong: neither off by more than it claims, nor past the end of a branch on
 // which both references end. The references and the series are right often enough. `hunt` tests
 // thousands of scenes.
-TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
+TEST(RandomScenes, EverySolverIsWithinItsClaimOrReportsFailure) {
     int asked = 0, judged = 0;
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         const std::string text = random_scene(seed);
@@ -175,7 +175,7 @@ TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
 //   929            crash
 //   100042         redundant joints that a branch makes inconsistent: methods with fixed steps went
 //                  on where `adaptive` gave up without an end
-TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
+TEST(RandomScenes, ScenesSolvedWronglyBeforeAreSolved) {
     for (const std::uint64_t seed :
          {9, 23, 203, 230, 295, 472, 488, 929, 1202, 1708, 2464, 100042}) {
         const auto text = random_scene(seed, seed == 100042 ? Family::driven : Family::any);
@@ -193,7 +193,7 @@ TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
 // Regression test of settling from the design position. The equilibrium leg stopped (48 to 337)
 // where bodies held by dead forces reach a turning point or become unstable; the energy leg (284 to
 // 917) where nothing resists a motion that starts from zero.
-TEST(RandomScenes, SettleByBothReferences) {
+TEST(RandomScenes, ScenesSettleByBothReferences) {
     for (const std::uint64_t seed : {48, 77, 129, 289, 337, 284, 703, 917}) {
         const Model model = compile(parse_scene(random_scene(seed), "random.yaml"));
         const BranchSide way = sides_of(model, model.branches.back()).front();
@@ -210,7 +210,7 @@ TEST(RandomScenes, SettleByBothReferences) {
 
 // Settling while the bodies are released from dead forces ends at a limit point, between open joints
 // for the last three; the forces of loads, bushings and springs with curves grow instead.
-TEST(RandomScenes, SettleByTheRecursionWhereReleasedBodiesTurnBack) {
+TEST(RandomScenes, ScenesWithALimitPointOfReleaseSettleByTheRecursion) {
     for (const std::uint64_t seed : {100020, 100052, 100076, 100178, 100317, 100318}) {
         const Model model = compile(parse_scene(random_scene(seed, Family::driven), "random.yaml"));
         const BranchSide way = sides_of(model, model.branches.back()).front();
@@ -229,7 +229,7 @@ TEST(RandomScenes, SettleByTheRecursionWhereReleasedBodiesTurnBack) {
 }
 
 // Bushings of 2e10 N/m beside free motions: the last corrections of settling do not fall at once.
-TEST(RandomScenes, WhatHasSettledIsAtRest) {
+TEST(RandomScenes, SettledStateOfStiffBushingsIsAtRest) {
     const Model model = compile(parse_scene(random_scene(1708), "random.yaml"));
     const Branch& branch = model.branches.front();
     const double start[] = {0};

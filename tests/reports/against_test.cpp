@@ -40,7 +40,7 @@ const SceneAnalyses& variant() {
     return once;
 }
 
-TEST(Against, ASceneHasNoDifferenceFromItself) {
+TEST(Against, SceneHasNoDifferenceFromItself) {
     const Against none = differences(base(), base());
     EXPECT_TRUE(none.numbers.empty() && none.figures.empty());
     EXPECT_TRUE(none.only_base.empty() && none.only_variant.empty());
@@ -94,7 +94,7 @@ TEST(Against, OtherStepsAreComparedAtEqualParameter) {
                 << branch.name << curve.output;  // interpolation between 80 mm / 4
 }
 
-TEST(Against, WhatOnlyOneHasIsNamed) {
+TEST(Against, BranchOrChannelOfOneSceneOnlyIsNamed) {
     SceneAnalyses other = variant();
     other.comparison.branches[0].branch = "Ride";
     other.comparison.channels[0].name = "hub_x";
@@ -103,7 +103,7 @@ TEST(Against, WhatOnlyOneHasIsNamed) {
     EXPECT_EQ(found.only_variant, (std::vector<std::string>{"output hub_x", "branch Ride"}));
 }
 
-TEST(Against, TheSectionDrawsBothOnCommonAxesAndSaysNothingOfAVerdict) {
+TEST(Against, SectionDrawsBothScenesWithoutAVerdict) {
     SceneAnalyses scene = base();
     scene.against = differences(base(), variant());
     const auto section = against_section(scene);
@@ -132,7 +132,7 @@ TEST(Against, TheSectionDrawsBothOnCommonAxesAndSaysNothingOfAVerdict) {
                   "differ, most " + scene.against->figures[0].output + " ["});
 }
 
-TEST(Against, TheCommandComparesTwoScenesAndHasNoFail) {
+TEST(Against, CommandComparesTwoScenesWithoutAFailure) {
     const Folder folder;
     const std::string scene = scenes + "/double_wishbone_rigid.yaml",
                       higher = folder.write("higher.yaml", text_of(scene)),

@@ -37,7 +37,7 @@ std::string solved(const Folder& folder, const std::string& name, const std::str
 
 Said judge(const std::string& how) { return elastocheck_says("judge " + strut + " " + how); }
 
-TEST(CandidateCommand, WhatAReferenceWritesPassesAsCurvesAndAsStates) {
+TEST(CandidateCommand, ReferencePassesAsCurvesAndAsStates) {
     const Folder folder;
     const std::string curves = solved(folder, "curves.csv", "--steps 10 --method energy -o"),
                       states =
@@ -54,7 +54,7 @@ TEST(CandidateCommand, WhatAReferenceWritesPassesAsCurvesAndAsStates) {
                     0);
 }
 
-TEST(CandidateCommand, ATableWithoutForcesSaysThatNoneWasCompared) {
+TEST(CandidateCommand, TableWithoutForcesIsReportedAsComparedWithoutThem) {
     const Folder folder;
     const std::string all = solved(folder, "all.csv", "--steps 10 --method energy -o"),
                       some = solved(folder, "some.csv",
@@ -65,7 +65,7 @@ TEST(CandidateCommand, ATableWithoutForcesSaysThatNoneWasCompared) {
 }
 
 // A bar rotated about its own axis has the correct outputs, but its bushing is twisted.
-TEST(CandidateCommand, AStateOutOfBalanceIsNoFullSolutionThoughNoForceIsAsked) {
+TEST(CandidateCommand, UnbalancedStateIsReportedWithoutARequestedForce) {
     const Folder folder;
     const std::string states = (folder.path / "states.jsonl").string();
     ASSERT_EQ(elastocheck_says("solve " + scenes +
@@ -116,7 +116,7 @@ TEST(CandidateCommand,
     EXPECT_GT(same, 40);
 }
 
-TEST(CandidateCommand, ACommandThatDoesNotDoWhatItShouldCouldNotBeJudged) {
+TEST(CandidateCommand, FailingCandidateCommandIsNotJudged) {
     const struct {
         const char *command, *said;
     } cases[] = {{"sh -c \"echo no licence >&2; exit 7\" {output}", "ended with exit code 7"},
@@ -152,7 +152,7 @@ TEST(CandidateCommand, ACommandThatDoesNotDoWhatItShouldCouldNotBeJudged) {
     }
 }
 
-TEST(CandidateCommand, WhatCannotBeRightIsRefusedBeforeTheWork) {
+TEST(CandidateCommand, InvalidOptionsAreRejectedBeforeTheWork) {
     const struct {
         const char *how, *what;
     } cases[] = {
@@ -166,7 +166,7 @@ TEST(CandidateCommand, WhatCannotBeRightIsRefusedBeforeTheWork) {
 }
 
 // A pipe that nobody writes to would be waited for.
-TEST(CandidateCommand, APipeIsRefused) {
+TEST(CandidateCommand, PipeAsCandidateIsRejected) {
     const Folder folder;
     const std::string pipe = (folder.path / "pipe").string();
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -174,7 +174,7 @@ TEST(CandidateCommand, APipeIsRefused) {
                 {.err = {pipe + ": is a pipe; a candidate is a regular file"}});
 }
 
-TEST(CandidateCommand, WordsOfACommandAreParted) {
+TEST(CandidateCommand, CommandIsSplitIntoWords) {
     using reports::words_of;
     using Words = std::vector<std::string>;
     EXPECT_EQ(words_of("  ./a  b\tc "), (Words{"./a", "b", "c"}));
@@ -184,7 +184,7 @@ TEST(CandidateCommand, WordsOfACommandAreParted) {
     EXPECT_THROW((void)words_of("a\\"), std::invalid_argument);
 }
 
-TEST(CandidateCommand, NothingOfAProgramThatIsKilledGoesOn) {
+TEST(CandidateCommand, ChildrenOfATimedOutProgramAreKilled) {
     const Folder folder;
     const std::string mark = (folder.path / "mark").string();
     const auto ended = reports::run({"sh", "-c", "(sleep 2; touch " + mark + ") & sleep 30"}, 0.3);
@@ -229,7 +229,7 @@ int ended_by(const Folder& folder, const std::string& file, int signal,
     return WIFSIGNALED(status) ? WTERMSIG(status) : -WEXITSTATUS(status);
 }
 
-TEST(CandidateCommand, ASignalEndsAllThatTheProgramRunsAndTheNextRunClearsUp) {
+TEST(CandidateCommand, SignalEndsAllChildrenAndTheNextRunRemovesTheirFiles) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         const Folder folder;
         const std::string numbers = (folder.path / "numbers").string(),
@@ -287,7 +287,7 @@ std::string rows(const std::string& csv, const std::vector<std::string>& columns
     return text;
 }
 
-TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
+TEST(CandidateCommand, MapTranslatesNamesUnitsAndSignsOfATable) {
     const Folder folder;
     const std::string csv =
         text_of(solved(folder, "curves.csv", "--steps 10 --method equilibrium -o"));
@@ -332,7 +332,7 @@ TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
             2, {.err = {what}});
 }
 
-TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
+TEST(CandidateCommand, UnreadableFileIsRejectedWithItsLine) {
     const Folder folder;
     const std::string state =
         R"("bodies": {"arm": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}}})";
@@ -369,7 +369,7 @@ TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
         expect_said(judge("--steps 5 --candidate " + folder.write(name, text)), 2, {.err = {what}});
 }
 
-TEST(CandidateCommand, WhatIsNoNumberOrIsNotThereNeverPasses) {
+TEST(CandidateCommand, NonNumericOrMissingValueNeverPasses) {
     const Folder folder;
     std::string csv = text_of(
         solved(folder, "curves.csv", "--steps 10 --method equilibrium --channels toe,camber -o"));
@@ -385,7 +385,7 @@ TEST(CandidateCommand, WhatIsNoNumberOrIsNotThereNeverPasses) {
 }
 
 // The same results as a file and from a command have the same verdict, with --partial and without.
-TEST(CandidateCommand, BranchesThatAreLeftOutAreNamedAndNeedPartialToPass) {
+TEST(CandidateCommand, MissingBranchIsNamedAndPassesOnlyWithPartial) {
     const Folder folder;
     std::string csv =
         text_of(solved(folder, "all.csv", "--steps 10 --method energy --channels toe,camber -o"));
@@ -402,7 +402,7 @@ TEST(CandidateCommand, BranchesThatAreLeftOutAreNamedAndNeedPartialToPass) {
 }
 
 // States as a table, with another order of rows, give the same result as JSON lines.
-TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
+TEST(CandidateCommand, StatesAsATableEqualThoseAsJsonLines) {
     const Folder folder;
     const std::string lines =
         solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
@@ -441,7 +441,7 @@ TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
 
 // ---- Other commands.
 
-TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
+TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfAnExternalRecursion) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
     const Said said = expect_says(
@@ -478,7 +478,7 @@ TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
                 3, {.out = {"at least three numbers of steps"}});
 }
 
-TEST(CandidateCommand, ThePageShowsItsVerdictFirst) {
+TEST(CandidateCommand, PageBeginsWithTheVerdictOnTheCandidate) {
     const Folder folder;
     const std::string out = (folder.path / "page").string();
     expect_says(

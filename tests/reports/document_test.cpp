@@ -44,7 +44,7 @@ struct Made : SceneAnalyses {
     }
 };
 
-TEST(Document, CarriesWhatItTakesToTrustAndReproduceIt) {
+TEST(Document, HasBuildInputAndSettings) {
     const json d = Made().document();
     const json& s = d["scenes"][0];
     EXPECT_EQ(d["schema"], result_schema);
@@ -96,7 +96,7 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
     EXPECT_EQ(toe["unit"], "deg");
 }
 
-TEST(Document, EveryChannelSaysWhatItIs) {
+TEST(Document, EveryChannelHasUnitDefinitionAndKind) {
     const json d = Made().document();
     std::set<std::string> rates;  // of the state and how it answers
     const json table = result_in(d["scenes"][0], "compare")["tables"]["rates"];
@@ -111,7 +111,7 @@ TEST(Document, EveryChannelSaysWhatItIs) {
     }
 }
 
-TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
+TEST(Document, HasForcesOfElementsAtTheEndsOfTheBranches) {
     const Made made;
     const json whole = json::parse(made.document().dump());
     const auto told = compare::force_rows(made.model, made.comparison);
@@ -125,14 +125,14 @@ TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
     EXPECT_NE(rows.find(",rebound,-3000,N,K1_coil,K1_coil.force,N,"), std::string::npos) << rows;
 }
 
-TEST(Csv, WhatIsUndefinedIsAnEmptyCell) {
+TEST(Csv, UndefinedValueIsAnEmptyCell) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(
         curves_row("b", compare::Leg::equilibrium, compare::Unit::newton, {2, 0, {1.5, nan, 3}}),
         "b,equilibrium,2,N,1.5,,3\n");
 }
 
-TEST(Document, NumbersThatAreNotFiniteAreNull) {
+TEST(Document, NonFiniteNumberIsNull) {
     Made made;
     made.comparison.branches[0].runs[0].curve.values[3][0] =
         std::numeric_limits<double>::quiet_NaN();
@@ -153,7 +153,7 @@ TEST(Document, InputHashIsFnv1a) {
 }
 
 // Three bytes of text, each with its own list: a file of 30 MB would take 2 GB.
-TEST(Json, WhatWouldTakeMoreMemoryThanThereIsIsRefusedBeforeItIsParsed) {
+TEST(Json, DocumentWithTooManyValuesIsRejectedBeforeParsing) {
     std::string many = "[";
     while (many.size() < 30'000'000) many += "[],";
     many.back() = ']';
@@ -271,7 +271,7 @@ void expect_road_to_carry_the_scene(const std::string& text, double at_rest) {
         }
 }
 
-TEST(WheelLoads, AndWeightsAndTheCarBodyAreInBalance) {
+TEST(WheelLoads, RoadForcesBalanceTheWeights) {
     expect_road_to_carry_the_scene(trailing_arm, 4000);
     expect_road_to_carry_the_scene(
         heavy("front_axle", {"wheel_left", "lower_arm_left", "drop_link_left", "rack"}), 3800);
@@ -279,7 +279,7 @@ TEST(WheelLoads, AndWeightsAndTheCarBodyAreInBalance) {
     expect_road_to_carry_the_scene(scene_text("tyre_on_road"), 3892.4);
 }
 
-TEST(WheelLoads, AreUnknownUnderAForceThatMayBeTheRoadsOrNot) {
+TEST(WheelLoads, WheelLoadIsUnknownUnderAnAmbiguousForce) {
     const Model model = compile(parse_scene(trailing_arm, "scene.yaml"));
     const Wheel& wheel = model.wheels[0];
     const Point centre{wheel.body, wheel.centre_local},

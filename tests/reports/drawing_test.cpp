@@ -45,7 +45,7 @@ std::string shown(std::string name) {
     return name;
 }
 
-TEST(Drawing, NoWordLiesOnAnotherOrBeyondTheSheetInAnyViewOfAnyScene) {
+TEST(Drawing, LabelsDoNotOverlapAndStayOnTheSheet) {
     for (const auto& name : support::scene_names())
         for (const auto& figure : all_views(drawn(name))) {
             const auto list = boxes(figure);
@@ -76,7 +76,7 @@ TEST(Drawing, EveryHardpointIsNamedInAtLeastOneView) {
     }
 }
 
-TEST(Drawing, EveryStrokeIsOnTheSheet) {
+TEST(Drawing, EveryLineStaysOnTheSheet) {
     for (const auto& name : support::scene_names())
         for (const auto& figure : all_views(drawn(name)))
             for (const auto& series : figure.series)
@@ -95,7 +95,7 @@ long count(const std::vector<Part>& list, std::string Part::*field, const std::s
     return std::ranges::count(list, what, field);
 }
 
-TEST(Drawing, ADoubleWishboneIsTwoPlatesACarrierATieRodACoilAndFourBushings) {
+TEST(Drawing, DoubleWishboneHasItsPlatesRodsSpringAndBushings) {
     const Drawing d = drawing_of("double_wishbone");
     ASSERT_EQ(d.faces.size(), 3u);
     for (const auto& face : d.faces) EXPECT_EQ(face.points.size(), 3u) << face.body;
@@ -109,7 +109,7 @@ TEST(Drawing, ADoubleWishboneIsTwoPlatesACarrierATieRodACoilAndFourBushings) {
     EXPECT_EQ(count(d.symbols, &Drawing::Symbol::name, "jack"), 0);
 }
 
-TEST(Drawing, ABeamIsALineFromEndToEnd) {
+TEST(Drawing, BeamIsDrawnAsALineOfItsSegments) {
     const Drawing d = drawing_of("twist_beam");
     double left = -1e9, right = 1e9;
     std::map<std::string, int> lines;  // of the arms, which are mirror images
@@ -131,7 +131,7 @@ TEST(Drawing, ABeamIsALineFromEndToEnd) {
 
 // In the side view forward is to the left; in the top view it points down the page, below the front
 // view, in which left is right.
-TEST(Drawing, ViewsAreThoseOfADrawingBoard) {
+TEST(Drawing, ViewsHaveTheDirectionsOfATechnicalDrawing) {
     Suspension s;
     s.points = {{"origin", "ground", true, {0, 0, 0}},
                 {"forward", "ground", true, {500, 0, 0}},
@@ -152,7 +152,7 @@ TEST(Drawing, ViewsAreThoseOfADrawingBoard) {
     for (const auto& figure : figures) EXPECT_EQ(figure.sheet->scale, figures[0].sheet->scale);
 }
 
-TEST(Labels, FindPlacesAsLongAsThereIsRoomAndNoneWhereThereIsNot) {
+TEST(Labels, LabelsAreSeparateAndOmittedWithoutRoom) {
     std::vector<Label> crowd(12, Label{{100, 100}, 60, 12});
     Paper paper{200, 200, {}, {}};
     const auto placed = place_labels(crowd, paper);
@@ -168,7 +168,7 @@ TEST(Labels, FindPlacesAsLongAsThereIsRoomAndNoneWhereThereIsNot) {
     for (const auto& box : place_labels(crowd, paper)) EXPECT_FALSE(box);
 }
 
-TEST(Labels, ALineIsAvoidedWhereThereIsRoomBesideIt) {
+TEST(Labels, LabelAvoidsALineIfThereIsRoom) {
     const std::vector<Label> one{{{100, 100}, 40, 12}};
     const Paper paper{200, 200, {{{{100, 100}, {200, 100}}}}, {}};
     const auto placed = place_labels(one, paper);

@@ -16,7 +16,7 @@ const std::vector<std::string> odd{
     "\x85",      "\xA0",   "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80",
     "\xE2\x80"};
 
-TEST(Escape, WhatIsUnfitToBeANameIsSaid) {
+TEST(Escape, UnprintableCharactersInANameAreReported) {
     for (const auto& text : odd) EXPECT_NE(flaw(text), "") << for_terminal(text);
     for (const char* fine : {"", "toe", "Größe", "轮", "\u00a0", "\U0001F697", "<b>&'\"`$(x)"})
         EXPECT_EQ(flaw(fine), "") << fine;
@@ -25,7 +25,7 @@ TEST(Escape, WhatIsUnfitToBeANameIsSaid) {
     EXPECT_EQ(flaw("a\u202e"), "it has U+202E, which changes the direction of writing");
 }
 
-TEST(Escape, NoLanguageLetsAControlThrough) {
+TEST(Escape, ControlCharactersAreEscapedInEveryFormat) {
     for (const auto& text : odd)
         for (const auto& safe : {for_terminal(text), for_html(text), for_markdown(text),
                                  for_csv(text), for_github(text), for_github_property(text)})
@@ -36,7 +36,7 @@ TEST(Escape, NoLanguageLetsAControlThrough) {
     }
 }
 
-TEST(Escape, EachLanguagesOwnSignsAreText) {
+TEST(Escape, SyntaxOfEachFormatIsEscaped) {
     EXPECT_EQ(for_terminal("a\x1b]0;x\x07\u009b\u202e\x85\n"),
               "a\\x1b]0;x\\x07\\x9b\\x{202e}\\x85\\n");
     EXPECT_EQ(for_html("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&apos;");
@@ -54,7 +54,7 @@ TEST(Escape, EachLanguagesOwnSignsAreText) {
 
 // Spreadsheets evaluate cells with these beginnings, also in quotes, and take a semicolon for a
 // separator where numbers have decimal commas.
-TEST(Escape, NoCellOfASpreadsheetIsAFormula) {
+TEST(Escape, CsvCellIsNeverAFormula) {
     EXPECT_EQ(for_csv("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
     EXPECT_EQ(for_csv("@SUM(1)"), "'@SUM(1)");
     EXPECT_EQ(for_csv("+cmd"), "'+cmd");
@@ -68,7 +68,7 @@ TEST(Escape, NoCellOfASpreadsheetIsAFormula) {
         EXPECT_EQ(for_csv(fine), fine);
 }
 
-TEST(Escape, MarkdownHasNeitherListsNorLinksNorFormulasOfANamesMaking) {
+TEST(Escape, NameInMarkdownMakesNoListLinkOrFormula) {
     EXPECT_EQ(for_markdown("- x"), "\\- x");
     EXPECT_EQ(for_markdown("+ x"), "\\+ x");
     EXPECT_EQ(for_markdown("---"), "\\---");

@@ -23,7 +23,7 @@ int entries(const std::filesystem::path& folder) {
     return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-TEST(WriteWhole, MakesTheFolderAndReplacesAnOlderFile) {
+TEST(WriteWhole, CreatesTheFolderAndReplacesAnOlderFile) {
     const Folder folder;
     const auto file = folder.path / "new" / "deep" / "result.json";
     const std::string one = std::string(summary_file.beginning) + "passed\n";
@@ -35,7 +35,7 @@ TEST(WriteWhole, MakesTheFolderAndReplacesAnOlderFile) {
 }
 
 // Contents that must not change; returns the error message.
-TEST(WriteWhole, NeverWritesOverWhatItDidNotWrite) {
+TEST(WriteWhole, NeverOverwritesAForeignFile) {
     namespace fs = std::filesystem;
     const Folder folder;
     const auto refusal = [](const fs::path& file, const FileKind& kind) {
@@ -80,7 +80,7 @@ TEST(WriteWhole, NeverWritesOverWhatItDidNotWrite) {
     EXPECT_FALSE(fs::exists(folder.path / "nowhere"));
 }
 
-TEST(Append, AddsToARegularFileAndToNothingElse) {
+TEST(Append, AppendsToRegularFilesOnly) {
     const Folder folder;
     const auto file = folder.write("summary", "another step's\n");
     append(file, "ours\n");
@@ -100,7 +100,7 @@ TEST(ReadWhole, ReadsFilesAndNoDevices) {
         EXPECT_THROW(read_whole(strange), FileError) << strange;
 }
 
-TEST(ReadWhole, RefusesWhatIsLargerThanItsKindAsSoonAsItShows) {
+TEST(ReadWhole, TooLargeFileOrPipeIsRejectedEarly) {
     const Folder folder;
     const std::string file = folder.write("f", std::string((1 << 20) + 1, 'x'));
     EXPECT_EQ(read_whole(file, (1 << 20) + 1).size(), (1u << 20) + 1);
@@ -123,7 +123,7 @@ TEST(ReadWhole, RefusesWhatIsLargerThanItsKindAsSoonAsItShows) {
     endless.join();
 }
 
-TEST(WriteWhole, LeavesNothingBehindWhereItCannotWrite) {
+TEST(WriteWhole, FailedWriteLeavesNoFile) {
     const Folder folder;
     folder.write("file", "old");
     EXPECT_THROW(write_whole(folder.path / "file" / "result.json", "x", curves_file), FileError);
@@ -147,7 +147,7 @@ std::string grouped(double number) {
     return digits;
 }
 
-TEST(Limits, StandInTheReadmeAsInTheCode) {
+TEST(Limits, ReadmeHasTheLimitsOfTheCode) {
     const std::string readme = text_of(ELASTOCHECK_VALIDATION "/../README.md");
     const std::size_t begin = readme.find("## Limits");
     ASSERT_NE(begin, readme.npos);

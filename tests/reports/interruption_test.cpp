@@ -57,7 +57,7 @@ int failures(int count, Work work) {
     return failed;
 }
 
-TEST(Writers, OfOneFileAtOnceLeaveOneOfTheirs) {
+TEST(Writers, ConcurrentWritersLeaveOneCompleteFile) {
     const Folder folder;
     const fs::path file = folder.path / "curves.csv";
     const auto content = [](int writer) {
@@ -94,7 +94,7 @@ TEST(Writers, RemoveTemporaryFilesOfEndedProcessesOnly) {
 // ---- Ended by a signal, or by a reader that closes the pipe.
 
 // Nothing under the name of the output; the next run removes the temporary one.
-TEST(Ended, ByASignalLeavesNoPartOfAReportOrAFileAndTheNextRunClearsUp) {
+TEST(Ended, SignalLeavesNoPartialOutputAndTheNextRunRemovesTemporaries) {
     const std::string report = "report --quick " + pinned_bar + " -o out";
     for (const auto& [what, next, target] :
          {std::tuple{"solve " + scenes + "/front_axle.yaml --steps 200000 -o out.csv",
@@ -114,7 +114,7 @@ TEST(Ended, ByASignalLeavesNoPartOfAReportOrAFileAndTheNextRunClearsUp) {
 }
 
 // The numbers of the best search that has ended, while others of the thousand run.
-TEST(Ended, ByASignalAnOptimisationLeavesItsBestSoFar) {
+TEST(Ended, SignalLeavesTheBestSceneOfAnOptimisation) {
     const Folder folder;
     folder.write("goals.yaml",
                  "vary: {springs.first.rate: [10, 60], springs.second.rate: [20, 70]}\n"
@@ -130,7 +130,7 @@ TEST(Ended, ByASignalAnOptimisationLeavesItsBestSoFar) {
     EXPECT_TRUE(contains(left, "# springs.first.rate was 30")) << left;
 }
 
-TEST(Ended, ByAReaderThatHasReadEnoughLeavesNothingOfAFileThatIsBeingWritten) {
+TEST(Ended, ClosedOutputPipeLeavesNoPartialFile) {
     const Folder folder;
     const Said said =
         says("cd " + folder.path.string() + " && env --default-signal " + command + "solve " +
@@ -141,7 +141,7 @@ TEST(Ended, ByAReaderThatHasReadEnoughLeavesNothingOfAFileThatIsBeingWritten) {
 
 // ---- Killed. Of folders: ReportCommand.KilledAtAnyMoment...
 
-TEST(Killed, AtAnyMomentTheGateLeavesTheOldBaselineOrTheNewOne) {
+TEST(Killed, KilledGateLeavesTheOldOrTheNewBaseline) {
     const Folder folder;
     const std::string plain = text_of(pinned_bar);
     const std::string versions[] = {plain,
@@ -219,7 +219,7 @@ struct Place : Folder {
     }
 };
 
-TEST(FullDisk, LeavesWhatWasThereAndSaysSo) {
+TEST(FullDisk, FullDeviceKeepsTheOldOutputAndIsReported) {
     const Place place;
     const auto entries = names_in(place.path), baselines = names_in(place.path / "baselines");
     for (const auto& [what, target] : writings) {
@@ -236,7 +236,7 @@ TEST(FullDisk, LeavesWhatWasThereAndSaysSo) {
 }
 
 // The same on a full file system, where the user may mount one.
-TEST(FullDisk, OfAFileSystemToo) {
+TEST(FullDisk, FullFileSystemKeepsTheOldOutputAndIsReported) {
     const Folder folder;
     const std::string mount = "mount -t tmpfs -o size=64k none " + folder.path.string();
     if (says("unshare -rm sh -c '" + mount + "'").code != 0)
@@ -251,7 +251,7 @@ TEST(FullDisk, OfAFileSystemToo) {
     }
 }
 
-TEST(ClosedFolder, IsSaidAndNothingIsLeftInIt) {
+TEST(ClosedFolder, UnwritableFolderIsReportedAndStaysEmpty) {
     for (const std::string& what :
          std::vector<std::string>{"compare " + pinned_bar + " -o /proc/elastocheck",
                                   "solve " + pinned_bar + " -o /proc/elastocheck.csv",

@@ -32,7 +32,7 @@ const compare::Comparison& compared() {
     return comparison;
 }
 
-TEST(Assessment, IsExactToRoundOffWhereNothingIsOff) {
+TEST(Assessment, VanishingDeviationsAreCalledRoundOff) {
     auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     j.requested = false, j.verdict = Grade::pass, j.wheel_rate.reset();
     for (auto* worst : {&j.position, &j.angle}) (*worst)->max = 1e-12;
@@ -44,7 +44,7 @@ TEST(Assessment, IsExactToRoundOffWhereNothingIsOff) {
     expect_parts(sentence(j), {"off by at most round-off; "}, {"nothing"});
 }
 
-TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
+TEST(Assessment, VerdictFollowsFromTheLargestDeviationAndTheTolerance) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     EXPECT_EQ(j.verdict, Grade::fail);
     ASSERT_TRUE(j.position && j.angle && j.wheel_rate);
@@ -75,7 +75,7 @@ TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
 
 // Joint forces, drive forces and rates are judged like positions: a single one with an error of
 // `share` of its extent decides the verdict.
-TEST(Assessment, AnyOutputThatIsOffFailsThoughEveryPositionIsRight) {
+TEST(Assessment, WrongForceOrRateFailsBesideRightPositions) {
     const Model model = compile(support::scene("chrono_mcpherson_travel"));
     compare::Options options;
     options.recursion.method = recursive::find_method("series").value();
@@ -110,7 +110,7 @@ TEST(Assessment, AnyOutputThatIsOffFailsThoughEveryPositionIsRight) {
 }
 
 // Forces are judged by a tolerance in newtons or by a share of their extents, as given.
-TEST(Assessment, ForcesAreHeldToWhatIsAskedOfThem) {
+TEST(Assessment, ForcesAreJudgedByNewtonsOrShareAsGiven) {
     using compare::parse_tolerance, compare::ToleranceParts;
     const auto verdict = [&](const char* text) {
         return compare::assess(mcpherson(), compared(),
@@ -125,7 +125,7 @@ TEST(Assessment, ForcesAreHeldToWhatIsAskedOfThem) {
 
 // Extents: components of a wrench have that of the largest one; a nearly constant output has a
 // tenth of its value; a force that is small beside the acting forces has a thousandth of these.
-TEST(Extents, AreOfTheWrenchOfTheValueOrOfWhatActs) {
+TEST(Extents, ExtentsFollowFromTheWrenchTheValueOrTheActingForces) {
     const Model& model = mcpherson();
     const auto all = compare::channels(model);
     compare::Curve curve{.unit = compare::Unit::newton, .a = {0, 1}, .start = 0, .values = {}};
@@ -144,7 +144,7 @@ TEST(Extents, AreOfTheWrenchOfTheValueOrOfWhatActs) {
 
 // A jack prescribes the travel: every position is correct whatever the force, so a wrong wheel rate
 // must fail the verdict by itself.
-TEST(Assessment, AWheelRateThatIsOffFailsThoughEveryPositionIsDictated) {
+TEST(Assessment, WrongWheelRateFailsUnderPrescribedTravel) {
     const Model model = compile(support::scene("chrono_mcpherson_travel"));
     compare::Options options;
     options.recursion.steps = 40;
@@ -166,7 +166,7 @@ TEST(Assessment, AWheelRateThatIsOffFailsThoughEveryPositionIsDictated) {
     EXPECT_EQ(compare::assess(model, positions_right, {off / 2, 10}).verdict, Grade::fail);
 }
 
-TEST(Assessment, NaNNeverPassesAndWhatIsNotConclusiveIsNotJudged) {
+TEST(Assessment, NaNFailsAndAnInconclusiveComparisonIsNotJudged) {
     compare::Comparison broken = compared();
     broken.branches[0].deviation.equal_parameter.channels[0].max = std::nan("");
     EXPECT_EQ(compare::assess(mcpherson(), broken, {1e9, 1e9}).verdict, Grade::fail);
@@ -182,7 +182,7 @@ TEST(Assessment, NaNNeverPassesAndWhatIsNotConclusiveIsNotJudged) {
         << sentence(nothing);
 }
 
-TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
+TEST(Assessment, SentenceNamesTheReadingThatExceedsTheTolerance) {
     Assessment j;
     j.verdict = Grade::fail;
     j.tolerance = {2, 1};
@@ -202,7 +202,7 @@ TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
     expect_parts(sentence(j), {"by up to 3.0e-13 mm"});
 }
 
-TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
+TEST(Assessment, SentenceHasOutputErrorPlaceAndTolerance) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     const std::string text = sentence(j);
     expect_parts(text,
@@ -215,7 +215,7 @@ TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
     expect_parts(given, {"within 100\u00a0mm and 100\u00a0deg of the full solution"}, {"default"});
 }
 
-TEST(Assessment, CompareGivesNoVerdictOnAMethodThatNobodyNamed) {
+TEST(Assessment, CompareHasNoVerdictWithoutARequestedMethod) {
     const Folder folder;
     const std::string out = (folder.path / "r").string(),
                       command = "compare " + scenes + "/chrono_mcpherson.yaml --steps 10 ";
@@ -239,7 +239,7 @@ TEST(Assessment, CompareGivesNoVerdictOnAMethodThatNobodyNamed) {
         expect_parts(elastocheck_says(command + asked).out, {"\nFail: "});
 }
 
-TEST(Assessment, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
+TEST(Assessment, CompareEndsWithTheVerdictSentenceForTheGivenTolerance) {
     const Folder folder;
     const std::string out = (folder.path / "r").string();
     const auto said = elastocheck_says(

@@ -92,7 +92,7 @@ SceneAnalyses sample_with(Measured measured, const char* name = "chrono_mcpherso
     return scene;
 }
 
-TEST(Measurement, OfMorePointsThanAreReadIsRefused) {
+TEST(Measurement, TooManyPointsAreRejected) {
     std::string csv = "load_N,toe_deg\n";
     for (std::size_t k = 0; k < most_measured; ++k) csv += "5e9,0\n";  // none within range
     EXPECT_EQ(measured(csv)["points"], most_measured);
@@ -100,7 +100,7 @@ TEST(Measurement, OfMorePointsThanAreReadIsRefused) {
               "kc.csv:100002: more points than 100000, the most that are read");
 }
 
-TEST(Measurement, OfTheEquilibriumItselfIsMetByBothReferencesAndMissedByTheRecursion) {
+TEST(Measurement, PointsOfTheEquilibriumLegAgreeWithReferencesAndNotWithTheRecursion) {
     const auto travel =
         static_cast<std::size_t>(find_channel(solved().comparison.channels, "travel"));
     std::string csv = "load_N, travel_mm, toe_deg, wheel_centre_y_change_mm\n";
@@ -127,7 +127,7 @@ TEST(Measurement, OfTheEquilibriumItselfIsMetByBothReferencesAndMissedByTheRecur
     EXPECT_NEAR(std::abs(load["recursive max"].get<double>()), expected.max, 1e-5);
 }
 
-TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
+TEST(Measurement, PointsAreDrawnOverCurvesAndComparedInASection) {
     const SceneAnalyses scene =
         sample_with(solved().typed("travel_mm,toe_deg\n-50,1.4\n50,-1.8\n"));
     bool section = false, drawn = false;
@@ -159,7 +159,7 @@ const Solved& axle() {
     return once;
 }
 
-TEST(Measurement, OfARigIsReadByItsNamesOfTestsAndColumns) {
+TEST(Measurement, TestAndColumnNamesOfARigAreRecognised) {
     const auto& all = axle().comparison;
     std::string csv =
         "Test,Wheel Travel LH [mm],Lateral Force (kN),Braking Force (kN),Toe LH (arc-minutes),"
@@ -197,7 +197,7 @@ TEST(Measurement, OfARigIsReadByItsNamesOfTestsAndColumns) {
 }
 
 // A loop of known width about the curve: the mean of both ways is the curve.
-TEST(Measurement, OfALoopIsComparedByTheMeanOfBothWays) {
+TEST(Measurement, MeanOfBothDirectionsOfALoopIsCompared) {
     const auto& all = solved().comparison;
     const auto& curve = all.branch("jounce").run(compare::Leg::equilibrium).curve;
     const auto point = [&](std::size_t k, double half) {
@@ -230,7 +230,7 @@ TEST(Measurement, OfALoopIsComparedByTheMeanOfBothWays) {
 }
 
 // Friction of a rig: the wheel load is 100 N more on the way up, 100 N less on the way down.
-TEST(Measurement, OfTheWheelLoadIsComparedWithItsLoop) {
+TEST(Measurement, WheelLoadIsComparedAndItsHysteresisReported) {
     const auto& all = axle().comparison;
     const auto points = std::ssize(all.branch("parallel").run(compare::Leg::equilibrium).curve.a);
     std::string csv = "Test,Wheel Travel LH [mm],Wheel Load LH [N],Wheel Load RH [kN]\n";
@@ -256,7 +256,7 @@ TEST(Measurement, OfTheWheelLoadIsComparedWithItsLoop) {
 }
 
 // Sign, unit and definition of a column that does not fit.
-TEST(Measurement, ThatDoesNotFitIsTriedBySignsUnitsAndDefinitions) {
+TEST(Measurement, WrongSignUnitOrDefinitionOfAColumnIsNamed) {
     static const Solved rigid(support::scene("double_wishbone_rigid"), 10, "series");
     const auto& defined = rigid.defined;
     const auto d = static_cast<std::size_t>(find_channel(defined.channels, "caster@wheel_plane"));
@@ -279,7 +279,7 @@ TEST(Measurement, ThatDoesNotFitIsTriedBySignsUnitsAndDefinitions) {
 
 // A model that is 10 % off still shows which sign, unit or zero of the file is wrong; and nothing is
 // said where only the model is off.
-TEST(Measurement, OfAModelThatIsOffIsTriedBySignsUnitsAndOffsets) {
+TEST(Measurement, WrongSignUnitOrOffsetIsNamedForAnInexactModel) {
     const auto& all = axle().comparison;
     const auto findings = [&](const char* branch, double place, double toe, double offset) {
         std::string csv = "branch,parameter_mm,left.toe_deg,right.toe_deg,left.camber_deg\n";
@@ -309,7 +309,7 @@ TEST(Measurement, OfAModelThatIsOffIsTriedBySignsUnitsAndOffsets) {
 }
 
 // Each test has its own gradient, in the unit of what it goes over.
-TEST(Measurement, HasAGradientForEachTest) {
+TEST(Measurement, EachTestHasItsGradient) {
     const json m = axle().measured(
         "branch,parameter_mm,load_N,left.toe_deg\nparallel,-20,,0.2\nparallel,0,,0.1\n"
         "parallel,20,,0\nlateral,,-1000,0.3\nlateral,,0,0.1\nlateral,,1000,-0.1\n");
@@ -331,7 +331,7 @@ TEST(Measurement, HasAGradientForEachTest) {
 }
 
 // What is asked for is read, the rest is counted.
-TEST(Measurement, OfOtherBranchesThanRequestedIsLeftOutByNameAndNumber) {
+TEST(Measurement, RowsOfUnrequestedBranchesAreCountedByName) {
     const std::string csv =
         "Test,Wheel Travel LH [mm],Lateral Force [kN],Toe LH [deg]\nBounce,10,,0.1\n"
         "Bounce,20,,0.2\nLateral opposed,0,1,0.1\nBounce,500,,1\nBounce,30,,\n";
@@ -344,7 +344,7 @@ TEST(Measurement, OfOtherBranchesThanRequestedIsLeftOutByNameAndNumber) {
 }
 
 // Every position or angle can be measured.
-TEST(Measurement, MayBeOfAnyOutputThatIsAFunctionOfTheState) {
+TEST(Measurement, EveryOutputOfTheStateCanBeMeasured) {
     const auto& all = solved().comparison.channels;
     const auto& curve = solved().comparison.branches[0].runs[1].curve;
     const auto value = [&](const char* name, std::size_t k) {
@@ -364,7 +364,7 @@ TEST(Measurement, MayBeOfAnyOutputThatIsAFunctionOfTheState) {
     }
 }
 
-TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
+TEST(Measurement, InvalidFileIsRejectedWithItsLine) {
     struct Case {
         const char *csv, *why;
     };
@@ -387,7 +387,7 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
 }
 
 // What a rig writes besides is listed, with the nearest name, and the rest is compared.
-TEST(Measurement, ColumnsThatNobodyKnowsAreLeftOutAndListed) {
+TEST(Measurement, UnknownColumnsAreListedWithTheNearestName) {
     const json plain = measured("travel_mm,toe_deg\n50,-1.8\n");
     json m = measured("time [s],travel_mm,toe_deg,tow_deg,toe_kg\n0,50,-1.8,x,\n");
     EXPECT_EQ(m["left_out"].size(), 3u) << m["left_out"];
@@ -400,7 +400,7 @@ TEST(Measurement, ColumnsThatNobodyKnowsAreLeftOutAndListed) {
 }
 
 // The map of `judge`: name, unit, sign, offset.
-TEST(Measurement, AMapSaysNameUnitSignAndOffsetAndAnglesMayBeArcMinutes) {
+TEST(Measurement, MapGivesNameUnitSignAndOffsetAlsoInArcMinutes) {
     const json plain =
         measured("travel_mm,toe_deg,camber_change_deg\n-50,1.5,0.25\n50,-1.75,-0.5\n");
     const ColumnMap map = read_column_map(R"(columns:
@@ -440,7 +440,7 @@ branches: {Up: jounce, Down: rebound}
 }
 
 // At 40 mm toe was measured and camber was not: its curve has no point there.
-TEST(Measurement, AMissingValueIsNotDrawn) {
+TEST(Measurement, MissingValueIsNotDrawn) {
     const SceneAnalyses scene = sample_with(
         solved().typed("branch,travel_mm,toe_deg,camber_deg\njounce,20,-0.7,0.1\njounce,40,-1.4,\n"
                        "jounce,60,-2,0.3\n"));
@@ -452,14 +452,14 @@ TEST(Measurement, AMissingValueIsNotDrawn) {
     EXPECT_EQ(camber->rows[2], (std::vector{60.0, 0.3}));
 }
 
-TEST(Measurement, AByteOrderMarkIsNoPartOfTheFirstName) {
+TEST(Measurement, ByteOrderMarkIsSkipped) {
     EXPECT_EQ(measured("\xEF\xBB\xBFtravel_mm,toe_deg\r\n50,-1.8\r\n").dump(),
               measured("travel_mm,toe_deg\n50,-1.8\n").dump());
     EXPECT_EQ(refusal("\xFF\xFEt"), "kc.csv: is UTF-16; save it as CSV in UTF-8");
 }
 
 // A point of one branch is not compared, drawn or tabulated on another.
-TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
+TEST(Measurement, PointsAreUsedOnlyOnTheirBranch) {
     // Assigned to rebound but in the range of jounce: no comparison.
     const json misplaced = measured("branch,travel_mm,toe_deg\nrebound,50,-1.8\n");
     EXPECT_TRUE(misplaced["readings"][0].empty());
@@ -529,7 +529,7 @@ ColumnMap cases(std::vector<std::pair<std::string, std::string>> names) {
 }
 
 // Newtons do not place a point on a branch in millimetres.
-TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
+TEST(Measurement, ParameterOfAnotherUnitIsRejected) {
     for (const char* csv : {"load_N,toe_deg\n100,1\n", "branch,load_N,toe_deg\ntravel,100,1\n"})
         EXPECT_EQ(rig().refusal(csv),
                   "kc.csv:2: load_N: 'N' is not a unit of the parameter of branch 'travel'; "
@@ -537,7 +537,7 @@ TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
     EXPECT_EQ(rig().refusal("branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n"), "read");
 }
 
-TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
+TEST(Measurement, MapAssignsLoadCasesToBranchesWithTheirDrives) {
     const ColumnMap map = cases({{"Bounce", "travel"}, {"Ride load", "load"}});
     const Measured rig_typed = rig().typed(
         "case,parameter_mm,load_N,toe_deg\nBounce,-20,,0.1\nBounce,20,,-0.2\nRide "
@@ -579,7 +579,7 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
 
 // A rig's file has a travel column for its ride case and a force for the others: a point is drawn
 // over the abscissa of its figure, and omitted without it.
-TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
+TEST(Measurement, PointsAreDrawnOverTheAbscissaOfTheFigure) {
     const SceneAnalyses scene = sample_with(
         rig().typed(
             "branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."

@@ -21,7 +21,7 @@ TEST(Numbers, HaveThreeToFourDigitsAndATrueMinus) {
     EXPECT_EQ(signed_number(0.5), "+0.500");
 }
 
-TEST(Numbers, WhatIsNotFiniteIsADash) {
+TEST(Numbers, NonFiniteNumberIsADash) {
     EXPECT_EQ(number(NAN), "–");
     EXPECT_EQ(number(-std::numeric_limits<double>::infinity()), "–");
     EXPECT_EQ(percent(NAN), "–");

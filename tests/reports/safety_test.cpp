@@ -22,7 +22,7 @@ Said in(const Folder& folder, const std::string& arguments) {
                          ELASTOCHECK_COMMAND + " " + arguments);
 }
 
-TEST(Harm, OutputNeverGoesOverTheSceneADeviceALinkOrABaseline) {
+TEST(Harm, OutputNeverOverwritesSceneDeviceLinkOrBaseline) {
     const Folder folder;
     folder.write("a.yaml", text_of(scene));
     folder.write("b.json", text_of(scenes + "/baselines/pinned_bar.json"));
@@ -58,7 +58,7 @@ TEST(Harm, OutputNeverGoesOverTheSceneADeviceALinkOrABaseline) {
     }
 }
 
-TEST(Harm, TheSummaryOfAWorkflowStepIsAddedTo) {
+TEST(Harm, SummaryIsAppendedToThatOfTheWorkflowStep) {
     const Folder folder;
     const std::string summary = folder.write("summary", "# another step\n"),
                       baselines = scenes + "/baselines";
@@ -69,7 +69,7 @@ TEST(Harm, TheSummaryOfAWorkflowStepIsAddedTo) {
         << text_of(summary);
 }
 
-TEST(Harm, ANameIsOneLineOfTextOrRefusedBeforeTheWork) {
+TEST(Harm, NameOfSeveralLinesIsRejectedBeforeTheWork) {
     const Folder folder;
     const std::string plain = text_of(scene);
     const auto named = [&](const std::string& name) {
@@ -93,7 +93,7 @@ TEST(Harm, ANameIsOneLineOfTextOrRefusedBeforeTheWork) {
               "Größe, 轮");
 }
 
-TEST(Harm, FileNamesReachNoTerminalRawAndNoAnnotation) {
+TEST(Harm, ControlCharactersInFileNamesAreEscaped) {
     const Folder folder;
     for (const std::string name :
          {"a\n::error::x.yaml", "a\x1b[2J.yaml", "a\u009b2J.yaml", "a\u202e.yaml", "a\xff.yaml"}) {
@@ -117,7 +117,7 @@ TEST(Harm, FileNamesReachNoTerminalRawAndNoAnnotation) {
     expect_parts("\n" + said.out + said.err, {}, {"\n::error"});
 }
 
-TEST(Harm, AWayThroughAFolderWhoseNameIsNoTextStandsInNoBaseline) {
+TEST(Harm, PathWithAnUnprintableFolderIsNotStoredInABaseline) {
     const Folder folder;
     for (const std::string name : {"a\xff", "a\nb", "a\u202e"}) {
         fs::create_directory(folder.path / name);
@@ -134,7 +134,7 @@ TEST(Harm, AWayThroughAFolderWhoseNameIsNoTextStandsInNoBaseline) {
     }
 }
 
-TEST(Harm, ANewlineInABaselineInjectsNoAnnotation) {
+TEST(Harm, NewlineInABaselineMakesNoAnnotation) {
     const Folder folder;
     const fs::path accepted = scenes + "/baselines/pinned_bar.json",
                    curves = scenes + "/baselines/curves/pinned_bar.json";

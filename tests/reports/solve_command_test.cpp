@@ -535,7 +535,7 @@ TEST(SolveCommand, RatesAreOfTheSamePointsAndChannels) {
     expect_says(command + " --channels '*force_x'", 2);
 }
 
-TEST(SolveCommand, ReaderThatHasReadEnoughEndsItQuietly) {
+TEST(SolveCommand, ClosedOutputPipeEndsItWithoutAMessage) {
     const std::string command =
         std::string(ELASTOCHECK_COMMAND) + " solve " + scenes + "/pinned_bar.yaml --steps 20000";
     // Exit code of a shell for a filter ended by SIGPIPE, also where the signal is ignored.

@@ -110,7 +110,7 @@ constexpr double known =
     1e-4;  // [mm] what Cardan angles may make of a suspension that is written with rotation vectors
 
 // Of all scenes that it has the elements for, in few steps; that the references agree is another test's.
-TEST(Simbody, StandsWhereTheReferencesStandWithItsLawOfABushing) {
+TEST(Simbody, StatesEqualTheReferencesWithCardanAngleBushings) {
     int scenes_compared = 0, branches_compared = 0;
     double largest = 0;
     for (const auto& name : support::scene_names()) try {
@@ -154,7 +154,7 @@ TEST_P(Suspension, IsTheSameByBothReferencesAsWrittenButForTheKnownDifference) {
     fmt::print("{}, as written: at most {:.1e} mm\n", GetParam(), largest);
 }
 
-TEST(Simbody, AMicrometreOfATieRodIsSeen) {
+TEST(Simbody, TieRodLongerByAMicrometreIsDetected) {
     const Model model = compile(support::scene("mcpherson"));
     auto way = compare::sides_of(model, model.branches[0], 2).front();
     const auto points = points_of(support::scene("mcpherson"), model);
@@ -165,7 +165,7 @@ TEST(Simbody, AMicrometreOfATieRodIsSeen) {
     EXPECT_GT(distance(points, by_simbody(way), reference), known);
 }
 
-TEST(Simbody, WhatALoadPushesAndNothingResistsDoesNotSettle) {
+TEST(Simbody, LoadOnAnUnresistedMotionDoesNotConverge) {
     Scene scene = support::scene("two_spring_arch");
     scene.elastics.clear();
     const Model model = compile(scene);
@@ -177,7 +177,7 @@ TEST(Simbody, WhatALoadPushesAndNothingResistsDoesNotSettle) {
 }
 
 // A driven angle has the same sine half a turn on, where long steps would lead.
-TEST(Simbody, ACrankTurnsAsFarAsItIsDrivenWhateverTheSteps) {
+TEST(Simbody, DrivenCrankTurnsByItsAngleInAnyNumberOfSteps) {
     const Scene scene = support::scene("slider_crank");
     const Model model = compile(scene);
     for (const int steps : {1, 2, 3, 4})
@@ -202,7 +202,7 @@ Bushing& bushing(Scene& scene) {
     throw std::logic_error("no bushing");
 }
 
-TEST(Simbody, WhatItHasNothingForIsRefusedByName) {
+TEST(Simbody, UnsupportedElementIsRejectedByName) {
     const Scene scene = support::scene("single_bushing");
     const std::string name = "bushing '" + scene.elastics[0].name + "': Simbody's has no ";
     Scene other = scene;
@@ -242,7 +242,7 @@ TEST(Simbody, WhatItHasNothingForIsRefusedByName) {
                                  "': its curve has ends, and a load step may lead beyond them");
 }
 
-TEST(Simbody, TheSameRatesAxisByAxisAreTheSameBushing) {
+TEST(Simbody, PerAxisLawOfTheSameRatesGivesTheSameState) {
     Scene scene = support::scene("single_bushing");
     const auto rates = std::get<LinearStiffness>(bushing(scene).law).K.diagonal().eval();
     const auto at_end = [](const Scene& told) {
@@ -264,7 +264,7 @@ TEST(Simbody, TheSameRatesAxisByAxisAreTheSameBushing) {
 const std::string candidate = SIMBODY_CANDIDATE;
 const std::string scenes = ELASTOCHECK_SCENES;
 
-TEST(SimbodyCandidate, TellsEveryBodyAtEveryStepFromEndToEnd) {
+TEST(SimbodyCandidate, WritesEveryBodyAtEveryStepOfTheBranches) {
     const support::Folder folder;
     const std::string file = (folder.path / "states.jsonl").string();
     const auto said = says(candidate + " " + scenes + "/chrono_mcpherson_travel.yaml 4 " + file +
@@ -295,7 +295,7 @@ TEST(SimbodyCandidate, TellsEveryBodyAtEveryStepFromEndToEnd) {
 
 // Curves of another engine on a scene with a hardpoint 2 mm from its place and a coil of another
 // rate. What the laws of the bushings differ by (`known`) is a thousandth of what is found.
-TEST(SimbodyCandidate, AFitToItsCurvesFindsWhatWasChanged) {
+TEST(SimbodyCandidate, FitToItsCurvesFindsTheChangedNumbers) {
     const std::string file = scenes + "/mcpherson.yaml";
     const std::vector<std::string> paths{"points.tie_rod_inner.z", "springs.K1_coil.rate"};
     const auto settings = [&](const Eigen::VectorXd& p) {
@@ -359,7 +359,7 @@ TEST(SimbodyCandidate, AFitToItsCurvesFindsWhatWasChanged) {
                1e3 * std::abs(found.p[0] - truth[0]), 100 * std::abs(found.p[1] / truth[1] - 1));
 }
 
-TEST(SimbodyCandidate, SaysWhatIsWrongAndWritesNothing) {
+TEST(SimbodyCandidate, BadInputIsReportedAndWritesNothing) {
     const support::Folder folder;
     const std::string file = (folder.path / "states.jsonl").string(),
                       mcpherson = scenes + "/mcpherson.yaml";

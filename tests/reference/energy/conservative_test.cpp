@@ -77,7 +77,7 @@ TEST(Conservative, AFormulationWithoutEnergyIsNamed) {
     }
 }
 
-TEST(Conservative, AFormulationOfNothingDoesNotMatter) {
+TEST(Conservative, FormulationOfABushingWithoutForceDoesNotMatter) {
     Model model = compile(scene_named("single_bushing"));
     Bushing nothing{Marker{0}, Marker{ground}, PerAxis{}};
     nothing.formulation.conjugate = false;

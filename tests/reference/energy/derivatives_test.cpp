@@ -417,7 +417,7 @@ double energy(const Model& model, const std::vector<Pose>& poses) {
     return U;
 }
 
-TEST(Potential, IsTheLawsOfTheElements) {
+TEST(Potential, PotentialEqualsTheEnergyOfTheElementLaws) {
     Random random;
     double worst = 0;
     for (int repeat = 0; repeat < 20; ++repeat) {

@@ -54,7 +54,7 @@ Equilibrium bent(const Model& model, double angle) {
     return state;
 }
 
-TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
+TEST(LargeScenes, WorkIsPredictedWithinAFactorOfFour) {
     const auto is_near = [](double foreseen, double counted) {
         return std::isfinite(foreseen) && foreseen <= 4 * counted && counted <= 4 * foreseen;
     };
@@ -80,7 +80,7 @@ TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
     }
 }
 
-TEST(LargeScenes, DenseWorkGrowsWithTheCubeSparseWithTheBodies) {
+TEST(LargeScenes, DenseWorkGrowsWithTheCubeAndSparseWorkLinearly) {
     for (const bool hinged : {false, true}) {
         const Model small = compile(chain(40, hinged)), twice = compile(chain(80, hinged));
         EXPECT_NEAR(dense_cost(twice, 6).operations() / dense_cost(small, 6).operations(), 8, 1e-9);
@@ -91,7 +91,7 @@ TEST(LargeScenes, DenseWorkGrowsWithTheCubeSparseWithTheBodies) {
     EXPECT_GE(joints.per_evaluation, 2 * bushings.per_evaluation);  // 5 rows for 6 coordinates
 }
 
-TEST(LargeScenes, AreNotAskedAndSayHowMuchItWouldTake) {
+TEST(LargeScenes, TooLargeSceneIsNotSolvedAndItsWorkIsReported) {
     for (const bool hinged : {false, true}) {
         const auto path = solve(chain(1000, hinged), 0, std::vector<double>(1000, 50));
         EXPECT_EQ(path.outcome, Outcome::too_large);
@@ -132,7 +132,7 @@ double height_of_the_tip(int n, double P) {
     return shot(low).second;
 }
 
-TEST(LargeScenes, AChainOfHingesBendsAsItsEquationsSay) {
+TEST(LargeScenes, ChainOfHingesEqualsItsDiscreteSolution) {
     for (const int n : {16, 300}) {
         const Scene scene = chain(n, true);
         const auto path = solve(scene, 0, every_point(scene.branches[0]));
@@ -147,7 +147,7 @@ TEST(LargeScenes, AChainOfHingesBendsAsItsEquationsSay) {
     }
 }
 
-TEST(LargeScenes, TheSparseMinimumIsStationaryInTheDenseConditions) {
+TEST(LargeScenes, SparseMinimumIsStationaryInTheDenseConditions) {
     for (const bool hinged : {false, true}) {
         const Scene scene = chain(20, hinged);
         const Model model = compile(scene);
@@ -168,7 +168,7 @@ TEST(LargeScenes, TheSparseMinimumIsStationaryInTheDenseConditions) {
     }
 }
 
-TEST(LargeScenes, TheSoftestModesAreThoseOfTheDenseHessian) {
+TEST(LargeScenes, SoftestModesEqualThoseOfTheDenseHessian) {
     const Model model = compile(chain(20, true));
     const Scales scales = lengths_of(model, course_of(model, model.branches[0]));
     const auto centre = bent(model, 0.05).poses;
@@ -192,7 +192,7 @@ TEST(LargeScenes, TheSoftestModesAreThoseOfTheDenseHessian) {
 }
 
 // The energy leg solves all built-in suspensions with all values of their branches.
-TEST(LargeScenes, NoSuspensionIsOne) {
+TEST(LargeScenes, BuiltInSuspensionsAreNotTooLarge) {
     for (const char* name : {"mcpherson", "solid_axle_leaf", "front_axle", "twist_beam"}) {
         const Model all = compile(scene_named(name));
         for (const auto& branch : all.branches)
@@ -204,7 +204,7 @@ TEST(LargeScenes, NoSuspensionIsOne) {
 }
 
 // Sparse and dense QR give the same projected gradient, also with redundant rows.
-TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
+TEST(LargeScenes, SparseProjectedGradientEqualsTheDenseOne) {
     Random random;
     for (const bool doubled : {false, true}) {
         Scene scene = chain(12, true);
@@ -233,7 +233,7 @@ TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
 
 // At the equilibrium's own poses the residual is zero; moved by a micrometre, bushings in a chain
 // of a thousand links exert forces, and hinges open.
-TEST(LargeScenes, AMicrometreIsSeenInAThousandLinks) {
+TEST(LargeScenes, MicrometreInAChainOfThousandLinksIsDetected) {
     for (const bool hinged : {false, true}) {
         const Model model = compile(chain(1000, hinged));
         Equilibrium state = bent(model, 0);
@@ -251,7 +251,7 @@ TEST(LargeScenes, AMicrometreIsSeenInAThousandLinks) {
 
 // With all hinges closed only moments remain: the part of the springs' moments that the force does
 // not balance.
-TEST(LargeScenes, AnUnbalancedChainOfHingesIsSeen) {
+TEST(LargeScenes, UnbalancedChainOfHingesHasAMomentResidual) {
     const Model model = compile(chain(300, true));
     const Residuals left = residuals(model, model.branches[0], bent(model, 1e-3));
     EXPECT_LE(left.length, 1e-14);

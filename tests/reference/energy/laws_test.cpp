@@ -81,7 +81,7 @@ TEST(Curves, ChangesKeepTheirRelativeAccuracy) {
 }
 
 // Termination of the integration from knot to knot for every critical start and end.
-TEST(Curves, TheWalkEndsFromOnOverAndBeyondEveryKnot) {
+TEST(Curves, IntegrationAcrossKnotsTerminatesForAnyEnds) {
     Random random;
     const Curve curve = random.kinked_curve(5);
     std::vector<double> places{-inf, -3, 3, inf, NAN};
@@ -103,7 +103,7 @@ TEST(Curves, TheWalkEndsFromOnOverAndBeyondEveryKnot) {
     }
 }
 
-TEST(Laws, AxisByAxisIsTheDiagonalStiffness) {
+TEST(Laws, PerAxisLawEqualsTheDiagonalStiffness) {
     Random random;
     for (int repeat = 0; repeat < 100; ++repeat) {
         const Vector6 k = random.many(6).cwiseAbs(), x_c = random.many(6), delta = random.many(6);
@@ -123,7 +123,7 @@ TEST(Laws, AxisByAxisIsTheDiagonalStiffness) {
     }
 }
 
-TEST(Laws, OnlyWhatHasAForceSomewhereResists) {
+TEST(Laws, LawWithoutForceDoesNotResist) {
     const Curve nothing{{0.0, 1.0}, std::vector<std::array<double, 4>>(3)};
     PerAxis axes;
     axes.axis.fill(nothing);
