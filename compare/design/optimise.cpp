@@ -19,10 +19,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double none = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-constexpr int most_evaluations = 200;     // of one run of SLSQP
-constexpr int most_runs = 4;              // each from the best point before
+constexpr int max_evaluations = 200;      // of one run of SLSQP
+constexpr int max_runs = 4;               // each from the best point before
 constexpr int calls_at_one_point = 20;    // the step of SLSQP has vanished: it would loop for ever
 constexpr double min_step = 1e-12;        // of x
 constexpr double active_within = 1e-6;    // of c
@@ -38,11 +38,12 @@ struct Problem {
     int minimised = -1;
     std::vector<Bound> bands = {}, limits = {};  // bounds of the figures that move, of the numbers
 
-    VectorXd at = {}, p = {}, f = {};
+    VectorXd current = {}, p = {},
+             f = {};    // the last point x, its numbers p, and the figures there
     MatrixXd f_x = {};  // ∂f/∂x; empty until it is needed
 
-    VectorXd best = {};
-    double least_cost = none;
+    VectorXd best = {};  // x
+    double least_cost = unbounded;
 
     // of a run of SLSQP
     nlopt_opt run = nullptr;
@@ -53,12 +54,13 @@ struct Problem {
         return one.of_number ? range.high[one.which] - range.low[one.which] : scale[one.which];
     }
     double cost() const {
-        return minimised < 0 ? at.squaredNorm() / 2 : f[minimised] / scale[minimised];
+        return minimised < 0 ? current.squaredNorm() / 2 : f[minimised] / scale[minimised];
     }
     VectorXd cost_gradient() const {
-        if (minimised < 0) return at;
+        if (minimised < 0) return current;
         return f_x.row(minimised).transpose() / scale[minimised];
     }
+    // c of optimise.hpp, one entry per bound, and ∂c/∂x.
     VectorXd excess(const std::vector<Bound>& bounds) const {
         return VectorXd::NullaryExpr(std::ssize(bounds), [&](Index k) {
             const Bound& one = bounds[static_cast<std::size_t>(k)];
@@ -67,29 +69,29 @@ struct Problem {
         });
     }
     MatrixXd excess_gradient(const std::vector<Bound>& bounds) const {
-        MatrixXd all = MatrixXd::Zero(std::ssize(bounds), at.size());
-        for (Index k = 0; k < all.rows(); ++k) {
+        MatrixXd gradient = MatrixXd::Zero(std::ssize(bounds), current.size());
+        for (Index k = 0; k < gradient.rows(); ++k) {
             const Bound& one = bounds[static_cast<std::size_t>(k)];
             if (one.of_number)
-                all(k, one.which) = 1;
+                gradient(k, one.which) = 1;
             else
-                all.row(k) = f_x.row(one.which) / scale[one.which];
-            if (!one.upper) all.row(k) *= -1;
+                gradient.row(k) = f_x.row(one.which) / scale[one.which];
+            if (!one.upper) gradient.row(k) *= -1;
         }
-        return all;
+        return gradient;
     }
     bool has_value() const { return excess(bands).allFinite() && std::isfinite(cost()); }
     double largest_excess() const {
         const VectorXd c = excess(bands);
-        return c.size() == 0 ? -none : c.allFinite() ? c.maxCoeff() : none;
+        return c.size() == 0 ? -unbounded : c.allFinite() ? c.maxCoeff() : unbounded;
     }
 
     void move_to(const VectorXd& x) {
-        if (at.size() > 0 && at == x) {
+        if (current.size() > 0 && current == x) {
             if (++repeats >= calls_at_one_point && run) nlopt_force_stop(run);
             return;
         }
-        at = x, p = range.at(x), f = figures.value(p), f_x = {};
+        current = x, p = range.at(x), f = figures.value(p), f_x = {};
         repeats = 0;
         if (has_value() && largest_excess() <= within_bands && cost() < least_cost)
             best = x, least_cost = cost();
@@ -150,25 +152,26 @@ void run_slsqp(Problem& problem, VectorXd x) {
     if (m > 0)
         nlopt_add_inequality_mconstraint(run.get(), m, slsqp_excess, &problem, within.data());
     nlopt_set_xtol_abs1(run.get(), min_step);
-    nlopt_set_maxeval(run.get(), most_evaluations);
+    nlopt_set_maxeval(run.get(), max_evaluations);
     double cost = 0;
     nlopt_optimize(run.get(), x.data(), &cost);
     problem.run = nullptr;
     if (problem.failed) std::rethrow_exception(problem.failed);
 }
 
-// The bounds that hold at the evaluated point with their prices, and what they leave of ∇F.
-void set_conditions(Problem& problem, Search& found) {
+// The bounds that hold at the evaluated point, c ≥ -1e-6, with their prices, and the remainder of
+// the conditions, |∇F + Σ λ ∇c| with the λ ≥ 0 that make it least.
+void set_conditions(Problem& problem, Search& search) {
     problem.differentiate();
     const VectorXd F_x = problem.cost_gradient();
     MatrixXd A(F_x.size(), 0);  // ∇c
-    found.active.clear();
+    search.active.clear();
     for (const auto* bounds : {&problem.bands, &problem.limits}) {
         const VectorXd c = problem.excess(*bounds);
         const MatrixXd c_x = problem.excess_gradient(*bounds);
         for (Index k = 0; k < c.size(); ++k) {
             if (!(c[k] >= -active_within)) continue;
-            found.active.push_back((*bounds)[static_cast<std::size_t>(k)]);
+            search.active.push_back((*bounds)[static_cast<std::size_t>(k)]);
             A.conservativeResize(Eigen::NoChange, A.cols() + 1);
             A.rightCols(1) = c_x.row(k).transpose();
         }
@@ -177,20 +180,20 @@ void set_conditions(Problem& problem, Search& found) {
     const Minimum multipliers =
         minimise({[&](const VectorXd& lambda) -> VectorXd { return A * lambda + F_x; },
                   [&](const VectorXd&) { return A; },
-                  {zero, VectorXd::Constant(A.cols(), none)},
+                  {zero, VectorXd::Constant(A.cols(), unbounded)},
                   zero,
                   multiplier_pull},
                  zero);
-    const double left = multipliers.residual.norm(), size = F_x.norm();
-    found.converged = left <= optimal_within * size + least_residual;
-    found.optimality = size > 0 ? left / size : 0;
+    const double remainder = multipliers.residual.norm(), size = F_x.norm();
+    search.converged = remainder <= optimal_within * size + least_residual;
+    search.optimality = size > 0 ? remainder / size : 0;
     // dF per unit of the shown cost
     const double unit =
-        problem.minimised < 0 ? problem.at.norm() : 1 / problem.scale[problem.minimised];
-    for (std::size_t k = 0; k < found.active.size(); ++k)
-        if (Bound& one = found.active[k]; unit > 0)
+        problem.minimised < 0 ? problem.current.norm() : 1 / problem.scale[problem.minimised];
+    for (std::size_t k = 0; k < search.active.size(); ++k)
+        if (Bound& one = search.active[k]; unit > 0)
             one.price = multipliers.x[static_cast<Index>(k)] / problem.unit_of(one) / unit;
-    std::ranges::stable_sort(found.active, std::ranges::greater{},
+    std::ranges::stable_sort(search.active, std::ranges::greater{},
                              [&](const Bound& one) { return one.price * problem.unit_of(one); });
 }
 
@@ -203,30 +206,30 @@ bool is_better(const Search& one, const Search& other) {
 }
 
 Search search_from(Problem& problem, const Bands& bands, const VectorXd& start) {
-    Search found{.p = start, .excess = none, .cost = none};
-    problem.best = {}, problem.least_cost = none;
+    Search search{.p = start, .excess = unbounded, .cost = unbounded};
+    problem.best = {}, problem.least_cost = unbounded;
     const SearchRange& range = problem.range;
     problem.move_to(range.shares(start));
-    found.has_value = problem.has_value();
-    if (!found.has_value) return found;
-    found.nearest = solve_for(problem.figures, bands, range, start);
-    problem.move_to(range.shares(found.nearest.p));
-    found.met = problem.best.size() > 0;
-    if (found.met) {
+    search.has_value = problem.has_value();
+    if (!search.has_value) return search;
+    search.nearest = solve_for(problem.figures, bands, range, start);
+    problem.move_to(range.shares(search.nearest.p));
+    search.met = problem.best.size() > 0;
+    if (search.met) {
         problem.move_to(problem.best);
-        set_conditions(problem, found);
-        for (int run = 0; run < most_runs && !found.converged; ++run) {
+        set_conditions(problem, search);
+        for (int run = 0; run < max_runs && !search.converged; ++run) {
             run_slsqp(problem, problem.best);
             problem.move_to(problem.best);
-            set_conditions(problem, found);
+            set_conditions(problem, search);
         }
     } else {
-        found.converged = found.nearest.converged;
+        search.converged = search.nearest.converged;
     }
-    found.excess = problem.largest_excess();
-    found.cost = problem.minimised < 0 ? problem.at.norm() : problem.f[problem.minimised];
-    found.p = problem.p;
-    return found;
+    search.excess = problem.largest_excess();
+    search.cost = problem.minimised < 0 ? problem.current.norm() : problem.f[problem.minimised];
+    search.p = problem.p;
+    return search;
 }
 
 // The goals that do not move, the scales, and the bounds of those that move.
@@ -261,14 +264,14 @@ Problem problem_of(const Figures& figures, const Goals& goals, const SearchRange
 }  // namespace
 
 std::vector<VectorXd> starts_of(const SearchRange& range, int count) {
-    std::vector<VectorXd> all{range.start};
+    std::vector<VectorXd> starts{range.start};
     std::mt19937_64 random(1);
-    while (static_cast<int>(all.size()) < count)
-        all.push_back(VectorXd::NullaryExpr(range.start.size(), [&](Index i) {
+    while (static_cast<int>(starts.size()) < count)
+        starts.push_back(VectorXd::NullaryExpr(range.start.size(), [&](Index i) {
             const double share = static_cast<double>(random() >> 11) * 0x1p-53;
             return range.low[i] + share * (range.high[i] - range.low[i]);
         }));
-    return all;
+    return starts;
 }
 
 Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& range,
@@ -286,8 +289,8 @@ Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& 
                           },
                           figures.step};
     Problem problem = problem_of(counted, goals, range, optimum);
-    Bands bands{VectorXd::Constant(goals.low.size(), -none),
-                VectorXd::Constant(goals.low.size(), none), optimum.scale};
+    Bands bands{VectorXd::Constant(goals.low.size(), -unbounded),
+                VectorXd::Constant(goals.low.size(), unbounded), optimum.scale};
     for (const Bound& one : problem.bands)
         (one.upper ? bands.high : bands.low)[one.which] = one.bound;
     if (goals.minimised >= 0 &&

@@ -25,7 +25,7 @@ constexpr const char* applied_loads = "applied";
 // A joint or element on one of its bodies, several joints together, or the loads on a body.
 struct Source {
     enum class Kind { joint, sum, element, applied } kind = Kind::joint;
-    std::vector<int> of = {};  // joints, or the element
+    std::vector<int> parts = {};  // positions in the model: of the joints, or of the element
     BodyId body = ground;
     Point at = {};           // on the body
     bool is_second = false;  // the body is the second of the joint or element
@@ -39,10 +39,10 @@ std::string body_name(const Model& model, BodyId body) {
     return body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
 }
 
-void add(const Model& model, Source source, std::string connection, Sources& all) {
-    const Vector3d at = position(design_state(model).poses, source.at);
-    all.pickups.push_back({body_name(model, source.body), std::move(connection), at});
-    all.list.push_back(std::move(source));
+void add(const Model& model, Source source, std::string connection, Sources& sources) {
+    const Vector3d drawn_point = position(design_state(model).poses, source.at);
+    sources.pickups.push_back({body_name(model, source.body), std::move(connection), drawn_point});
+    sources.list.push_back(std::move(source));
 }
 
 // The point of a joint on one of its bodies: that of its first constraint, which of a link is its end
@@ -71,7 +71,7 @@ std::vector<bool> active_joints(const Model& model) {
 }
 
 Sources sources_of(const Model& model) {
-    Sources all;
+    Sources sources;
     const auto active = active_joints(model);
     for (int k = 0; k < static_cast<int>(model.joints.size()); ++k) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(k)];
@@ -79,7 +79,7 @@ Sources sources_of(const Model& model) {
             const BodyId body = is_second ? joint.j : joint.i;
             if (active[static_cast<std::size_t>(k)])
                 add(model, {Source::Kind::joint, {k}, body, on_body(model, k, body), is_second},
-                    joint.name, all);
+                    joint.name, sources);
         }
     }
     for (const Channel& sum : sums(model)) {
@@ -88,7 +88,7 @@ Sources sources_of(const Model& model) {
         add(model,
             {Source::Kind::sum, total.joints, total.on,
              on_body(model, total.joints.front(), total.on)},
-            element_of(sum), all);
+            element_of(sum), sources);
     }
     for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k) {
         const Elastic& elastic = model.elastics[static_cast<std::size_t>(k)];
@@ -99,12 +99,13 @@ Sources sources_of(const Model& model) {
                     return is_second ? Point{e.j.body, e.j.s_local} : Point{e.i.body, e.i.s_local};
                 },
                 elastic.kind);
-            add(model, {Source::Kind::element, {k}, end.body, end, is_second}, elastic.name, all);
+            add(model, {Source::Kind::element, {k}, end.body, end, is_second}, elastic.name,
+                sources);
         }
     }
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-        add(model, {Source::Kind::applied, {}, b, {b, Vector3d::Zero()}}, applied_loads, all);
-    return all;
+        add(model, {Source::Kind::applied, {}, b, {b, Vector3d::Zero()}}, applied_loads, sources);
+    return sources;
 }
 
 // A state, and what the formulas of the recursion make of it.
@@ -124,41 +125,44 @@ Vector6 stacked(const Vector3d& force, const Vector3d& moment) {
 }
 
 // Wrench of a joint on its first or second body about a point.
-Vector6 of_joint(const Solved& at, int joint, bool is_second, const Vector3d& about) {
-    const Wrench& on_i = at.state.reactions[static_cast<std::size_t>(joint)];
+Vector6 of_joint(const Solved& solved, int joint, bool is_second, const Vector3d& about) {
+    const Wrench& on_i = solved.state.reactions[static_cast<std::size_t>(joint)];
     const Vector3d lever =
-        position(at.state.poses, at.model.joints[static_cast<std::size_t>(joint)].at) - about;
+        position(solved.state.poses, solved.model.joints[static_cast<std::size_t>(joint)].at) -
+        about;
     return (is_second ? -1. : 1.) * stacked(on_i.force, on_i.moment + lever.cross(on_i.force));
 }
 
 // An element pulls its body j back by (F, M); on body i acts the opposite.
-Vector6 of_element(const Solved& at, const Source& source, const Vector3d& about) {
-    const auto k = static_cast<std::size_t>(source.of.front());
-    const auto pull =
-        recursive::element_force<double>(at.side.model.elastics[k].kind, at.inputs.rest[k], at.q);
-    const Vector3d lever = pose(at.state.poses, source.body).r +
+Vector6 of_element(const Solved& solved, const Source& source, const Vector3d& about) {
+    const auto k = static_cast<std::size_t>(source.parts.front());
+    const auto pull = recursive::element_force<double>(solved.side.model.elastics[k].kind,
+                                                       solved.inputs.rest[k], solved.q);
+    const Vector3d lever = pose(solved.state.poses, source.body).r +
                            (source.is_second ? pull.lever_j : pull.lever_i) - about;
     return (source.is_second ? -1. : 1.) * stacked(pull.F, pull.M + lever.cross(pull.F));
 }
 
-Vector6 wrench_of(const Solved& at, const Source& source) {
-    const Vector3d about = position(at.state.poses, source.at);
+Vector6 wrench_of(const Solved& solved, const Source& source) {
+    const Vector3d about = position(solved.state.poses, source.at);
     switch (source.kind) {
-        case Source::Kind::joint: return of_joint(at, source.of.front(), source.is_second, about);
-        case Source::Kind::element: return of_element(at, source, about);
-        case Source::Kind::applied: return at.external.segment<6>(6 * source.body);
+        case Source::Kind::joint:
+            return of_joint(solved, source.parts.front(), source.is_second, about);
+        case Source::Kind::element: return of_element(solved, source, about);
+        case Source::Kind::applied: return solved.external.segment<6>(6 * source.body);
         case Source::Kind::sum: break;
     }
     Vector6 sum = Vector6::Zero();
-    for (const int joint : source.of) {
-        const ModelJoint& j = at.model.joints[static_cast<std::size_t>(joint)];
+    for (const int joint : source.parts) {
+        const ModelJoint& j = solved.model.joints[static_cast<std::size_t>(joint)];
         if (j.i == source.body || j.j == source.body)
-            sum += of_joint(at, joint, j.j == source.body, about);
+            sum += of_joint(solved, joint, j.j == source.body, about);
     }
     return sum;
 }
 
-// Infinite where redundant joints share a component of a joint in a way that no load determines.
+// Infinite for the components of a joint's wrench that redundant joints share in a way that no load
+// determines; else zero.
 Vector6 undetermined(const Model& model, const BranchSide& side, const Source& source,
                      const Equilibrium& state, Analyses& analyses) {
     Vector6 mask = Vector6::Zero();
@@ -167,7 +171,7 @@ Vector6 undetermined(const Model& model, const BranchSide& side, const Source& s
     for (int c = 0; c < 6; ++c)
         six.push_back({.name = "",
                        .unit = c < 3 ? Unit::newton : Unit::newton_metre,
-                       .reads = Reaction{source.of.front(), c}});
+                       .reads = Reaction{source.parts.front(), c}});
     const auto values = evaluate(model, side, six, state, analyses);
     for (int c = 0; c < 6; ++c)
         if (values[static_cast<std::size_t>(c)] == undefined) mask[c] = undefined;
@@ -179,12 +183,12 @@ Vector6 turned(const Eigen::Quaterniond& to_body, const Vector6& w) {
     return stacked(to_body * w.head<3>(), to_body * w.tail<3>());
 }
 
-// The largest remainder of the balance of a body, moments about its origin, as a share of the largest
-// force on any body and moment, lengths of a metre.
+// The largest remainder |Σ F| or |Σ ((p - r_b) × F + M)| of a body, divided by the largest of the
+// forces [N] and moments [N·m, about the origin r_b] that act on any body.
 double imbalance_of(const Equilibrium& state, const std::vector<Source>& sources,
                     const std::vector<Vector6>& wrenches) {
     std::vector<Vector6> sums(state.poses.size(), Vector6::Zero());
-    double largest = 0, left = 0;
+    double largest = 0, remainder = 0;
     for (std::size_t k = 0; k < sources.size(); ++k) {
         if (sources[k].body == ground || sources[k].kind == Source::Kind::sum) continue;
         const auto b = static_cast<std::size_t>(sources[k].body);
@@ -195,8 +199,8 @@ double imbalance_of(const Equilibrium& state, const std::vector<Source>& sources
         largest = std::max({largest, w.head<3>().norm(), w.tail<3>().norm()});
     }
     for (const Vector6& sum : sums)
-        left = worse(left, std::max(sum.head<3>().norm(), sum.tail<3>().norm()));
-    return largest > 0 ? left / largest : left;
+        remainder = worse(remainder, std::max(sum.head<3>().norm(), sum.tail<3>().norm()));
+    return largest > 0 ? remainder / largest : remainder;
 }
 
 // The state at the end of the case by a leg, or why there is none.
@@ -214,29 +218,30 @@ std::optional<Equilibrium> end_state(const BranchSide& side, Leg leg, SolvedCase
 // Wrenches of all sources in a state.
 std::vector<Vector6> wrenches_in(const Model& model, const BranchSide& side,
                                  const Equilibrium& state, const std::vector<Source>& sources) {
-    Solved at{model,
-              side,
-              state,
-              recursive::state_of<double>(state.poses),
-              recursive::inputs_at<double>(side.model, side.branch, side.branch.to),
-              {}};
-    recursive::external_force<double>(side.model, side.branch, at.inputs, at.q, at.external);
+    Solved solved{model,
+                  side,
+                  state,
+                  recursive::state_of<double>(state.poses),
+                  recursive::inputs_at<double>(side.model, side.branch, side.branch.to),
+                  {}};
+    recursive::external_force<double>(side.model, side.branch, solved.inputs, solved.q,
+                                      solved.external);
     std::vector<Vector6> wrenches;
-    for (const Source& source : sources) wrenches.push_back(wrench_of(at, source));
+    for (const Source& source : sources) wrenches.push_back(wrench_of(solved, source));
     return wrenches;
 }
 
 // Largest difference of what the loads determine, as a share of the largest force or moment.
 double disagreement_of(const std::vector<PickupLoad>& ours, const std::vector<Vector6>& others) {
-    double off = 0, largest = 0;
+    double difference = 0, largest = 0;
     for (std::size_t k = 0; k < ours.size(); ++k)
         for (int c = 0; c < 6; ++c) {
             const double value = ours[k].in_ground_axes[c];
             if (value == undefined) continue;
-            off = worse(off, std::abs(value - others[k][c]));
+            difference = worse(difference, std::abs(value - others[k][c]));
             largest = std::max(largest, std::abs(value));
         }
-    return largest > 0 ? off / largest : off;
+    return largest > 0 ? difference / largest : difference;
 }
 
 SolvedCase solve_case(const Model& model, const Branch& branch, const Sources& sources) {
@@ -261,17 +266,18 @@ SolvedCase solve_case(const Model& model, const Branch& branch, const Sources& s
 }
 
 // Leaves out loads on bodies that no case loads.
-void drop_unloaded(PickupLoads& all) {
-    for (std::size_t k = all.pickups.size(); k-- > 0;) {
-        if (all.pickups[k].connection != applied_loads) continue;
-        if (std::ranges::any_of(all.cases, [&](const SolvedCase& one) {
-                return !one.loads.empty() && !one.loads[k].in_ground_axes.isZero(0);
+void drop_unloaded(PickupLoads& result) {
+    for (std::size_t k = result.pickups.size(); k-- > 0;) {
+        if (result.pickups[k].connection != applied_loads) continue;
+        if (std::ranges::any_of(result.cases, [&](const SolvedCase& solved_case) {
+                return !solved_case.loads.empty() && !solved_case.loads[k].in_ground_axes.isZero(0);
             }))
             continue;
-        const auto at = static_cast<std::ptrdiff_t>(k);
-        all.pickups.erase(all.pickups.begin() + at);
-        for (auto& one : all.cases)
-            if (!one.loads.empty()) one.loads.erase(one.loads.begin() + at);
+        const auto offset = static_cast<std::ptrdiff_t>(k);
+        result.pickups.erase(result.pickups.begin() + offset);
+        for (auto& solved_case : result.cases)
+            if (!solved_case.loads.empty())
+                solved_case.loads.erase(solved_case.loads.begin() + offset);
     }
 }
 
@@ -279,11 +285,11 @@ void drop_unloaded(PickupLoads& all) {
 
 PickupLoads pickup_loads(const Model& model) {
     Sources sources = sources_of(model);
-    PickupLoads all{.pickups = sources.pickups, .cases = {}};
+    PickupLoads result{.pickups = sources.pickups, .cases = {}};
     for (const Branch& branch : model.branches)
-        all.cases.push_back(solve_case(model, branch, sources));
-    drop_unloaded(all);
-    return all;
+        result.cases.push_back(solve_case(model, branch, sources));
+    drop_unloaded(result);
+    return result;
 }
 
 }  // namespace elastocheck::compare

@@ -26,7 +26,7 @@ using reference::certificate::ProofState;
 // Two states are the same within this share of the scene's size, or of a radian.
 constexpr double one_state = 1e-6;
 
-// Distance of a start along a soft motion, as a share of the scene's size, or of a radian.
+// Distances of the starts along a soft motion, as shares of the scene's size, or of a radian.
 constexpr std::array shares_along{0.03, 0.3, 1.0};
 
 // Larger models are not searched: `beside` has no motions for them, and the many starts take long.
@@ -117,17 +117,20 @@ bool is_other_way_round(const Model& model, const Equilibrium& state) {
     return false;
 }
 
-std::string meaning_of(const AllEquilibria& all, const FoundEquilibrium& one) {
-    const std::string away = fmt::format("{:.4g} mm away ('{}')", 1e3 * one.length, one.body);
-    if (one.on_branch) return one.stable ? "on the branch" : "on the branch, and unstable";
-    if (!all.begins)
+std::string meaning_of(const AllEquilibria& equilibria, const FoundEquilibrium& equilibrium) {
+    const std::string away =
+        fmt::format("{:.4g} mm away ('{}')", 1e3 * equilibrium.length, equilibrium.body);
+    if (equilibrium.on_branch)
+        return equilibrium.stable ? "on the branch" : "on the branch, and unstable";
+    if (!equilibria.begins)
         return fmt::format("{}, {} from the design position, from which no branch begins",
-                           one.stable ? "stable" : "unstable", away);
-    if (!one.stable) return fmt::format("unstable, {}: a motion past it does not return", away);
-    if (all.outcome == Outcome::converged)
+                           equilibrium.stable ? "stable" : "unstable", away);
+    if (!equilibrium.stable)
+        return fmt::format("unstable, {}: a motion past it does not return", away);
+    if (equilibria.outcome == Outcome::converged)
         return fmt::format("another stable equilibrium, {}: it can snap over to it", away);
     return fmt::format("stable, {} from the end of the branch: it may {} it there", away,
-                       all.outcome == Outcome::limit_point ? "snap over to" : "go over to");
+                       equilibria.outcome == Outcome::limit_point ? "snap over to" : "go over to");
 }
 
 }  // namespace
@@ -141,26 +144,26 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     namespace leg = reference::equilibrium;
     const auto sides = sides_of(model, branch);
     const BranchSide& side = side_at(sides, a);
-    AllEquilibria all{branch.name, unit_of(branch.unit), a};
+    AllEquilibria equilibria{branch.name, unit_of(branch.unit), a};
     const auto say = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what), nan);
     };
 
     if (model.bodies.size() > max_bodies) {
-        all.outcome = Outcome::too_large;
-        all.detail = fmt::format("{} bodies, equilibria are searched for up to {}",
-                                 model.bodies.size(), max_bodies);
-        return all;
+        equilibria.outcome = Outcome::too_large;
+        equilibria.detail = fmt::format("{} bodies, equilibria are searched for up to {}",
+                                        model.bodies.size(), max_bodies);
+        return equilibria;
     }
 
     // The equilibria on the branch as it is traced.
     say("the branch");
-    std::vector<double> values;
+    std::vector<double> parameters;
     constexpr int pieces = 8;
-    for (int k = 0; k <= pieces; ++k) values.push_back(a * k / pieces);
-    EquilibriumPath path = leg::solve(side.model, side.branch, values);
-    all.outcome = path.outcome;
-    all.detail = path.detail;
+    for (int k = 0; k <= pieces; ++k) parameters.push_back(a * k / pieces);
+    EquilibriumPath path = leg::solve(side.model, side.branch, parameters);
+    equilibria.outcome = path.outcome;
+    equilibria.detail = path.detail;
     const bool arrives = path.outcome == Outcome::converged;
     std::vector<Equilibrium> known;
 
@@ -172,24 +175,25 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     const std::vector<Pose> reached =
         path.points.empty() ? drawn(side.model) : path.points.back().poses;
     std::deque<std::vector<Pose>> starts;
-    const auto add = [&](const leg::FromStart& found, bool on_branch) {
-        if (found.outcome != Outcome::converged || is_known(found.state)) return;
-        known.push_back(found.state);
-        if (is_other_way_round(side.model, found.state)) {
-            ++all.other_way_round;
+    const auto add = [&](const leg::FromStart& attempt, bool on_branch) {
+        if (attempt.outcome != Outcome::converged || is_known(attempt.state)) return;
+        known.push_back(attempt.state);
+        if (is_other_way_round(side.model, attempt.state)) {
+            ++equilibria.other_way_round;
             return;
         }
-        bool over = false;
+        bool is_turned_over = false;
         for (std::size_t b = 0; b < reached.size(); ++b)
-            over = over || found.state.poses[b].p.angularDistance(reached[b].p) > options.turn;
-        if (over && !on_branch) {
-            ++all.turned_over;
+            is_turned_over = is_turned_over ||
+                             attempt.state.poses[b].p.angularDistance(reached[b].p) > options.turn;
+        if (is_turned_over && !on_branch) {
+            ++equilibria.turned_over;
             return;
         }
-        FoundEquilibrium one{found.state, {}, found.stable, found.stiffness, on_branch};
-        all.list.push_back(std::move(one));
+        FoundEquilibrium entry{attempt.state, {}, attempt.stable, attempt.stiffness, on_branch};
+        equilibria.list.push_back(std::move(entry));
         for (auto& start :
-             leg::beside(side.model, side.branch, found.state, options.motions, shares_along))
+             leg::beside(side.model, side.branch, attempt.state, options.motions, shares_along))
             starts.push_back(std::move(start));
         say(fmt::format("{} found", known.size()));
     };
@@ -208,29 +212,31 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         // The first attempt is without deflation, which lengthens steps, possibly across the knot
         // of a stop and away.
         for (int k = 0; k < tries; ++k) {
-            const std::size_t before = known.size();
-            ++all.starts;
+            const std::size_t known_before = known.size();
+            ++equilibria.starts;
             const std::span<const Equilibrium> away_from(known.data(), k == 0 ? 0 : known.size());
             add(leg::solve_from(side.model, side.branch, a, start, away_from), false);
-            if (k > 0 && known.size() == before) break;
+            if (k > 0 && known.size() == known_before) break;
         }
     }
 
-    all.begins = !path.points.empty();
-    all.proved = !all.list.empty();
-    for (auto& one : all.list) {
+    equilibria.begins = !path.points.empty();
+    equilibria.proved = !equilibria.list.empty();
+    for (auto& entry : equilibria.list) {
         say("proof");
-        one.proof = reference::certificate::certify(side.model, side.branch, one.state);
-        all.proved &= one.proof.state == ProofState::proved;
-        measure(side.model, reached, one);
-        one.meaning = meaning_of(all, one);
+        entry.proof = reference::certificate::certify(side.model, side.branch, entry.state);
+        equilibria.proved &= entry.proof.state == ProofState::proved;
+        measure(side.model, reached, entry);
+        entry.meaning = meaning_of(equilibria, entry);
     }
-    for (std::size_t i = 0; i < all.list.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) all.proved &= are_two(all.list[i], all.list[j]);
-    std::ranges::stable_sort(all.list, [](const auto& one, const auto& other) {
-        return std::pair(!one.on_branch, one.length) < std::pair(!other.on_branch, other.length);
+    for (std::size_t i = 0; i < equilibria.list.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            equilibria.proved &= are_two(equilibria.list[i], equilibria.list[j]);
+    std::ranges::stable_sort(equilibria.list, [](const auto& entry, const auto& other) {
+        return std::pair(!entry.on_branch, entry.length) <
+               std::pair(!other.on_branch, other.length);
     });
-    return all;
+    return equilibria;
 }
 
 }  // namespace elastocheck::compare

@@ -30,8 +30,8 @@ Accuracy plus(const Accuracy& a, const Accuracy& b) {
 // ---- One configuration
 
 std::vector<TradePoint> configurations(const Model& model, const TradeOptions& options) {
-    std::vector<TradePoint> all;
-    all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium)});
+    std::vector<TradePoint> list;
+    list.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium)});
     const double unknowns = coordinates(model) + constraint_rows(model);
     const double per_step = std::pow(unknowns, 3) * static_cast<double>(model.branches.size());
     for (const auto& method : recursive::methods) {
@@ -42,7 +42,7 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
         if (!recursive::has_steps(method)) {
             const bool series = std::holds_alternative<recursive::Series>(method.kind);
             for (int digits = 3; digits <= (series ? 12 : 9); ++digits)
-                all.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
+                list.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
             continue;
         }
         const auto affordable = [&](long steps) {
@@ -50,11 +50,11 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
                    static_cast<double>(steps) * per_step <= options.work_budget;
         };
         for (long steps = options.points; steps == options.points || affordable(steps); steps *= 2)
-            all.push_back({.method = label, .steps = static_cast<int>(steps)});
+            list.push_back({.method = label, .steps = static_cast<int>(steps)});
     }
-    all.push_back({.leg = Leg::energy, .method = name(Leg::energy)});
-    all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium), .again = true});
-    return all;
+    list.push_back({.leg = Leg::energy, .method = name(Leg::energy)});
+    list.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium), .again = true});
+    return list;
 }
 
 // Settings that record `points` equal increments of the parameter. Pre: `points` divides the steps.
@@ -173,46 +173,51 @@ double misfit(double error, double neighbour, double other, bool between) {
     return std::max(error / expected, expected / error);
 }
 
-void band(const Trade& trade, Recommendation& found) {
-    const auto k = static_cast<std::ptrdiff_t>(found.point);
-    const Accuracy &e = trade.points[found.point].error, &u = trade.uncertainty;
-    found.expected = e;
+// Sets the band of the error: [e / factor - u, e factor + u], the factor by misfit() at two
+// neighbouring rungs of the ladder (step counts or tolerances of one method), u the reference
+// uncertainty.
+void band(const Trade& trade, Recommendation& recommendation) {
+    const auto k = static_cast<std::ptrdiff_t>(recommendation.point);
+    const Accuracy &e = trade.points[recommendation.point].error, &u = trade.uncertainty;
+    recommendation.expected = e;
     const auto usable = [&](std::ptrdiff_t i) {
         return i >= 0 && i < static_cast<std::ptrdiff_t>(trade.points.size()) &&
-               same_ladder(trade.points[found.point], trade.points[static_cast<std::size_t>(i)]) &&
+               same_ladder(trade.points[recommendation.point],
+                           trade.points[static_cast<std::size_t>(i)]) &&
                trade.points[static_cast<std::size_t>(i)].ranked;
     };
     std::ptrdiff_t a = k, b = k;
-    if (!trade.points[found.point].ranked)
-        found.band_from = "below the reference uncertainty: only that is known";
+    if (!trade.points[recommendation.point].ranked)
+        recommendation.band_from = "below the reference uncertainty: only that is known";
     else if (usable(k - 1) && usable(k + 1)) {
         a = k - 1;
         b = k + 1;
-        found.band_from = "from the rungs on either side";
+        recommendation.band_from = "from the rungs on either side";
     } else if (usable(k + 1) && usable(k + 2)) {
         a = k + 1;
         b = k + 2;
-        found.band_from = "from the two finer rungs";
+        recommendation.band_from = "from the two finer rungs";
     } else if (usable(k - 1) && usable(k - 2)) {
         a = k - 1;
         b = k - 2;
-        found.band_from = "from the two coarser rungs";
+        recommendation.band_from = "from the two coarser rungs";
     } else
-        found.band_from =
+        recommendation.band_from =
             "no two neighbouring rungs above the reference uncertainty: only that is known";
-    const auto one = [&](double Accuracy::*unit) {
+    const auto set_band = [&](double Accuracy::*unit) {
         double factor = 1;
         if (a != b)
             factor = misfit(e.*unit, trade.points[static_cast<std::size_t>(a)].error.*unit,
                             trade.points[static_cast<std::size_t>(b)].error.*unit,
                             a == k - 1 && b == k + 1);
         if (!std::isfinite(factor)) factor = 1;
-        found.low.*unit = std::max(0.0, e.*unit / factor - u.*unit);
-        found.high.*unit = std::max(e.*unit * factor, found.confirmed.*unit) + u.*unit;
+        recommendation.low.*unit = std::max(0.0, e.*unit / factor - u.*unit);
+        recommendation.high.*unit =
+            std::max(e.*unit * factor, recommendation.confirmed.*unit) + u.*unit;
     };
-    one(&Accuracy::mm);
-    one(&Accuracy::deg);
-    one(&Accuracy::share);
+    set_band(&Accuracy::mm);
+    set_band(&Accuracy::deg);
+    set_band(&Accuracy::share);
 }
 
 // Runs the configuration again at output points that were not used for its selection: finer ones,
@@ -241,8 +246,8 @@ ConfirmingRun confirm(const Solves& solves, const std::vector<std::vector<double
         auto sides = sides_of(model, shorter, solves.base);
         for (auto& side : sides) side.branch.steps *= finer;
         Leg leg = Leg::equilibrium;
-        const PathCurve found = solve_branch(model, channels, shorter, sides,
-                                             settings_of(point, finer * solves.base)),
+        const PathCurve configuration = solve_branch(model, channels, shorter, sides,
+                                                     settings_of(point, finer * solves.base)),
                         truth = point.leg == Leg::equilibrium
                                     ? second_reference(model, channels, shorter, sides, leg)
                                     : solve_branch(model, channels, shorter, sides, {.leg = leg});
@@ -252,27 +257,27 @@ ConfirmingRun confirm(const Solves& solves, const std::vector<std::vector<double
                        : fmt::format("{}: {}: {}: {}", shorter.name, which, name(path.outcome),
                                      path.detail);
         };
-        ConfirmingRun one{distance(channels, truth.curve, found.curve, extents[b]), 0,
-                          failure(truth, fmt::format("{} leg", name(leg))),
-                          failure(found, describe(point))};
+        ConfirmingRun confirming{distance(channels, truth.curve, configuration.curve, extents[b]),
+                                 0, failure(truth, fmt::format("{} leg", name(leg))),
+                                 failure(configuration, describe(point))};
         for (std::size_t c = 0; c < channels.size(); ++c)
             if (channels[c].main || (!is_motion(channels[c]) && std::isfinite(extents[b][c])))
-                one.compared += static_cast<int>(found.curve.a.size());
-        return one;
+                confirming.compared += static_cast<int>(configuration.curve.a.size());
+        return confirming;
     };
-    std::vector<ConfirmingRun> all(ends.size() * model.branches.size());
+    std::vector<ConfirmingRun> runs(ends.size() * model.branches.size());
     std::vector<Job> jobs;
-    for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::size_t k = 0; k < runs.size(); ++k)
         jobs.push_back({"the recommendation, again",
-                        [&, k] { all[k] = run_again(k / ends.size(), ends[k % ends.size()]); }});
+                        [&, k] { runs[k] = run_again(k / ends.size(), ends[k % ends.size()]); }});
     run_jobs(jobs, threads, progress);
     ConfirmingRun worst;
-    for (const auto& one : all) {
-        worst.error = worse(worst.error, one.error);
-        worst.compared += one.compared;
-        if (worst.reference_failed.empty()) worst.reference_failed = one.reference_failed;
+    for (const auto& confirming : runs) {
+        worst.error = worse(worst.error, confirming.error);
+        worst.compared += confirming.compared;
+        if (worst.reference_failed.empty()) worst.reference_failed = confirming.reference_failed;
         if (worst.configuration_failed.empty())
-            worst.configuration_failed = one.configuration_failed;
+            worst.configuration_failed = confirming.configuration_failed;
     }
     return worst;
 }
@@ -292,18 +297,19 @@ void recommend(const Solves& solves, const std::vector<std::vector<double>>& ext
                             describe(point), again.reference_failed));
             return;
         }
-        Recommendation found;
-        found.point = *k;
-        found.confirmed = again.error;
-        found.confirmed_numbers = again.compared;
-        band(trade, found);
-        const bool holds = again.configuration_failed.empty() && found.confirmed_numbers > 0 &&
-                           good_enough(trade, found.confirmed);
-        if (holds && good_enough(trade, found.high)) {
-            trade.recommendation = found;
+        Recommendation recommendation;
+        recommendation.point = *k;
+        recommendation.confirmed = again.error;
+        recommendation.confirmed_numbers = again.compared;
+        band(trade, recommendation);
+        const bool holds = again.configuration_failed.empty() &&
+                           recommendation.confirmed_numbers > 0 &&
+                           good_enough(trade, recommendation.confirmed);
+        if (holds && good_enough(trade, recommendation.high)) {
+            trade.recommendation = recommendation;
             return;
         }
-        const Accuracy& worst = holds ? found.high : found.confirmed;
+        const Accuracy& worst = holds ? recommendation.high : recommendation.confirmed;
         trade.rejected.push_back(
             !again.configuration_failed.empty()
                 ? again.configuration_failed + ", when run again"

@@ -45,55 +45,55 @@ using Eigen::VectorXd;
 
 // ---- Interpolation of the states: start of Newton's method, and position of idle motions
 
-// Cubic Hermite interpolation of the states, with slopes from their neighbours.
+// Cubic Hermite interpolation of the states z(a), with slopes dz/da from their neighbours.
 struct Interpolant {
     std::vector<double> a;
     std::vector<VectorXd> z, slope;
 };
 Interpolant interpolant(const std::vector<StateAt>& states) {
-    Interpolant of;
-    for (const StateAt& at : states) {
-        VectorXd z = at.z;
+    Interpolant result;
+    for (const StateAt& mapped : states) {
+        VectorXd z = mapped.z;
         // The sign of the quaternion that continues the previous one.
-        for (int b = 0; b < at.system.bodies && !of.z.empty(); ++b) {
-            auto p = z.segment<4>(at.system.pose(b) + 3);
-            if (p.dot(of.z.back().segment<4>(at.system.pose(b) + 3)) < 0) p = -p.eval();
+        for (int b = 0; b < mapped.system.bodies && !result.z.empty(); ++b) {
+            auto p = z.segment<4>(mapped.system.pose(b) + 3);
+            if (p.dot(result.z.back().segment<4>(mapped.system.pose(b) + 3)) < 0) p = -p.eval();
         }
-        of.a.push_back(at.state.load);
-        of.z.push_back(std::move(z));
+        result.a.push_back(mapped.state.load);
+        result.z.push_back(std::move(z));
     }
-    const std::size_t last = of.a.size() - 1;
+    const std::size_t last = result.a.size() - 1;
     const auto between = [&](std::size_t k) -> VectorXd {
-        return (of.z[k + 1] - of.z[k]) / (of.a[k + 1] - of.a[k]);
+        return (result.z[k + 1] - result.z[k]) / (result.a[k + 1] - result.a[k]);
     };
     for (std::size_t k = 0; k <= last; ++k) {
         if (last < 2) {
-            of.slope.push_back(between(0));
+            result.slope.push_back(between(0));
             continue;
         }
         // Slope of the parabola through three points.
         const std::size_t m = std::clamp<std::size_t>(k, 1, last - 1);
         const VectorXd left = between(m - 1), right = between(m);
-        const VectorXd bend = (right - left) / (of.a[m + 1] - of.a[m - 1]);
-        of.slope.push_back(left + bend * (2 * of.a[k] - of.a[m - 1] - of.a[m]));
+        const VectorXd bend = (right - left) / (result.a[m + 1] - result.a[m - 1]);
+        result.slope.push_back(left + bend * (2 * result.a[k] - result.a[m - 1] - result.a[m]));
     }
-    return of;
+    return result;
 }
 struct Predicted {
-    VectorXd z, slope;
+    VectorXd z, slope;  // z and dz/da
 };
-Predicted at(const Interpolant& of, double a) {
-    const bool rising = of.a.back() > of.a.front();
+Predicted predicted(const Interpolant& states, double a) {
+    const bool rising = states.a.back() > states.a.front();
     std::size_t k = 0;
-    while (k + 2 < of.a.size() && (rising ? a > of.a[k + 1] : a < of.a[k + 1])) ++k;
-    const double h = of.a[k + 1] - of.a[k], t = (a - of.a[k]) / h;
-    if (t == 0) return {of.z[k], of.slope[k]};
-    if (t == 1) return {of.z[k + 1], of.slope[k + 1]};
+    while (k + 2 < states.a.size() && (rising ? a > states.a[k + 1] : a < states.a[k + 1])) ++k;
+    const double h = states.a[k + 1] - states.a[k], t = (a - states.a[k]) / h;
+    if (t == 0) return {states.z[k], states.slope[k]};
+    if (t == 1) return {states.z[k + 1], states.slope[k + 1]};
     const double u = 1 - t;
-    return {of.z[k] * (u * u * (1 + 2 * t)) + of.z[k + 1] * (t * t * (1 + 2 * u)) +
-                (of.slope[k] * (t * u * u) - of.slope[k + 1] * (t * t * u)) * h,
-            (of.z[k + 1] - of.z[k]) * (6 * t * u / h) + of.slope[k] * (u * (1 - 3 * t)) +
-                of.slope[k + 1] * (t * (3 * t - 2))};
+    return {states.z[k] * (u * u * (1 + 2 * t)) + states.z[k + 1] * (t * t * (1 + 2 * u)) +
+                (states.slope[k] * (t * u * u) - states.slope[k + 1] * (t * t * u)) * h,
+            (states.z[k + 1] - states.z[k]) * (6 * t * u / h) +
+                states.slope[k] * (u * (1 - 3 * t)) + states.slope[k + 1] * (t * (3 * t - 2))};
 }
 
 // An equilibrium at a, found by Newton's method, with its inverse and its tangent dy/da.
@@ -112,26 +112,26 @@ struct NodeSolver {
 
     // Interpolated between the states; corners from the poses.
     Predicted guess(double a) const {
-        Predicted of = at(states, a);
-        set_corners(system, of.z, a);
-        return of;
+        Predicted result = predicted(states, a);
+        set_corners(system, result.z, a);
+        return result;
     }
     Problem problem(const VectorXd& z_g) const { return {system, border, z_g, false, {}, {}}; }
 
     Node node(double a) const {
         const Predicted guess = this->guess(a);
-        const Problem here = problem(guess.z);
-        VectorXd y = VectorXd::Zero(here.size());
-        y.head(here.n()) = guess.z;
+        const Problem bordered = problem(guess.z);
+        VectorXd y = VectorXd::Zero(bordered.size());
+        y.head(bordered.n()) = guess.z;
         Node node;
         node.a = a;
-        Approximate found = newton(here, y, a);
-        if (!found.settled) return node;
-        node.y = std::move(found.y);
-        const Values<double> of = evaluate(here, doubles(node.y), a, Slopes::yes);
-        node.Y = inverse(square(of.J, here.size()));
-        VectorXd right(here.size());
-        right << -Eigen::Map<const VectorXd>(of.E_a.data(), here.n()),
+        Approximate solution = newton(bordered, y, a);
+        if (!solution.settled) return node;
+        node.y = std::move(solution.y);
+        const Values<double> values = evaluate(bordered, doubles(node.y), a, Slopes::yes);
+        node.Y = inverse(square(values.J, bordered.size()));
+        VectorXd right(bordered.size());
+        right << -Eigen::Map<const VectorXd>(values.E_a.data(), bordered.n()),
             border.g.transpose() * guess.slope;
         node.rate = node.Y * right;
         node.found = node.y.allFinite() && node.rate.allFinite();
@@ -214,7 +214,7 @@ std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
     return c;
 }
 
-// Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1. The gauge is zero along the piece by definition.
+// |Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1. The gauge is zero along the piece by definition.
 VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>> F,
               int gauge_from) {
     VectorXd sum = VectorXd::Zero(Y.front().rows());
@@ -225,10 +225,12 @@ VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>>
     return sum * (1 + 1e-14);
 }
 
-// I - Y(s) F'| r from the coefficients of both.
+// |I - Y(s) F'| r from the coefficients Y_i of Y and J_j = M_j ± R_j of F':
+//
+//   |I - Y F'| ≤ Σ_k |[k = 0] I - Σ_{i+j=k} Y_i M_j| + Σ_i |Y_i| Σ_j (R_j + γ |M_j|),  γ: rounding
 struct RestAlong {
-    std::vector<MatrixXd> rest;
-    MatrixXd Y;  // Σ |Y_k|
+    std::vector<MatrixXd> rest;  // per k, the first sum
+    MatrixXd Y;                  // Σ |Y_i|
     std::vector<MatrixXd> M, R;
     double gamma = 0;
     bool finite = true;
@@ -241,28 +243,28 @@ struct RestAlong {
 };
 RestAlong rest_along(const std::vector<MatrixXd>& Y, const std::vector<std::vector<Interval>>& J) {
     const Index n = Y.front().rows();
-    RestAlong of;
+    RestAlong result;
     std::vector<MatrixXd> M;
     for (const auto& part : J) {
         const Contraction c = contraction(MatrixXd::Zero(n, n), part);  // for its middle and radius
-        of.finite = of.finite && c.finite;
-        if (!of.finite) return of;
-        of.M.push_back(c.M);
-        of.R.push_back(c.R);
-        of.gamma = std::max(of.gamma, c.gamma);
+        result.finite = result.finite && c.finite;
+        if (!result.finite) return result;
+        result.M.push_back(c.M);
+        result.R.push_back(c.R);
+        result.gamma = std::max(result.gamma, c.gamma);
         M.push_back(middle(part, n));
     }
-    of.gamma *= 2;  // a coefficient is a sum of at most two products
-    of.Y = MatrixXd::Zero(n, n);
-    for (const MatrixXd& factor : Y) of.Y += factor.cwiseAbs();
+    result.gamma *= 2;  // a coefficient is a sum of at most two products
+    result.Y = MatrixXd::Zero(n, n);
+    for (const MatrixXd& factor : Y) result.Y += factor.cwiseAbs();
     for (std::size_t k = 0; k + 1 < Y.size() + M.size(); ++k) {
         MatrixXd sum = MatrixXd::Zero(n, n);
         if (k == 0) sum.setIdentity();
         for (std::size_t i = 0; i < Y.size(); ++i)
             if (k >= i && k - i < M.size()) sum -= Y[i] * M[k - i];
-        of.rest.push_back(sum.cwiseAbs());
+        result.rest.push_back(sum.cwiseAbs());
     }
-    return of;
+    return result;
 }
 
 // The tube may use half of the tolerance; the rest is for the states themselves.
@@ -274,13 +276,13 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
     return true;
 }
 
-// r with |Y F| + rest(r) < r, by fixed-point iteration; empty if none is found.
+// r ≤ `room` with `first` + rest(r) < r, by fixed-point iteration; empty if none is found.
 template <class Rest>
 VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
     constexpr double least = 1e-20;
-    constexpr int most = 30;
+    constexpr int max_iterations = 30;
     VectorXd r = first.cwiseMax(least) * 1.01;
-    for (int k = 0; k < most; ++k) {
+    for (int k = 0; k < max_iterations; ++k) {
         const VectorXd next = ((first + rest(r)) * 1.02).cwiseMax(least);
         if (!(next.array() <= room.array()).all()) return {};
         if (all_less((first + rest(next)) * (1 + 1e-14), next)) return next;
@@ -312,7 +314,7 @@ void enclose(const NodeSolver& solver, Node& node) {
     }
 }
 
-// Proves a piece, or leaves its tube empty.
+// Sets the tube of a piece, with radii r > `joint`; false if it is not proved.
 bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const VectorXd& joint,
            const Tolerance& tolerance) {
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
@@ -351,7 +353,7 @@ bool over_a_corner(const System& system, const Piece& piece) {
     return false;
 }
 
-// The same for a piece across a knot.
+// The same for a short piece across a knot of a law, with the slopes of both sides.
 bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& joint,
                      const Tolerance& tolerance) {
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
@@ -404,6 +406,7 @@ Extent distance(const Piece& piece, const StateAt& at) {
     return distance(at, z);
 }
 
+// Upper bounds of U μ over the piece.
 Held held_over(const NodeSolver& solver, const Piece& piece) {
     const Index k = solver.border.count(), n = solver.system.n();
     VectorXd mu = piece.r.tail(k);
@@ -520,13 +523,13 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     if (states.size() < 2) return open("a path between states needs two of them");
     const System system = make_system(model, branch, Corners::separated);
     if (const auto why = why_not_tried(system); !why.empty()) return open(why);
-    std::vector<StateAt> at;
-    for (const auto& state : states) at.push_back(state_at(system, state));
+    std::vector<StateAt> mapped;
+    for (const auto& state : states) mapped.push_back(state_at(system, state));
     tube.from = tube.to = states.front().load;
     const double end = states.back().load, range = end - tube.from;
-    if (const auto why = why_not_a_path(at, states, branch); !why.empty()) return open(why);
-    const StateAt& middle = at[at.size() / 2];
-    const Interpolant interpolant_of = interpolant(at);
+    if (const auto why = why_not_a_path(mapped, states, branch); !why.empty()) return open(why);
+    const StateAt& middle = mapped[mapped.size() / 2];
+    const Interpolant interpolant_of = interpolant(mapped);
     const NodeSolver solver{system, interpolant_of,
                             equilibrium_near(system, middle.z, middle.state.load).problem.border};
 
@@ -555,32 +558,33 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
             return open(why_it_ends(solver, pushed, tolerance, place(tube.to)));
         section.to = halved && section.middle.a == a1 ? section.middle : solver.node(a1);
         section.middle = solver.node(tube.to / 2 + a1 / 2);
-        const ProvedPiece found =
+        const ProvedPiece proved_piece =
             prove_section(solver, section, std::abs(h) < bridge * std::abs(range), tolerance);
-        if (found.pushed) pushed = found.held;
-        if (!found.proved) {
+        if (proved_piece.pushed) pushed = proved_piece.held;
+        if (!proved_piece.proved) {
             h /= 2;
             halved = true;
             continue;
         }
         halved = false;
         const std::size_t first_state = next_state;
-        while (next_state < at.size() &&
+        while (next_state < mapped.size() &&
                std::abs(states[next_state].load - tube.from) <= std::abs(a1 - tube.from))
             ++next_state;
-        widen(tube, system, found.piece,
-              std::span(at).subspan(first_state, next_state - first_state));
-        held.held = std::max(held.held, found.held.held);
-        held.gap = std::max(held.gap, found.held.gap);
+        widen(tube, system, proved_piece.piece,
+              std::span(mapped).subspan(first_state, next_state - first_state));
+        held.held = std::max(held.held, proved_piece.held.held);
+        held.gap = std::max(held.gap, proved_piece.held.gap);
         pushed = {};
         ++tube.pieces;
-        tube.corners += over_a_corner(system, found.piece) ? 1 : 0;
+        tube.corners += over_a_corner(system, proved_piece.piece) ? 1 : 0;
         tube.to = a1;
         section.from = section.to;
         h *= 1.6;
         // the knot is passed
-        if (found.over_knot && std::abs(h) < std::abs(first_share * range)) h = first_share * range;
-        bridges = found.over_knot ? bridges + 1 : 0;
+        if (proved_piece.over_knot && std::abs(h) < std::abs(first_share * range))
+            h = first_share * range;
+        bridges = proved_piece.over_knot ? bridges + 1 : 0;
         if (std::abs(h) > std::abs(range)) h = range;
     }
     if (!within(tube.width, tolerance))

@@ -52,7 +52,8 @@ OnCurve on_curve(const Problem& problem) {
     return {std::move(found.y), std::move(found.Y), found.settled};
 }
 
-// Secant method for da/dσ = 0. The point and tangent of the problem are updated.
+// Secant method for da/dσ = 0 (`slope`), steps in σ. The point and tangent of the problem are
+// updated.
 constexpr double first_step = 1e-4, small_step = 1e-10, longest_step = 0.2;
 OnCurve turning_point(Problem& problem) {
     double slope = 0, step = 0;
@@ -62,10 +63,10 @@ OnCurve turning_point(Problem& problem) {
         problem.t = normalised(problem.system, here.v()).t;
         here = on_curve(problem);
         if (!here.found) return here;
-        const double now = here.slope(), rate = step == 0 ? 0 : (now - slope) / step;
-        const double next = rate == 0 ? first_step : -now / rate;
-        if (now == 0 || std::abs(next) < small_step) return here;
-        slope = now;
+        const double new_slope = here.slope(), rate = step == 0 ? 0 : (new_slope - slope) / step;
+        const double next = rate == 0 ? first_step : -new_slope / rate;
+        if (new_slope == 0 || std::abs(next) < small_step) return here;
+        slope = new_slope;
         step = std::clamp(next, -longest_step, longest_step);
         problem.y_t = here.y + step * here.v();
         here = on_curve(problem);
@@ -92,7 +93,8 @@ SlopeOf slope_of_a(const MatrixXd& Y, const Contraction& rest) {
     return {};
 }
 
-// Box about ỹ that contains y(σ) for every |σ| ≤ δ about `at`.
+// Box ỹ ± r that contains y(σ) for every |σ| ≤ δ: |Y F(ỹ; σ)| + |I - Y F'(ỹ ± r)| r < r, F(ỹ; σ)
+// over all these σ.
 struct Segment {
     bool proved = false;
     VectorXd r;
@@ -101,27 +103,27 @@ struct Segment {
 Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, double delta) {
     std::vector<Interval> F = evaluate(problem, thin(y), Interval(0), Slopes::no).E;
     F.back() += Interval(-delta, delta);
-    const VectorXd first = step(Y, F);
-    Segment of;
-    if (!first.allFinite()) return of;
+    const VectorXd defect = step(Y, F);
+    Segment result;
+    if (!defect.allFinite()) return result;
     // The box of a point must fit into that of a segment, even where both are only rounding.
     const double least = delta > 0 ? 1e-22 : 1e-25, wider = delta > 0 ? 1.3 : 1.01;
-    VectorXd r = (first * 1.5).cwiseMax(least);
+    VectorXd r = (defect * 1.5).cwiseMax(least);
     for (int trial = 0; trial < 8; ++trial) {
-        of.rest = contraction(Y, evaluate(problem, box(y, r), Interval(0), Slopes::yes).J);
-        if (!of.rest.finite) return of;
-        VectorXd next = (first * wider).cwiseMax(least);
-        for (int k = 0; k < 3; ++k) next = ((first + of.rest(next)) * wider).cwiseMax(least);
+        result.rest = contraction(Y, evaluate(problem, box(y, r), Interval(0), Slopes::yes).J);
+        if (!result.rest.finite) return result;
+        VectorXd next = (defect * wider).cwiseMax(least);
+        for (int k = 0; k < 3; ++k) next = ((defect + result.rest(next)) * wider).cwiseMax(least);
         if ((next.array() <= r.array()).all() &&
-            all_less((first + of.rest(next)) * (1 + 1e-14), next)) {
-            of.r = next;
-            of.proved = true;
-            return of;
+            all_less((defect + result.rest(next)) * (1 + 1e-14), next)) {
+            result.r = next;
+            result.proved = true;
+            return result;
         }
         r = (2 * next).cwiseMax(r);
-        if (!r.allFinite()) return of;
+        if (!r.allFinite()) return result;
     }
-    return of;
+    return result;
 }
 
 }  // namespace
@@ -135,22 +137,25 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     };
     const System system = make_system(model, branch);
     if (const auto why = why_not_tried(system); !why.empty()) return open(why);
-    const StateAt at = state_at(system, state);
-    if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
+    const StateAt mapped = state_at(system, state);
+    if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
 
-    Problem known{system, border_at(system, at.z, state.load, little_is_nothing), at.z, false, {},
-                  {}};
-    const Index n = known.size() + 1;
+    Problem at_fixed_a{system,   border_at(system, mapped.z, state.load, little_is_nothing),
+                       mapped.z, false,
+                       {},       {}};
+    const Index n = at_fixed_a.size() + 1;
     VectorXd y = VectorXd::Zero(n);
-    y.head(system.n()) = at.z;
-    const Values<double> of = evaluate(known, doubles(y.head(n - 1)), state.load, Slopes::yes);
+    y.head(system.n()) = mapped.z;
+    const Values<double> values =
+        evaluate(at_fixed_a, doubles(y.head(n - 1)), state.load, Slopes::yes);
     VectorXd along = VectorXd::Ones(n), right = VectorXd::Zero(n - 1);
-    right.head(system.n()) = Eigen::Map<const VectorXd>(of.E_a.data(), system.n());
-    along.head(n - 1) = -inverse(square(of.J, n - 1)) * right;
+    right.head(system.n()) = Eigen::Map<const VectorXd>(values.E_a.data(), system.n());
+    along.head(n - 1) = -inverse(square(values.J, n - 1)) * right;
     if (!along.allFinite() || along.head(n - 1).isZero(0))
         return open("the curve has no tangent at the state");
     y[n - 1] = state.load;
-    Problem problem{system, known.border, known.z_g, true, normalised(system, along).t, y};
+    Problem problem{system, at_fixed_a.border,           at_fixed_a.z_g,
+                    true,   normalised(system, along).t, y};
     const OnCurve top = turning_point(problem);
     if (!top.found) return open("no limit point is found near the state");
     if (!check_border(problem, top.y, top.y[n - 1]).sound)
@@ -161,8 +166,8 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
 
     problem.y_t = top.y;
     for (double delta = 1e-9; delta < 1e-3; delta *= 4) {
-        const Segment all = segment(problem, top.y, top.Y, delta);
-        if (!all.proved) continue;
+        const Segment curve = segment(problem, top.y, top.Y, delta);
+        if (!curve.proved) continue;
         std::array<double, 2> sign{};
         std::array<Interval, 2> a;
         for (std::size_t side = 0; side < 2; ++side) {
@@ -179,7 +184,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
                     Interval(problem.t[i]) * (around(end.y[i], point.r[i]) - Interval(top.y[i]));
             const bool on_segment =
                 mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
-                all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), all.r);
+                all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), curve.r);
             const SlopeOf slope = slope_of_a(end.Y, point.rest);
             if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
             sign[side] = slope.middle > 0 ? 1 : -1;
@@ -187,11 +192,11 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         }
         if (!(sign[0] * sign[1] < 0)) continue;
         const bool maximum = sign[0] > 0;
-        const Interval over = around(top.y[n - 1], all.r[n - 1]);
-        limit.from = maximum ? std::max(a[0].lo, a[1].lo) : over.lo;
-        limit.to = maximum ? over.hi : std::min(a[0].hi, a[1].hi);
-        const auto whole = box(top.y, all.r);
-        limit.error = distance(at, {whole.begin(), whole.begin() + system.n()});
+        const Interval range_of_a = around(top.y[n - 1], curve.r[n - 1]);
+        limit.from = maximum ? std::max(a[0].lo, a[1].lo) : range_of_a.lo;
+        limit.to = maximum ? range_of_a.hi : std::min(a[0].hi, a[1].hi);
+        const auto whole = box(top.y, curve.r);
+        limit.error = distance(mapped, {whole.begin(), whole.begin() + system.n()});
         if (within(limit.error, tolerance))
             limit.state = ProofState::proved;
         else
