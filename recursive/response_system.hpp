@@ -23,7 +23,11 @@ struct ResponseOrders {
 Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& orders);
 
 // Which held directions of the border must carry no load.
-enum class Judged { none, idle_motions, all };
+enum class Judged {
+    none,
+    idle_motions,  // else loaded_idle_mode
+    all            // idle motions and redundant rows; for a loaded row inconsistent_constraints
+};
 
 // Solves for the right-hand side in s.upper, s.lower: s.x = (dq, dλ), without idle motion (minimum
 // norm). loaded_idle_mode, inconsistent_constraints where a held direction would carry load,

@@ -43,6 +43,7 @@ class Reference {
         std::ranges::sort(sorted_);
     }
 
+    // Outputs at a load that was visited; null if the leg does not get there.
     const std::vector<double>* at(double load) const {
         if (std::isnan(load)) return nullptr;
         const auto found = known_.find(load);
@@ -64,6 +65,7 @@ class Reference {
         return nan;
     }
 
+    // Solves the branch at these loads, besides the grid, and keeps the outputs there for at().
     void visit(const std::vector<double>& loads) {
         Analyses analyses;
         for (const auto& side : sides_) {
@@ -76,12 +78,12 @@ class Reference {
             if (requested.empty()) continue;
             const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
             std::ranges::sort(requested, nearer);
-            std::vector<double> all = requested_parameters({side}, 1);
-            std::erase_if(all, [&](double a) { return std::abs(a) > std::abs(requested.back()); });
-            std::ranges::copy(requested, std::back_inserter(all));
-            std::ranges::sort(all, nearer);
-            all.erase(std::unique(all.begin(), all.end()), all.end());
-            solve_at(side, Leg::equilibrium, all, [&](const Equilibrium& state) {
+            std::vector<double> grid = requested_parameters({side}, 1);
+            std::erase_if(grid, [&](double a) { return std::abs(a) > std::abs(requested.back()); });
+            std::ranges::copy(requested, std::back_inserter(grid));
+            std::ranges::sort(grid, nearer);
+            grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
+            solve_at(side, Leg::equilibrium, grid, [&](const Equilibrium& state) {
                 if (!std::ranges::binary_search(requested, state.load, nearer)) return;
                 known_[state.load] =
                     row_of(model_, channels_, side, {.leg = Leg::equilibrium}, state, analyses)
@@ -104,8 +106,8 @@ struct PointsOnBranch {
     std::vector<std::size_t> on_branch;  // points of the candidate
     const Points& points;
     const std::vector<PointColumn>& columns;
-    std::size_t defined =
-        0;  // other definitions, which the reference's rows hold after the columns
+    // number of other definitions, which the reference's rows hold after the columns
+    std::size_t defined = 0;
 };
 
 // Compares candidate and reference column by column, at the places `x` that the candidate gives
@@ -129,18 +131,19 @@ CandidateReading compared(const PointsOnBranch& given, const std::vector<double>
     }
     for (std::size_t c = 0; c < given.columns.size(); ++c) {
         const auto& [channel, change, values] = given.columns[c];
-        std::vector<double> mine, truth, at;
-        auto &all_mine = reading.candidate.emplace_back(rows.size(), nan),
-             &all_truth = reading.truth.emplace_back(rows.size(), nan);
+        std::vector<double> given_values, truth, places;
+        auto &given_row = reading.candidate.emplace_back(rows.size(), nan),
+             &truth_row = reading.truth.emplace_back(rows.size(), nan);
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const double value = values[reading.points[k]];
             if (!branch.determined[channel] || std::isnan(value)) continue;
-            mine.push_back(all_mine[k] = value), truth.push_back(all_truth[k] = (*rows[k])[c]);
-            at.push_back(reading.at[k]);
+            given_values.push_back(given_row[k] = value);
+            truth.push_back(truth_row[k] = (*rows[k])[c]);
+            places.push_back(reading.at[k]);
         }
-        const auto whole = truth_of(branch).channel(channel);
-        const auto [low, high] = std::ranges::minmax(whole);
-        reading.columns.push_back(deviation_of(truth, mine, at));
+        const auto truth_on_branch = truth_of(branch).channel(channel);
+        const auto [low, high] = std::ranges::minmax(truth_on_branch);
+        reading.columns.push_back(deviation_of(truth, given_values, places));
         reading.columns.back().range = high - low;
     }
     for (std::size_t d = 0; d < given.defined; ++d) {
@@ -197,18 +200,18 @@ std::vector<double> loads_at(const std::vector<double>& x, Reference& reference,
     for (int pass = 0; pass < passes && better; ++pass) {
         std::vector<double> next(x.size(), nan);
         for (std::size_t k = 0; k < x.size(); ++k) {
-            const double off = x[k] - travel(loads[k]);
-            if (!(std::abs(off) > 1e-13 * std::max(length, std::abs(x[k]))))
+            const double miss = x[k] - travel(loads[k]);
+            if (!(std::abs(miss) > 1e-13 * std::max(length, std::abs(x[k]))))
                 continue;  // converged, or no load
-            const double load = reference.placed(loads[k] + off * slope[k]);
+            const double load = reference.placed(loads[k] + miss * slope[k]);
             if (load != loads[k]) next[k] = load;
         }
         reference.visit(next);
         better = false;
         for (std::size_t k = 0; k < x.size(); ++k) {
-            const double now = travel(loads[k]), there = travel(next[k]);
-            if (!(std::abs(x[k] - there) < std::abs(x[k] - now))) continue;
-            slope[k] = (next[k] - loads[k]) / (there - now);
+            const double travel_before = travel(loads[k]), travel_next = travel(next[k]);
+            if (!(std::abs(x[k] - travel_next) < std::abs(x[k] - travel_before))) continue;
+            slope[k] = (next[k] - loads[k]) / (travel_next - travel_before);
             loads[k] = next[k];
             better = true;
         }
@@ -240,28 +243,29 @@ CandidateReading at_equal_abscissa(const PointsOnBranch& given,
 
 // Parts of an interval that points leave out: the ends, and gaps wider than a quarter of the
 // interval. " from 0 to 1500 N", "" if none.
-std::string omitted(std::vector<double> at, double low, double high, std::string_view unit) {
+std::string omitted(std::vector<double> places, double low, double high, std::string_view unit) {
     constexpr double widest = 0.25;
     const double length = high - low;
-    std::ranges::sort(at);
+    std::ranges::sort(places);
     std::string parts;
     const auto add = [&](double from, double to, double share) {
         if (to - from > share * length)
             parts += fmt::format("{} from {:.6g} to {:.6g} {}", parts.empty() ? "" : " and",
                                  from + 0.0, to + 0.0, unit);
     };
-    add(low, at.empty() ? high : at.front(), part_left);
-    for (std::size_t k = 1; k < at.size(); ++k) add(at[k - 1], at[k], widest * (1 + part_left));
-    if (!at.empty()) add(at.back(), high, part_left);
+    add(low, places.empty() ? high : places.front(), part_left);
+    for (std::size_t k = 1; k < places.size(); ++k)
+        add(places[k - 1], places[k], widest * (1 + part_left));
+    if (!places.empty()) add(places.back(), high, part_left);
     return parts;
 }
 
 // Missing parts of the judged columns; a column that is complete in either reading has none.
 // "branch 'jounce' from 1500 to 3000 N", "camber on branch 'jounce' from 1500 to 3000 N"
-void add_missing_parts(const Branch& branch, const BranchComparison& of,
+void add_missing_parts(const Branch& branch, const BranchComparison& compared_branch,
                        const CandidateBranch& given, const CandidateJudgement& judgement,
                        const std::vector<Channel>& channels, std::vector<std::string>& list) {
-    const double unit = in_unit(of.unit);
+    const double unit = in_unit(compared_branch.unit);
     const auto missing = [&](std::size_t c) {
         std::optional<std::string> least;
         for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
@@ -269,18 +273,18 @@ void add_missing_parts(const Branch& branch, const BranchComparison& of,
             if (reading.columns.empty()) continue;
             double low = unit * std::min(branch.from, branch.to),
                    high = unit * std::max(branch.from, branch.to);
-            std::string_view in = symbol(of.unit);
+            std::string_view unit_name = symbol(compared_branch.unit);
             if (kind == ReadingKind::equal_abscissa) {
-                const auto abscissa = static_cast<std::size_t>(of.abscissa);
-                const auto travel = truth_of(of).channel(abscissa);
+                const auto abscissa = static_cast<std::size_t>(compared_branch.abscissa);
+                const auto travel = truth_of(compared_branch).channel(abscissa);
                 low = std::ranges::min(travel), high = std::ranges::max(travel);
-                in = symbol(channels[abscissa].unit);
+                unit_name = symbol(channels[abscissa].unit);
                 if (!(high - low >= min_travel)) continue;
             }
-            std::vector<double> at;
+            std::vector<double> places;
             for (std::size_t k = 0; k < reading.at.size(); ++k)
-                if (!std::isnan(reading.candidate[c][k])) at.push_back(reading.at[k]);
-            const std::string parts = omitted(std::move(at), low, high, in);
+                if (!std::isnan(reading.candidate[c][k])) places.push_back(reading.at[k]);
+            const std::string parts = omitted(std::move(places), low, high, unit_name);
             if (!least || parts.empty()) least = parts;
         }
         return least;
@@ -288,7 +292,7 @@ void add_missing_parts(const Branch& branch, const BranchComparison& of,
     std::vector<std::pair<std::string, std::string>> of_columns;  // name, missing part
     for (std::size_t c = 0; c < judgement.columns.size(); ++c) {
         const std::size_t channel = judgement.columns[c].channel;
-        if (!judgement.judged[c] || !of.determined[channel]) continue;
+        if (!judgement.judged[c] || !compared_branch.determined[channel]) continue;
         if (auto parts = missing(c))
             of_columns.emplace_back(channels[channel].name, std::move(*parts));
     }
@@ -296,10 +300,11 @@ void add_missing_parts(const Branch& branch, const BranchComparison& of,
     const bool alike = std::ranges::all_of(
         of_columns, [&](const auto& column) { return column.second == of_columns.front().second; });
     if (alike && !of_columns.front().second.empty())
-        list.push_back(fmt::format("branch '{}'{}", of.branch, of_columns.front().second));
+        list.push_back(
+            fmt::format("branch '{}'{}", compared_branch.branch, of_columns.front().second));
     for (const auto& [name, parts] : of_columns)
         if (!alike && !parts.empty())
-            list.push_back(fmt::format("{} on branch '{}'{}", name, of.branch, parts));
+            list.push_back(fmt::format("{} on branch '{}'{}", name, compared_branch.branch, parts));
 }
 
 // Keeps the worst deviation of each unit, by its share of the limit; outputs whose limit is a share

@@ -26,8 +26,8 @@ Curve thinned(const Curve& curve, std::size_t stride);
 enum class Course {
     rising,      // x_k+1 > x_k for all k
     falling,     // x_k+1 < x_k for all k
-    still,       // max x - min x below rounding
-    turning,     // neither rising nor falling
+    still,       // max x - min x ≤ 1e-9 of the unit (mm, deg, N, N·m)
+    turning,     // (x_k+1 - x_k) (x_1 - x_0) ≤ 0 for some k
     not_finite,  // !isfinite(x_k) for some k
     too_short    // fewer than two values
 };

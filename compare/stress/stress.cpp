@@ -44,18 +44,18 @@ using Vectors = std::map<std::string, Vector3d>;  // by name; SI, in the axes of
 
 // The output that begins with this channel, if one does.
 std::optional<Output> output(const Model& model, const Channel& channel, std::size_t c) {
-    if (const auto* at = std::get_if<Coordinate>(&channel.reads);
-        at != nullptr && channel.name.ends_with("_x"))
-        return Output{channel.name, of_position, c, {at->at.body}};
+    if (const auto* coordinate = std::get_if<Coordinate>(&channel.reads);
+        coordinate != nullptr && channel.name.ends_with("_x"))
+        return Output{channel.name, of_position, c, {coordinate->at.body}};
     if (is_figure(channel, figure::toe)) {
         const Wheel& wheel = model.wheels[std::get<Catalogued>(channel.reads).of];
         return Output{channel.name, of_direction, c, {wheel.body}, double(wheel.side)};
     }
-    if (const auto* of = std::get_if<Reaction>(&channel.reads);
-        of != nullptr && of->component % 3 == 0) {
-        const ModelJoint& joint = model.joints[static_cast<std::size_t>(of->joint)];
+    if (const auto* reaction = std::get_if<Reaction>(&channel.reads);
+        reaction != nullptr && reaction->component % 3 == 0) {
+        const ModelJoint& joint = model.joints[static_cast<std::size_t>(reaction->joint)];
         return Output{
-            channel.name, of->component == 0 ? of_force : of_moment, c, {joint.i, joint.j}};
+            channel.name, reaction->component == 0 ? of_force : of_moment, c, {joint.i, joint.j}};
     }
     return std::nullopt;
 }
@@ -71,17 +71,18 @@ std::vector<Output> outputs_of(const Model& model, const recursive::Diagnosis& d
                 idle[static_cast<std::size_t>(entry.index() / 6)] = true;
     std::vector<Output> outputs;
     for (std::size_t c = 0; c < channels.size(); ++c)
-        if (auto found = determined[c] ? output(model, channels[c], c) : std::nullopt)
-            if (std::ranges::none_of(found->bodies, [&](BodyId body) {
+        if (auto candidate = determined[c] ? output(model, channels[c], c) : std::nullopt)
+            if (std::ranges::none_of(candidate->bodies, [&](BodyId body) {
                     return body != ground && idle[static_cast<std::size_t>(body)];
                 }))
-                outputs.push_back(std::move(*found));
+                outputs.push_back(std::move(*candidate));
     return outputs;
 }
 
-// The outputs of a point, mapped back; without reactions that are undefined there.
+// The outputs of a point, mapped back to the axes, lengths and forces of the unchanged scene;
+// without reactions that are undefined there.
 Vectors values_of(const std::vector<Output>& outputs, const std::vector<double>& row,
-                  const Transform& how) {
+                  const Transform& transform) {
     Vectors values;
     for (const Output& output : outputs) {
         const double *v = &row[output.channel], toe = v[0] / in_unit(Unit::deg),
@@ -89,33 +90,37 @@ Vectors values_of(const std::vector<Output>& outputs, const std::vector<double>&
         Vector3d x(v[0], v[1], v[2]);
         if (output.quantity >= of_force && x.array().isInf().any()) continue;
         switch (output.quantity) {
-            case of_position: x = (x / in_unit(Unit::mm) - how.t) / how.length; break;
+            case of_position: x = (x / in_unit(Unit::mm) - transform.t) / transform.length; break;
             case of_direction:
                 x = {std::cos(camber) * std::sin(toe),
                      output.side * std::cos(camber) * std::cos(toe), -std::sin(camber)};
                 break;
-            case of_force: x /= how.force; break;
-            case of_moment: x *= how.M.determinant() / (how.force * how.length); break;
+            case of_force: x /= transform.force; break;
+            case of_moment:
+                x *= transform.M.determinant() / (transform.force * transform.length);
+                break;
         }
-        values[output.name] = how.M.transpose() * x;
+        values[output.name] = transform.M.transpose() * x;
     }
     return values;
 }
 
 // Largest distance of the positions; NaN counts as largest.
 double distance(const std::vector<Output>& outputs, const Vectors& a, const Vectors& b) {
-    double most = 0;
+    double largest = 0;
     for (const Output& output : outputs)
         if (output.quantity == of_position && a.contains(output.name) && b.contains(output.name))
-            most = worse(most, (a.at(output.name) - b.at(output.name)).norm());
-    return most;
+            largest = worse(largest, (a.at(output.name) - b.at(output.name)).norm());
+    return largest;
 }
 
-// What a solver claims, in the axes of the unchanged scene. With F the largest acting force, L the
-// size, ε k X the rounding of the stiffest element (agreement.hpp):
+// The error that a solver claims, in the units of the unchanged scene: 1e-9 L and 1e-6 deg for a
+// reference, the tolerance for `adaptive` and the series, infinite for fixed steps. For forces it
+// is infinite where the claim of positions is 1e-4 L or more. With F the largest acting force, L
+// the size, ε k X the rounding of the stiffest element (agreement.hpp):
 //
 //   force    max(1e-6, 1000 length / L) F + 1000 ε k X          moment    L times that
-Limits claim_of(const Solver& solver, const Scale& scale, const Transform& how) {
+Limits claim_of(const Solver& solver, const Scale& scale, const Transform& transform) {
     constexpr double coarse = 1e-4, no_force = 1e-12;
     const double L = scale.length;
     Limits claim{1e-9 * L, exact_angle, inf, inf};
@@ -132,10 +137,10 @@ Limits claim_of(const Solver& solver, const Scale& scale, const Transform& how) 
     if (claim[of_position] < coarse * L) {
         const double share = std::max(1e-6, 1000 * claim[of_position] / L);
         claim[of_force] =
-            (share * std::max(scale.force, no_force) + 1000 * scale.round_off) / how.force;
-        claim[of_moment] = claim[of_force] * L / how.length;
+            (share * std::max(scale.force, no_force) + 1000 * scale.round_off) / transform.force;
+        claim[of_moment] = claim[of_force] * L / transform.length;
     }
-    claim[of_position] /= how.length;
+    claim[of_position] /= transform.length;
     return claim;
 }
 
@@ -170,21 +175,21 @@ struct SideRun {
 };
 
 // Message on the output that exceeds claim, e and rounding most; empty where none does.
-std::string breach(const std::vector<Output>& outputs, const Limits& claim, const Vectors& found,
+std::string breach(const std::vector<Output>& outputs, const Limits& claim, const Vectors& values,
                    const Known& known, double rounding) {
     const Limits round_off{rounding, 4 * eps, 0, 0};
     std::string why;
     double worst = 1;
     for (const Output& output : outputs) {
-        const auto is = found.find(output.name), truth = known.values.find(output.name);
-        if (is == found.end() || truth == known.values.end()) continue;
+        const auto value = values.find(output.name), truth = known.values.find(output.name);
+        if (value == values.end() || truth == known.values.end()) continue;
         const Quantity q = output.quantity;
-        const double off = (is->second - truth->second).norm(),
-                     over = off / (claim[q] + known.error[q] + round_off[q]);
-        if (off == 0 || over <= worst) continue;
-        worst = over;
+        const double deviation = (value->second - truth->second).norm(),
+                     ratio = deviation / (claim[q] + known.error[q] + round_off[q]);
+        if (deviation == 0 || ratio <= worst) continue;
+        worst = ratio;
         why = fmt::format("{} deviates by {:.3e} {}, and at most {:.3e} is claimed", output.name,
-                          off, symbols[q], claim[q]);
+                          deviation, symbols[q], claim[q]);
     }
     return why;
 }
@@ -194,17 +199,18 @@ Known proved(const SideRun& run, const std::vector<const Run*>& exact, std::size
              bool anything_idle) {
     for (const Run* path : exact) {
         if (k >= path->states.size()) continue;
-        const auto found = certify(run.side.model, run.side.branch, path->states[k], run.tolerance);
-        const auto& e = found.error;
+        const auto certificate =
+            certify(run.side.model, run.side.branch, path->states[k], run.tolerance);
+        const auto& e = certificate.error;
         // A weakly resisted motion that is held for the proof stays at its value in the state, not
         // at equilibrium.
-        if (found.state == ProofState::proved && (found.held == 0 || anything_idle))
+        if (certificate.state == ProofState::proved && (certificate.held == 0 || anything_idle))
             return {"proof",
                     path->points[k],
                     {e.length + run.size * e.angle, e.angle, e.force, e.moment},
                     true,
-                    found.stable,
-                    found.held > 0};
+                    certificate.stable,
+                    certificate.held > 0};
     }
     return {};
 }
@@ -240,7 +246,7 @@ void find_truth(SideRun& run, const std::vector<Solver>& solvers, const Variant&
 
 void run_side(SideRun& result, const Variant& variant, Model model,
               const std::vector<Solver>& solvers) {
-    const Transform how = variant.transforms.value_or(Transform{});
+    const Transform transform = variant.transforms.value_or(Transform{});
     const BranchSide& side = result.side;
     model.branches = {side.branch};
     const int every = std::max(1, (side.branch.steps + 1) / 2);  // start, about the middle, end
@@ -258,8 +264,8 @@ void run_side(SideRun& result, const Variant& variant, Model model,
     double reach = scale.length;  // X
     for (const auto& body : model.bodies)
         reach = std::max(reach, body.design.r.cwiseAbs().maxCoeff());
-    result.size = scale.length / how.length;
-    result.rounding = 4 * eps * reach / how.length;
+    result.size = scale.length / transform.length;
+    result.rounding = 4 * eps * reach / transform.length;
     const double length = std::max(1e-9 * scale.length, 1e3 * eps * reach),
                  least = 1e-6 * std::max(scale.force, 1e-9);  // [N]
     result.tolerance = {length, exact_angle, least, least * scale.length, least, length};
@@ -272,19 +278,21 @@ void run_side(SideRun& result, const Variant& variant, Model model,
             std::ranges::find(variant.requested, solvers[s].name) != variant.requested.end();
         if (!run.requested) continue;
         settings.every = every;
-        const LegRun found = compared
-                                 ? branch.run(settings.leg)
-                                 : compare::run(model, comparison.channels, model.branches.front(),
-                                                {side}, settings, false);
-        run.claim = claim_of(solvers[s], scale, how);
-        run.outcome = found.outcome;
-        run.detail = found.detail;
-        const auto& [front, start, middle, back] = found.landmarks;
-        for (std::size_t k = 0; k < found.curve.a.size(); ++k)
+        const LegRun leg_run = compared
+                                   ? branch.run(settings.leg)
+                                   : compare::run(model, comparison.channels,
+                                                  model.branches.front(), {side}, settings, false);
+        run.claim = claim_of(solvers[s], scale, transform);
+        run.outcome = leg_run.outcome;
+        run.detail = leg_run.detail;
+        const auto& [front, start, middle, back] = leg_run.landmarks;
+        for (std::size_t k = 0; k < leg_run.curve.a.size(); ++k)
             for (const auto* state : {&start, &middle, &back})
-                if (*state && parameter_in(found.curve.unit, (*state)->load) == found.curve.a[k]) {
+                if (*state &&
+                    parameter_in(leg_run.curve.unit, (*state)->load) == leg_run.curve.a[k]) {
                     run.states.push_back(**state);
-                    run.points.push_back(values_of(result.outputs, found.curve.values[k], how));
+                    run.points.push_back(
+                        values_of(result.outputs, leg_run.curve.values[k], transform));
                     break;
                 }
     }
@@ -354,12 +362,12 @@ double range_of(const SideRun& run) {
 
 StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const SideRun& run,
                  const SideRun* base) {
-    const Run& found = run.runs[s];
+    const Run& judged = run.runs[s];
     const SideRun& truth = base != nullptr ? *base : run;
     // A transform rounds the coordinates of the scene.
     const double rounding = (base != nullptr ? 2500 : 1) * run.rounding;
-    StressCell cell{trial.scene, trial.sweep,   trial.variant.label, run.side.name,
-                    solver.name, found.outcome, found.detail};
+    StressCell cell{trial.scene, trial.sweep,    trial.variant.label, run.side.name,
+                    solver.name, judged.outcome, judged.detail};
     cell.range = range_of(truth);
     const auto wrong = [&](std::string why) {
         cell.verdict = CellVerdict::wrong;
@@ -367,56 +375,58 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
         return cell;
     };
     if (!run.bug.empty()) return wrong("ended with an exception: " + run.bug);
-    if (!found.points.empty()) cell.claim = found.claim[of_position];
-    const bool claims = std::isfinite(found.claim[of_position]);
-    const Run* there = base != nullptr ? &base->runs[s] : nullptr;
-    const bool both_converged = there != nullptr && found.outcome == Outcome::converged &&
-                                there->outcome == Outcome::converged;
+    if (!judged.points.empty()) cell.claim = judged.claim[of_position];
+    const bool claims = std::isfinite(judged.claim[of_position]);
+    const Run* base_run = base != nullptr ? &base->runs[s] : nullptr;
+    const bool both_converged = base_run != nullptr && judged.outcome == Outcome::converged &&
+                                base_run->outcome == Outcome::converged;
     bool unknown = false;
     double error = 0;
     std::string breaks, elsewhere;
-    for (std::size_t k = 0; k < found.points.size(); ++k) {
-        for (const auto& [name, value] : found.points[k])
+    for (std::size_t k = 0; k < judged.points.size(); ++k) {
+        for (const auto& [name, value] : judged.points[k])
             if (!value.allFinite()) return wrong("a state is not finite: " + name);
-        if (both_converged && !claims && k < there->points.size() && breaks.empty())
-            breaks = breach(run.outputs, {1e-7 * cell.range, 1e-7, inf, inf}, found.points[k],
-                            {.values = there->points[k]}, rounding);
+        if (both_converged && !claims && k < base_run->points.size() && breaks.empty())
+            breaks = breach(run.outputs, {1e-7 * cell.range, 1e-7, inf, inf}, judged.points[k],
+                            {.values = base_run->points[k]}, rounding);
         if (k >= truth.known.size() || truth.known[k].by.empty()) {
             unknown = true;
             continue;
         }
         const Known& known = truth.known[k];
         cell.known_by = base != nullptr ? "the unchanged scene" : known.by;
-        error = worse(
-            error, distance(run.outputs, found.points[k], known.values) + known.error[of_position]);
-        std::string why = breach(run.outputs, found.claim, found.points[k], known, rounding);
+        error = worse(error, distance(run.outputs, judged.points[k], known.values) +
+                                 known.error[of_position]);
+        std::string why = breach(run.outputs, judged.claim, judged.points[k], known, rounding);
         if (why.empty()) continue;
         // Another equilibrium, and of a transformed scene the same one as without the transform.
-        const bool as_there = there == nullptr ||
-                              (k < there->points.size() &&
-                               breach(run.outputs, found.claim, found.points[k],
-                                      {.values = there->points[k], .error = there->claim}, rounding)
-                                   .empty());
-        const bool other =
+        const bool as_there =
+            base_run == nullptr ||
+            (k < base_run->points.size() &&
+             breach(run.outputs, judged.claim, judged.points[k],
+                    {.values = base_run->points[k], .error = base_run->claim}, rounding)
+                 .empty());
+        const bool is_another =
             known.proved && as_there &&
-            certify(run.side.model, run.side.branch, found.states[k], run.tolerance).state ==
+            certify(run.side.model, run.side.branch, judged.states[k], run.tolerance).state ==
                 ProofState::proved;
-        (other ? elsewhere : breaks) = std::move(why);
+        (is_another ? elsewhere : breaks) = std::move(why);
     }
     if (!cell.known_by.empty()) cell.error = error;
     if (!breaks.empty()) return wrong(breaks);
-    if (solver.settings.leg != Leg::recursive && says_that_it_ends(found.outcome)) {
+    if (solver.settings.leg != Leg::recursive && says_that_it_ends(judged.outcome)) {
         if (base != nullptr &&
             std::ranges::all_of(base->known, [](const Known& known) { return !known.by.empty(); }))
             return wrong("reports an end of the branch, which is known in the unchanged scene");
-        if (all_proved(truth) && !found.points.empty())
+        if (all_proved(truth) && !judged.points.empty())
             return wrong("reports an end of the branch, and another solver's states are proved");
     }
-    if (found.outcome != Outcome::converged) {
+    if (judged.outcome != Outcome::converged) {
         cell.verdict = CellVerdict::reported_failure;
         return cell;
     }
-    if (found.points.size() < truth.known.size()) return wrong("converged, but points are missing");
+    if (judged.points.size() < truth.known.size())
+        return wrong("converged, but points are missing");
     if (trial.variant.known == Variant::Construction::no_equilibrium)
         return wrong("converged although by construction no equilibrium exists");
     if (const auto end = ended(run, truth); !end.empty())
@@ -440,12 +450,12 @@ const char* name(CellVerdict verdict) {
 }
 
 std::vector<Solver> solvers() {
-    std::vector<Solver> all;
+    std::vector<Solver> list;
     for (const auto& method : recursive::methods)
-        all.push_back(
+        list.push_back(
             {std::string(method.name), {.leg = Leg::recursive, .recursion = {.method = method}}});
-    for (const Leg leg : {Leg::equilibrium, Leg::energy}) all.push_back({name(leg), {.leg = leg}});
-    return all;
+    for (const Leg leg : {Leg::equilibrium, Leg::energy}) list.push_back({name(leg), {.leg = leg}});
+    return list;
 }
 
 int Survival::count(CellVerdict verdict) const {
@@ -457,15 +467,15 @@ int Survival::judged() const {
 
 Survival stress(std::span<const Trial> trials, int threads, const Progress& progress) {
     Survival survival;
-    const auto who = solvers();
-    for (const auto& solver : who) survival.solvers.push_back(solver.name);
+    const auto all_solvers = solvers();
+    for (const auto& solver : all_solvers) survival.solvers.push_back(solver.name);
 
     // Trials run independently, in parallel, until they are judged.
     std::vector<std::vector<SideRun>> runs(trials.size());
     std::vector<Job> jobs;
     for (std::size_t t = 0; t < trials.size(); ++t)
         jobs.push_back({fmt::format("{}, {}", trials[t].scene, trials[t].variant.label),
-                        [&, t] { runs[t] = run_trial(trials[t], who); }});
+                        [&, t] { runs[t] = run_trial(trials[t], all_solvers); }});
     run_jobs(jobs, threads, progress);
 
     for (std::size_t t = 0; t < trials.size(); ++t) {
@@ -475,12 +485,12 @@ Survival stress(std::span<const Trial> trials, int threads, const Progress& prog
         const bool has_base = trials[t].variant.transforms && unchanged != trials.end();
         const auto& base =
             runs[has_base ? static_cast<std::size_t>(unchanged - trials.begin()) : t];
-        for (std::size_t w = 0; w < runs[t].size(); ++w)
-            for (std::size_t s = 0; s < who.size(); ++s)
-                if (runs[t][w].runs[s].requested || !runs[t][w].bug.empty())
+        for (std::size_t side = 0; side < runs[t].size(); ++side)
+            for (std::size_t s = 0; s < all_solvers.size(); ++s)
+                if (runs[t][side].runs[s].requested || !runs[t][side].bug.empty())
                     survival.cells.push_back(
-                        judge(trials[t], who[s], s, runs[t][w],
-                              has_base && w < base.size() ? &base[w] : nullptr));
+                        judge(trials[t], all_solvers[s], s, runs[t][side],
+                              has_base && side < base.size() ? &base[side] : nullptr));
     }
     return survival;
 }

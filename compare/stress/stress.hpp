@@ -42,9 +42,9 @@ struct Variant {
     std::optional<Transform> transforms = {};  // of the unchanged scene
     // Properties known by construction, independent of any solver.
     enum class Construction {
-        unknown,
-        no_equilibrium,
-        nothing_moves
+        unknown,         // no such property
+        no_equilibrium,  // of the branch: the case is right only if no solver converges
+        nothing_moves    // the true outputs are those of the design position
     } known = Construction::unknown;
     // methods to run beside `published` and the references; empty: all
     std::vector<std::string> requested = {};

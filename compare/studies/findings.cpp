@@ -41,6 +41,8 @@ Eigen::Vector3d at_design(const Model& model, const Direction& u) {
                             : model.bodies[static_cast<std::size_t>(u.body)].design.p * u.u_local;
 }
 
+// What lifts a wheel on a branch: a vertical force on its body, a jack under it, or the road under
+// its tyre; `none` if anything else moves too.
 enum class Lift { none, load, jack, road };
 struct Lifted {
     Lift by = Lift::none;
@@ -63,7 +65,7 @@ bool carries(const Wheel& wheel, BodyId body) {
 
 // The only driver that moves, if it is vertical and acts on this wheel's body.
 Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
-    Lifted found;
+    Lifted result;
     for (const auto& driver : branch.drivers) {
         const int element = driven_element(driver.what);
         const bool is_road =
@@ -72,7 +74,7 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
             if (is_road) return {};  // a wheel lifted off its tyre also carries the tyre force
             continue;
         }
-        const Lifted one = std::visit(
+        const Lifted by_driver = std::visit(
             overloaded{[&](const Load& load) {
                            const auto* force = std::get_if<DeadForce>(&load.kind);
                            const bool lifts = force != nullptr && carries(wheel, force->at.body) &&
@@ -95,10 +97,10 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
                        },
                        [](const Preload&) { return Lifted{}; }},
             driver.what);
-        if (one.by == Lift::none || found.by != Lift::none) return {};
-        found = one;
+        if (by_driver.by == Lift::none || result.by != Lift::none) return {};
+        result = by_driver;
     }
-    return found;
+    return result;
 }
 
 }  // namespace

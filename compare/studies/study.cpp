@@ -19,20 +19,20 @@ constexpr double round_off = 1e-9;  // [mm], [deg]: smaller differences are roun
 constexpr int stations = 30;        // along a branch, where curves are compared
 constexpr int reference_points = 300;
 
-// Abscissa of a curve: its parameter, or a channel.
+// Abscissa x of a curve: its parameter, or the values of a channel (`x_channel`).
 constexpr int parameter = -1;
-std::vector<double> over(const Curve& curve, int by) {
-    return by == parameter ? curve.a : curve.channel(static_cast<std::size_t>(by));
+std::vector<double> x_values(const Curve& curve, int x_channel) {
+    return x_channel == parameter ? curve.a : curve.channel(static_cast<std::size_t>(x_channel));
 }
 
 // Range that every curve reaches.
 struct Span {
     double from = nan, to = nan;
 };
-Span common_span(int by, const std::vector<const Curve*>& curves) {
+Span common_span(int x_channel, const std::vector<const Curve*>& curves) {
     Span span;
     for (const Curve* curve : curves) {
-        const auto x = over(*curve, by);
+        const auto x = x_values(*curve, x_channel);
         const bool up = x.back() > x.front();
         const auto farther = [&](double a, double b) { return up ? a > b : a < b; };
         if (std::isnan(span.from) || farther(x.front(), span.from)) span.from = x.front();
@@ -42,8 +42,9 @@ Span common_span(int by, const std::vector<const Curve*>& curves) {
 }
 
 // One channel of a curve at equally spaced stations 1 ... S of the span.
-std::vector<double> at_stations(const Curve& curve, std::size_t channel, int by, const Span& span) {
-    const auto x = over(curve, by), y = curve.channel(channel);
+std::vector<double> at_stations(const Curve& curve, std::size_t channel, int x_channel,
+                                const Span& span) {
+    const auto x = x_values(curve, x_channel), y = curve.channel(channel);
     std::vector<double> values;
     for (int s = 1; s <= stations; ++s)
         values.push_back(
@@ -56,12 +57,12 @@ std::vector<double> at_stations(const Curve& curve, std::size_t channel, int by,
 // The channel in which all curves are monotonic, or the reason why there is none.
 Abscissa common_abscissa(const std::vector<Channel>& channels,
                          const std::vector<const Curve*>& curves) {
-    const int by = default_abscissa(channels, *curves.front());
+    const int x_channel = default_abscissa(channels, *curves.front());
     for (const Curve* curve : curves)
-        if (const Abscissa found = abscissa(channels, by, *curves.front(), *curve);
+        if (const Abscissa found = abscissa(channels, x_channel, *curves.front(), *curve);
             !found.why_not.empty())
             return found;
-    return {by, ""};
+    return {x_channel, ""};
 }
 
 double rms(const std::vector<double>& values) {
@@ -145,19 +146,19 @@ void add_order(ChannelStudy& study, const std::vector<int>& steps,
     study.as_formal = agrees_with_formal(study.order.order, study.order.order_error, formal);
 }
 
-ChannelStudy study_channel(const StudiedLevels& levels, std::size_t channel, int by,
+ChannelStudy study_channel(const StudiedLevels& levels, std::size_t channel, int x_channel,
                            const Span& span) {
     const auto& [steps, curves, references, formal] = levels;
     ChannelStudy result;
-    const auto truth = at_stations(references.truth.curve, channel, by, span);
+    const auto truth = at_stations(references.truth.curve, channel, x_channel, span);
     result.uncertainty =
-        largest(difference(at_stations(references.other.curve, channel, by, span), truth));
+        largest(difference(at_stations(references.other.curve, channel, x_channel, span), truth));
     const auto [low, high] = std::ranges::minmax(truth);
     const double start = references.truth.curve.values.front()[channel];
     result.range = std::max(high, start) - std::min(low, start);
 
     std::vector<std::vector<double>> values;
-    for (const auto& curve : curves) values.push_back(at_stations(curve, channel, by, span));
+    for (const auto& curve : curves) values.push_back(at_stations(curve, channel, x_channel, span));
     result.end = at_station(steps, values, stations - 1, formal, result.uncertainty);
     const auto limit = own_limit(steps, values, formal);
     if (result.end.behaviour == Behaviour::converging && result.end.limit != limit.back()) {

@@ -18,9 +18,8 @@ struct Wrench {
 struct Equilibrium {
     double load = 0;          // load factor a of the branch
     std::vector<Pose> poses;  // one per Model::bodies
-    std::vector<Wrench>
-        // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
-        reactions;
+    // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
+    std::vector<Wrench> reactions;
     // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
     double constraint_error = 0;
 };

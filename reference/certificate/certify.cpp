@@ -177,8 +177,8 @@ Extent unique_around(const StateAt& at, const Approximate& found, double t) {
 bool none_within(const StateAt& at, const Tolerance& tolerance) {
     const System& system = at.system;
     const double load = at.state.load;
-    const Problem problem{system, border_at(system, at.z, load, little_is_nothing), at.z, false, {},
-                          {}};
+    const Problem problem{
+        system, border_at(system, at.z, load, loose_zero_tolerance), at.z, false, {}, {}};
     const Index n = system.n(), k = problem.border.count();
     const VectorXd delta = radii(at, tolerance);
     if (!delta.head(7 * system.bodies).allFinite()) return false;

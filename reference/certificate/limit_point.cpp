@@ -140,7 +140,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     const StateAt mapped = state_at(system, state);
     if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
 
-    Problem at_fixed_a{system,   border_at(system, mapped.z, state.load, little_is_nothing),
+    Problem at_fixed_a{system,   border_at(system, mapped.z, state.load, loose_zero_tolerance),
                        mapped.z, false,
                        {},       {}};
     const Index n = at_fixed_a.size() + 1;

@@ -13,7 +13,12 @@ namespace elastocheck::reports {
 std::vector<std::string> words_of(std::string_view line);
 
 struct ProcessResult {
-    enum class How { by_itself, by_signal, too_long, not_started } how = How::by_itself;
+    enum class How {
+        by_itself,   // it returned an exit code
+        by_signal,   // a signal ended it
+        too_long,    // it ran longer than the limit, and was killed
+        not_started  // the system could not run it
+    } how = How::by_itself;
     int code = 0;             // exit code, signal, or errno
     std::string output_text;  // last part of its standard error and output
 

@@ -32,29 +32,29 @@ struct Equilibrated {
     VectorXd D_r, D_c;
 };
 Equilibrated equilibrated(const MatrixXd& A) {
-    Equilibrated of{A.sparseView(), VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
+    Equilibrated result{A.sparseView(), VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
     const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
     VectorXd r(A.rows()), c(A.cols());
     for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
         r.setZero(), c.setZero();
         for (Index j = 0; j < A.cols(); ++j)
-            for (Sparse::InnerIterator at(of.A, j); at; ++at) {
-                const double size = std::abs(at.value());
-                r[at.row()] = std::max(r[at.row()], size);
+            for (Sparse::InnerIterator entry(result.A, j); entry; ++entry) {
+                const double size = std::abs(entry.value());
+                r[entry.row()] = std::max(r[entry.row()], size);
                 c[j] = std::max(c[j], size);
             }
         r = r.unaryExpr(scale);
         c = c.unaryExpr(scale);
         for (Index j = 0; j < A.cols(); ++j)
-            for (Sparse::InnerIterator at(of.A, j); at; ++at)
-                at.valueRef() = r[at.row()] * at.value() * c[j];
-        of.D_r.array() *= r.array();
-        of.D_c.array() *= c.array();
+            for (Sparse::InnerIterator entry(result.A, j); entry; ++entry)
+                entry.valueRef() = r[entry.row()] * entry.value() * c[j];
+        result.D_r.array() *= r.array();
+        result.D_c.array() *= c.array();
     }
-    return of;
+    return result;
 }
 
-// Null space of A: orthonormal columns x with A x = 0, up to `nothing`.
+// Null space of A: orthonormal columns x with A x = 0 up to `zero_tolerance`, for rows of size one.
 MatrixXd null_space(const MatrixXd& A, double zero_tolerance) {
     const Index n = A.cols();
     if (A.size() == 0) return MatrixXd::Identity(n, n);
@@ -64,10 +64,10 @@ MatrixXd null_space(const MatrixXd& A, double zero_tolerance) {
 }
 // Scales the rows to size one and returns the factors.
 VectorXd normalise(MatrixXd& A) {
-    const VectorXd by =
+    const VectorXd factors =
         A.rowwise().norm().unaryExpr([](double size) { return size > 0 ? 1 / size : 1; });
-    A = by.asDiagonal() * A;
-    return by;
+    A = factors.asDiagonal() * A;
+    return factors;
 }
 
 // Removes rounding from the columns and scales them to size one.
@@ -159,7 +159,7 @@ std::vector<Interval> box(const VectorXd& middle, const VectorXd& radius) {
     return y;
 }
 
-double rounding_is_nothing(const System& system) {
+double zero_tolerance_of_rounding(const System& system) {
     constexpr double unit = std::numeric_limits<double>::epsilon(), operations = 1024;
     return operations * unit * system.farthest / system.length;
 }
@@ -173,14 +173,14 @@ VectorXd rounding_of_equations(const System& system, const VectorXd& z, double a
         size.segment<3>(system.balance(b) + 3).setConstant(acts * system.length);
     }
     size.segment(6 * system.bodies, system.rows) = constraint_sizes(system);
-    return rounding_is_nothing(system) * size;
+    return zero_tolerance_of_rounding(system) * size;
 }
 
 Border border_at(const System& system, const VectorXd& z, double a, double zero_tolerance) {
     const Index nb = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
     Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
-    const auto at = evaluate(system, doubles(z), a, Slopes::yes);
-    const MatrixXd J = square(at.J, n);
+    const auto values = evaluate(system, doubles(z), a, Slopes::yes);
+    const MatrixXd J = square(values.J, n);
     if (!J.allFinite() || nb == 0) return border;
     // The condition estimate is meaningless for a matrix with a pivot that is rounding.
     const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(equilibrated(J).A));
@@ -206,11 +206,11 @@ Border border_at(const System& system, const VectorXd& z, double a, double zero_
     }
     const MatrixXd Z = null_space(G, zero_tolerance);
     const Geometry fixed = geometry(system, doubles(z), a);
-    const double most = *std::ranges::max_element(fixed.acts);
+    const double largest = *std::ranges::max_element(fixed.acts);
     VectorXd acts(nb), in_forces(nb);  // moments over L
     for (Index k = 0; k < nb; ++k) {
         const double on_body = fixed.acts[static_cast<std::size_t>(k / 6)];
-        acts[k] = on_body > 0 ? on_body : most > 0 ? most : 1;
+        acts[k] = on_body > 0 ? on_body : largest > 0 ? largest : 1;
         in_forces[k] = k % 6 < 3 ? 1 : 1 / system.length;
     }
     const VectorXd weight = in_forces.cwiseQuotient(acts);
@@ -234,10 +234,10 @@ Border border_at(const System& system, const VectorXd& z, double a, double zero_
     border.U.topRightCorner(nb, i) = U;
     border.g.topRightCorner(poses, i) = g;
 
-    const Eigen::Map<const VectorXd> E(at.E.data(), n);
+    const Eigen::Map<const VectorXd> E(values.E.data(), n);
     const VectorXd work = v.transpose() * (in_forces.asDiagonal() * E.head(nb)),
-                   of = v.cwiseAbs().transpose() * acts;
-    border.pushed = (work.array().abs() > zero_tolerance * of.array()).any();
+                   work_of_acting_forces = v.cwiseAbs().transpose() * acts;
+    border.pushed = (work.array().abs() > zero_tolerance * work_of_acting_forces.array()).any();
     const VectorXd gap = y.transpose() * E.segment(nb, m);
     const VectorXd size = constraint_sizes(system);
     border.open =
@@ -314,19 +314,19 @@ void add_border(const Problem& problem, const std::vector<S>& y, std::vector<S>&
 }
 
 template <class S>
-std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& of) {
+std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& values) {
     const Index n = problem.n(), k = problem.border.count(), size = problem.size();
     std::vector<S> J(static_cast<std::size_t>(size * size), constant<S>(0.));
     const auto at = [&](Index i, Index j) -> S& {
         return J[static_cast<std::size_t>(i * size + j)];
     };
     for (Index i = 0; i < n; ++i) {
-        for (Index j = 0; j < n; ++j) at(i, j) = of.J[static_cast<std::size_t>(i * n + j)];
+        for (Index j = 0; j < n; ++j) at(i, j) = values.J[static_cast<std::size_t>(i * n + j)];
         for (Index j = 0; j < k; ++j) {
             at(i, n + j) = constant<S>(problem.border.U(i, j));
             at(n + j, i) = constant<S>(problem.border.g(i, j));
         }
-        if (problem.a_is_unknown) at(i, size - 1) = of.E_a[static_cast<std::size_t>(i)];
+        if (problem.a_is_unknown) at(i, size - 1) = values.E_a[static_cast<std::size_t>(i)];
     }
     for (Index i = 0; problem.a_is_unknown && i < size; ++i)
         at(size - 1, i) = constant<S>(problem.t[i]);
@@ -337,19 +337,19 @@ std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& of) {
 
 template <class S>
 Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a) {
-    Values<S> of = evaluate_without_slopes(problem.system, poses_and_reactions(problem, y),
-                                           parameter(problem, y, a));
-    add_border(problem, y, of.E);
-    return of;
+    Values<S> values = evaluate_without_slopes(problem.system, poses_and_reactions(problem, y),
+                                               parameter(problem, y, a));
+    add_border(problem, y, values.E);
+    return values;
 }
 template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes) {
     if (slopes == Slopes::no) return evaluate_without_slopes(problem, y, a);
-    Values<S> of =
+    Values<S> values =
         evaluate(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a), slopes);
-    add_border(problem, y, of.E);
-    if (problem.size() > problem.n()) of.J = bordered_slopes(problem, of);
-    return of;
+    add_border(problem, y, values.E);
+    if (problem.size() > problem.n()) values.J = bordered_slopes(problem, values);
+    return values;
 }
 template Values<double> evaluate(const Problem&, const std::vector<double>&, const double&, Slopes);
 template Values<Interval> evaluate(const Problem&, const std::vector<Interval>&, const Interval&,
@@ -377,12 +377,12 @@ Inverted inverted(const MatrixXd& J) {
     const auto [A, D_r, D_c] = equilibrated(J);
     const Eigen::SparseLU<Sparse> lu(A);
     if (lu.info() != Eigen::Success) return none();
-    Inverted of{lu.solve(MatrixXd::Identity(n, n))};
+    Inverted result{lu.solve(MatrixXd::Identity(n, n))};
     double size = 0;
     for (Index j = 0; j < n; ++j) size = std::max(size, A.col(j).cwiseAbs().sum());
-    of.rcond = 1 / (size * of.Y.cwiseAbs().colwise().sum().maxCoeff());
-    of.Y = D_c.asDiagonal() * of.Y * D_r.asDiagonal();
-    return of;
+    result.rcond = 1 / (size * result.Y.cwiseAbs().colwise().sum().maxCoeff());
+    result.Y = D_c.asDiagonal() * result.Y * D_r.asDiagonal();
+    return result;
 }
 
 }  // namespace
@@ -394,10 +394,10 @@ MatrixXd inverse(const MatrixXd& J) { return inverted(J).Y; }
 // not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
 // point this is rounding.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
-    constexpr int most = 12, last = 2, max_anew = 3;
+    constexpr int max_steps = 12, max_shared = 2, max_anew = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
     const double rounding = problem.system.separated.empty() ? 1e-13 : 1e-15;
-    Approximate at{from, {}};
+    Approximate approximate{from, {}};
     const auto size_of = [&](const VectorXd& step) {
         double size = 0;
         for (int b = 0; b < problem.system.bodies; ++b) {
@@ -407,46 +407,50 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         }
         return size;
     };
-    double before = std::numeric_limits<double>::infinity();
+    double last_size = std::numeric_limits<double>::infinity();
     bool share = false;
-    for (int step = 0, shared = 0, anew = 0; shared < last && (at.settled || step < most); ++step) {
-        const Values<double> of =
-            evaluate(problem, doubles(at.y), a, share ? Slopes::no : Slopes::yes);
+    for (int step = 0, shared = 0, anew = 0;
+         shared < max_shared && (approximate.settled || step < max_steps); ++step) {
+        const Values<double> values =
+            evaluate(problem, doubles(approximate.y), a, share ? Slopes::no : Slopes::yes);
         if (!share) {
-            Inverted inverse = inverted(square(of.J, problem.size()));
-            at.Y = std::move(inverse.Y);
-            at.rcond = inverse.rcond;
-            at.since = 0;
+            Inverted inverse = inverted(square(values.J, problem.size()));
+            approximate.Y = std::move(inverse.Y);
+            approximate.rcond = inverse.rcond;
+            approximate.since = 0;
         }
-        const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
-        if (!dy.allFinite()) return {at.y, at.Y, false};
-        at.y += dy;
+        const VectorXd dy =
+            -approximate.Y * Eigen::Map<const VectorXd>(values.E.data(), problem.size());
+        if (!dy.allFinite()) return {approximate.y, approximate.Y, false};
+        approximate.y += dy;
         const double size = size_of(dy);
-        at.since += size;
-        at.settled = at.settled || size < close;
+        approximate.since += size;
+        approximate.settled = approximate.settled || size < close;
         shared += share ? 1 : 0;
-        const bool other_side = share && !(size < before / 4 || size < rounding) && anew < max_anew;
-        share = at.settled && !other_side;
+        const bool other_side =
+            share && !(size < last_size / 4 || size < rounding) && anew < max_anew;
+        share = approximate.settled && !other_side;
         if (other_side) {
             shared = 0;
             ++anew;
         }
-        before = size;
+        last_size = size;
     }
-    at.settled = at.settled && size_of(at.y - from) <= near;
-    return at;
+    approximate.settled = approximate.settled && size_of(approximate.y - from) <= near;
+    return approximate;
 }
 
 BorderCheck check_border(const Problem& problem, const VectorXd& y, double a) {
     const System& system = problem.system;
-    const Border there = border_at(system, y.head(system.n()), a, rounding_is_nothing(system));
+    const Border there =
+        border_at(system, y.head(system.n()), a, zero_tolerance_of_rounding(system));
     const bool alike =
         there.redundant == problem.border.redundant && there.count() == problem.border.count();
     return {alike && !there.pushed && !there.open, alike && there.pushed, alike && there.open};
 }
 
 NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double a) {
-    const double rounding = rounding_is_nothing(system);
+    const double rounding = zero_tolerance_of_rounding(system);
     const auto from = [&](const VectorXd& start, double zero_tolerance) {
         Problem problem{system, border_at(system, start, a, zero_tolerance), z, false, {}, {}};
         VectorXd y = VectorXd::Zero(problem.size());
@@ -469,7 +473,7 @@ NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double
     if (arrives(first.there)) return first;
     // Away from an equilibrium an idle motion has some stiffness, and Newton's method would diverge
     // along it. So these motions are held first, by the looser threshold.
-    NearEquilibrium held = from(z, little_is_nothing);
+    NearEquilibrium held = from(z, loose_zero_tolerance);
     if (!held.found.settled) return first;
     NearEquilibrium again = from(held.found.y.head(system.n()), rounding);
     return arrives(again.there) ? again : held;

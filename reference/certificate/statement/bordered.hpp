@@ -32,11 +32,12 @@ struct Border {
 //                   (B: slopes of the balances at constant elastic forces, Cᵀ: those of reactions)
 //
 // G contains no stiffness, and B only that of loads and preloads: a soft motion is not idle,
-// however stiff its neighbours are. Values count as zero below `nothing`, relative to a row of G of
-// size one and to the acting forces on the moving bodies. At an equilibrium this is the rounding of
-// stored coordinates (rounding_is_nothing), at a state near one it is larger (little_is_nothing).
-double rounding_is_nothing(const System& system);
-constexpr double little_is_nothing = 1e-5;
+// however stiff its neighbours are. Values count as zero below `zero_tolerance`, relative to a row
+// of G of size one and to the acting forces on the moving bodies. At an equilibrium this is the
+// rounding of stored coordinates (zero_tolerance_of_rounding), at a state near one it is larger
+// (loose_zero_tolerance).
+double zero_tolerance_of_rounding(const System& system);
+constexpr double loose_zero_tolerance = 1e-5;
 // The rounding of each equation [n]: relative to the forces on its body, to L or to a direction.
 Eigen::VectorXd rounding_of_equations(const System& system, const Eigen::VectorXd& z, double a);
 Border border_at(const System& system, const Eigen::VectorXd& z, double a, double zero_tolerance);

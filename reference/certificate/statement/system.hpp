@@ -82,7 +82,10 @@ struct System {
 
 // Throws std::invalid_argument where model and branch do not fit, or a driver moves a quantity that
 // does not exist.
-enum class Corners { in_place, separated };
+enum class Corners {
+    in_place,  // a law with a corner is evaluated inside its element
+    separated  // its deformation and its force are unknowns of their own
+};
 System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
 bool has_corners(const Model& model);
 // Largest number of unknowns for a proof. Its matrices are dense, so its time grows with the cube

@@ -47,22 +47,22 @@ struct GoalsFile {
 
 // Reads a word; a mistake has its place in the file.
 template <class Read>
-auto at_place(const Cursor& at, const Read& read) {
+auto at_place(const Cursor& entry, const Read& read) {
     try {
         return read();
     } catch (const std::invalid_argument& error) {
-        at.fail(error.what());
+        entry.fail(error.what());
     }
 }
-Figure figure_at(const Cursor& at, const std::string& word, const Model& model) {
-    return at_place(at, [&] { return parse_figure(word, model); });
+Figure figure_at(const Cursor& entry, const std::string& word, const Model& model) {
+    return at_place(entry, [&] { return parse_figure(word, model); });
 }
 
-void read_band(const Cursor& at, Goal& goal) {
-    const auto within = at.optional("within"), least = at.optional("at_least"),
-               most = at.optional("at_most");
+void read_band(const Cursor& entry, Goal& goal) {
+    const auto within = entry.optional("within"), least = entry.optional("at_least"),
+               most = entry.optional("at_most");
     if (within.has_value() == (least || most))
-        at.fail(
+        entry.fail(
             "allowed: either within: [LOW, HIGH], or at_least: LOW and at_most: HIGH or one of "
             "them");
     if (within) {
@@ -71,13 +71,14 @@ void read_band(const Cursor& at, Goal& goal) {
     }
     if (least) goal.low = least->number();
     if (most) goal.high = most->number();
-    if (!(goal.low < goal.high)) at.fail("the lower bound is not below the upper one");
+    if (!(goal.low < goal.high)) entry.fail("the lower bound is not below the upper one");
 }
 
 // A point of a curve at another place.
-Figure moved_to(const Goal& goal, Figure point, double at) {
-    point.at = at;
-    point.place = fmt::format("{} = {:g} {}", goal.along, goal.along_factor * at, goal.along_unit);
+Figure moved_to(const Goal& goal, Figure point, double place) {
+    point.at = place;
+    point.place =
+        fmt::format("{} = {:g} {}", goal.along, goal.along_factor * place, goal.along_unit);
     return point;
 }
 
@@ -87,27 +88,29 @@ VectorXd put_on_branches(const Scene& scene, const Model& model, std::vector<Fig
     for (const Branch& branch : model.branches) {
         std::vector<Figure> here = points;
         for (Figure& point : here) point.branch = branch.name;
-        const VectorXd found = compare::figure_values(scene, here).value;
+        const VectorXd here_values = compare::figure_values(scene, here).value;
         for (std::size_t k = 0; k < points.size(); ++k)
             if (const auto i = static_cast<Index>(k);
-                std::isnan(values[i]) && !std::isnan(found[i]))
-                points[k].branch = branch.name, values[i] = found[i];
+                std::isnan(values[i]) && !std::isnan(here_values[i]))
+                points[k].branch = branch.name, values[i] = here_values[i];
     }
     return values;
 }
 
-void add_curve(const Cursor& at, const LoadedScene& loaded, const std::string& name, Goal& goal) {
+void add_curve(const Cursor& entry, const LoadedScene& loaded, const std::string& name,
+               Goal& goal) {
     const Model& model = loaded.model;
-    const double from = at.require("from").number(), to = at.require("to").number();
-    if (!(from < to)) at.fail("from is not below to");
-    const auto count = at.optional("points"), branch = at.optional("branch"),
-               over = at.optional("over");
+    const double from = entry.require("from").number(), to = entry.require("to").number();
+    if (!(from < to)) entry.fail("from is not below to");
+    const auto count = entry.optional("points"), branch = entry.optional("branch"),
+               over = entry.optional("over");
     const int points = count ? count->whole_number(2, 1000) : default_points;
     if (name.find('@') != name.npos && goal.points.front().name != name)
-        at.require("figure").fail("of a curve without @; its place is branch, over, from and to");
+        entry.require("figure").fail(
+            "of a curve without @; its place is branch, over, from and to");
     const std::string on =
         branch ? branch->text("a branch of the scene") : model.branches.front().name;
-    Figure point = figure_at(branch ? *branch : at, name + "@" + on, model);
+    Figure point = figure_at(branch ? *branch : entry, name + "@" + on, model);
     if (over) {
         const Figure abscissa = figure_at(*over, over->text("an output of the scene"), model);
         point.over = goal.along = abscissa.name, goal.along_unit = abscissa.unit;
@@ -117,7 +120,7 @@ void add_curve(const Cursor& at, const LoadedScene& loaded, const std::string& n
             compare::unit_of(std::ranges::find(model.branches, on, &Branch::name)->unit);
         goal.along = on, goal.along_unit = symbol(unit), goal.along_factor = compare::in_unit(unit);
         for (const double end : {from, to})
-            (void)figure_at(at, fmt::format("{}@{}:{}", name, on, end), model);
+            (void)figure_at(entry, fmt::format("{}@{}:{}", name, on, end), model);
     }
     goal.where = fmt::format("{} from {:g} to {:g} {}{}", goal.along, from, to, goal.along_unit,
                              over && branch ? " on " + on : "");
@@ -132,42 +135,42 @@ void add_curve(const Cursor& at, const LoadedScene& loaded, const std::string& n
     const VectorXd reached = put_on_branches(loaded.scene, model, places);
     for (std::size_t k = 0; k < places.size(); ++k) {
         if (std::isnan(reached[static_cast<Index>(k)]))
-            at.fail(fmt::format("no branch reaches {} = {:g}", goal.along, places[k].at));
+            entry.fail(fmt::format("no branch reaches {} = {:g}", goal.along, places[k].at));
         goal.points[k].branch = places[k].branch;
     }
 }
 
-Goal read_goal(const Cursor& at, const LoadedScene& loaded) {
-    at.only_keys({"figure", "within", "at_least", "at_most", "branch", "over", "from", "to",
-                  "points", "change"});
-    const Cursor figure = at.require("figure");
+Goal read_goal(const Cursor& entry, const LoadedScene& loaded) {
+    entry.only_keys({"figure", "within", "at_least", "at_most", "branch", "over", "from", "to",
+                     "points", "change"});
+    const Cursor figure = entry.require("figure");
     const std::string& name = figure.text("an output of the scene");
-    Goal goal{.line = at.value->line};
-    read_band(at, goal);
+    Goal goal{.line = entry.value->line};
+    read_band(entry, goal);
     goal.points = {figure_at(figure, name, loaded.model)};
     goal.where = goal.points.front().place;
-    if (at.optional("from") || at.optional("to"))
-        add_curve(at, loaded, name, goal);
+    if (entry.optional("from") || entry.optional("to"))
+        add_curve(entry, loaded, name, goal);
     else
         for (const char* field : {"branch", "over", "points"})
-            if (const auto extra = at.optional(field))
+            if (const auto extra = entry.optional(field))
                 extra->fail(
                     "only of a curve, with from and to; a point is OUTPUT@BRANCH:PARAMETER");
-    const auto change = at.optional("change");
+    const auto change = entry.optional("change");
     for (Figure& point : goal.points) point.change = change && change->yes_or_no();
     return goal;
 }
 
-void add_varied(const Cursor& at, const std::string& name, const Scene& scene,
+void add_varied(const Cursor& entry, const std::string& name, const Scene& scene,
                 compare::Varied& varied) {
-    const auto limits = at.list(2, "limits, [LOW, HIGH]");
+    const auto limits = entry.list(2, "limits, [LOW, HIGH]");
     const double low = limits[0].number(), high = limits[1].number();
     const std::size_t before = varied.numbers.size();
-    at_place(at, [&] { add_numbers(varied, scene, name, low, high); });
+    at_place(entry, [&] { add_numbers(varied, scene, name, low, high); });
     for (const Number& number : std::span(varied.numbers).subspan(before))
         if (!(number.value >= low && number.value <= high))
-            at.fail(fmt::format("{} is {:g} in the scene, which is not within {:g} to {:g}",
-                                number.path, number.value, low, high));
+            entry.fail(fmt::format("{} is {:g} in the scene, which is not within {:g} to {:g}",
+                                   number.path, number.value, low, high));
 }
 
 // reports/README.md, "Goals". Curves over an output are placed on the branches of the scene as it
@@ -177,28 +180,29 @@ GoalsFile read_goals(const std::string& file, const LoadedScene& loaded) {
     std::vector<Number> ignored;
     const Cursor whole{&tree, "", &file, &ignored};
     whole.only_keys({"vary", "goals", "minimise"});
-    GoalsFile all;
+    GoalsFile result;
     const Cursor vary = whole.require("vary");
     if (vary.value->kind != reader::Value::Kind::map || vary.value->keys.empty())
         vary.fail("expected numbers with their limits, such as points.tie_rod_inner.z: [260, 340]");
     for (std::size_t k = 0; k < vary.value->keys.size(); ++k) {
         const std::string& name = vary.value->keys[k];
         add_varied(vary.at(vary.value->items[k], reader::child_path(vary.path, name)), name,
-                   loaded.scene, all.varied);
+                   loaded.scene, result.varied);
     }
     const auto goals = whole.optional("goals"), minimised = whole.optional("minimise");
     if (goals) {
         if (!goals->is_list())
             goals->fail("expected a list of goals, such as - {figure: toe, within: [-0.1, 0.1]}");
-        for (const Cursor& goal : goals->items()) all.goals.push_back(read_goal(goal, loaded));
+        for (const Cursor& goal : goals->items()) result.goals.push_back(read_goal(goal, loaded));
     }
     if (minimised) {
-        all.minimised =
+        result.minimised =
             figure_at(*minimised, minimised->text("an output of the scene"), loaded.model);
-        all.minimised_line = minimised->value->line;
+        result.minimised_line = minimised->value->line;
     }
-    if (all.goals.empty() && !all.minimised) whole.fail("neither goals nor a figure to minimise");
-    return all;
+    if (result.goals.empty() && !result.minimised)
+        whole.fail("neither goals nor a figure to minimise");
+    return result;
 }
 
 // ---- The search.
@@ -217,26 +221,26 @@ struct GoalFigures {
     }
 };
 GoalFigures figures_of(const std::vector<Goal>& goals, const std::optional<Figure>& minimised) {
-    GoalFigures all;
+    GoalFigures result;
     for (std::size_t g = 0; g < goals.size(); ++g)
         for (const Figure& point : goals[g].points)
-            all.add(point, static_cast<int>(g), goals[g].low, goals[g].high);
+            result.add(point, static_cast<int>(g), goals[g].low, goals[g].high);
     if (minimised) {
-        all.bands.minimised = static_cast<int>(all.figures.size());
-        all.add(*minimised, static_cast<int>(goals.size()), -INFINITY, INFINITY);
+        result.bands.minimised = static_cast<int>(result.figures.size());
+        result.add(*minimised, static_cast<int>(goals.size()), -INFINITY, INFINITY);
     }
-    return all;
+    return result;
 }
 
 // Adds the points of the curves between theirs at which they are outside of their bands. Returns the
 // furthest.
-std::optional<compare::Between> add_points_outside(const compare::OptimisedScene& all,
+std::optional<compare::Between> add_points_outside(const compare::OptimisedScene& optimised,
                                                    const Model& model, std::vector<Goal>& goals) {
-    const Scene scene = all.varied.scene(all.optimum.p);
+    const Scene scene = optimised.varied.scene(optimised.optimum.p);
     std::optional<compare::Between> worst;
     Index first = 0;
     for (Goal& goal : goals) {
-        const double within = between_within * all.optimum.scale[first];
+        const double within = between_within * optimised.optimum.scale[first];
         first += std::ssize(goal.points);
         std::vector<Figure> between;
         for (std::size_t k = 0; k + 1 < goal.points.size(); ++k)
@@ -266,55 +270,60 @@ std::optional<compare::Between> add_points_outside(const compare::OptimisedScene
 struct Searching {
     const OptimiseRequest& request;
     const LoadedScene& loaded;
-    compare::OptimisedScene& all;
+    compare::OptimisedScene& optimised;
 
     void write(const VectorXd& p, bool met, bool last) const {
         request.write(fmt::format("optimise: {}{}{}", last ? "" : "not finished, ",
                                   met ? "" : "nearest to ", request.file),
-                      all.varied, p, last);
+                      optimised.varied, p, last);
     }
-    compare::Optimum search(const GoalFigures& of, const std::vector<VectorXd>& starts) const {
-        return compare::optimise(
-            compare::solved_figures(all.varied, of.figures, threads_of(request.running)), of.bands,
-            all.varied, starts, progress,
-            [&](const VectorXd& p, bool met) { write(p, met, false); });
+    compare::Optimum search(const GoalFigures& goal_figures,
+                            const std::vector<VectorXd>& starts) const {
+        return compare::optimise(compare::solved_figures(optimised.varied, goal_figures.figures,
+                                                         threads_of(request.running)),
+                                 goal_figures.bands, optimised.varied, starts, progress,
+                                 [&](const VectorXd& p, bool met) { write(p, met, false); });
     }
     void add_points(const std::vector<VectorXd>& starts) const {
-        for (int round = 0; all.optimum.met; ++round) {
-            std::vector<Goal> goals = all.goals;
-            all.between = add_points_outside(all, loaded.model, goals);
-            if (!all.between || round == max_rounds || !std::isfinite(all.between->excess)) return;
-            const GoalFigures of = figures_of(goals, all.minimised);
-            compare::Optimum next = search(of, {all.optimum.p});
-            if (!next.met) next = search(of, starts);
+        for (int round = 0; optimised.optimum.met; ++round) {
+            std::vector<Goal> goals = optimised.goals;
+            optimised.between = add_points_outside(optimised, loaded.model, goals);
+            if (!optimised.between || round == max_rounds ||
+                !std::isfinite(optimised.between->excess))
+                return;
+            const GoalFigures goal_figures = figures_of(goals, optimised.minimised);
+            compare::Optimum next = search(goal_figures, {optimised.optimum.p});
+            if (!next.met) next = search(goal_figures, starts);
             if (next.best < 0) return;  // an added point has no value in the scene as it is
-            all.goals = std::move(goals), all.figures = of.figures, all.optimum = std::move(next);
+            optimised.goals = std::move(goals), optimised.figures = goal_figures.figures,
+            optimised.optimum = std::move(next);
         }
     }
 };
 
 // A goal that does not move is refused unless it is met, which is noted.
-void judge_still(const GoalsFile& file, const std::string& name, const GoalFigures& of,
-                 compare::OptimisedScene& all) {
-    for (std::size_t g = 0; g < all.optimum.still.size(); ++g) {
-        if (!all.optimum.still[g]) continue;
-        const bool is_goal = g < all.goals.size();
+void judge_still(const GoalsFile& file, const std::string& name, const GoalFigures& goal_figures,
+                 compare::OptimisedScene& optimised) {
+    for (std::size_t g = 0; g < optimised.optimum.still.size(); ++g) {
+        if (!optimised.optimum.still[g]) continue;
+        const bool is_goal = g < optimised.goals.size();
         bool met = is_goal;
         std::size_t last = 0;
-        for (std::size_t k = 0; k < of.figures.size(); ++k)
-            if (of.bands.goal[k] == static_cast<int>(g)) {
+        for (std::size_t k = 0; k < goal_figures.figures.size(); ++k)
+            if (goal_figures.bands.goal[k] == static_cast<int>(g)) {
                 const auto i = static_cast<Index>(k);
-                const double value = all.optimum.start.value[i];
-                met = met && value >= of.bands.low[i] && value <= of.bands.high[i];
+                const double value = optimised.optimum.start.value[i];
+                met = met && value >= goal_figures.bands.low[i] &&
+                      value <= goal_figures.bands.high[i];
                 last = k;
             }
-        const std::string why = compare::why_still(all.varied, of.figures[last]);
+        const std::string why = compare::why_still(optimised.varied, goal_figures.figures[last]);
         if (!met)
-            reader::fail(
-                name, is_goal ? all.goals[g].line : file.minimised_line,
-                is_goal ? "goals" : "minimise",
-                fmt::format("{}: none of the numbers moves it:\n  {}", of.figures[last].name, why));
-        all.goals[g].not_moved = why;
+            reader::fail(name, is_goal ? optimised.goals[g].line : file.minimised_line,
+                         is_goal ? "goals" : "minimise",
+                         fmt::format("{}: none of the numbers moves it:\n  {}",
+                                     goal_figures.figures[last].name, why));
+        optimised.goals[g].not_moved = why;
     }
 }
 
@@ -340,26 +349,31 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     GoalsFile file = read_goals(request.file, loaded);
     set_scene(file.varied, request.scene, request.settings);
-    const GoalFigures of = figures_of(file.goals, file.minimised);
-    compare::OptimisedScene all{file.varied, file.goals, file.minimised, of.figures};
-    const Searching searching{request, loaded, all};
+    const GoalFigures goal_figures = figures_of(file.goals, file.minimised);
+    compare::OptimisedScene optimised{file.varied, file.goals, file.minimised,
+                                      goal_figures.figures};
+    const Searching searching{request, loaded, optimised};
     const auto starts = compare::starts_of(file.varied, request.starts);
-    all.optimum = searching.search(of, starts);
-    if (!all.optimum.start.complete()) {
+    optimised.optimum = searching.search(goal_figures, starts);
+    if (!optimised.optimum.start.complete()) {
         progress("");
-        print_error("{}\n", why_not_solved(all.varied, all.figures, all.varied.start));
+        print_error("{}\n",
+                    why_not_solved(optimised.varied, optimised.figures, optimised.varied.start));
         return could_not_judge;
     }
-    judge_still(file, request.file, of, all);
-    all.searches = all.optimum.searches;
+    judge_still(file, request.file, goal_figures, optimised);
+    optimised.searches = optimised.optimum.searches;
     searching.add_points(starts);
-    const Scene changed = all.varied.scene(all.optimum.p);
-    all.by = compare::confirm(changed, all.figures, all.optimum.after, all.optimum.scale);
-    if (all.optimum.met)
-        all.certificate = certificate(changed, all.figures, threads_of(request.running));
+    const Scene changed = optimised.varied.scene(optimised.optimum.p);
+    optimised.by = compare::confirm(changed, optimised.figures, optimised.optimum.after,
+                                    optimised.optimum.scale);
+    if (optimised.optimum.met)
+        optimised.certificate =
+            certificate(changed, optimised.figures, threads_of(request.running));
     progress("");
-    const int code = deliver_result(delivery, document_of(loaded, request.scene), result_of(all));
-    searching.write(all.optimum.p, all.optimum.met, true);
+    const int code =
+        deliver_result(delivery, document_of(loaded, request.scene), result_of(optimised));
+    searching.write(optimised.optimum.p, optimised.optimum.met, true);
     return code;
 }
 
