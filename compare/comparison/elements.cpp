@@ -38,12 +38,14 @@ bool stands(const Elastic& elastic, int k, const Branch& branch) {
            });
 }
 
-// Deformation and force of an element in a state; without them where it is not active.
+// Deformation e [m, rad] and force s [N, N·m] of an element in a state; without them where it is
+// not active.
 struct ElementState {
     const Elastic* elastic;
     bool active;
     Vector6 e = Vector6::Zero(), s = Vector6::Zero();
 
+    // Components 0 to 5 are those of e, 6 to 11 those of s, each along x, y, z and about x, y, z.
     double component(int k) const {
         if (!active) return nan;
         const bool is_force = k >= 6;
@@ -55,15 +57,16 @@ struct ElementState {
 
 ElementState state_of(const Model& model, const Branch& branch, const Equilibrium& state, int k) {
     const Elastic& elastic = elastic_of(model, k);
-    ElementState at{&elastic, stands(elastic, k, branch)};
-    if (!at.active) return at;
-    at.e = deformation(elastic.kind, static_cast<std::size_t>(k), branch, state);
-    at.s = stress(elastic.kind, static_cast<std::size_t>(k), branch, state, at.e);
-    return at;
+    ElementState result{&elastic, stands(elastic, k, branch)};
+    if (!result.active) return result;
+    result.e = deformation(elastic.kind, static_cast<std::size_t>(k), branch, state);
+    result.s = stress(elastic.kind, static_cast<std::size_t>(k), branch, state, result.e);
+    return result;
 }
 
 // ---- Names
 
+// The components of ElementState that are outputs of the element.
 std::vector<int> components(const Elastic& elastic) {
     if (is_spring(elastic)) return {0, 6};
     if (elastic.written_as == WrittenAs::tyre) return {2, 8};
@@ -168,7 +171,7 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
     std::vector<double> values = evaluate(model, channels, state);
     // The components of an element follow each other.
     int element = -1;
-    ElementState at{};
+    ElementState element_state{};
     for (std::size_t c = 0; c < channels.size(); ++c) {
         if (const auto* of = std::get_if<Catalogued>(&channels[c].reads);
             of != nullptr && of->entry->kind == ChannelKind::element)
@@ -177,10 +180,10 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
         const auto* of = std::get_if<OfElement>(&channels[c].reads);
         if (of == nullptr) continue;
         if (of->element != element) {
-            at = state_of(model, branch, state, of->element);
+            element_state = state_of(model, branch, state, of->element);
             element = of->element;
         }
-        values[c] = in_unit(channels[c].unit) * at.component(of->component);
+        values[c] = in_unit(channels[c].unit) * element_state.component(of->component);
     }
     return values;
 }
@@ -263,23 +266,23 @@ void LargestForces::add(const Equilibrium& state) {
     const Branch& branch = side->branch;
     const auto values = evaluate(*model, *side, channels, state, *analyses);
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        LargestForce& most = largest[entry[c]];
-        if (std::isnan(most.value) || std::isnan(values[c]) ||
-            !(std::abs(values[c]) > std::max(zero_value, std::abs(most.value))))
+        LargestForce& largest_force = largest[entry[c]];
+        if (std::isnan(largest_force.value) || std::isnan(values[c]) ||
+            !(std::abs(values[c]) > std::max(zero_value, std::abs(largest_force.value))))
             continue;
-        most.output = channels[c].name;
+        largest_force.output = channels[c].name;
         if (values[c] == undefined) {
-            most.value = nan;
+            largest_force.value = nan;
             continue;
         }
-        most.value = values[c];
-        most.a = parameter_in(unit_of(branch.unit), state.load);
-        const auto* of = std::get_if<OfElement>(&channels[c].reads);
-        if (of == nullptr) continue;
-        most.deformation_unit = unit_of_component(of->component - 6);
-        most.deformation =
-            in_unit(most.deformation_unit) *
-            state_of(*model, branch, state, of->element).component(of->component - 6);
+        largest_force.value = values[c];
+        largest_force.a = parameter_in(unit_of(branch.unit), state.load);
+        const auto* read = std::get_if<OfElement>(&channels[c].reads);
+        if (read == nullptr) continue;
+        largest_force.deformation_unit = unit_of_component(read->component - 6);
+        largest_force.deformation =
+            in_unit(largest_force.deformation_unit) *
+            state_of(*model, branch, state, read->element).component(read->component - 6);
     }
 }
 

@@ -65,6 +65,7 @@ double range(const Series& s) {
     return high - low;
 }
 
+// What Allowance::rtol is a share of (gate.hpp).
 double scale(const Measurement& accepted, const Series& s) {
     if (*kind_of(s.quantity).tolerance != 0)
         return std::abs(
@@ -102,6 +103,7 @@ double noticeable(const Baseline& baseline, const Series& s) {
 // Forces within the suspension and counters of the solver, in contrast to wheel outputs.
 bool is_inner(const Offence& o) { return o.unit == "N" || o.unit == "N·m" || o.unit == "count"; }
 
+// Class of comes_before(), the first to be reported lowest.
 int rank(const Offence& o) {
     if (o.of_limit) return 0;
     const bool at_design = o.a && *o.a == 0,
@@ -130,11 +132,11 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
     const GatedBranch* branch = find(baseline.accepted, was.branch);
     const std::vector<double> places =
         branch == nullptr ? std::vector<double>{} : places_of(was.quantity, branch->a);
-    const Places of = kind_of(was.quantity).places;
-    const bool is_placed = of == Places::points || of == Places::stations;
+    const Places kind_of_places = kind_of(was.quantity).places;
+    const bool is_placed = kind_of_places == Places::points || kind_of_places == Places::stations;
     if (is_placed && places.size() != was.values.size())
         return cannot(fmt::format("has not as many numbers as its branch has {}",
-                                  of == Places::points ? "points" : "stations"));
+                                  kind_of_places == Places::points ? "points" : "stations"));
     const Allowance* tolerance = tolerance_of(tolerances, was);
     if (!sane(tolerance))
         return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
@@ -262,15 +264,17 @@ std::vector<std::string> common_branches(const Baseline& baseline, const Measure
     return common;
 }
 
-// A channel by both legs at the kept points `at`, a characteristic at the stations among them; and
-// the range of the equilibrium leg.
+// A channel by both legs at the `points` that are kept, a characteristic at the stations among
+// them; and the range of the equilibrium leg.
 void add_curves(const BranchComparison& branch, std::size_t c, const Channel& channel,
-                const GatedBranch& kept, const std::vector<std::size_t>& at, Measurement& result) {
-    const bool rate = channel.kind() == ChannelKind::characteristic, arm = is_swing_arm(channel);
-    const std::string unit = arm ? per_metre : symbol(channel.unit);
+                const GatedBranch& kept, const std::vector<std::size_t>& points,
+                Measurement& result) {
+    const bool is_rate = channel.kind() == ChannelKind::characteristic,
+               is_arm = is_swing_arm(channel);
+    const std::string unit = is_arm ? per_metre : symbol(channel.unit);
     const auto value = [&](const Curve& curve, std::size_t point) {
         const double v = curve.values[point][c];
-        return rounded(arm ? 1e3 / v : v);
+        return rounded(is_arm ? 1e3 / v : v);
     };
     const auto add = [&](Quantity quantity, std::vector<double> values, bool main) {
         result.series.push_back(
@@ -281,21 +285,21 @@ void add_curves(const BranchComparison& branch, std::size_t c, const Channel& ch
     const std::size_t before = std::min(of_r.start, of_e.start);
     const auto kept_of = [&](const Curve& curve) {
         std::vector<double> values;
-        for (const std::size_t k : at) values.push_back(value(curve, curve.start - before + k));
-        if (!rate) return values;
-        std::vector<double> few;
-        for (const std::size_t k : stations(kept.a)) few.push_back(values[k]);
-        return few;
+        for (const std::size_t k : points) values.push_back(value(curve, curve.start - before + k));
+        if (!is_rate) return values;
+        std::vector<double> at_stations;
+        for (const std::size_t k : stations(kept.a)) at_stations.push_back(values[k]);
+        return at_stations;
     };
-    add(rate ? Quantity::characteristic_recursive : Quantity::recursive, kept_of(of_r), false);
-    add(rate ? Quantity::characteristic_equilibrium : Quantity::equilibrium, kept_of(of_e),
-        rate || reads_steering_axis(channel) ? result.branches.empty() : channel.main);
-    if (!rate && !channel.kinematic()) return;
-    std::vector<double> all;
-    for (std::size_t k = 0; k < of_e.values.size(); ++k) all.push_back(value(of_e, k));
-    if (all.empty() || !all_finite(all)) all = {nan};
-    add(rate ? Quantity::range_characteristic_equilibrium : Quantity::range_equilibrium,
-        {*std::ranges::min_element(all), *std::ranges::max_element(all)}, false);
+    add(is_rate ? Quantity::characteristic_recursive : Quantity::recursive, kept_of(of_r), false);
+    add(is_rate ? Quantity::characteristic_equilibrium : Quantity::equilibrium, kept_of(of_e),
+        is_rate || reads_steering_axis(channel) ? result.branches.empty() : channel.main);
+    if (!is_rate && !channel.kinematic()) return;
+    std::vector<double> along_branch;
+    for (std::size_t k = 0; k < of_e.values.size(); ++k) along_branch.push_back(value(of_e, k));
+    if (along_branch.empty() || !all_finite(along_branch)) along_branch = {nan};
+    add(is_rate ? Quantity::range_characteristic_equilibrium : Quantity::range_equilibrium,
+        {*std::ranges::min_element(along_branch), *std::ranges::max_element(along_branch)}, false);
 }
 
 // Compliance matrices at the start of the first branch, one series per row.
@@ -383,13 +387,13 @@ Tolerances default_tolerances(ToleranceClass kind) {
 }
 
 std::vector<std::size_t> stations(const std::vector<double>& a) {
-    std::vector<std::size_t> at;
+    std::vector<std::size_t> positions;
     const std::size_t last = a.empty() ? 0 : a.size() - 1, quarter = (last + 2) / 4;
     for (std::size_t k = 0; k < a.size(); ++k)
         if (a[k] == 0 || k == 0 || k == quarter || k == last / 2 || k == last - quarter ||
             k == last)
-            at.push_back(k);
-    return at;
+            positions.push_back(k);
+    return positions;
 }
 
 Measurement measure(const Model& model, const Comparison& comparison) {
@@ -408,18 +412,20 @@ Measurement measure(const Model& model, const Comparison& comparison) {
         const std::size_t points =
             before + std::min(of_r.a.size() - of_r.start, of_e.a.size() - of_e.start);
         GatedBranch kept{branch.branch, symbol(branch.unit), {}};
-        std::vector<std::size_t> at;
+        std::vector<std::size_t> kept_points;
         const std::size_t count = std::min<std::size_t>(points, points_per_branch);
         for (std::size_t k = 0; k < count; ++k)
-            at.push_back(count == 1 ? 0 : (k * (points - 1) + (count - 1) / 2) / (count - 1));
-        if (before < points && !std::ranges::binary_search(at, before))
-            at.insert(std::ranges::upper_bound(at, before), before);
-        for (const std::size_t k : at) kept.a.push_back(rounded(of_e.a[of_e.start - before + k]));
+            kept_points.push_back(count == 1 ? 0
+                                             : (k * (points - 1) + (count - 1) / 2) / (count - 1));
+        if (before < points && !std::ranges::binary_search(kept_points, before))
+            kept_points.insert(std::ranges::upper_bound(kept_points, before), before);
+        for (const std::size_t k : kept_points)
+            kept.a.push_back(rounded(of_e.a[of_e.start - before + k]));
 
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const auto& channel = comparison.channels[c];
             if (branch.determined[c] || is_swing_arm(channel))
-                add_curves(branch, c, channel, kept, at, result);
+                add_curves(branch, c, channel, kept, kept_points, result);
             if (!branch.determined[c] || channel.kind() == ChannelKind::characteristic) continue;
             for (const auto& [quantity, reading] :
                  {std::pair{Quantity::deviation_at_equal_parameter,
@@ -486,12 +492,12 @@ std::vector<std::string> widened(const Baseline& baseline, ToleranceClass kind) 
     for (const auto& series : baseline.accepted.series) {
         const Allowance *is = tolerance_of(own->second, series), *was = tolerance_of(usual, series);
         if (is == nullptr || was == nullptr) continue;
-        const auto of = std::ranges::find_if(
-            own->second, [&](const auto& entry) { return &entry.second == is; });
+        const auto entry = std::ranges::find_if(
+            own->second, [&](const auto& key_and_value) { return &key_and_value.second == is; });
         if (!(is->atol <= was->atol))
-            wider.insert(fmt::format("{}: atol {:g}", of->first, is->atol));
+            wider.insert(fmt::format("{}: atol {:g}", entry->first, is->atol));
         if (!(is->rtol <= was->rtol))
-            wider.insert(fmt::format("{}: rtol {:g}", of->first, is->rtol));
+            wider.insert(fmt::format("{}: rtol {:g}", entry->first, is->rtol));
     }
     return {wider.begin(), wider.end()};
 }

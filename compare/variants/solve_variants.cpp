@@ -122,11 +122,11 @@ VariantSolver::VariantSolver(const Model& design, std::vector<VariantFigure> fig
 
 // The ways that the figures read, the number of points, and the groups.
 void VariantSolver::place(const Model& design) {
-    std::vector<Way> all;
+    std::vector<Way> ways;
     const auto way_of = [&](std::size_t branch, std::size_t side) -> Way& {
-        for (Way& way : all)
+        for (Way& way : ways)
             if (way.branch == branch && way.side == side) return way;
-        return all.emplace_back(Way{branch, side});
+        return ways.emplace_back(Way{branch, side});
     };
     struct Station {
         std::size_t figure, branch, side;
@@ -165,13 +165,13 @@ void VariantSolver::place(const Model& design) {
     for (const Station& s : stations)
         way_of(s.branch, s.side)
             .readings.push_back({s.figure, point_at(figures_[s.figure].at, s.to, points_)});
-    std::ranges::sort(all, {}, [](const Way& way) { return std::pair(way.branch, way.side); });
-    for (Way& way : all) std::ranges::stable_sort(way.readings, {}, &Reading::point);
+    std::ranges::sort(ways, {}, [](const Way& way) { return std::pair(way.branch, way.side); });
+    for (Way& way : ways) std::ranges::stable_sort(way.readings, {}, &Reading::point);
 
-    for (const Way& way : all)
+    for (const Way& way : ways)
         together_ =
             together_ && stands_on(design, branch_sides(design.branches[way.branch])[way.side]);
-    for (Way& way : all)
+    for (Way& way : ways)
         if (!groups_.empty() && (together_ || groups_.back().ways.front().branch == way.branch))
             groups_.back().ways.push_back(std::move(way));
         else
@@ -179,10 +179,10 @@ void VariantSolver::place(const Model& design) {
 }
 
 // The model with these ways as its branches.
-Model VariantSolver::followed(const Model& model, const std::vector<Way>& of) const {
-    Model result = together_ ? model : on_branch(model, model.branches[of.front().branch]);
+Model VariantSolver::followed(const Model& model, const std::vector<Way>& ways) const {
+    Model result = together_ ? model : on_branch(model, model.branches[ways.front().branch]);
     result.branches.clear();
-    for (const Way& way : of)
+    for (const Way& way : ways)
         result.branches.push_back(branch_sides(model.branches[way.branch])[way.side]);
     return result;
 }

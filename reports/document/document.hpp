@@ -25,7 +25,8 @@ nlohmann::ordered_json document(const std::string& reproduce, const Provenance& 
 // A scene in the document without results: name, source, hash of its file, compiled model, trim,
 // warnings.
 nlohmann::ordered_json scene_head(const SceneAnalyses& scene);
-// A compared scene: its curves and deviations; and with the results of all that was found on it.
+// A compared scene: its curves and deviations (compared_json); with the results of all other
+// analyses of it (scene_json).
 nlohmann::ordered_json compared_json(const SceneAnalyses& scene);
 nlohmann::ordered_json scene_json(const SceneAnalyses& scene);
 

@@ -33,28 +33,28 @@ struct WorstOffence {
 // In the order of comes_before, of each scene and over all.
 std::vector<WorstOffence> worst_of_each_channel(const GatedScene* scene,
                                                 const std::vector<const Offence*>& offences) {
-    std::vector<WorstOffence> all;
+    std::vector<WorstOffence> list;
     std::map<std::string_view, std::size_t> place;
     for (const auto* offence : offences) {
-        const auto [at, is_new] = place.emplace(offence->channel, all.size());
+        const auto [entry, is_new] = place.emplace(offence->channel, list.size());
         if (is_new)
-            all.push_back({scene, offence});
+            list.push_back({scene, offence});
         else
-            ++all[at->second].numbers;
+            ++list[entry->second].numbers;
     }
-    return all;
+    return list;
 }
 std::vector<WorstOffence> worst_of_each_channel(std::span<const GatedScene> scenes) {
-    std::vector<WorstOffence> all;
+    std::vector<WorstOffence> list;
     for (const auto& scene : scenes) {
         std::vector<const Offence*> offences;
         for (const auto& offence : scene.verdict.offences) offences.push_back(&offence);
-        std::ranges::copy(worst_of_each_channel(&scene, offences), std::back_inserter(all));
+        std::ranges::copy(worst_of_each_channel(&scene, offences), std::back_inserter(list));
     }
-    std::ranges::stable_sort(all, [](const WorstOffence& a, const WorstOffence& b) {
+    std::ranges::stable_sort(list, [](const WorstOffence& a, const WorstOffence& b) {
         return comes_before(*a.offence, *b.offence);
     });
-    return all;
+    return list;
 }
 
 std::string describe_worst(const WorstOffence& worst) {
@@ -63,9 +63,9 @@ std::string describe_worst(const WorstOffence& worst) {
 }
 
 std::vector<std::string> described(const std::vector<compare::Change>& changes) {
-    std::vector<std::string> all;
-    for (const auto& change : changes) all.push_back(describe(change));
-    return all;
+    std::vector<std::string> list;
+    for (const auto& change : changes) list.push_back(describe(change));
+    return list;
 }
 
 std::string what(const Offence& o) {
@@ -171,10 +171,10 @@ std::string beginning(std::string_view text, std::size_t most) {
 constexpr std::size_t line_length = 300;
 
 // Up to `most` truncated lines, and the number of the others.
-std::string lines(std::vector<std::string> all, std::size_t most) {
-    const std::string more = cut(all, most, ": elastocheck gate --json");
+std::string lines(std::vector<std::string> texts, std::size_t most) {
+    const std::string more = cut(texts, most, ": elastocheck gate --json");
     std::string text;
-    for (const auto& one : all) text += beginning(one, line_length) + "\n";
+    for (const auto& line : texts) text += beginning(line, line_length) + "\n";
     return more.empty() ? text : text + more + "\n";
 }
 
@@ -189,9 +189,9 @@ std::string message(const char* kind, std::string_view summary, const std::strin
 }
 
 std::string testcase(const Test& test, std::size_t most_lines) {
-    std::vector<std::string> all = described(test.scene->changed);
-    for (auto& change : all) change = "changed: " + change;
-    const std::string changed = all.empty() ? "" : lines(all, most_lines);
+    std::vector<std::string> changes = described(test.scene->changed);
+    for (auto& change : changes) change = "changed: " + change;
+    const std::string changed = changes.empty() ? "" : lines(changes, most_lines);
     const std::vector<std::string>& reasons = test.scene->verdict.reasons;
     std::string messages;
     if (test.error)

@@ -16,8 +16,8 @@ namespace elastocheck::reference::energy {
 struct StiffnessRecord {
     struct Sample {
         double a;
-        Eigen::VectorXd w;  // stiffness of the resisting modes, ascending
-        double noise;       // uncertainty of a stiffness
+        Eigen::VectorXd w;  // stiffness of the resisting modes, ascending, units of F·L
+        double noise;       // uncertainty of a stiffness, likewise
     };
     std::vector<Sample> samples;  // of the equilibria so far, in order
 

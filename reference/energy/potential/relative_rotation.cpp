@@ -1,4 +1,6 @@
-// Entries of B and functions of them, each as value at the centre, change and slope in β:
+// Angles of the relative rotation B, a rotation matrix, and their derivatives by β, the rotation
+// vector of a further turn exp(β) B. Entries of B and functions of them, each as value at the
+// centre (index c), change (Δ) and slope in β:
 //
 //   B_rc = e_r·(B e_c):   δB_rc = e_r·(β × B e_c) = (B e_c × e_r)·β
 //   h = √(x² + y²):       h - h_c = (Δx (x + x_c) + Δy (y + y_c)) / (h + h_c)
@@ -57,14 +59,14 @@ Varying atan2(const Varying& y, const Varying& x) {
 
 // Value, slope and curvature in β at the centre.
 struct Bent {
-    double at;
+    double value;
     Vector3d slope;
     Matrix3d curvature;
 };
 
 Matrix3d symmetric(const Matrix3d& M) { return 0.5 * (M + M.transpose()); }
 
-Bent operator-(const Bent& x) { return {-x.at, -x.slope, -x.curvature}; }
+Bent operator-(const Bent& x) { return {-x.value, -x.slope, -x.curvature}; }
 
 Bent bent_entry(const Matrix3d& B, int r, int c) {
     const Vector3d e = Vector3d::Unit(r), b = B.col(c);
@@ -72,21 +74,22 @@ Bent bent_entry(const Matrix3d& B, int r, int c) {
 }
 
 Bent hypot(const Bent& x, const Bent& y) {
-    const double h = std::hypot(x.at, y.at);
-    const Vector3d slope = (x.at * x.slope + y.at * y.slope) / h;
+    const double h = std::hypot(x.value, y.value);
+    const Vector3d slope = (x.value * x.slope + y.value * y.slope) / h;
     return {h, slope,
-            (x.slope * x.slope.transpose() + y.slope * y.slope.transpose() + x.at * x.curvature +
-             y.at * y.curvature - slope * slope.transpose()) /
+            (x.slope * x.slope.transpose() + y.slope * y.slope.transpose() + x.value * x.curvature +
+             y.value * y.curvature - slope * slope.transpose()) /
                 h};
 }
 
 Bent atan2(const Bent& y, const Bent& x) {
-    const double square = x.at * x.at + y.at * y.at;
-    const Vector3d slope = (x.at * y.slope - y.at * x.slope) / square,
-                   along = x.at * x.slope + y.at * y.slope;
-    return {std::atan2(y.at, x.at), slope,
-            (x.at * y.curvature - y.at * x.curvature - 2 * symmetric(slope * along.transpose())) /
-                square};
+    const double square = x.value * x.value + y.value * y.value;
+    const Vector3d slope = (x.value * y.slope - y.value * x.slope) / square,
+                   along = x.value * x.slope + y.value * y.slope;
+    return {
+        std::atan2(y.value, x.value), slope,
+        (x.value * y.curvature - y.value * x.curvature - 2 * symmetric(slope * along.transpose())) /
+            square};
 }
 
 AngleChange together(const std::array<Varying, 3>& theta) {
@@ -158,8 +161,8 @@ AngleChange angles(Formulation::Angles kind, const RelativeRotation& rotation) {
 }
 
 Matrix3d angle_curvature(Formulation::Angles kind, const Quaterniond& q, const Vector3d& sigma) {
-    const Matrix3d at = q.toRotationMatrix();
-    const auto B = [&](int r, int c) { return bent_entry(at, r, c); };
+    const Matrix3d B_matrix = q.toRotationMatrix();
+    const auto B = [&](int r, int c) { return bent_entry(B_matrix, r, c); };
     const auto sum = [&](const std::array<Bent, 3>& theta) -> Matrix3d {
         return sigma[0] * theta[0].curvature + sigma[1] * theta[1].curvature +
                sigma[2] * theta[2].curvature;

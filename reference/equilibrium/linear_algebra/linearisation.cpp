@@ -17,8 +17,9 @@ using Eigen::VectorXd;
 constexpr double null_threshold = 1e-11;
 
 // Exception: constraints that are redundant up to an angle σ do constrain, with a singular value of
-// σ² over a stiffness in J. Such a vector has an image larger than `nothing`, and consists of
-// reactions except for a part of about σ on bodies.
+// σ² over a stiffness in J. Such a vector v has an image |A v| larger than `zero_tolerance`, and
+// consists of reactions except for a part of about σ on bodies, between `min_angle` and
+// `largest_angle`.
 constexpr double zero_tolerance = 1e-13, min_angle = 1e-9, largest_angle = 1e-3;
 
 // Below this condition number the null space is empty and is not computed.
@@ -61,27 +62,28 @@ struct Equilibrated {
     VectorXd D_r, D_c;
 };
 Equilibrated equilibrated(const Sparse& J) {
-    Equilibrated of{J, VectorXd::Ones(J.rows()), VectorXd::Ones(J.cols())};
+    Equilibrated result{J, VectorXd::Ones(J.rows()), VectorXd::Ones(J.cols())};
     const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
     for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
         VectorXd r = VectorXd::Zero(J.rows()), c = VectorXd::Zero(J.cols());
         for (Index k = 0; k < J.cols(); ++k)
-            for (Sparse::InnerIterator at(of.A, k); at; ++at) {
-                const double size = std::abs(at.value());
-                r[at.row()] = std::max(r[at.row()], size);
+            for (Sparse::InnerIterator entry(result.A, k); entry; ++entry) {
+                const double size = std::abs(entry.value());
+                r[entry.row()] = std::max(r[entry.row()], size);
                 c[k] = std::max(c[k], size);
             }
         r = r.unaryExpr(scale);
         c = c.unaryExpr(scale);
         for (Index k = 0; k < J.cols(); ++k)
-            for (Sparse::InnerIterator at(of.A, k); at; ++at) at.valueRef() *= r[at.row()] * c[k];
-        of.D_r.array() *= r.array();
-        of.D_c.array() *= c.array();
+            for (Sparse::InnerIterator entry(result.A, k); entry; ++entry)
+                entry.valueRef() *= r[entry.row()] * c[k];
+        result.D_r.array() *= r.array();
+        result.D_c.array() *= c.array();
     }
-    return of;
+    return result;
 }
 
-// Number of body unknowns: beyond them the diagonal block of A is zero.
+// Number n of body unknowns: A_ij = 0 for all i, j ≥ n, the block of the reactions.
 Index of_bodies(const Sparse& A) {
     Index n = 0;
     for (Index j = 0; j < A.cols(); ++j)
@@ -94,10 +96,10 @@ Index of_bodies(const Sparse& A) {
 // combinations are searched, which takes a dense matrix.
 Sparse without_angles(const Sparse& A, const Sparse& columns) {
     const Sparse images = A * columns;
-    bool all = true;
-    for (Index k = 0; k < columns.cols() && all; ++k)
-        all = images.col(k).norm() <= zero_tolerance * columns.col(k).norm();
-    if (all) return columns;
+    bool all_null = true;
+    for (Index k = 0; k < columns.cols() && all_null; ++k)
+        all_null = images.col(k).norm() <= zero_tolerance * columns.col(k).norm();
+    if (all_null) return columns;
     MatrixXd V = Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ() *
                  MatrixXd::Identity(columns.rows(), columns.cols());
     const Eigen::JacobiSVD<MatrixXd> svd(V.topRows(of_bodies(A)), Eigen::ComputeThinV);
@@ -135,17 +137,18 @@ Sparse bordered_matrix(const Sparse& J, const NullSpaces& modes) {
 
 // Tracks the idle modes: with the old modes as border, J v + U μ = 0, Vᵀv = 1 gives the modes here
 // with the least rotation, valid as long as their stiffness μ is round-off.
-bool track(Linearisation& at) {
-    const Index n = at.J.rows(), k = at.modes.count();
+bool track(Linearisation& linearisation) {
+    const Index n = linearisation.J.rows(), k = linearisation.modes.count();
     MatrixXd ones = MatrixXd::Zero(n + k, k);
     ones.bottomRows(k).setIdentity();
-    const MatrixXd right = at.bordered.solve(ones), left = at.bordered.solve_transposed(ones);
+    const MatrixXd right = linearisation.bordered.solve(ones),
+                   left = linearisation.bordered.solve_transposed(ones);
     const double stiffness = right.bottomRows(k).cwiseAbs().maxCoeff();
     if (!right.allFinite() || !left.allFinite() ||
-        !(stiffness <= idle_stiffness * largest_entry(at.J)))
+        !(stiffness <= idle_stiffness * largest_entry(linearisation.J)))
         return false;
-    at.modes = {orthonormal(right.topRows(n).sparseView(1., no_part)),
-                orthonormal(left.topRows(n).sparseView(1., no_part))};
+    linearisation.modes = {orthonormal(right.topRows(n).sparseView(1., no_part)),
+                           orthonormal(left.topRows(n).sparseView(1., no_part))};
     return true;
 }
 
@@ -171,29 +174,30 @@ Factors bordered_like(const Linearisation& like, const Sparse& J) {
 }
 
 Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
-    Linearisation at;
-    at.J = std::move(J);
-    if (at.J.rows() == 0 || !is_finite(at.J)) return at;
+    Linearisation result;
+    result.J = std::move(J);
+    if (result.J.rows() == 0 || !is_finite(result.J)) return result;
     if (before != nullptr) {
-        at.modes = before->modes;
-        at.bordered = bordered_like(*before, at.J);
+        result.modes = before->modes;
+        result.bordered = bordered_like(*before, result.J);
         ++counts.factorisations;
-        at.modes_are_new = at.modes.count() > 0 && !track(at);
-        at.modes_are_soft = before->modes_are_soft;
-        if (!at.modes_are_new) return at;
-        at.modes_are_soft = false;
+        result.modes_are_new = result.modes.count() > 0 && !track(result);
+        result.modes_are_soft = before->modes_are_soft;
+        if (!result.modes_are_new) return result;
+        result.modes_are_soft = false;
     }
     // Most matrices are regular by their own factors, without equilibration. The estimate of their
     // condition counts as a factorisation.
-    at.bordered = Factors(at.J);
+    result.bordered = Factors(result.J);
     counts.factorisations += 2;
-    if (at.bordered.condition(at.J) < surely_regular) {
-        at.modes = {Sparse(at.J.rows(), 0), Sparse(at.J.rows(), 0)};
-        return at;
+    if (result.bordered.condition(result.J) < surely_regular) {
+        result.modes = {Sparse(result.J.rows(), 0), Sparse(result.J.rows(), 0)};
+        return result;
     }
-    at.modes = null_spaces(at.J);
-    if (at.modes.count() > 0) at.bordered = Factors(bordered_matrix(at.J, at.modes));
-    return at;
+    result.modes = null_spaces(result.J);
+    if (result.modes.count() > 0)
+        result.bordered = Factors(bordered_matrix(result.J, result.modes));
+    return result;
 }
 
 Rate solve_bordered(const Factors& bordered, const VectorXd& E_rate) {
@@ -208,11 +212,12 @@ Rate solve_bordered(const Factors& bordered, const VectorXd& E_rate) {
     return {solution.head(n), solution.tail(k)};
 }
 
-Rate solve_bordered_refined(const Linearisation& at, const VectorXd& E_rate) {
-    Rate rate = solve_bordered(at.bordered, E_rate);
+Rate solve_bordered_refined(const Linearisation& linearisation, const VectorXd& E_rate) {
+    Rate rate = solve_bordered(linearisation.bordered, E_rate);
     if (!rate.dx.allFinite()) return rate;
     const Rate correction =
-        solve_bordered(at.bordered, E_rate + at.J * rate.dx + at.modes.left * rate.mu);
+        solve_bordered(linearisation.bordered,
+                       E_rate + linearisation.J * rate.dx + linearisation.modes.left * rate.mu);
     rate.dx += correction.dx;
     rate.mu += correction.mu;
     return rate;
