@@ -88,7 +88,7 @@ void read_section(const Cursor& scene, const char* key, const Definitions& defs,
     if (!section) return;
     if (sides == Sides::both) require_both_sides(*section, defs);
     const std::size_t begin = list.size();
-    for (const auto& [name, at] : section->entries()) append(list, read(name, at, defs));
+    for (const auto& [name, field] : section->entries()) append(list, read(name, field, defs));
     const std::size_t end = list.size();
     for (std::size_t k = begin; defs.mirror && k < end; ++k)
         if (const auto name = twin_name(*defs.mirror, list[k].name, *section)) {
@@ -129,8 +129,8 @@ void read_wheels(const Cursor& scene, Definitions& defs, std::vector<Wheel>& whe
                         defs.mirror->from));
     if (one) wheels.push_back(read_wheel("", *one, defs));
     read_section(scene, "wheels", defs, Sides::both, wheels,
-                 [&](const std::string& name, const Cursor& at, const Definitions&) {
-                     return read_wheel(name, at, defs);
+                 [&](const std::string& name, const Cursor& field, const Definitions&) {
+                     return read_wheel(name, field, defs);
                  });
 }
 
@@ -142,16 +142,16 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
     std::unordered_map<std::string, int> positions;
     for (std::size_t k = 0; k < result.joints.size(); ++k)
         positions.emplace(result.joints[k].name, static_cast<int>(k));
-    const auto hold = [&](const Cursor& at, const std::string& name) {
+    const auto hold = [&](const Cursor& field, const std::string& name) {
         const int position = positions.at(name);
         const Joint drive = *drive_of(result.joints[static_cast<std::size_t>(position)]);
-        drives[position] = add_joint(at, drive, result);
+        drives[position] = add_joint(field, drive, result);
     };
-    for (const auto& [name, at] : section->entries()) {
-        if (!is_held(at)) continue;
-        hold(at, name);
+    for (const auto& [name, field] : section->entries()) {
+        if (!is_held(field)) continue;
+        hold(field, name);
         if (defs.mirror)
-            if (const auto twin = turned(*defs.mirror, name)) hold(at, *twin);
+            if (const auto twin = turned(*defs.mirror, name)) hold(field, *twin);
     }
     return drives;
 }
@@ -229,8 +229,8 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     read_section(scene, "joints", defs, Sides::both, result.joints, read_joint);
     NamedElements named;
     const auto with_wheels = [&](auto read) {
-        return [read, &result](const std::string& name, const Cursor& at, const Definitions& d) {
-            return read(name, at, d, result.wheels);
+        return [read, &result](const std::string& name, const Cursor& field, const Definitions& d) {
+            return read(name, field, d, result.wheels);
         };
     };
     read_elements(scene, "springs", defs, result.elastics, named, with_wheels(read_spring));
@@ -353,21 +353,21 @@ SceneAndWarnings read_whole(std::string_view text, const std::string& name,
 
 std::vector<RequestedDefinition> requested_definitions(const Cursor& scene) {
     std::vector<RequestedDefinition> list;
-    const auto at = scene.optional("definitions");
-    if (!at) return list;
-    const auto add = [&](const std::string& figure, const Cursor& of) {
-        const std::vector<Cursor> names = of.is_list() ? of.items() : std::vector{of};
-        if (names.empty()) of.fail("an empty list; a name is needed");
+    const auto section = scene.optional("definitions");
+    if (!section) return list;
+    const auto add = [&](const std::string& figure, const Cursor& field) {
+        const std::vector<Cursor> names = field.is_list() ? field.items() : std::vector{field};
+        if (names.empty()) field.fail("an empty list; a name is needed");
         for (const Cursor& name : names)
             list.push_back({figure,
                             name.text(figure.empty() ? "the name of a set of definitions"
                                                      : "the name of a definition"),
                             name.value->line, name.path});
     };
-    if (at->value->kind == Value::Kind::map)
-        for (const auto& [figure, of] : at->entries()) add(figure, of);
+    if (section->value->kind == Value::Kind::map)
+        for (const auto& [figure, field] : section->entries()) add(figure, field);
     else
-        add("", *at);
+        add("", *section);
     return list;
 }
 

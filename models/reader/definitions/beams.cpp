@@ -45,13 +45,13 @@ std::vector<int> shared_out(int segments, const std::vector<double>& lengths) {
     return share;
 }
 
-Course read_course(const Cursor& at, const Definitions& defs) {
+Course read_course(const Cursor& field, const Definitions& defs) {
     Course course;
-    const auto ends = at.require("bodies").list(2, "bodies");
+    const auto ends = field.require("bodies").list(2, "bodies");
     course.first = body(ends[0], defs);
     course.last = body(ends[1], defs);
 
-    const Cursor through = at.require("through");
+    const Cursor through = field.require("through");
     const auto points = through.items();
     if (!through.is_list() || points.size() < 2)
         through.fail(
@@ -71,7 +71,7 @@ Course read_course(const Cursor& at, const Definitions& defs) {
     }
 
     const int legs = static_cast<int>(lengths.size());
-    const Cursor segments = at.require("segments");
+    const Cursor segments = field.require("segments");
     const int n = segments.whole_number(1, max_segments);
     if (n < legs)
         segments.fail(
@@ -103,7 +103,7 @@ bool is_own_image(const std::vector<Vector3>& points) {
 }
 
 // Whether both sides share the beam and its first half is the mirror image of its second.
-bool is_shared_evenly(const Cursor& at, const Course& course, const Definitions& defs) {
+bool is_shared_evenly(const Cursor& field, const Course& course, const Definitions& defs) {
     const BodyId image =
         course.first == ground ? ground : defs.twin_of[static_cast<std::size_t>(course.first)];
     if (image != course.last) return false;
@@ -111,7 +111,7 @@ bool is_shared_evenly(const Cursor& at, const Course& course, const Definitions&
     for (const std::size_t k : course.corners) corners.push_back(course.nodes[k]);
     if (!is_own_image(corners)) return false;
     if (!is_own_image(course.nodes)) {
-        const Cursor segments = at.require("segments");
+        const Cursor segments = field.require("segments");
         segments.fail(fmt::format(
             "{} segments cannot be divided equally between the two sides; one more or one less can",
             segments.found()));
@@ -126,14 +126,14 @@ std::string numbered(const std::string& name, std::size_t k) {
 }
 
 // Adds the bodies 1, 2, ... of the beam `name` at its inner nodes, with all their names.
-void add_bodies(const Cursor& at, const std::string& name, const Course& course,
+void add_bodies(const Cursor& field, const std::string& name, const Course& course,
                 Definitions& defs) {
     const auto id = [&](std::size_t node) {
         return static_cast<BodyId>(defs.bodies.size() + node - 1);
     };
     for (std::size_t k = 1; k < course.segments(); ++k)
         if (!defs.body_ids.emplace(numbered(name, k), id(k)).second)
-            at.fail(
+            field.fail(
                 fmt::format("the body name {} is reserved for a node of this beam, but already in "
                             "use; rename the other body",
                             quote(numbered(name, k))));
@@ -145,8 +145,8 @@ void add_bodies(const Cursor& at, const std::string& name, const Course& course,
             {numbered(name, k), {.r = course.nodes[k], .p = Quaternion::Identity()}});
     }
     if (defs.bodies.size() > max_bodies)
-        at.fail(fmt::format("{} bodies including its nodes; allowed: at most {}",
-                            defs.bodies.size(), max_bodies));
+        field.fail(fmt::format("{} bodies including its nodes; allowed: at most {}",
+                               defs.bodies.size(), max_bodies));
 }
 
 Course image(Course course, const Mirror& mirror) {
@@ -165,7 +165,9 @@ struct CrossSection {
     bool is_round() const { return EI_y == EI_z && GA_y == GA_z; }
 };
 
-double positive(const Cursor& at, const Unit& unit) { return above_zero(at, "too small", unit); }
+double positive(const Cursor& field, const Unit& unit) {
+    return above_zero(field, "too small", unit);
+}
 
 // force/length², length², length⁴
 Unit modulus(const Units& u) {
@@ -177,15 +179,15 @@ Unit power_of_length(const Units& u, int n) {
 }
 
 // Rod or tube: A = π (D² - d²)/4,  I = π (D⁴ - d⁴)/64,  J = 2 I.
-CrossSection read_round(const Cursor& at, const Cursor& diameter, double E, double G,
+CrossSection read_round(const Cursor& beam, const Cursor& diameter, double E, double G,
                         const Units& units) {
     for (const char* field : {"A", "I_y", "I_z", "J", "shear_y", "shear_z", "up"})
-        if (const auto given = at.optional(field))
+        if (const auto given = beam.optional(field))
             given->fail(
                 "given together with diameter; allowed: diameter and wall, or A, I_y, I_z and J");
     const double D = positive(diameter, units.length);
     double d = 0;
-    if (const auto wall = at.optional("wall")) {
+    if (const auto wall = beam.optional("wall")) {
         d = D - 2 * positive(*wall, units.length);
         if (!(d >= -1e-12 * D))
             wall->fail(fmt::format("{} is more than half the diameter", wall->found()));
@@ -196,24 +198,25 @@ CrossSection read_round(const Cursor& at, const Cursor& diameter, double E, doub
     return {.EA = E * A, .EI_y = E * I, .EI_z = E * I, .GJ = G * 2 * I};
 }
 
-CrossSection read_cross_section(const Cursor& at, const Units& units) {
-    const double E = positive(at.require("E"), modulus(units)),
-                 G = positive(at.require("G"), modulus(units));
-    if (const auto diameter = at.optional("diameter"))
-        return read_round(at, *diameter, E, G, units);
-    if (const auto wall = at.optional("wall"))
+CrossSection read_cross_section(const Cursor& beam, const Units& units) {
+    const double E = positive(beam.require("E"), modulus(units)),
+                 G = positive(beam.require("G"), modulus(units));
+    if (const auto diameter = beam.optional("diameter"))
+        return read_round(beam, *diameter, E, G, units);
+    if (const auto wall = beam.optional("wall"))
         wall->fail("wall of a tube without a diameter; give the diameter");
-    if (!at.optional("A") && !at.optional("I_y") && !at.optional("I_z") && !at.optional("J"))
-        at.fail("no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J");
+    if (!beam.optional("A") && !beam.optional("I_y") && !beam.optional("I_z") &&
+        !beam.optional("J"))
+        beam.fail("no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J");
     const Unit area = power_of_length(units, 2), fourth = power_of_length(units, 4);
     const auto shear = [&](const char* field) {
-        const auto given = at.optional(field);
+        const auto given = beam.optional(field);
         return given ? G * positive(*given, area) : 0;
     };
-    return {.EA = E * positive(at.require("A"), area),
-            .EI_y = E * positive(at.require("I_y"), fourth),
-            .EI_z = E * positive(at.require("I_z"), fourth),
-            .GJ = G * positive(at.require("J"), fourth),
+    return {.EA = E * positive(beam.require("A"), area),
+            .EI_y = E * positive(beam.require("I_y"), fourth),
+            .EI_z = E * positive(beam.require("I_z"), fourth),
+            .GJ = G * positive(beam.require("J"), fourth),
             .GA_y = shear("shear_y"),
             .GA_z = shear("shear_z")};
 }
@@ -229,21 +232,21 @@ Matrix6 stiffness(const CrossSection& s, double L) {
 }
 
 // Direction closest to z; none for a round section, where any direction will do.
-std::optional<Vector3> read_up(const Cursor& at, const CrossSection& section,
+std::optional<Vector3> read_up(const Cursor& field, const CrossSection& section,
                                const Definitions& defs) {
-    if (const auto up = at.optional("up")) return direction(*up, defs);
+    if (const auto up = field.optional("up")) return direction(*up, defs);
     if (!section.is_round())
-        at.fail(
+        field.fail(
             "up is missing: the cross-section differs in y and z, so the direction of z is needed");
     return std::nullopt;
 }
 
 // x along the leg, z perpendicular to it towards `up`.
-Quaternion axes(const Cursor& at, const Vector3& leg, const std::optional<Vector3>& up) {
+Quaternion axes(const Cursor& field, const Vector3& leg, const std::optional<Vector3>& up) {
     const Vector3 x = leg.normalized();
     const Vector3 across = up ? Vector3(*up - up->dot(x) * x) : x.unitOrthogonal();
     if (!(across.norm() > parallel))
-        at.require("up").fail(
+        field.require("up").fail(
             "parallel to a straight part of the beam; z must be perpendicular to it");
     Matrix3 A;
     A.col(0) = x;
@@ -252,10 +255,11 @@ Quaternion axes(const Cursor& at, const Vector3& leg, const std::optional<Vector
     return quaternion_of(A);
 }
 
-std::vector<Elastic> segments(const std::string& name, const Cursor& at, const Definitions& defs) {
-    const Course course = read_course(at, defs);
-    const CrossSection section = read_cross_section(at, defs.units);
-    const auto up = read_up(at, section, defs);
+std::vector<Elastic> segments(const std::string& name, const Cursor& field,
+                              const Definitions& defs) {
+    const Course course = read_course(field, defs);
+    const CrossSection section = read_cross_section(field, defs.units);
+    const auto up = read_up(field, section, defs);
     const auto body_at = [&](std::size_t node) {
         if (node == 0) return course.first;
         return node == course.segments() ? course.last : defs.body_ids.at(numbered(name, node));
@@ -263,7 +267,7 @@ std::vector<Elastic> segments(const std::string& name, const Cursor& at, const D
     std::vector<Elastic> list;
     for (std::size_t k = 1; k <= course.segments(); ++k) {
         const Vector3 from = course.nodes[k - 1], to = course.nodes[k];
-        const Quaternion A = axes(at, to - from, up);
+        const Quaternion A = axes(field, to - from, up);
         const auto marker = [&](BodyId id) {
             return Marker{id, point_of(id, 0.5 * (from + to), defs).s_local, A};
         };
@@ -282,17 +286,17 @@ void add_beam_bodies(const Cursor& scene, Definitions& defs) {
     const auto section = scene.optional("beams");
     if (!section) return;
     require_both_sides(*section, defs);
-    for (const auto& [name, at] : section->entries()) {
-        at.only_keys({"bodies", "through", "segments", "E", "G", "diameter", "wall", "A", "I_y",
-                      "I_z", "J", "shear_y", "shear_z", "up"});
-        const Course course = read_course(at, defs);
+    for (const auto& [name, field] : section->entries()) {
+        field.only_keys({"bodies", "through", "segments", "E", "G", "diameter", "wall", "A", "I_y",
+                         "I_z", "J", "shear_y", "shear_z", "up"});
+        const Course course = read_course(field, defs);
         const BodyId first = static_cast<BodyId>(defs.bodies.size());
-        add_bodies(at, name, course, defs);
+        add_bodies(field, name, course, defs);
         if (!defs.mirror) continue;
         const BodyId end = static_cast<BodyId>(defs.bodies.size());
         const auto other = twin_name(*defs.mirror, name, *section);
-        if (other) add_bodies(at, *other, image(course, *defs.mirror), defs);
-        const bool evenly = !other && is_shared_evenly(at, course, defs);
+        if (other) add_bodies(field, *other, image(course, *defs.mirror), defs);
+        const bool evenly = !other && is_shared_evenly(field, course, defs);
         for (BodyId id = first; id < end; ++id) {
             BodyId& twin = defs.twin_of[static_cast<std::size_t>(id)];
             if (other) defs.twin_of[static_cast<std::size_t>(twin = id - first + end)] = id;
@@ -304,8 +308,8 @@ void add_beam_bodies(const Cursor& scene, Definitions& defs) {
 void read_beams(const Cursor& scene, const Definitions& defs, std::vector<Elastic>& elastics) {
     const auto section = scene.optional("beams");
     if (!section) return;
-    for (const auto& [name, at] : section->entries()) {
-        const auto list = segments(name, at, defs);
+    for (const auto& [name, field] : section->entries()) {
+        const auto list = segments(name, field, defs);
         elastics.insert(elastics.end(), list.begin(), list.end());
         if (!defs.mirror) continue;
         const auto other = turned(*defs.mirror, name);

@@ -21,25 +21,27 @@ constexpr Moment moments[] = {{"N·m", "N*m", "Nm", 1, 1},
                               {"kN·m", "kN*m", "kNm", 1, 1000},
                               {"kN·mm", "kN*mm", "kNmm", 1000, 1000}};
 
-Unit read_moment(const Cursor& at) {
+Unit read_moment(const Cursor& field) {
     std::vector<std::string> names;
     for (const Moment& moment : moments)
         names.insert(names.end(), {moment.name, moment.dot, moment.star});
-    const Moment& chosen = moments[at.one_of("a unit of moment", names) / 3];
+    const Moment& chosen = moments[field.one_of("a unit of moment", names) / 3];
     return {chosen.name, chosen.divide, chosen.multiply};
 }
 
-Units read_units(const Cursor& at) {
-    at.only_keys({"length", "angle", "force", "moment"});
+Units read_units(const Cursor& field) {
+    field.only_keys({"length", "angle", "force", "moment"});
     Units units;
-    if (at.require("length").one_of("a unit of length", {"m", "mm"})) units.length = {"mm", 1000};
+    if (field.require("length").one_of("a unit of length", {"m", "mm"}))
+        units.length = {"mm", 1000};
     const double per_rad = 180 / std::numbers::pi;
-    if (at.require("angle").one_of("a unit of angle", {"deg", "rad"}) == 0)
+    if (field.require("angle").one_of("a unit of angle", {"deg", "rad"}) == 0)
         units.angle = {"deg", per_rad};
-    if (at.require("force").one_of("a unit of force", {"N", "kN"})) units.force = {"kN", 1, 1000};
+    if (field.require("force").one_of("a unit of force", {"N", "kN"}))
+        units.force = {"kN", 1, 1000};
 
     const auto &L = units.length, &A = units.angle, &F = units.force;
-    const auto moment = at.optional("moment");
+    const auto moment = field.optional("moment");
     units.moment =
         moment ? read_moment(*moment) : Unit{F.name + "·" + L.name, L.divide, F.multiply};
     const Unit& M = units.moment;
@@ -51,22 +53,22 @@ Units read_units(const Cursor& at) {
 }
 
 void read_points(const Cursor& section, const Definitions* twins, Definitions& defs) {
-    for (const auto& [name, at] : section.entries())
-        defs.points[name] = vector(at, defs.units.length);
+    for (const auto& [name, field] : section.entries())
+        defs.points[name] = vector(field, defs.units.length);
     if (defs.points.empty()) section.fail("empty; at least one hardpoint is needed");
     if (!defs.mirror) return;
-    for (const auto& [name, at] : section.entries())
+    for (const auto& [name, field] : section.entries())
         if (const auto twin = twin_name(*defs.mirror, name, section))
             defs.points[*twin] = twins ? twins->points.at(*twin) : reflected(defs.points.at(name));
 }
 
 void read_bodies(const Cursor& section, Definitions& defs) {
     defs.body_ids["ground"] = ground;
-    for (const auto& [name, at] : section.entries()) {
+    for (const auto& [name, field] : section.entries()) {
         if (name == "ground")
-            at.fail("ground is predefined and cannot be defined again; choose another name");
-        at.only_keys({"origin", "mass", "centre_of_gravity"});  // the last two: gravity.cpp
-        const Vector3 origin = hardpoint(at.require("origin"), defs);
+            field.fail("ground is predefined and cannot be defined again; choose another name");
+        field.only_keys({"origin", "mass", "centre_of_gravity"});  // the last two: gravity.cpp
+        const Vector3 origin = hardpoint(field.require("origin"), defs);
         defs.body_ids[name] = static_cast<BodyId>(defs.bodies.size());
         defs.bodies.push_back({name, {.r = origin, .p = Quaternion::Identity()}});
     }
@@ -88,17 +90,17 @@ void read_bodies(const Cursor& section, Definitions& defs) {
 }
 
 // x, y, z or -x, -y, -z
-Vector3 named_axis(const Cursor& at) {
-    const std::string& word = at.value->text;
+Vector3 named_axis(const Cursor& field) {
+    const std::string& word = field.value->text;
     const double sign = word.starts_with('-') ? -1 : 1;
     const std::string letter = sign < 0 ? word.substr(1) : word;
     if (letter == "x") return sign * Vector3::UnitX();
     if (letter == "y") return sign * Vector3::UnitY();
     if (letter == "z") return sign * Vector3::UnitZ();
-    at.fail(
+    field.fail(
         fmt::format("{} is not a direction; allowed: x, y, z, -x, -y, -z, [x, y, z] or two "
                     "hardpoints [from, to]",
-                    at.found()));
+                    field.found()));
 }
 
 }  // namespace
@@ -119,64 +121,64 @@ Definitions read_definitions(const Cursor& scene, const Definitions* twins) {
     return defs;
 }
 
-double rate(const Cursor& at, const Unit& unit) {
-    const double k = at.number(unit.name);
-    if (k < 0) at.fail(fmt::format("negative rate {}; allowed: zero or more", at.found()));
+double rate(const Cursor& field, const Unit& unit) {
+    const double k = field.number(unit.name);
+    if (k < 0) field.fail(fmt::format("negative rate {}; allowed: zero or more", field.found()));
     return unit.si(k);
 }
 
-double above_zero(const Cursor& at, const char* what, const Unit& unit) {
-    const double x = unit.si(at.number(unit.name));
-    if (!(x > 0)) at.fail(fmt::format("{} is {}; allowed: above zero", at.found(), what));
+double above_zero(const Cursor& field, const char* what, const Unit& unit) {
+    const double x = unit.si(field.number(unit.name));
+    if (!(x > 0)) field.fail(fmt::format("{} is {}; allowed: above zero", field.found(), what));
     return x;
 }
 
-Vector3 vector(const Cursor& at, const Unit& unit) {
-    const auto items = at.list(3, "numbers");
+Vector3 vector(const Cursor& field, const Unit& unit) {
+    const auto items = field.list(3, "numbers");
     const auto si = [&](std::size_t k) { return unit.si(items[k].number(unit.name)); };
     return {si(0), si(1), si(2)};  // braces: in this order
 }
 
-Vector3 hardpoint(const Cursor& at, const Definitions& defs) {
-    return look_up(at, "hardpoint", defs.points);
+Vector3 hardpoint(const Cursor& field, const Definitions& defs) {
+    return look_up(field, "hardpoint", defs.points);
 }
 
-Vector3 direction(const Cursor& at, const Definitions& defs) {
-    const auto items = at.items();
-    if (at.is_list() && items.size() == 2) {
+Vector3 direction(const Cursor& field, const Definitions& defs) {
+    const auto items = field.items();
+    if (field.is_list() && items.size() == 2) {
         const Vector3 u = hardpoint(items[1], defs) - hardpoint(items[0], defs);
         if (!(u.norm() > coincident))
-            at.fail("the two hardpoints coincide; a direction needs two different ones");
+            field.fail("the two hardpoints coincide; a direction needs two different ones");
         return u.normalized();
     }
-    if (at.is_list() && items.size() == 3) {
-        const Vector3 u = vector(at);
-        if (u.isZero(0)) at.fail("the vector has length zero; a direction needs a length");
+    if (field.is_list() && items.size() == 3) {
+        const Vector3 u = vector(field);
+        if (u.isZero(0)) field.fail("the vector has length zero; a direction needs a length");
         return u.normalized();
     }
-    if (at.value->kind == Value::Kind::scalar) return named_axis(at);
-    at.fail(
+    if (field.value->kind == Value::Kind::scalar) return named_axis(field);
+    field.fail(
         fmt::format("expected a direction (x, y, z, -x, -y, -z, [x, y, z] or two hardpoints [from, "
                     "to]), found {}",
-                    at.found()));
+                    field.found()));
 }
 
-BodyId body(const Cursor& at, const Definitions& defs) {
-    return look_up(at, "body", defs.body_ids);
+BodyId body(const Cursor& field, const Definitions& defs) {
+    return look_up(field, "body", defs.body_ids);
 }
 
-BodyId moving_body(const Cursor& at, const Definitions& defs, const char* what) {
-    const BodyId id = body(at, defs);
+BodyId moving_body(const Cursor& field, const Definitions& defs, const char* what) {
+    const BodyId id = body(field, defs);
     if (id == ground)
-        at.fail(fmt::format("{} cannot be on ground, which is fixed; allowed: a body", what));
+        field.fail(fmt::format("{} cannot be on ground, which is fixed; allowed: a body", what));
     return id;
 }
 
-BodyPair body_pair(const Cursor& at, const Definitions& defs) {
-    const auto items = at.list(2, "bodies");
+BodyPair body_pair(const Cursor& field, const Definitions& defs) {
+    const auto items = field.list(2, "bodies");
     const BodyPair pair{body(items[0], defs), body(items[1], defs)};
     if (pair.i == pair.j)
-        at.fail(
+        field.fail(
             fmt::format("both bodies are {}; two different bodies are needed", items[0].found()));
     return pair;
 }
@@ -193,13 +195,14 @@ Marker marker_of(BodyId body, const Vector3& p, const Matrix3& axes, const Defin
     return {body, point_of(body, p, defs).s_local, quaternion_of(axes)};
 }
 
-Between between(const Cursor& at, const Definitions& defs, const char* what) {
-    const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Vector3 from = hardpoint(at.require("from"), defs),
-                  to = hardpoint(at.require("to"), defs);
+Between between(const Cursor& field, const Definitions& defs, const char* what) {
+    const auto [i, j] = body_pair(field.require("bodies"), defs);
+    const Vector3 from = hardpoint(field.require("from"), defs),
+                  to = hardpoint(field.require("to"), defs);
     const double length = (to - from).norm();
     if (!(length > coincident))
-        at.require("to").fail(fmt::format("the same position as `from`; {} needs a length", what));
+        field.require("to").fail(
+            fmt::format("the same position as `from`; {} needs a length", what));
     return {point_of(i, from, defs), point_of(j, to, defs), length};
 }
 

@@ -48,19 +48,19 @@ void take_twin_bodies(const Definitions& twins, Definitions& defs);
 // Hardpoints closer than this coincide [m]: a direction or length between them would be round-off.
 inline constexpr double coincident = 1e-9;
 
-double rate(const Cursor& at, const Unit& unit);  // zero or more, SI
+double rate(const Cursor& field, const Unit& unit);  // zero or more, SI
 // SI; `what` completes "'0' is ...; allowed: above zero".
-double above_zero(const Cursor& at, const char* what, const Unit& unit = {});
-Vector3 vector(const Cursor& at, const Unit& unit = {});       // three numbers, SI
-Vector3 hardpoint(const Cursor& at, const Definitions& defs);  // [m]
-Vector3 direction(const Cursor& at, const Definitions& defs);  // unit
-BodyId body(const Cursor& at, const Definitions& defs);        // or ground
-BodyId moving_body(const Cursor& at, const Definitions& defs, const char* what);  // not ground
+double above_zero(const Cursor& field, const char* what, const Unit& unit = {});
+Vector3 vector(const Cursor& field, const Unit& unit = {});       // three numbers, SI
+Vector3 hardpoint(const Cursor& field, const Definitions& defs);  // [m]
+Vector3 direction(const Cursor& field, const Definitions& defs);  // unit
+BodyId body(const Cursor& field, const Definitions& defs);        // or ground
+BodyId moving_body(const Cursor& field, const Definitions& defs, const char* what);  // not ground
 
 struct BodyPair {
     BodyId i, j;
 };
-BodyPair body_pair(const Cursor& at, const Definitions& defs);  // [i, j], different
+BodyPair body_pair(const Cursor& field, const Definitions& defs);  // [i, j], different
 
 // A ground position as a point of the body: s_local = p - r, since bodies start parallel to ground.
 Point point_of(BodyId body, const Vector3& p, const Definitions& defs);
@@ -74,6 +74,6 @@ struct Between {
     Point i, j;
     double length;  // [m]
 };
-Between between(const Cursor& at, const Definitions& defs, const char* what);
+Between between(const Cursor& field, const Definitions& defs, const char* what);
 
 }  // namespace elastocheck::reader

@@ -19,14 +19,15 @@ std::vector<std::string> names_of(const std::map<std::string, T>& table) {
     return names;
 }
 
-// The table entry that `at` names; the error message suggests the nearest name. `kind` names the
+// The table entry that `field` names; the error message suggests the nearest name. `kind` names the
 // kind of entry, e.g. "hardpoint".
 template <class T>
-const T& look_up(const Cursor& at, const std::string& kind, const std::map<std::string, T>& table) {
-    const std::string& name = at.text("the name of a " + kind);
+const T& look_up(const Cursor& field, const std::string& kind,
+                 const std::map<std::string, T>& table) {
+    const std::string& name = field.text("the name of a " + kind);
     if (const auto found = table.find(name); found != table.end()) return found->second;
-    at.fail(fmt::format("there is no {} called {}{}", kind, quote(name),
-                        did_you_mean(name, names_of(table), "defined")));
+    field.fail(fmt::format("there is no {} called {}{}", kind, quote(name),
+                           did_you_mean(name, names_of(table), "defined")));
 }
 
 }  // namespace elastocheck::reader

@@ -56,19 +56,20 @@ Marker twin(const Marker& m, const Definitions& defs) {
 
 }  // namespace
 
-Mirror read_mirror(const Cursor& at, const Cursor& scene) {
-    const std::string_view text = at.text("a mirror, like left -> right");
+Mirror read_mirror(const Cursor& field, const Cursor& scene) {
+    const std::string_view text = field.text("a mirror, like left -> right");
     const std::size_t arrow = text.find("->");
     Mirror mirror;
     if (arrow != std::string_view::npos)
         mirror = {std::string(trimmed(text.substr(0, arrow))),
                   std::string(trimmed(text.substr(arrow + 2)))};
     if (!is_all_letters(mirror.from) || !is_all_letters(mirror.to) || mirror.from == mirror.to)
-        at.fail(fmt::format(
+        field.fail(fmt::format(
             "{} is not a mirror; expected two different words of letters, like left -> right",
-            at.found()));
+            field.found()));
     if (!any_name_turns(mirror, scene))
-        at.fail(fmt::format("nothing to mirror: no name contains the word {}", quote(mirror.from)));
+        field.fail(
+            fmt::format("nothing to mirror: no name contains the word {}", quote(mirror.from)));
     return mirror;
 }
 
@@ -102,15 +103,15 @@ std::optional<std::string> twin_name(const Mirror& mirror, const std::string& na
 
 void require_both_sides(const Cursor& section, const Definitions& defs) {
     if (!defs.mirror) return;
-    for (const auto& [name, at] : section.entries()) {
+    for (const auto& [name, field] : section.entries()) {
         if (turned(*defs.mirror, name)) continue;
         std::set<std::string> words;
-        collect_words(*at.value, words);
+        collect_words(*field.value, words);
         for (const std::string& word : words) {
             const auto twin = turned(*defs.mirror, word);
             const bool is_reference = defs.points.contains(word) || defs.body_ids.contains(word);
             if (!twin || !is_reference || words.contains(*twin)) continue;
-            at.fail(
+            field.fail(
                 fmt::format("shared by both sides, since its name does not contain {}, but refers "
                             "to {} and not to {}",
                             quote(defs.mirror->from), quote(word), quote(*twin)));

@@ -24,7 +24,7 @@ struct Mirror {
 };
 
 // Reads `left -> right`; some name of the scene must contain the first word.
-Mirror read_mirror(const Cursor& at, const Cursor& scene);
+Mirror read_mirror(const Cursor& field, const Cursor& scene);
 
 // The name with every word `from` replaced, or none if it has none. "arm_left" ->
 // "arm_right", not "leftover".

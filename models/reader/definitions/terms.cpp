@@ -9,22 +9,22 @@
 
 namespace elastocheck::reader {
 
-std::vector<Term> terms(const Cursor& at, const std::string& what) {
+std::vector<Term> terms(const Cursor& field, const std::string& what) {
     std::vector<Term> terms;
-    if (at.value->kind == Value::Kind::map) {
-        for (std::size_t k = 0; k < at.value->keys.size(); ++k) {
-            const std::string& name = at.value->keys[k];
-            terms.push_back({name, at.at(at.value->items[k], at.path_of(name)), true});
+    if (field.value->kind == Value::Kind::map) {
+        for (std::size_t k = 0; k < field.value->keys.size(); ++k) {
+            const std::string& name = field.value->keys[k];
+            terms.push_back({name, field.at(field.value->items[k], field.path_of(name)), true});
         }
     } else {
-        for (const Cursor& item : at.is_list() ? at.items() : std::vector<Cursor>{at}) {
+        for (const Cursor& item : field.is_list() ? field.items() : std::vector<Cursor>{field}) {
             const std::string& name = item.text("the name of " + what);
             if (std::ranges::any_of(terms, [&](const Term& term) { return term.name == name; }))
                 item.fail(fmt::format("{} is listed twice", quote(name)));
             terms.push_back({name, item});
         }
     }
-    if (terms.empty()) at.fail(fmt::format("empty; {} is needed", what));
+    if (terms.empty()) field.fail(fmt::format("empty; {} is needed", what));
     return terms;
 }
 

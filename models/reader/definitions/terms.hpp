@@ -20,7 +20,7 @@ struct Term {
 
 // A name, a list of names or a map of names to numbers, without repeats. `what` completes "the name
 // of ...".
-std::vector<Term> terms(const Cursor& at, const std::string& what);
+std::vector<Term> terms(const Cursor& field, const std::string& what);
 
 // The section `loads`, numbers as written.
 using Loads = std::map<std::string, Load>;

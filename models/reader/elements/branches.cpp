@@ -47,10 +47,10 @@ void in_arms(Load& load, const Unit& arm) {
     m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
 }
 
-Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& loads,
+Parameter read_loads_moved(const Cursor& field, const Units& units, const Loads& loads,
                            Branch& branch) {
     std::vector<Load> chosen;
-    for (const Term& term : terms(at, "a load")) {
+    for (const Term& term : terms(field, "a load")) {
         chosen.push_back(look_up_load(term, loads));
         branch.drivers.push_back(
             {.what = Load{}, .start = 0, .rate = weight_of(term, "loads nothing")});
@@ -58,7 +58,7 @@ Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& lo
     const auto zero = [](const Load& load) { return load_vector(load.kind).isZero(0); };
     const auto moment = [](const Load& load) { return is_moment(load.kind); };
     if (std::ranges::all_of(chosen, zero))
-        at.fail("zero in every component; a branch needs a nonzero load");
+        field.fail("zero in every component; a branch needs a nonzero load");
     const bool only_moments = std::ranges::all_of(chosen, moment);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
         if (!only_moments) in_arms(chosen[k], units.arm);
@@ -68,9 +68,9 @@ Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& lo
                         : Parameter{ParameterUnit::newton, units.force};
 }
 
-Parameter read_driven(const Cursor& at, Drivables& drivables, Scene& scene, Branch& branch) {
+Parameter read_driven(const Cursor& field, Drivables& drivables, Scene& scene, Branch& branch) {
     std::optional<Parameter> parameter;
-    for (const Term& term : terms(at, "a driven quantity")) {
+    for (const Term& term : terms(field, "a driven quantity")) {
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
         if (!parameter) parameter = Parameter{quantity.kind, quantity.unit};
         const double rate =
@@ -84,17 +84,19 @@ Parameter read_driven(const Cursor& at, Drivables& drivables, Scene& scene, Bran
     return *parameter;
 }
 
-void read_static_loads(const Cursor& at, const Units& units, const Loads& loads, Branch& branch) {
-    for (const Term& term : terms(at, "a load")) {
+void read_static_loads(const Cursor& field, const Units& units, const Loads& loads,
+                       Branch& branch) {
+    for (const Term& term : terms(field, "a load")) {
         const Load& load = look_up_load(term, loads);
         branch.drivers.push_back({.what = load, .start = held_value(term, load, units), .rate = 0});
     }
 }
 
-void read_hold(const Cursor& at, Drivables& drivables, Scene& scene, Branch& branch) {
-    if (at.value->kind != Value::Kind::map)
-        at.fail(fmt::format("expected a map from held quantities to values, found {}", at.found()));
-    for (const Term& term : terms(at, "a held quantity")) {
+void read_hold(const Cursor& field, Drivables& drivables, Scene& scene, Branch& branch) {
+    if (field.value->kind != Value::Kind::map)
+        field.fail(
+            fmt::format("expected a map from held quantities to values, found {}", field.found()));
+    for (const Term& term : terms(field, "a held quantity")) {
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
         const double value = quantity.unit.si(term.number(quantity.unit.name));
         branch.drivers.push_back(
@@ -116,9 +118,10 @@ void require_different(const Cursor& branch, const std::vector<Driver>& drivers)
 }
 
 // Reads `from` and `to` in SI, and the number of steps.
-void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies, Branch& branch) {
-    const Cursor to = at.require("to");
-    const auto from = at.optional("from");
+void read_range(const Cursor& field, const Parameter& parameter, std::size_t bodies,
+                Branch& branch) {
+    const Cursor to = field.require("to");
+    const auto from = field.optional("from");
     const std::string& unit = parameter.unit.name;
     branch.unit = parameter.kind;
     branch.from = from ? parameter.unit.si(from->number(unit)) : 0;
@@ -129,7 +132,7 @@ void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies
             fmt::format("{} and `to` are on the same side of 0, the start of the branch; allowed: "
                         "the other side, or 0",
                         from->found()));
-    const Cursor steps = at.require("steps");
+    const Cursor steps = field.require("steps");
     // at least one per side
     branch.steps = steps.whole_number(branch.from == 0 ? 1 : 2, max_steps);
     if (branch.steps * static_cast<double>(bodies) > max_poses)
@@ -138,24 +141,24 @@ void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies
             branch.steps, bodies, std::floor(max_poses / static_cast<double>(bodies))));
 }
 
-Branch read_branch(const std::string& name, const Cursor& at, const Units& units,
+Branch read_branch(const std::string& name, const Cursor& field, const Units& units,
                    const Loads& loads, Drivables& drivables, Scene& scene) {
-    at.only_keys({"load", "drive", "from", "to", "steps", "static_loads", "hold"});
-    const auto load = at.optional("load"), drive = at.optional("drive");
+    field.only_keys({"load", "drive", "from", "to", "steps", "static_loads", "hold"});
+    const auto load = field.optional("load"), drive = field.optional("drive");
     if (load && drive)
         drive->fail(
             "given together with load; allowed: one of the two (a constant load belongs in "
             "static_loads)");
-    if (!load && !drive) at.fail("the branch drives nothing; required: load or drive");
+    if (!load && !drive) field.fail("the branch drives nothing; required: load or drive");
     Branch branch;
     branch.name = name;
     const Parameter parameter = load ? read_loads_moved(*load, units, loads, branch)
                                      : read_driven(*drive, drivables, scene, branch);
-    if (const auto held = at.optional("static_loads"))
+    if (const auto held = field.optional("static_loads"))
         read_static_loads(*held, units, loads, branch);
-    if (const auto held = at.optional("hold")) read_hold(*held, drivables, scene, branch);
-    require_different(at, branch.drivers);
-    read_range(at, parameter, scene.bodies.size(), branch);
+    if (const auto held = field.optional("hold")) read_hold(*held, drivables, scene, branch);
+    require_different(field, branch.drivers);
+    read_range(field, parameter, scene.bodies.size(), branch);
     return branch;
 }
 
@@ -240,8 +243,8 @@ void note_unused_loads(const Cursor& file, const Cursor& section, const Loads& l
 void read_branches(const Cursor& file, const Units& units, const std::map<std::string, Load>& loads,
                    Drivables& drivables, Scene& scene) {
     const Cursor section = file.require("branches");
-    for (const auto& [name, at] : section.entries())
-        scene.branches.push_back(read_branch(name, at, units, loads, drivables, scene));
+    for (const auto& [name, field] : section.entries())
+        scene.branches.push_back(read_branch(name, field, units, loads, drivables, scene));
     if (scene.branches.empty()) section.fail("empty; at least one branch is needed");
     require_moving(section, scene);
     if (const auto load_section = file.optional("loads"))

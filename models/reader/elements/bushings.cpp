@@ -18,8 +18,8 @@ namespace {
 constexpr double round_off = 1e-12;  // relative, of numbers that should be equal
 constexpr double min_sine = 1e-6;    // sine of the angle below which axes count as parallel
 
-Vector3 rates(const Cursor& at, const Unit& unit) {
-    const auto items = at.list(3, "rates");
+Vector3 rates(const Cursor& field, const Unit& unit) {
+    const auto items = field.list(3, "rates");
     return {rate(items[0], unit), rate(items[1], unit), rate(items[2], unit)};
 }
 
@@ -47,29 +47,29 @@ Axes completed(int a, const Vector3& e_a, int b, const Vector3& e_b) {
 }
 
 // The axis written first is kept, the second is made perpendicular to it.
-FrameField read_frame(const Cursor& at, const Definitions& defs) {
-    at.only_keys({"x", "y", "z"});
-    const auto& keys = at.value->keys;
+FrameField read_frame(const Cursor& field, const Definitions& defs) {
+    field.only_keys({"x", "y", "z"});
+    const auto& keys = field.value->keys;
     if (keys.size() != 1 && keys.size() != 2)
-        at.fail(fmt::format("{} axes given; allowed: one or two", keys.size()));
+        field.fail(fmt::format("{} axes given; allowed: one or two", keys.size()));
     const int a = keys[0][0] - 'x';
-    const Vector3 e_a = direction(at.require(keys[0]), defs);
+    const Vector3 e_a = direction(field.require(keys[0]), defs);
     if (keys.size() == 1) return {completed(a, e_a, (a + 1) % 3, e_a.unitOrthogonal()), a};
 
     const int b = keys[1][0] - 'x';
-    const Vector3 d_b = direction(at.require(keys[1]), defs);
+    const Vector3 d_b = direction(field.require(keys[1]), defs);
     const Vector3 across = d_b - d_b.dot(e_a) * e_a;
     if (!(across.norm() > min_sine))
-        at.fail(fmt::format("axes {} and {} are parallel; two different directions are needed",
-                            keys[0], keys[1]));
+        field.fail(fmt::format("axes {} and {} are parallel; two different directions are needed",
+                               keys[0], keys[1]));
     return {completed(a, e_a, b, across.normalized()), std::nullopt};
 }
 
 // Axes on the second body, if the bodies are rotated relative to each other at the design position.
-Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& defs) {
-    const FrameField other = read_frame(at, defs);
+Axes read_frame_j(const Cursor& field, const FrameField& frame, const Definitions& defs) {
+    const FrameField other = read_frame(field, defs);
     if (frame.only_axis || other.only_axis)
-        at.fail(
+        field.fail(
             "needs two axes, as does frame: both frames must be fully defined if they are not "
             "parallel");
     return other.axes;
@@ -89,22 +89,22 @@ Matrix6 scaled_to_unit_diagonal(const Matrix6& K) {
     return (K.array() / (d * d.transpose()).array()).matrix();
 }
 
-void require_semidefinite(const Cursor& at, const Matrix6& K) {
+void require_semidefinite(const Cursor& field, const Matrix6& K) {
     const Matrix6 S = scaled_to_unit_diagonal(K);
     const double lowest =
         Eigen::SelfAdjointEigenSolver<Matrix6>(S, Eigen::EigenvaluesOnly).eigenvalues()[0];
     if (!(lowest >= -round_off))
-        at.fail(
+        field.fail(
             fmt::format("indefinite, its lowest eigenvalue is {:g} when scaled to a unit diagonal; "
                         "a stiffness must be positive semidefinite",
                         lowest));
 }
 
-void require_symmetric(const Cursor& at, const Matrix6& K) {
+void require_symmetric(const Cursor& field, const Matrix6& K) {
     for (int i = 0; i < 6; ++i)
         for (int j = i + 1; j < 6; ++j)
             if (!are_near(K(i, j), K(j, i), round_off * larger_of(K(i, j), K(j, i))))
-                at.fail(
+                field.fail(
                     fmt::format("not symmetric: row {}, column {} is {}, row {}, column {} is {}",
                                 i + 1, j + 1, K(i, j), j + 1, i + 1, K(j, i)));
 }
@@ -117,8 +117,8 @@ const Unit& unit_of_entry(int i, int j, const Units& units) {
     return i < 3 ? units.rate : units.rotational_rate;
 }
 
-Matrix6 read_stiffness(const Cursor& at, const Units& units) {
-    const auto rows = at.list(6, "rows");
+Matrix6 read_stiffness(const Cursor& field, const Units& units) {
+    const auto rows = field.list(6, "rows");
     Matrix6 written, K;
     for (int i = 0; i < 6; ++i) {
         const auto row =
@@ -129,9 +129,9 @@ Matrix6 read_stiffness(const Cursor& at, const Units& units) {
             K(i, j) = unit.si(written(i, j));
         }
     }
-    require_symmetric(at, written);
+    require_symmetric(field, written);
     K = (0.5 * (K + K.transpose())).eval();
-    require_semidefinite(at, K);
+    require_semidefinite(field, K);
     return K;
 }
 
@@ -148,14 +148,14 @@ Matrix6 read_rates(const Cursor& bushing, const Units& units) {
 }
 
 // A curve replaces the rate of its axis.
-PerAxis read_curves(const Cursor& at, const Matrix6& K, const Definitions& defs) {
-    at.only_keys({std::begin(axis_names), std::end(axis_names)});
-    if (at.value->keys.empty()) at.fail("empty; a curve for at least one axis is needed");
+PerAxis read_curves(const Cursor& field, const Matrix6& K, const Definitions& defs) {
+    field.only_keys({std::begin(axis_names), std::end(axis_names)});
+    if (field.value->keys.empty()) field.fail("empty; a curve for at least one axis is needed");
     PerAxis law;
     for (std::size_t k = 0; k < 6; ++k) {
         const auto i = static_cast<Eigen::Index>(k);
         law.axis[k] = LinearRate{K(i, i)};
-        if (const auto curve = at.optional(axis_names[k]))
+        if (const auto curve = field.optional(axis_names[k]))
             law.axis[k] =
                 read_curve(*curve, k < 3 ? of_lengths(defs.units) : of_angles(defs.units), defs);
     }
@@ -203,23 +203,24 @@ Vector6 read_pair(const Cursor& bushing, const char* d, const Unit& unit_d, cons
 }
 
 // Defaults: the first choice of each field.
-Formulation read_formulation(const Cursor& at) {
-    at.only_keys({"frame", "angles", "conjugate", "offset_moment"});
+Formulation read_formulation(const Cursor& field) {
+    field.only_keys({"frame", "angles", "conjugate", "offset_moment"});
     using Frame = Formulation::Frame;
     using Angles = Formulation::Angles;
     Formulation result;
-    if (const auto frame = at.optional("frame"))
+    if (const auto frame = field.optional("frame"))
         result.frame = std::array{Frame::on_i, Frame::on_j,
                                   Frame::middle}[frame->one_of("a frame", {"i", "j", "middle"})];
-    if (const auto angles = at.optional("angles"))
+    if (const auto angles = field.optional("angles"))
         result.angles =
             std::array{Angles::rotation_vector, Angles::cardan, Angles::projected}[angles->one_of(
                 "a definition of the angles", {"rotation_vector", "cardan", "projected"})];
-    if (const auto conjugate = at.optional("conjugate")) result.conjugate = conjugate->yes_or_no();
-    if (const auto moment = at.optional("offset_moment"))
+    if (const auto conjugate = field.optional("conjugate"))
+        result.conjugate = conjugate->yes_or_no();
+    if (const auto moment = field.optional("offset_moment"))
         result.offset_moment = moment->yes_or_no();
     if (!result.conjugate && result.frame == Frame::middle)
-        at.require("conjugate")
+        field.require("conjugate")
             .fail("false is not defined with the frame in the middle; allowed there: true");
     return result;
 }
@@ -281,24 +282,24 @@ void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) 
 
 }  // namespace
 
-Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs) {
-    at.only_keys({"bodies", "at", "frame", "frame_j", "rates", "rotational_rates", "stiffness",
-                  "curves", "preload", "preload_moment", "undeformed", "undeformed_angles",
-                  "formulation"});
-    const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Vector3 p = hardpoint(at.require("at"), defs);
-    const auto frame_field = at.optional("frame");
+Elastic read_bushing(const std::string& name, const Cursor& field, const Definitions& defs) {
+    field.only_keys({"bodies", "at", "frame", "frame_j", "rates", "rotational_rates", "stiffness",
+                     "curves", "preload", "preload_moment", "undeformed", "undeformed_angles",
+                     "formulation"});
+    const auto [i, j] = body_pair(field.require("bodies"), defs);
+    const Vector3 p = hardpoint(field.require("at"), defs);
+    const auto frame_field = field.optional("frame");
     const FrameField frame = frame_field ? read_frame(*frame_field, defs) : FrameField{};
-    const auto frame_j = at.optional("frame_j");
+    const auto frame_j = field.optional("frame_j");
     const Axes axes_j = frame_j ? read_frame_j(*frame_j, frame, defs) : frame.axes;
     const Units& units = defs.units;
     Bushing bushing{.i = marker_of(i, p, frame.axes, defs),
                     .j = marker_of(j, p, axes_j, defs),
-                    .law = read_spatial_law(at, defs)};
-    bushing.preload = read_pair(at, "preload", units.force, "preload_moment", units.moment);
+                    .law = read_spatial_law(field, defs)};
+    bushing.preload = read_pair(field, "preload", units.force, "preload_moment", units.moment);
     bushing.undeformed =
-        read_pair(at, "undeformed", units.length, "undeformed_angles", units.angle);
-    if (const auto formulation = at.optional("formulation"))
+        read_pair(field, "undeformed", units.length, "undeformed_angles", units.angle);
+    if (const auto formulation = field.optional("formulation"))
         bushing.formulation = read_formulation(*formulation);
     if (frame.only_axis) require_round_about(*frame_field, *frame.only_axis, bushing);
     return {name, bushing};

@@ -168,10 +168,10 @@ bool is_same(const Driven& a, const Driven& b) {
            (along == nullptr || *along == *other);
 }
 
-int add_joint(const Cursor& at, const Joint& joint, Scene& scene) {
+int add_joint(const Cursor& field, const Joint& joint, Scene& scene) {
     if (std::ranges::any_of(scene.joints,
                             [&](const Joint& other) { return other.name == joint.name; }))
-        at.fail(
+        field.fail(
             fmt::format("the joint name {} is reserved for its drive, but already in use; rename "
                         "the other joint",
                         quote(joint.name)));
@@ -179,18 +179,18 @@ int add_joint(const Cursor& at, const Joint& joint, Scene& scene) {
     return static_cast<int>(scene.joints.size()) - 1;
 }
 
-const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& drivables,
+const Drivable& drivable(const Cursor& field, const std::string& name, Drivables& drivables,
                          Scene& scene) {
     const auto found = drivables.table.find(name);
     if (found == drivables.table.end()) {
         if (const auto why = drivables.not_driven.find(name); why != drivables.not_driven.end())
-            at.fail(fmt::format("{} is {}", quote(name), why->second));
-        at.fail(fmt::format("{} cannot be driven{}", quote(name),
-                            did_you_mean(name, names_of(drivables.table), "allowed")));
+            field.fail(fmt::format("{} is {}", quote(name), why->second));
+        field.fail(fmt::format("{} cannot be driven{}", quote(name),
+                               did_you_mean(name, names_of(drivables.table), "allowed")));
     }
     Drivable& result = found->second;
     if (result.joint) {
-        result.what = Motion{add_joint(at, *result.joint, scene)};
+        result.what = Motion{add_joint(field, *result.joint, scene)};
         result.joint.reset();
     }
     return result;

@@ -47,15 +47,15 @@ using NamedElements = std::map<int, NamedElement>;
 Drivables drivables(const Scene& scene, const Units& units, const std::map<int, int>& drives,
                     const NamedElements& elements);
 
-// The quantity called `name`; creates its joint if needed. `at` is its position in the
+// The quantity called `name`; creates its joint if needed. `field` is its position in the
 // file, for errors.
-const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& drivables,
+const Drivable& drivable(const Cursor& field, const std::string& name, Drivables& drivables,
                          Scene& scene);
 
 // Whether two drivers change the same number. Loads, and preloads along different axes, are added.
 bool is_same(const Driven& a, const Driven& b);
 
 // Adds a joint; its name must be unused.
-int add_joint(const Cursor& at, const Joint& joint, Scene& scene);
+int add_joint(const Cursor& field, const Joint& joint, Scene& scene);
 
 }  // namespace elastocheck::reader

@@ -8,10 +8,10 @@
 namespace elastocheck::reader {
 namespace {
 
-Vector3 read_acceleration(const Cursor& at, const Definitions& defs) {
-    const Vector3 g = vector(at, {"m/s²"});
+Vector3 read_acceleration(const Cursor& field, const Definitions& defs) {
+    const Vector3 g = vector(field, {"m/s²"});
     if (defs.mirror && g.y() != 0)
-        at.fail(
+        field.fail(
             "has a y component, which is not symmetric; allowed in a scene with a mirror: [x, 0, "
             "z]");
     return g;
@@ -46,21 +46,21 @@ void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result) {
     const auto field = scene.optional("gravity");
     const Vector3 g = field ? read_acceleration(*field, defs) : Vector3::Zero();
     bool any_mass = false;
-    for (const auto& [name, at] : scene.require("bodies").entries()) {
-        const auto mass = read_mass(at);
+    for (const auto& [name, body_entry] : scene.require("bodies").entries()) {
+        const auto mass = read_mass(body_entry);
         if (!mass) continue;
         any_mass = true;
         const BodyId id = defs.body_ids.at(name);
-        const auto centre = at.optional("centre_of_gravity");
-        const Vector3 p = hardpoint(centre ? *centre : at.require("origin"), defs);
+        const auto centre = body_entry.optional("centre_of_gravity");
+        const Vector3 p = hardpoint(centre ? *centre : body_entry.require("origin"), defs);
         if (!field) {
             result.omitted.push_back({"mass of body '" + name + "'", "the scene has no gravity"});
             continue;
         }
         const Load weight{"gravity." + name, DeadForce{point_of(id, p, defs), *mass * g}};
-        add_weight(at, weight, result);
+        add_weight(body_entry, weight, result);
         if (const BodyId other = defs.twin_of[static_cast<std::size_t>(id)]; other != id)
-            add_weight(at,
+            add_weight(body_entry,
                        {"gravity." + defs.bodies[static_cast<std::size_t>(other)].name,
                         twin(weight.kind, defs)},
                        result);

@@ -17,15 +17,19 @@ constexpr double square = 1e-9;  // largest cosine between axes that must be per
 
 // Fields of a joint. Its axes are fixed in both bodies, which start parallel to ground.
 struct JointFields {
-    const Cursor& at;
+    const Cursor& joint;
     const Definitions& defs;
     BodyPair bodies;
 
-    Vector3 position(const char* key) const { return hardpoint(at.require(key), defs); }
+    Vector3 position(const char* key) const { return hardpoint(joint.require(key), defs); }
     Point i(const char* key) const { return point_of(bodies.i, position(key), defs); }
     Point j(const char* key) const { return point_of(bodies.j, position(key), defs); }
-    Direction axis_i(const char* key) const { return {bodies.i, direction(at.require(key), defs)}; }
-    Direction axis_j(const char* key) const { return {bodies.j, direction(at.require(key), defs)}; }
+    Direction axis_i(const char* key) const {
+        return {bodies.i, direction(joint.require(key), defs)};
+    }
+    Direction axis_j(const char* key) const {
+        return {bodies.j, direction(joint.require(key), defs)};
+    }
 };
 
 // `axis_i` and `axis_j`, perpendicular as written within 1e-9; axis_j is then
@@ -125,13 +129,13 @@ const JointType& joint_type(const Cursor& joint) {
 
 }  // namespace
 
-Joint read_joint(const std::string& name, const Cursor& at, const Definitions& defs) {
-    const JointType& type = joint_type(at);
+Joint read_joint(const std::string& name, const Cursor& field, const Definitions& defs) {
+    const JointType& type = joint_type(field);
     std::vector<std::string> fields{"type", "bodies"};
     fields.insert(fields.end(), type.fields.begin(), type.fields.end());
-    at.only_keys(fields);
-    const BodyPair bodies = body_pair(at.require("bodies"), defs);
-    return {name, type.read({at, defs, bodies})};
+    field.only_keys(fields);
+    const BodyPair bodies = body_pair(field.require("bodies"), defs);
+    return {name, type.read({field, defs, bodies})};
 }
 
 bool is_held(const Cursor& joint) {

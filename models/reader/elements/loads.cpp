@@ -14,17 +14,17 @@
 namespace elastocheck::reader {
 namespace {
 
-Load load_in(const std::string& name, const Cursor& at, const Definitions& defs,
+Load load_in(const std::string& name, const Cursor& field, const Definitions& defs,
              const std::vector<Wheel>& wheels, const Unit& force_unit, const Unit& moment_unit) {
-    at.only_keys({"on", "at", "force", "moment", "follows", "torque"});
-    const BodyId on = moving_body(at.require("on"), defs, "a load");
-    const auto force = at.optional("force"), moment = at.optional("moment");
+    field.only_keys({"on", "at", "force", "moment", "follows", "torque"});
+    const BodyId on = moving_body(field.require("on"), defs, "a load");
+    const auto force = field.optional("force"), moment = field.optional("moment");
     if (force && moment) moment->fail("given together with force; allowed: one of the two");
-    const auto follows = at.optional("follows");
+    const auto follows = field.optional("follows");
     const bool is_follower = follows && follows->yes_or_no();
-    const auto torque = at.optional("torque");
+    const auto torque = field.optional("torque");
     if (force) {
-        const Vector3 p = hardpoint(at.require("at"), defs);
+        const Vector3 p = hardpoint(field.require("at"), defs);
         Point point = point_of(on, p, defs);
         const Vector3 f = vector(*force, force_unit);
         const auto wheel = std::ranges::find_if(wheels, [&](const Wheel& w) {
@@ -43,8 +43,8 @@ Load load_in(const std::string& name, const Cursor& at, const Definitions& defs,
                 is_follower ? LoadKind(FollowerForce{point, f}) : LoadKind(DeadForce{point, f})};
     }
     if (torque) torque->fail("allowed for a force at the contact patch of a wheel that rolls");
-    if (!moment) at.fail("no load; required: force with at, or moment");
-    if (const auto point = at.optional("at"))
+    if (!moment) field.fail("no load; required: force with at, or moment");
+    if (const auto point = field.optional("at"))
         point->fail("a moment has no point of application; remove this field");
     const Vector3 m = vector(*moment, moment_unit);
     return {name, is_follower ? LoadKind(FollowerMoment{on, m}) : LoadKind(DeadMoment{on, m})};
@@ -52,14 +52,14 @@ Load load_in(const std::string& name, const Cursor& at, const Definitions& defs,
 
 }  // namespace
 
-Load read_load(const std::string& name, const Cursor& at, const Definitions& defs,
+Load read_load(const std::string& name, const Cursor& field, const Definitions& defs,
                const std::vector<Wheel>& wheels) {
-    return load_in(name, at, defs, wheels, {}, {});
+    return load_in(name, field, defs, wheels, {}, {});
 }
 
-Load read_static_load(const std::string& name, const Cursor& at, const Definitions& defs,
+Load read_static_load(const std::string& name, const Cursor& field, const Definitions& defs,
                       const std::vector<Wheel>& wheels) {
-    return load_in(name, at, defs, wheels, defs.units.force, defs.units.moment);
+    return load_in(name, field, defs, wheels, defs.units.force, defs.units.moment);
 }
 
 }  // namespace elastocheck::reader

@@ -12,26 +12,27 @@ struct Place {
 };
 
 // An end of a steering axis: a hardpoint fixed to the wheel's body, or one on another body.
-Place end_of_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
-    const bool elsewhere = at.value->kind == Value::Kind::map;
-    if (elsewhere) at.only_keys({"on", "at"});
-    const BodyId on = elsewhere ? body(at.require("on"), defs) : wheel;
-    const Vector3 position = hardpoint(elsewhere ? at.require("at") : at, defs);
+Place end_of_axis(const Cursor& field, BodyId wheel, const Definitions& defs) {
+    const bool elsewhere = field.value->kind == Value::Kind::map;
+    if (elsewhere) field.only_keys({"on", "at"});
+    const BodyId on = elsewhere ? body(field.require("on"), defs) : wheel;
+    const Vector3 position = hardpoint(elsewhere ? field.require("at") : field, defs);
     return {position, point_of(on, position, defs)};
 }
 
-SteeringAxis read_steering_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
-    const auto ends = at.list(2, "ends, the lower and the upper");
+SteeringAxis read_steering_axis(const Cursor& field, BodyId wheel, const Definitions& defs) {
+    const auto ends = field.list(2, "ends, the lower and the upper");
     const Place lower = end_of_axis(ends[0], wheel, defs),
                 upper = end_of_axis(ends[1], wheel, defs);
     if (!((upper.position - lower.position).norm() > coincident))
-        at.fail("both ends are at the same position; an axis needs two different ones");
+        field.fail("both ends are at the same position; an axis needs two different ones");
     return {lower.point, upper.point};
 }
 
-double share(const Cursor& at) {
-    const double x = at.number();
-    if (!(x >= 0 && x <= 1)) at.fail(fmt::format("{} is not a share; allowed: 0 to 1", at.found()));
+double share(const Cursor& field) {
+    const double x = field.number();
+    if (!(x >= 0 && x <= 1))
+        field.fail(fmt::format("{} is not a share; allowed: 0 to 1", field.found()));
     return x;
 }
 
@@ -62,16 +63,16 @@ BodyId add_rolling_wheel(const std::string& name, const Vector3& centre, Definit
 
 }  // namespace
 
-Wheel read_wheel(const std::string& name, const Cursor& at, Definitions& defs) {
-    at.only_keys(
+Wheel read_wheel(const std::string& name, const Cursor& entry, Definitions& defs) {
+    entry.only_keys(
         {"body", "centre", "contact_patch", "contact", "spin_axis", "side", "steering_axis"});
-    const BodyId body = moving_body(at.require("body"), defs, "a wheel");
-    const auto contact = at.optional("contact_patch");
-    const Cursor centre = at.require("centre"), spin_axis = at.require("spin_axis");
+    const BodyId body = moving_body(entry.require("body"), defs, "a wheel");
+    const auto contact = entry.optional("contact_patch");
+    const Cursor centre = entry.require("centre"), spin_axis = entry.require("spin_axis");
     const auto local = [&](const Cursor& field) {
         return point_of(body, hardpoint(field, defs), defs).s_local;
     };
-    const Cursor side = at.require("side");
+    const Cursor side = entry.require("side");
     Wheel wheel{.name = name,
                 .body = body,
                 .centre_local = local(centre),
@@ -88,10 +89,10 @@ Wheel read_wheel(const std::string& name, const Cursor& at, Definitions& defs) {
     if (!(wheel.side * wheel.spin_axis_local.y() > 0))
         spin_axis.fail(fmt::format("does not point outboard, which is {}y for a {} wheel",
                                    wheel.side > 0 ? '+' : '-', wheel.side > 0 ? "left" : "right"));
-    if (const auto axis = at.optional("steering_axis"))
+    if (const auto axis = entry.optional("steering_axis"))
         wheel.steering_axis = read_steering_axis(*axis, body, defs);
     const Vector3 arm = wheel.contact.s_local - wheel.centre_local;
-    const auto kind = at.optional("contact");
+    const auto kind = entry.optional("contact");
     const bool rolls = kind ? kind->one_of("a contact", {"carrier", "rolling"}) == 1
                             : is_below(arm, wheel.spin_axis_local);
     if (rolls && kind && !(arm.z() < 0))
@@ -117,27 +118,27 @@ void add_rolling_joints(const Cursor& scene, Scene& result) {
     }
 }
 
-Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs) {
-    at.only_keys({"on", "at"});
-    const BodyId on = moving_body(at.require("on"), defs, "a probe");
-    return {name, point_of(on, hardpoint(at.require("at"), defs), defs)};
+Probe read_probe(const std::string& name, const Cursor& field, const Definitions& defs) {
+    field.only_keys({"on", "at"});
+    const BodyId on = moving_body(field.require("on"), defs, "a probe");
+    return {name, point_of(on, hardpoint(field.require("at"), defs), defs)};
 }
 
-Damper read_damper(const std::string& name, const Cursor& at, const Definitions& defs) {
-    at.only_keys({"bodies", "from", "to"});
-    const auto [i, j, length] = between(at, defs, "a damper");
+Damper read_damper(const std::string& name, const Cursor& field, const Definitions& defs) {
+    field.only_keys({"bodies", "from", "to"});
+    const auto [i, j, length] = between(field, defs, "a damper");
     return {name, i, j};
 }
 
-Vehicle read_vehicle(const Cursor& at, const Definitions& defs) {
-    at.only_keys({"wheelbase", "cg_height", "axle", "brake_share", "drive_share"});
+Vehicle read_vehicle(const Cursor& field, const Definitions& defs) {
+    field.only_keys({"wheelbase", "cg_height", "axle", "brake_share", "drive_share"});
     const Unit& length = defs.units.length;
-    const auto drive = at.optional("drive_share");
-    return {.wheelbase = above_zero(at.require("wheelbase"), "not a wheelbase", length),
-            .cg_height = above_zero(at.require("cg_height"), "not a height", length),
-            .axle = at.require("axle").one_of("an axle", {"front", "rear"}) == 0 ? Axle::front
-                                                                                 : Axle::rear,
-            .brake_share = share(at.require("brake_share")),
+    const auto drive = field.optional("drive_share");
+    return {.wheelbase = above_zero(field.require("wheelbase"), "not a wheelbase", length),
+            .cg_height = above_zero(field.require("cg_height"), "not a height", length),
+            .axle = field.require("axle").one_of("an axle", {"front", "rear"}) == 0 ? Axle::front
+                                                                                    : Axle::rear,
+            .brake_share = share(field.require("brake_share")),
             .drive_share = drive ? share(*drive) : 0};
 }
 

@@ -13,33 +13,34 @@
 
 namespace elastocheck::reader {
 
-Joint read_joint(const std::string& name, const Cursor& at, const Definitions& defs);
+Joint read_joint(const std::string& name, const Cursor& field, const Definitions& defs);
 bool is_held(const Cursor& joint);  // `held: true`
 // And its stops. Pre: the wheels are read.
-std::vector<Elastic> read_spring(const std::string& name, const Cursor& at, const Definitions& defs,
-                                 const std::vector<Wheel>& wheels);
+std::vector<Elastic> read_spring(const std::string& name, const Cursor& field,
+                                 const Definitions& defs, const std::vector<Wheel>& wheels);
 // A spring that is given at a wheel or, a bar, at two; nothing for one between two points. The body of
 // a bar is added to `defs` before it is read, its joints when all others are.
-std::optional<Elastic> read_at_wheel(const std::string& name, const Cursor& at,
+std::optional<Elastic> read_at_wheel(const std::string& name, const Cursor& field,
                                      const Definitions& defs, const std::vector<Wheel>& wheels);
 void add_bodies_of_bars(const Cursor& scene, const std::vector<Wheel>& wheels, Definitions& defs);
 void add_joints_of_bars(const Cursor& scene, const Definitions& defs, Scene& result);
-std::vector<Elastic> read_stops(const std::string& name, const Cursor& at, const Definitions& defs);
-Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs);
-Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs);
+std::vector<Elastic> read_stops(const std::string& name, const Cursor& field,
+                                const Definitions& defs);
+Elastic read_torsion_spring(const std::string& name, const Cursor& field, const Definitions& defs);
+Elastic read_bushing(const std::string& name, const Cursor& field, const Definitions& defs);
 // Loads with numbers as written, static loads in SI. Pre: the wheels are read; a force at the patch
 // of one that rolls acts there.
-Load read_load(const std::string& name, const Cursor& at, const Definitions& defs,
+Load read_load(const std::string& name, const Cursor& field, const Definitions& defs,
                const std::vector<Wheel>& wheels);
-Load read_static_load(const std::string& name, const Cursor& at, const Definitions& defs,
+Load read_static_load(const std::string& name, const Cursor& field, const Definitions& defs,
                       const std::vector<Wheel>& wheels);
 // A wheel that rolls becomes a body of its own, added to `defs`.
-Wheel read_wheel(const std::string& name, const Cursor& at, Definitions& defs);
+Wheel read_wheel(const std::string& name, const Cursor& field, Definitions& defs);
 // The joints of the wheels that roll.
 void add_rolling_joints(const Cursor& scene, Scene& result);
-Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs);
-Damper read_damper(const std::string& name, const Cursor& at, const Definitions& defs);
-Vehicle read_vehicle(const Cursor& at, const Definitions& defs);
+Probe read_probe(const std::string& name, const Cursor& field, const Definitions& defs);
+Damper read_damper(const std::string& name, const Cursor& field, const Definitions& defs);
+Vehicle read_vehicle(const Cursor& field, const Definitions& defs);
 
 // `gravity`, and the masses of bodies: one static load "gravity.BODY" for each.
 void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result);

@@ -8,8 +8,8 @@ namespace elastocheck::reader {
 namespace {
 
 // Reads the two ends as a spring that is free at the design length.
-AxialSpring read_ends(const Cursor& at, const Definitions& defs) {
-    const auto [i, j, length] = between(at, defs, "a spring");
+AxialSpring read_ends(const Cursor& field, const Definitions& defs) {
+    const auto [i, j, length] = between(field, defs, "a spring");
     return {.i = i, .j = j, .law = {}, .free_length = length};
 }
 
@@ -41,10 +41,11 @@ double free_length(const Cursor& spring, double length, const ScalarLaw& law,
 }
 
 // Appends the stops given in these fields, with the names "NAME.FIELD".
-void add_stops(const std::string& name, const Cursor& at, const AxialSpring& ends, const char* bump,
-               const char* rebound, const Definitions& defs, std::vector<Elastic>& list) {
+void add_stops(const std::string& name, const Cursor& spring, const AxialSpring& ends,
+               const char* bump, const char* rebound, const Definitions& defs,
+               std::vector<Elastic>& list) {
     for (const auto& [field, kind] : {std::pair{bump, Stop::bump}, {rebound, Stop::rebound}})
-        if (const auto stop = at.optional(field)) {
+        if (const auto stop = spring.optional(field)) {
             AxialSpring element = ends;
             element.law = read_stop(*stop, kind, defs);
             list.push_back({name + "." + field, element, false, WrittenAs::stop});
@@ -53,29 +54,29 @@ void add_stops(const std::string& name, const Cursor& at, const AxialSpring& end
 
 }  // namespace
 
-std::vector<Elastic> read_spring(const std::string& name, const Cursor& at, const Definitions& defs,
-                                 const std::vector<Wheel>& wheels) {
-    if (const auto at_wheel = read_at_wheel(name, at, defs, wheels)) return {*at_wheel};
-    at.only_keys({"bodies", "from", "to", "rate", "curve", "free_length", "preload", "seats",
-                  "bump_stop", "rebound_stop", "at_wheel"});
-    const AxialSpring ends = read_ends(at, defs);
+std::vector<Elastic> read_spring(const std::string& name, const Cursor& field,
+                                 const Definitions& defs, const std::vector<Wheel>& wheels) {
+    if (const auto at_wheel = read_at_wheel(name, field, defs, wheels)) return {*at_wheel};
+    field.only_keys({"bodies", "from", "to", "rate", "curve", "free_length", "preload", "seats",
+                     "bump_stop", "rebound_stop", "at_wheel"});
+    const AxialSpring ends = read_ends(field, defs);
     AxialSpring spring = ends;
-    spring.law = read_law(at, of_springs(defs.units), defs);
-    spring.free_length = free_length(at, ends.free_length, spring.law, defs);
-    if (const auto seats = at.optional("seats");
+    spring.law = read_law(field, of_springs(defs.units), defs);
+    spring.free_length = free_length(field, ends.free_length, spring.law, defs);
+    if (const auto seats = field.optional("seats");
         seats && seats->one_of("a kind of seats", {"fixed", "free"}) == 1)
         spring.law = pushing_only(*seats, spring.law, defs.units.force);
     std::vector<Elastic> result{{name, spring}};
-    add_stops(name, at, ends, "bump_stop", "rebound_stop", defs, result);
+    add_stops(name, field, ends, "bump_stop", "rebound_stop", defs, result);
     return result;
 }
 
-std::vector<Elastic> read_stops(const std::string& name, const Cursor& at,
+std::vector<Elastic> read_stops(const std::string& name, const Cursor& field,
                                 const Definitions& defs) {
-    at.only_keys({"bodies", "from", "to", "bump", "rebound"});
+    field.only_keys({"bodies", "from", "to", "bump", "rebound"});
     std::vector<Elastic> result;
-    add_stops(name, at, read_ends(at, defs), "bump", "rebound", defs, result);
-    if (result.empty()) at.fail("no stop; required: bump or rebound");
+    add_stops(name, field, read_ends(field, defs), "bump", "rebound", defs, result);
+    if (result.empty()) field.fail("no stop; required: bump or rebound");
     return result;
 }
 

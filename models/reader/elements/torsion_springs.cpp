@@ -19,18 +19,19 @@ SpatialLaw about_z(const ScalarLaw& law) {
 }  // namespace
 
 // A bushing with z along the axis that resists only θ_z; its x and y are arbitrary.
-Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs) {
-    at.only_keys({"bodies", "at", "axis", "rate", "curve", "preload_moment"});
-    const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Vector3 p = hardpoint(at.require("at"), defs), z = direction(at.require("axis"), defs);
+Elastic read_torsion_spring(const std::string& name, const Cursor& field, const Definitions& defs) {
+    field.only_keys({"bodies", "at", "axis", "rate", "curve", "preload_moment"});
+    const auto [i, j] = body_pair(field.require("bodies"), defs);
+    const Vector3 p = hardpoint(field.require("at"), defs),
+                  z = direction(field.require("axis"), defs);
     Matrix3 frame;
     frame.col(2) = z;
     frame.col(0) = z.unitOrthogonal();
     frame.col(1) = z.cross(frame.col(0));
     Bushing spring{.i = marker_of(i, p, frame, defs),
                    .j = marker_of(j, p, frame, defs),
-                   .law = about_z(read_law(at, of_angles(defs.units), defs))};
-    if (const auto moment = at.optional("preload_moment"))
+                   .law = about_z(read_law(field, of_angles(defs.units), defs))};
+    if (const auto moment = field.optional("preload_moment"))
         spring.preload[5] = defs.units.moment.si(moment->number(defs.units.moment.name));
     return {name, spring, false, WrittenAs::torsion_spring};
 }

@@ -42,14 +42,14 @@ Trim::Adjustment read_adjustment(const Term& term, const Loads& loads, Drivables
             .unit = quantity.kind};
 }
 
-std::vector<Trim::Adjustment> read_adjustments(const Cursor& at, const Loads& loads,
+std::vector<Trim::Adjustment> read_adjustments(const Cursor& field, const Loads& loads,
                                                Drivables& drivables, Scene& scene) {
-    if (at.value->kind == Value::Kind::map)
-        at.fail(
+    if (field.value->kind == Value::Kind::map)
+        field.fail(
             "expected a name or a list of names, found a map; adjusted quantities have no values "
             "before the trim");
     std::vector<Trim::Adjustment> adjustments;
-    for (const Term& term : terms(at, "an adjusted quantity")) {
+    for (const Term& term : terms(field, "an adjusted quantity")) {
         const auto adjustment = read_adjustment(term, loads, drivables, scene);
         for (const auto& other : adjustments)
             if (is_same(other.what, adjustment.what))
@@ -83,11 +83,11 @@ std::map<std::string, Output> outputs(const Scene& scene, const Units& units) {
     return table;
 }
 
-std::vector<Trim::Condition> read_conditions(const Cursor& at, const Scene& scene,
+std::vector<Trim::Condition> read_conditions(const Cursor& field, const Scene& scene,
                                              const Units& units) {
     const auto table = outputs(scene, units);
     std::vector<Trim::Condition> conditions;
-    for (const Term& term : terms(at, "an output")) {
+    for (const Term& term : terms(field, "an output")) {
         const auto found = table.find(term.name);
         if (found == table.end())
             term.at.fail(fmt::format("{} cannot be a condition of a trim{}", quote(term.name),
@@ -104,16 +104,16 @@ std::string counted(std::size_t n, const char* one, const char* many) {
     return fmt::format("{} {}", n, n == 1 ? one : many);
 }
 
-void require_as_many(const Cursor& at, const Trim& trim) {
+void require_as_many(const Cursor& field, const Trim& trim) {
     const std::size_t adjusted = trim.adjust.size(), conditions = trim.until.size();
     if (adjusted == conditions) return;
     const bool few = conditions < adjusted;
     const std::size_t missing = few ? adjusted - conditions : conditions - adjusted;
-    at.fail(fmt::format("{} adjusted, {}: {} more {} needed", adjusted,
-                        counted(conditions, "condition", "conditions"),
-                        missing == 1 ? "one" : std::to_string(missing),
-                        few ? (missing == 1 ? "condition is" : "conditions are")
-                            : (missing == 1 ? "adjustment is" : "adjustments are")));
+    field.fail(fmt::format("{} adjusted, {}: {} more {} needed", adjusted,
+                           counted(conditions, "condition", "conditions"),
+                           missing == 1 ? "one" : std::to_string(missing),
+                           few ? (missing == 1 ? "condition is" : "conditions are")
+                               : (missing == 1 ? "adjustment is" : "adjustments are")));
 }
 
 // ---- Loads.
@@ -127,19 +127,19 @@ Load scaled(Load load, double value) {
 
 void read_trim(const Cursor& scene, const Units& units, const Loads& loads, Drivables& drivables,
                Scene& result) {
-    const auto at = scene.optional("trim");
-    if (!at) return;
-    at->only_keys({"adjust", "until", "under", "bushings"});
+    const auto section = scene.optional("trim");
+    if (!section) return;
+    section->only_keys({"adjust", "until", "under", "bushings"});
     Trim trim;
-    if (const auto bushings = at->optional("bushings"))
+    if (const auto bushings = section->optional("bushings"))
         trim.bushings = bushings->one_of("a kind of trim", {"unloaded", "balanced"}) == 0
                             ? Trim::Bushings::unloaded
                             : Trim::Bushings::balanced;
-    trim.line = at->value->line;
-    trim.adjust = read_adjustments(at->require("adjust"), loads, drivables, result);
-    trim.until = read_conditions(at->require("until"), result, units);
-    require_as_many(*at, trim);
-    if (const auto under = at->optional("under"))
+    trim.line = section->value->line;
+    trim.adjust = read_adjustments(section->require("adjust"), loads, drivables, result);
+    trim.until = read_conditions(section->require("until"), result, units);
+    require_as_many(*section, trim);
+    if (const auto under = section->optional("under"))
         for (const Term& term : terms(*under, "a load")) {
             const Load& load = look_up_load(term, loads);
             result.static_loads.push_back(scaled(load, held_value(term, load, units)));

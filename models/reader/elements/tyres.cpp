@@ -43,11 +43,11 @@ Bushing bushing(const Tyre& tyre, const Wheel& wheel, const Definitions& defs) {
             .undeformed = tyre.P / tyre.k * Vector6::Unit(2)};
 }
 
-void add_tyre(const Cursor& at, const std::string& name, const Tyre& tyre, std::size_t wheel,
+void add_tyre(const Cursor& field, const std::string& name, const Tyre& tyre, std::size_t wheel,
               const Definitions& defs, Drivables& drivables, Scene& scene) {
     Wheel& above = scene.wheels[wheel];
     if (above.tyre_rate != 0)
-        at.fail(fmt::format("wheel {} has a tyre already; allowed: one", quote(above.name)));
+        field.fail(fmt::format("wheel {} has a tyre already; allowed: one", quote(above.name)));
     above.tyre_rate = tyre.k;
     const int id = static_cast<int>(scene.elastics.size());
     scene.elastics.push_back({name, bushing(tyre, above, defs), true, WrittenAs::tyre});
@@ -60,28 +60,28 @@ void add_tyre(const Cursor& at, const std::string& name, const Tyre& tyre, std::
 void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivables, Scene& result) {
     const auto section = scene.optional("tyres");
     if (!section) return;
-    for (const auto& [name, at] : section->entries()) {
-        at.only_keys({"wheel", "rate", "preload"});
-        const std::size_t wheel = wheel_of(at, result);
-        const Cursor rate_field = at.require("rate");
-        const auto preload = at.optional("preload");
+    for (const auto& [name, field] : section->entries()) {
+        field.only_keys({"wheel", "rate", "preload"});
+        const std::size_t wheel = wheel_of(field, result);
+        const Cursor rate_field = field.require("rate");
+        const auto preload = field.optional("preload");
         const Tyre tyre{
             .k = rate(rate_field, defs.units.rate),
             .P = preload ? defs.units.force.si(preload->number(defs.units.force.name)) : 0};
         if (tyre.k == 0) rate_field.fail("zero; a tyre needs a rate");
-        add_tyre(at, name, tyre, wheel, defs, drivables, result);
+        add_tyre(field, name, tyre, wheel, defs, drivables, result);
         if (!defs.mirror) continue;
         const auto other = twin_name(*defs.mirror, name, *section);
         const auto other_wheel = turned(*defs.mirror, result.wheels[wheel].name);
         if (other.has_value() != other_wheel.has_value())
-            at.fail(
+            field.fail(
                 fmt::format("the mirror generates a twin of {} but not of {}; both or neither must "
                             "have {} in their name",
                             other ? "the tyre" : "its wheel", other ? "its wheel" : "the tyre",
                             quote(defs.mirror->from)));
         if (!other) continue;
         const auto there = std::ranges::find(result.wheels, *other_wheel, &Wheel::name);
-        add_tyre(at, *other, tyre, static_cast<std::size_t>(there - result.wheels.begin()), defs,
+        add_tyre(field, *other, tyre, static_cast<std::size_t>(there - result.wheels.begin()), defs,
                  drivables, result);
     }
 }

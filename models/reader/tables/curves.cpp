@@ -20,9 +20,9 @@ constexpr double round_off = 1e-12;  // relative, of forces that should be equal
 constexpr double beyond_all = 1e6;
 
 // The points with x ≥ 0, preceded by their mirror images -f(-x).
-std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& half) {
+std::vector<TablePoint> odd(const Cursor& field, const std::vector<TablePoint>& half) {
     if (half.front().x != 0 || half.front().f != 0)
-        at.fail(
+        field.fail(
             "the table of a symmetric curve must begin with [0, 0]; the other half is generated");
     std::vector<TablePoint> points;
     for (std::size_t k = half.size() - 1; k > 0; --k) points.push_back({-half[k].x, -half[k].f});
@@ -30,17 +30,18 @@ std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& hal
     return points;
 }
 
-void scale(const Cursor& at, std::vector<TablePoint>& points) {
-    const double factor = above_zero(at, "not a scale");
+void scale(const Cursor& field, std::vector<TablePoint>& points) {
+    const double factor = above_zero(field, "not a scale");
     for (TablePoint& point : points) point.f *= factor;
 }
 
-void shift(const Cursor& at, const Unit& unit, std::vector<TablePoint>& points) {
-    const double offset = unit.si(at.number(unit.name));
+void shift(const Cursor& field, const Unit& unit, std::vector<TablePoint>& points) {
+    const double offset = unit.si(field.number(unit.name));
     for (std::size_t k = 0; k < points.size(); ++k) {
         points[k].x += offset;
         if (k > 0 && !(points[k].x > points[k - 1].x))
-            at.fail(fmt::format("{} is so large that rows of the table coincide", at.found()));
+            field.fail(
+                fmt::format("{} is so large that rows of the table coincide", field.found()));
     }
 }
 
@@ -57,15 +58,15 @@ bool is_known_outside(const Cursor& curve) {
 }
 
 // Force over the penetration s: zero up to s = 0.
-Curve read_contact(const Cursor& at, const Definitions& defs) {
-    at.only_keys({"table", "file", "scale", "interpolation", "outside"});
-    auto points = read_table(at, of_lengths(defs.units), defs);
+Curve read_contact(const Cursor& field, const Definitions& defs) {
+    field.only_keys({"table", "file", "scale", "interpolation", "outside"});
+    auto points = read_table(field, of_lengths(defs.units), defs);
     if (points.front().x != 0 || points.front().f != 0)
-        at.fail("the table of a stop must begin with [0, 0], where it closes");
-    if (const auto factor = at.optional("scale")) scale(*factor, points);
-    Curve contact = through(at, points);
+        field.fail("the table of a stop must begin with [0, 0], where it closes");
+    if (const auto factor = field.optional("scale")) scale(*factor, points);
+    Curve contact = through(field, points);
     contact.pieces.front() = {};
-    contact.known_outside = is_known_outside(at);
+    contact.known_outside = is_known_outside(field);
     if (!contact.known_outside) {
         contact.knots.insert(contact.knots.begin(), -beyond_all);
         contact.pieces.insert(contact.pieces.begin(), std::array<double, 4>{});
@@ -75,15 +76,15 @@ Curve read_contact(const Cursor& at, const Definitions& defs) {
 
 }  // namespace
 
-Curve read_curve(const Cursor& at, const LawUnits& units, const Definitions& defs) {
-    at.only_keys({"table", "file", "scale", "offset", "symmetric", "interpolation", "outside"});
-    auto points = read_table(at, units, defs);
-    if (const auto symmetric = at.optional("symmetric"); symmetric && symmetric->yes_or_no())
+Curve read_curve(const Cursor& field, const LawUnits& units, const Definitions& defs) {
+    field.only_keys({"table", "file", "scale", "offset", "symmetric", "interpolation", "outside"});
+    auto points = read_table(field, units, defs);
+    if (const auto symmetric = field.optional("symmetric"); symmetric && symmetric->yes_or_no())
         points = odd(*symmetric, points);
-    if (const auto factor = at.optional("scale")) scale(*factor, points);
-    if (const auto offset = at.optional("offset")) shift(*offset, units.deflection, points);
-    Curve curve = through(at, points);
-    curve.known_outside = is_known_outside(at);
+    if (const auto factor = field.optional("scale")) scale(*factor, points);
+    if (const auto offset = field.optional("offset")) shift(*offset, units.deflection, points);
+    Curve curve = through(field, points);
+    curve.known_outside = is_known_outside(field);
     return curve;
 }
 
@@ -95,21 +96,21 @@ ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitio
     return read_curve(*curve, units, defs);
 }
 
-Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs) {
-    at.only_keys({"clearance", "rate", "curve"});
+Curve read_stop(const Cursor& field, Stop stop, const Definitions& defs) {
+    field.only_keys({"clearance", "rate", "curve"});
     const Unit& length = defs.units.length;
-    const double clearance = length.si(at.require("clearance").number(length.name));
-    const auto k = at.optional("rate"), curve = at.optional("curve");
+    const double clearance = length.si(field.require("clearance").number(length.name));
+    const auto k = field.optional("rate"), curve = field.optional("curve");
     if (k && curve) curve->fail("given together with rate; allowed: one of the two");
-    if (!k && !curve) at.fail("no law; required: rate or curve");
+    if (!k && !curve) field.fail("no law; required: rate or curve");
     Curve law =
         k ? Curve{{0}, {{}, {0, rate(*k, defs.units.rate), 0, 0}}} : read_contact(*curve, defs);
     for (double& knot : law.knots) knot += clearance;
     for (std::size_t n = 1; n < law.knots.size(); ++n)
         if (!(law.knots[n] > law.knots[n - 1]))
-            at.require("clearance")
+            field.require("clearance")
                 .fail(fmt::format("{} is so large that rows of the curve coincide",
-                                  at.require("clearance").found()));
+                                  field.require("clearance").found()));
     return stop == Stop::rebound ? law : reversed(law);
 }
 
@@ -117,7 +118,7 @@ namespace {
 
 // f is non-decreasing. Outside the knots it is linear; inside the interval that brackets the force,
 // bisection runs to the last bit.
-double deflection_at(const Cursor& at, const Curve& curve, double force, const Unit& unit) {
+double deflection_at(const Cursor& field, const Curve& curve, double force, const Unit& unit) {
     const auto& x = curve.knots;
     const auto at_knot = [&](std::size_t k) { return curve.pieces[k + 1][0]; };
     const std::size_t last = x.size() - 1;
@@ -127,7 +128,7 @@ double deflection_at(const Cursor& at, const Curve& curve, double force, const U
         return std::abs(at_knot(k) - force) <= round_off * largest;
     };
     const auto many = [&] {
-        at.fail(fmt::format(
+        field.fail(fmt::format(
             "the curve has {:g} {} at more than one deflection; give free_length instead",
             unit.written(force), unit.name));
     };
@@ -138,9 +139,9 @@ double deflection_at(const Cursor& at, const Curve& curve, double force, const U
 
     const bool is_below = force<at_knot(0), is_above = force> at_knot(last);
     if ((is_below && (!goes_on || below == 0)) || (is_above && (!goes_on || above == 0)))
-        at.fail(fmt::format("the curve never has {:g} {}; its table goes from {:g} to {:g}",
-                            unit.written(force), unit.name, unit.written(at_knot(0)),
-                            unit.written(at_knot(last))));
+        field.fail(fmt::format("the curve never has {:g} {}; its table goes from {:g} to {:g}",
+                               unit.written(force), unit.name, unit.written(at_knot(0)),
+                               unit.written(at_knot(last))));
     if (is_below) return x[0] + (force - at_knot(0)) / below;
     if (is_above) return x[last] + (force - at_knot(last)) / above;
     std::size_t k = 0;
@@ -155,18 +156,18 @@ double deflection_at(const Cursor& at, const Curve& curve, double force, const U
 
 }  // namespace
 
-double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit) {
+double deflection_at(const Cursor& field, const ScalarLaw& law, double force, const Unit& unit) {
     const auto of_rate = [&](const LinearRate& u) {
         if (u.k == 0)
-            at.fail("a spring of rate zero cannot have a preload; remove it or give a rate");
+            field.fail("a spring of rate zero cannot have a preload; remove it or give a rate");
         return force / u.k;
     };
     return std::visit(
-        overloaded{of_rate, [&](const Curve& u) { return deflection_at(at, u, force, unit); }},
+        overloaded{of_rate, [&](const Curve& u) { return deflection_at(field, u, force, unit); }},
         law);
 }
 
-ScalarLaw pushing_only(const Cursor& at, const ScalarLaw& law, const Unit& unit) {
+ScalarLaw pushing_only(const Cursor& field, const ScalarLaw& law, const Unit& unit) {
     if (is_zero(law)) return law;
     if (const double* k = rate_of(law)) return Curve{{0}, {{0, *k, 0, 0}, {}}};
     Curve curve = *curve_of(law);
@@ -175,7 +176,7 @@ ScalarLaw pushing_only(const Cursor& at, const ScalarLaw& law, const Unit& unit)
     const bool always = n == curve.knots.size();
     if (always && (!curve.known_outside || curve.pieces.back()[1] == 0)) return law;
     const bool at_knot = !always && curve.pieces[n + 1][0] == 0;
-    const double leaves = at_knot ? curve.knots[n] : deflection_at(at, law, 0, unit);
+    const double leaves = at_knot ? curve.knots[n] : deflection_at(field, law, 0, unit);
     if (n == 0) curve.pieces[0][0] = 0;  // about the new first knot, straight
     curve.knots.resize(n);
     curve.pieces.resize(n + 1);

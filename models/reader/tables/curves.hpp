@@ -9,7 +9,7 @@ namespace elastocheck::reader {
 
 // f(x) = scale · t(x - offset), t the interpolant of the table or, if it is symmetric, of the table
 // and its mirror image -t(-x).
-Curve read_curve(const Cursor& at, const LawUnits& units, const Definitions& defs);
+Curve read_curve(const Cursor& field, const LawUnits& units, const Definitions& defs);
 
 // The `rate` of an element or its `curve`.
 ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitions& defs);
@@ -18,14 +18,14 @@ ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitio
 // design length, from `clearance` and `rate` or `curve` [N over m of penetration s = -x - clearance
 // (bump), x - clearance (rebound)].
 enum class Stop { bump, rebound };
-Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs);
+Curve read_stop(const Cursor& field, Stop stop, const Definitions& defs);
 
-// The unique deflection at which the law has this force [N]. `at` reports an error if there is
+// The unique deflection at which the law has this force [N]. `field` reports an error if there is
 // none or several.
-double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit);
+double deflection_at(const Cursor& field, const ScalarLaw& law, double force, const Unit& unit);
 
 // The law of a spring with loose seats, which only pushes: without force beyond the deflection at
 // which the law has none.
-ScalarLaw pushing_only(const Cursor& at, const ScalarLaw& law, const Unit& unit);
+ScalarLaw pushing_only(const Cursor& field, const ScalarLaw& law, const Unit& unit);
 
 }  // namespace elastocheck::reader

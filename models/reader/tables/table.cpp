@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
-    const auto rows = at.items();
-    if (!at.is_list() || rows.size() < 2)
-        at.fail(
-            fmt::format("expected at least two rows [deflection, force], found {}", at.found()));
+std::vector<TablePoint> read_rows(const Cursor& field, const LawUnits& units) {
+    const auto rows = field.items();
+    if (!field.is_list() || rows.size() < 2)
+        field.fail(
+            fmt::format("expected at least two rows [deflection, force], found {}", field.found()));
     if (rows.size() > max_rows)
-        at.fail(fmt::format("{} rows; allowed: at most {}", rows.size(), max_rows));
+        field.fail(fmt::format("{} rows; allowed: at most {}", rows.size(), max_rows));
     std::vector<TablePoint> points;
     for (std::size_t n = 0; n < rows.size(); ++n) {
         const auto cells = rows[n].items();
@@ -81,25 +81,25 @@ struct FileBeside {
 };
 
 // Reads a file in the scene's folder.
-FileBeside read_beside(const Cursor& at, const Definitions& defs) {
-    const fs::path name = at.text("the name of a file");
+FileBeside read_beside(const Cursor& field, const Definitions& defs) {
+    const fs::path name = field.text("the name of a file");
     if (name.is_absolute() || std::ranges::find(name, fs::path("..")) != name.end())
-        at.fail(fmt::format(
+        field.fail(fmt::format(
             "{} is outside the scene's folder; allowed: a file in it, or in a folder below",
-            at.found()));
+            field.found()));
     if (!defs.folder)
-        at.fail("relative to the scene's file, but this scene is not a file; give a table");
+        field.fail("relative to the scene's file, but this scene is not a file; give a table");
     const fs::path path = *defs.folder / name;
     if (leads_out_of(*defs.folder, path))
-        at.fail(
+        field.fail(
             fmt::format("{} is a symbolic link that leads out of the scene's folder; allowed: a "
                         "file in it, or in a "
                         "folder below",
-                        at.found()));
+                        field.found()));
     const TextFile file = read_text(path, Pipes::refused);
-    if (!file.trouble.empty()) at.fail(fmt::format("{}: {}", at.found(), file.trouble));
+    if (!file.trouble.empty()) field.fail(fmt::format("{}: {}", field.found(), file.trouble));
     if (file.text.size() > largest_text)
-        at.fail(fmt::format("{}: larger than 1 MiB, the limit for a table", at.found()));
+        field.fail(fmt::format("{}: larger than 1 MiB, the limit for a table", field.found()));
     return {path.string(), file.text};
 }
 
@@ -108,13 +108,13 @@ bool is_property_file(const std::string& name) {
     return name.ends_with(".spr") || name.ends_with(".bum") || name.ends_with(".reb");
 }
 
-std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units,
+std::vector<TablePoint> read_file(const Cursor& field, const LawUnits& units,
                                   const Definitions& defs) {
-    const auto [file_name, text] = read_beside(at, defs);
+    const auto [file_name, text] = read_beside(field, defs);
     if (is_property_file(file_name)) {  // with its own units
         if (units.deflection.name != defs.units.length.name)
-            at.fail(fmt::format("{} is a curve over a length, but a curve over an angle is needed",
-                                at.found()));
+            field.fail(fmt::format(
+                "{} is a curve over a length, but a curve over an angle is needed", field.found()));
         const PropertyFile file = parse_property_file(text, file_name);
         const PropertyBlock* curve = file.find("CURVE");
         if (!curve) fail(file_name, 0, "CURVE", "missing: the file has no curve");
@@ -126,10 +126,10 @@ std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units,
         }
         return rows;
     }
-    if (!is_utf8(text)) at.fail(fmt::format("{}: not plain text (UTF-8)", at.found()));
+    if (!is_utf8(text)) field.fail(fmt::format("{}: not plain text (UTF-8)", field.found()));
     const Value table = rows_of(text);
     std::vector<Number> not_of_the_scene;
-    return read_rows({&table, at.path, &file_name, &not_of_the_scene}, units);
+    return read_rows({&table, field.path, &file_name, &not_of_the_scene}, units);
 }
 
 }  // namespace
@@ -140,9 +140,9 @@ LawUnits of_angles(const Units& units) {
     return {units.angle, units.moment, units.rotational_rate};
 }
 
-std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at,
+std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& field,
                                                          const Definitions& defs) {
-    const auto [file_name, text] = read_beside(at, defs);
+    const auto [file_name, text] = read_beside(field, defs);
     const PropertyFile file = parse_property_file(text, file_name);
     constexpr const char* blocks[] = {"FX_CURVE", "FY_CURVE", "FZ_CURVE",
                                       "TX_CURVE", "TY_CURVE", "TZ_CURVE"};

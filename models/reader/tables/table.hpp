@@ -31,6 +31,7 @@ std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
 std::optional<double> free_length_of_file(const Cursor& curve, const Definitions& defs);
 
 // The six curves of a bushing's property file (.bus), x y z rx ry rz [SI].
-std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at, const Definitions& defs);
+std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& field,
+                                                         const Definitions& defs);
 
 }  // namespace elastocheck::reader
