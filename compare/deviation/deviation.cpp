@@ -62,10 +62,12 @@ Reading no_reading(std::string why) {
 }
 
 // Whether two parameters are equal up to rounding of a division.
-bool same(double a, double b, const Curve& of) {
-    return std::abs(a - b) <= 1e-12 * std::max(std::abs(of.a.front()), std::abs(of.a.back()));
+bool same(double a, double b, const Curve& curve) {
+    return std::abs(a - b) <= 1e-12 * std::max(std::abs(curve.a.front()), std::abs(curve.a.back()));
 }
 
+// Raises the worst deviation of the channel's unit; of a force or moment with an extent the worst
+// share.
 void raise(const std::vector<Channel>& channels, std::size_t c, double difference, Accuracy& worst,
            const std::vector<double>& extents = {}) {
     if (!channels[c].main) {
@@ -85,9 +87,9 @@ Accuracy worse(const Accuracy& a, const Accuracy& b) {
 }
 
 Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,
-                       const std::vector<double>& at) {
+                       const std::vector<double>& places) {
     Running running;
-    for (std::size_t k = 0; k < a.size(); ++k) running.add(b[k] - a[k], at[k]);
+    for (std::size_t k = 0; k < a.size(); ++k) running.add(b[k] - a[k], places[k]);
     return running.result();
 }
 
@@ -108,11 +110,11 @@ Reading at_equal_parameter(const Curve& a, const Curve& b) {
     return finish(sums, a);
 }
 
-double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at,
+double interpolate(const std::vector<double>& x, const std::vector<double>& y, double place,
                    int nodes) {
     const auto n = static_cast<std::ptrdiff_t>(x.size());
     const bool up = x.back() > x.front();
-    const auto above = std::lower_bound(x.begin(), x.end(), at,
+    const auto above = std::lower_bound(x.begin(), x.end(), place,
                                         [&](double u, double v) { return up ? u < v : u > v; });
     const std::ptrdiff_t count = std::min<std::ptrdiff_t>(nodes, n);
     const std::ptrdiff_t first =
@@ -122,7 +124,7 @@ double interpolate(const std::vector<double>& x, const std::vector<double>& y, d
         double basis = 1;
         for (std::ptrdiff_t l = first; l < first + count; ++l)
             if (l != k)
-                basis *= (at - x[static_cast<std::size_t>(l)]) /
+                basis *= (place - x[static_cast<std::size_t>(l)]) /
                          (x[static_cast<std::size_t>(k)] - x[static_cast<std::size_t>(l)]);
         sum += basis * y[static_cast<std::size_t>(k)];
     }
@@ -135,19 +137,19 @@ namespace {
 // returns the number of points out of reach.
 template <class Sink>
 int read_over(const Curve& a, const Curve& b, std::size_t abscissa, Sink&& sink) {
-    const auto at = a.channel(abscissa), x = b.channel(abscissa);
+    const auto x_of_a = a.channel(abscissa), x = b.channel(abscissa);
     // A driven end has the same travel in both up to rounding.
     const double rounding = 1e-9 * std::abs(x.back() - x.front());
     const double low = std::min(x.front(), x.back()) - rounding,
                  high = std::max(x.front(), x.back()) + rounding;
     int outside = 0;
-    for (const double t : at) outside += t < low || t > high;
+    for (const double t : x_of_a) outside += t < low || t > high;
     for (std::size_t c = 0; c < a.values.front().size(); ++c) {
         const auto y = b.channel(c);
-        for (std::size_t k = 0; k < at.size(); ++k) {
-            if (at[k] < low || at[k] > high) continue;
-            const double value = interpolate(x, y, at[k], 6);
-            sink(k, c, value - a.values[k][c], std::abs(value - interpolate(x, y, at[k], 4)));
+        for (std::size_t k = 0; k < x_of_a.size(); ++k) {
+            if (x_of_a[k] < low || x_of_a[k] > high) continue;
+            const double value = interpolate(x, y, x_of_a[k], 6);
+            sink(k, c, value - a.values[k][c], std::abs(value - interpolate(x, y, x_of_a[k], 4)));
         }
     }
     return outside;
@@ -155,9 +157,9 @@ int read_over(const Curve& a, const Curve& b, std::size_t abscissa, Sink&& sink)
 
 }  // namespace
 
-Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by) {
-    if (!by.why_not.empty()) return no_reading(by.why_not);
-    const auto channel = static_cast<std::size_t>(by.channel);
+Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& abscissa) {
+    if (!abscissa.why_not.empty()) return no_reading(abscissa.why_not);
+    const auto channel = static_cast<std::size_t>(abscissa.channel);
     std::vector<Running> sums(a.values.front().size());
     const int outside = read_over(
         a, b, channel, [&](std::size_t k, std::size_t c, double difference, double uncertain) {
@@ -188,13 +190,13 @@ Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const C
 }
 
 Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Curve& a,
-                                  const Curve& b, const Abscissa& by) {
+                                  const Curve& b, const Abscissa& abscissa) {
     Profile profile{a.unit, {}, {}};
-    if (!by.why_not.empty()) return profile;
+    if (!abscissa.why_not.empty()) return profile;
     std::vector<bool> reached(a.a.size(), false);
     profile.a = a.a;
     profile.apart.resize(a.a.size());
-    read_over(a, b, static_cast<std::size_t>(by.channel),
+    read_over(a, b, static_cast<std::size_t>(abscissa.channel),
               [&](std::size_t k, std::size_t c, double difference, double) {
                   reached[k] = true;
                   raise(channels, c, difference, profile.apart[k]);

@@ -8,9 +8,9 @@ Vector<double> equilibration(const SaddleMatrix<double>& M) {
     Vector<double> d = Vector<double>::Ones(M.n + M.m), largest(M.n + M.m);
     // Rates far below the unit of Φ_q would be satisfied by d = 1 and stay small.
     double rate = 0;
-    for_each_entry(M, [&](int i, int j, int at) {
+    for_each_entry(M, [&](int i, int j, int entry) {
         if (i < M.n && j < M.n && i % 6 < 3 && j % 6 < 3)
-            rate = std::max(rate, std::abs(M.values[static_cast<std::size_t>(at)]));
+            rate = std::max(rate, std::abs(M.values[static_cast<std::size_t>(entry)]));
     });
     if (rate > 0 && rate < 1) {
         d.head(M.n).setConstant(1 / std::sqrt(rate));
@@ -18,9 +18,9 @@ Vector<double> equilibration(const SaddleMatrix<double>& M) {
     }
     for (int sweep = 0; sweep < 10; ++sweep) {
         largest.setZero();
-        for_each_entry(M, [&](int i, int j, int at) {
+        for_each_entry(M, [&](int i, int j, int entry) {
             largest[i] =
-                std::max(largest[i], std::abs(M.values[static_cast<std::size_t>(at)]) * d[j]);
+                std::max(largest[i], std::abs(M.values[static_cast<std::size_t>(entry)]) * d[j]);
         });
         for (Eigen::Index k = 0; k < d.size(); ++k)
             if (largest[k] > 0) d[k] /= std::sqrt(largest[k] * d[k]);
@@ -33,7 +33,7 @@ namespace {
 // Pattern of M bordered by the held directions.
 Pattern bordered(const Pattern& inner, const Held<double>& held) {
     const int N = inner.size, d = held.size();
-    Pattern all{N + d, {}, {}};
+    Pattern result{N + d, {}, {}};
     std::vector<int> of_row, first_of_row;
     sort_into_rows(static_cast<std::size_t>(N), first_of_row, of_row, nullptr, [&](auto&& put) {
         for (int c = 0; c < d; ++c)
@@ -41,10 +41,10 @@ Pattern bordered(const Pattern& inner, const Held<double>& held) {
                 put(held.row[static_cast<std::size_t>(e)], N + c, 0);
     });
     const auto append = [&](const std::vector<int>& list, int from, int to) {
-        all.row.insert(all.row.end(), list.begin() + from, list.begin() + to);
+        result.row.insert(result.row.end(), list.begin() + from, list.begin() + to);
     };
     for (int j = 0; j < N + d; ++j) {
-        all.first.push_back(static_cast<int>(all.row.size()));
+        result.first.push_back(static_cast<int>(result.row.size()));
         const auto column = static_cast<std::size_t>(j);
         if (j < N) {
             append(inner.row, inner.first[column], inner.first[column + 1]);
@@ -53,8 +53,8 @@ Pattern bordered(const Pattern& inner, const Held<double>& held) {
             append(held.row, held.begin(j - N), held.end(j - N));
         }
     }
-    all.first.push_back(static_cast<int>(all.row.size()));
-    return all;
+    result.first.push_back(static_cast<int>(result.row.size()));
+    return result;
 }
 
 // Places of the directions in the columns of `null_space`. An idle mode has the bodies that it
@@ -64,61 +64,64 @@ Pattern bordered(const Pattern& inner, const Held<double>& held) {
 Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
                     const Vector<double>& weight, int n, const std::vector<int>& loop) {
     using Column = Eigen::SparseMatrix<double>::InnerIterator;
-    const auto at = [](auto k) { return static_cast<std::size_t>(k); };
+    const auto as_index = [](auto k) { return static_cast<std::size_t>(k); };
     const auto d = static_cast<int>(null_space.cols());
     // A place is a body or a loop (numbered after the bodies), with the first
     // direction found there.
     const int bodies = n / 6, loops = loop.empty() ? 0 : *std::ranges::max_element(loop) + 1;
-    std::vector<int> leader(at(d)), first_there(at(bodies + loops), -1);
-    std::vector<std::vector<int>> of_leader(at(d));
+    std::vector<int> leader(as_index(d)), first_there(as_index(bodies + loops), -1);
+    std::vector<std::vector<int>> of_leader(as_index(d));
     const auto lead = [&](int c) {
-        while (leader[at(c)] != c) c = leader[at(c)] = leader[at(leader[at(c)])];
+        while (leader[as_index(c)] != c)
+            c = leader[as_index(c)] = leader[as_index(leader[as_index(c)])];
         return c;
     };
     for (int c = 0; c < d; ++c) {
-        leader[at(c)] = c;
+        leader[as_index(c)] = c;
         std::map<int, double> share;  // squared norm in each place
-        double whole = 0;
+        double total = 0;
         for (Column e(null_space, c); e; ++e) {
             const auto row = static_cast<int>(e.row());
-            const int place = row < n ? row / 6 : bodies + loop[at(row - n)];
+            const int place = row < n ? row / 6 : bodies + loop[as_index(row - n)];
             const double size = weight[row] * e.value();
             share[place] += size * size;
-            whole += size * size;
+            total += size * size;
         }
         for (const auto& [place, size] : share) {
-            if (!(size > 1e-10 * whole)) continue;
-            if (first_there[at(place)] < 0) {
-                first_there[at(place)] = c;
+            if (!(size > 1e-10 * total)) continue;
+            if (first_there[as_index(place)] < 0) {
+                first_there[as_index(place)] = c;
             } else {
-                const int one = lead(first_there[at(place)]), other = lead(c);
-                leader[at(std::max(one, other))] = std::min(one, other);
+                const int first_leader = lead(first_there[as_index(place)]), other = lead(c);
+                leader[as_index(std::max(first_leader, other))] = std::min(first_leader, other);
             }
         }
     }
     const auto give = [&](int place, int row) {
-        if (first_there[at(place)] >= 0) of_leader[at(lead(first_there[at(place)]))].push_back(row);
+        if (first_there[as_index(place)] >= 0)
+            of_leader[as_index(lead(first_there[as_index(place)]))].push_back(row);
     };
     for (int row = 0; row < n; ++row) give(row / 6, row);
     for (std::size_t k = 0; k < loop.size(); ++k) give(bodies + loop[k], n + static_cast<int>(k));
-    std::vector<int> order(at(d));
-    for (int c = 0; c < d; ++c) order[at(c)] = c;
+    std::vector<int> order(as_index(d));
+    for (int c = 0; c < d; ++c) order[as_index(c)] = c;
     std::ranges::stable_sort(order, {}, lead);  // idle modes and combinations have no common places
 
     Held<double> held;
     held.idle = idle;
     held.first.push_back(0);
     for (int k = 0; k < d; ++k) {
-        const int c = order[at(k)];
-        const auto& rows = of_leader[at(lead(c))];
-        held.with.push_back(k > 0 && lead(order[at(k - 1)]) == lead(c) ? held.with.back() : k);
+        const int c = order[as_index(k)];
+        const auto& rows = of_leader[as_index(lead(c))];
+        held.with.push_back(k > 0 && lead(order[as_index(k - 1)]) == lead(c) ? held.with.back()
+                                                                             : k);
         held.row.insert(held.row.end(), rows.begin(), rows.end());
         held.first.push_back(static_cast<int>(held.row.size()));
         held.value.resize(held.row.size(), 0);
         for (Column e(null_space, c); e; ++e) {
             const auto place = std::ranges::lower_bound(rows, static_cast<int>(e.row()));
             if (place != rows.end() && *place == e.row())
-                held.value[at(held.begin(k) + (place - rows.begin()))] = e.value();
+                held.value[as_index(held.begin(k) + (place - rows.begin()))] = e.value();
         }
     }
     return held;
@@ -143,9 +146,9 @@ double log_of_scaling(const SaddlePoint<double>& system) {
         const auto W2 = weights(system, c);
         double square = 0;
         for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
-            const auto at = static_cast<std::size_t>(e);
-            const double b = system.scale[system.held.row[at]] * W2(e - system.held.begin(c)) *
-                             system.held.value[at];
+            const auto position = static_cast<std::size_t>(e);
+            const double b = system.scale[system.held.row[position]] *
+                             W2(e - system.held.begin(c)) * system.held.value[position];
             square += b * b;
         }
         sum -= std::log2(square) / 2;
@@ -179,8 +182,9 @@ void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<do
     for (int c = 0; c < system.borders(); ++c)
         for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
             const int row = system.held.row[static_cast<std::size_t>(e)];
-            for (const int at : {entry_at(pattern, row, N + c), entry_at(pattern, N + c, row)})
-                source[static_cast<std::size_t>(at)] = border + e;
+            for (const int position :
+                 {entry_at(pattern, row, N + c), entry_at(pattern, N + c, row)})
+                source[static_cast<std::size_t>(position)] = border + e;
         }
     system.rhs.setZero(N + system.borders());
     system.solution.setZero(N + system.borders());
@@ -189,13 +193,14 @@ void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<do
 }
 
 void rescale(SaddlePoint<double>& system) {
-    const double before = log_of_scaling(system);
-    SaddleMatrix<double> all = system.M;
+    const double old_log = log_of_scaling(system);
+    SaddleMatrix<double> largest_entries = system.M;
     for (std::size_t e = 0; e < system.largest.size(); ++e)
-        all.values[e] = system.largest[e] = std::max(system.largest[e], std::abs(all.values[e]));
-    system.scale = equilibration(all);
+        largest_entries.values[e] = system.largest[e] =
+            std::max(system.largest[e], std::abs(largest_entries.values[e]));
+    system.scale = equilibration(largest_entries);
     set_scaling(system, system.lu.order.pattern);
-    system.log_scale += log_of_scaling(system) - before;
+    system.log_scale += log_of_scaling(system) - old_log;
 }
 
 }  // namespace elastocheck::recursive

@@ -107,8 +107,9 @@ double shrinks(const Contraction& rest, VectorXd v) {
 // if none does. Any Y will do: that of ỹ first, and where it fails the inverse at the middle of the
 // Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a ratio of
 // 0.85.
-double alone(const Problem& problem, const Approximate& at, double a, const VectorXd& small) {
-    const VectorXd& centre = at.y;
+double alone(const Problem& problem, const Approximate& approximate, double a,
+             const VectorXd& small) {
+    const VectorXd& centre = approximate.y;
     const System& system = problem.system;
     constexpr int trials = 8;
     constexpr double largest = 0.05, enough = 0.6, aim = 0.85, corner = 0.2;
@@ -128,7 +129,7 @@ double alone(const Problem& problem, const Approximate& at, double a, const Vect
                     x[system.separated[k].element][system.separated[k].axis];
         }
         const auto J = evaluate(problem, y, Interval(a), Slopes::yes).J;
-        double ratio = shrinks(contraction(at.Y, J), r);
+        double ratio = shrinks(contraction(approximate.Y, J), r);
         if (!(ratio < 1))
             ratio = shrinks(contraction(inverse(middle(J, problem.size())), J), std::move(r));
         if (ratio < 1) {
@@ -150,11 +151,11 @@ double alone(const Problem& problem, const Approximate& at, double a, const Vect
 }
 
 // The part of that box around the state.
-Extent unique_around(const StateAt& at, const Approximate& found, double t) {
-    const System& system = at.system;
+Extent unique_around(const StateAt& mapped, const Approximate& approximate, double t) {
+    const System& system = mapped.system;
     Extent unique;
     if (t == 0) return {0, 0, 0, 0};
-    const VectorXd off = (found.y.head(system.n()) - at.z).cwiseAbs();
+    const VectorXd off = (approximate.y.head(system.n()) - mapped.z).cwiseAbs();
     for (int b = 0; b < system.bodies; ++b) {
         const double length = t * system.length - off.segment<3>(system.pose(b)).maxCoeff(),
                      half = t - off.segment<4>(system.pose(b) + 3).maxCoeff();
@@ -174,26 +175,26 @@ Extent unique_around(const StateAt& at, const Approximate& found, double t) {
 //
 // and a y that violates this proves that there is none. The rows of Y are used for y: each isolates
 // one unknown, the last ones the load on an idle motion or the gap of redundant rows.
-bool none_within(const StateAt& at, const Tolerance& tolerance) {
-    const System& system = at.system;
-    const double load = at.state.load;
+bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
+    const System& system = mapped.system;
+    const double load = mapped.state.load;
     const Problem problem{
-        system, border_at(system, at.z, load, loose_zero_tolerance), at.z, false, {}, {}};
+        system, border_at(system, mapped.z, load, loose_zero_tolerance), mapped.z, false, {}, {}};
     const Index n = system.n(), k = problem.border.count();
-    const VectorXd delta = radii(at, tolerance);
+    const VectorXd delta = radii(mapped, tolerance);
     if (!delta.head(7 * system.bodies).allFinite()) return false;
-    const auto around_state = box(at.z, delta);
-    if (delta.allFinite() && wrenches_apart(at, around_state, tolerance)) return true;
+    const auto around_state = box(mapped.z, delta);
+    if (delta.allFinite() && wrenches_apart(mapped, around_state, tolerance)) return true;
 
     VectorXd y = VectorXd::Zero(n + k);
-    y.head(n) = at.z;
+    y.head(n) = mapped.z;
     const Interval a = load;
     const Eigen::MatrixXd Y =
         inverse(square(evaluate(problem, doubles(y), load, Slopes::yes).J, n + k));
     if (!Y.allFinite()) return false;
-    const auto E = evaluate(system, thin(at.z), a, Slopes::no).E;
+    const auto E = evaluate(system, thin(mapped.z), a, Slopes::no).E;
     const auto J = evaluate(system, around_state, a, Slopes::yes).J;
-    const VectorXd epsilon = rounding_of_equations(system, at.z, load);
+    const VectorXd epsilon = rounding_of_equations(system, mapped.z, load);
     for (Index row = 0; row < n + k; ++row) {
         Interval left, right;
         std::vector<Interval> slopes(static_cast<std::size_t>(n));
@@ -214,10 +215,10 @@ bool none_within(const StateAt& at, const Tolerance& tolerance) {
 }
 
 // Middle of the box as a state.
-Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
-    const System& system = at.system;
+Equilibrium centre_of(const StateAt& mapped, const VectorXd& z) {
+    const System& system = mapped.system;
     Equilibrium centre;
-    centre.load = at.state.load;
+    centre.load = mapped.state.load;
     for (BodyId body = 0; body < system.bodies; ++body) {
         const int k = system.pose(body);
         centre.poses.push_back(
@@ -225,7 +226,7 @@ Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
              Eigen::Quaterniond(z[k + 3], z[k + 4], z[k + 5], z[k + 6]).normalized()});
     }
     const auto vector = [](const Vec<double>& v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
-    for (const auto& wrench : wrenches(system, doubles(z), at.state.load))
+    for (const auto& wrench : wrenches(system, doubles(z), mapped.state.load))
         centre.reactions.push_back({vector(wrench.force), vector(wrench.moment)});
     return centre;
 }

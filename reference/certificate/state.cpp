@@ -54,12 +54,12 @@ Quat<Interval> quaternion(const System& system, const std::vector<Interval>& z, 
 }
 
 // Stored r - c as an enclosure.
-Vec<Interval> place(const StateAt& at, BodyId body) {
+Vec<Interval> place(const StateAt& mapped, BodyId body) {
     Vec<Interval> r;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto i = static_cast<Index>(k);
-        r[k] = Interval(at.state.poses[static_cast<std::size_t>(body)].r[i]) -
-               Interval(at.system.c[i]);
+        r[k] = Interval(mapped.state.poses[static_cast<std::size_t>(body)].r[i]) -
+               Interval(mapped.system.c[i]);
     }
     return r;
 }
@@ -81,15 +81,15 @@ StateAt state_at(const System& system, const Equilibrium& state) {
         state.reactions.size() != system.model->joints.size())
         throw std::invalid_argument(
             "the state does not have one pose per body and one reaction per joint of the model");
-    StateAt at{system, state, VectorXd::Zero(system.n()), {}};
+    StateAt mapped{system, state, VectorXd::Zero(system.n()), {}};
     for (BodyId body = 0; body < system.bodies; ++body) {
         const Pose& pose = state.poses[static_cast<std::size_t>(body)];
         const Eigen::Quaterniond p = pose.p.normalized();
-        at.z.segment<3>(system.pose(body)) = pose.r - system.c;
-        at.z.segment<4>(system.pose(body) + 3) << p.w(), p.x(), p.y(), p.z();
+        mapped.z.segment<3>(system.pose(body)) = pose.r - system.c;
+        mapped.z.segment<4>(system.pose(body) + 3) << p.w(), p.x(), p.y(), p.z();
     }
     for (int joint = 0; joint < static_cast<int>(state.reactions.size()); ++joint) {
-        const MatrixXd C = columns_at(system, joint, at.z, state.load);
+        const MatrixXd C = columns_at(system, joint, mapped.z, state.load);
         const auto rows = rows_of_joint(system, joint);
         MatrixXd P(C.cols(), 6);
         if (C.cols() > 0 && C.allFinite())
@@ -99,11 +99,11 @@ StateAt state_at(const System& system, const Equilibrium& state) {
         w << wrench.force, wrench.moment / system.length;
         const VectorXd R = P * w;
         for (std::size_t k = 0; k < rows.size(); ++k)
-            at.z[7 * system.bodies + rows[k]] = R[static_cast<Index>(k)];
-        at.from_wrench.push_back(P);
+            mapped.z[7 * system.bodies + rows[k]] = R[static_cast<Index>(k)];
+        mapped.from_wrench.push_back(P);
     }
-    set_corners(system, at.z, state.load);
-    return at;
+    set_corners(system, mapped.z, state.load);
+    return mapped;
 }
 
 // Poses: a unit quaternion at a rotation φ from another is within 2 sin(φ/4) ≤ φ/2 of it.
@@ -116,38 +116,38 @@ StateAt state_at(const System& system, const Equilibrium& state) {
 // divided by L, as in w.
 //
 // Separated corners: their deformation over the box of poses, and the law over that interval.
-VectorXd radii(const StateAt& at, const Tolerance& near) {
-    const System& system = at.system;
+VectorXd radii(const StateAt& mapped, const Tolerance& near) {
+    const System& system = mapped.system;
     VectorXd r = VectorXd::Zero(system.n());
     for (BodyId body = 0; body < system.bodies; ++body) {
         const int k = system.pose(body);
-        const Vec<Interval> place_of = place(at, body);
+        const Vec<Interval> place_of = place(mapped, body);
         const Quat<Interval> p =
-            direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p);
+            direction_of<Interval>(mapped.state.poses[static_cast<std::size_t>(body)].p);
         for (int i = 0; i < 3; ++i)
             r[k + i] =
                 (Interval(near.length) +
-                 Interval(mag(place_of[static_cast<std::size_t>(i)] - Interval(at.z[k + i]))))
+                 Interval(mag(place_of[static_cast<std::size_t>(i)] - Interval(mapped.z[k + i]))))
                     .hi;
         const std::array<Interval, 4> parts{p.w, p.v[0], p.v[1], p.v[2]};
         for (int i = 0; i < 4; ++i)
             r[k + 3 + i] =
                 (Interval(near.angle) * Interval(0.5) +
-                 Interval(mag(parts[static_cast<std::size_t>(i)] - Interval(at.z[k + 3 + i]))))
+                 Interval(mag(parts[static_cast<std::size_t>(i)] - Interval(mapped.z[k + 3 + i]))))
                     .hi;
     }
-    const auto poses = box(at.z, r);
+    const auto poses = box(mapped.z, r);
     const Interval length = system.length;
-    for (int joint = 0; joint < static_cast<int>(at.from_wrench.size()); ++joint) {
-        const MatrixXd& P = at.from_wrench[static_cast<std::size_t>(joint)];
-        const auto units = unit_wrenches(system, joint, poses, Interval(at.state.load));
+    for (int joint = 0; joint < static_cast<int>(mapped.from_wrench.size()); ++joint) {
+        const MatrixXd& P = mapped.from_wrench[static_cast<std::size_t>(joint)];
+        const auto units = unit_wrenches(system, joint, poses, Interval(mapped.state.load));
         const auto rows = rows_of_joint(system, joint);
-        const auto w0 = stacked(system, given(at.state, static_cast<std::size_t>(joint)));
+        const auto w0 = stacked(system, given(mapped.state, static_cast<std::size_t>(joint)));
         const std::size_t q = rows.size();
         std::vector<Interval> R0;
-        for (const int row : rows) R0.push_back(at.z[7 * system.bodies + row]);
+        for (const int row : rows) R0.push_back(mapped.z[7 * system.bodies + row]);
         // In newtons: a reaction moment is divided by L.
-        double most = 0, norm = 0;
+        double largest = 0, norm = 0;
         std::vector<bool> moment;
         for (const auto& constraint : system.model->constraints)
             if (constraint.joint == joint)
@@ -174,56 +174,57 @@ VectorXd radii(const StateAt& at, const Tolerance& near) {
                 const Interval scaled = moment[j] ? Interval(mag(E)) * length : Interval(mag(E));
                 rest_norm += in_newtons(scaled, i);
             }
-            const Interval all = Interval(mag(sum)) + spread;
-            most = std::max(most, mag(in_newtons(all, i)));
+            const Interval deviation = Interval(mag(sum)) + spread;
+            largest = std::max(largest, mag(in_newtons(deviation, i)));
             norm = std::max(norm, mag(rest_norm));
         }
-        const double within = norm < 1 ? (Interval(most) / (Interval(1) - Interval(norm))).hi
+        const double within = norm < 1 ? (Interval(largest) / (Interval(1) - Interval(norm))).hi
                                        : std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < q; ++i)
             r[7 * system.bodies + rows[i]] = moment[i] ? (Interval(within) * length).hi : within;
     }
     if (system.separated.empty()) return r;
-    const auto x = deformations(system, poses, Interval(at.state.load));
+    const auto x = deformations(system, poses, Interval(mapped.state.load));
     for (std::size_t k = 0; k < system.separated.size(); ++k) {
         const SeparatedCorner& corner = system.separated[k];
-        const Interval& over = x[corner.element][corner.axis];
+        const Interval& x_of_corner = x[corner.element][corner.axis];
         const Index to = system.deformation(k);
-        r[to] = mag(over - Interval(at.z[to]));
-        r[to + 1] = mag(force(law_of(system, corner), over) - Interval(at.z[to + 1]));
+        r[to] = mag(x_of_corner - Interval(mapped.z[to]));
+        r[to + 1] = mag(force(law_of(system, corner), x_of_corner) - Interval(mapped.z[to + 1]));
     }
     return r;
 }
 
-Extent distance(const StateAt& at, const std::vector<Interval>& z) {
+Extent distance(const StateAt& mapped, const std::vector<Interval>& z) {
     Extent far{0, 0, 0, 0};
-    for (BodyId body = 0; body < at.system.bodies; ++body) {
-        const Vec<Interval> from = place(at, body);
-        const auto k = static_cast<std::size_t>(at.system.pose(body));
+    for (BodyId body = 0; body < mapped.system.bodies; ++body) {
+        const Vec<Interval> from = place(mapped, body);
+        const auto k = static_cast<std::size_t>(mapped.system.pose(body));
         far.length = std::max(far.length, size_above(std::array{z[k] - from[0], z[k + 1] - from[1],
                                                                 z[k + 2] - from[2]}));
-        far.angle = std::max(
-            far.angle,
-            angle_above(direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p),
-                        quaternion(at.system, z, body)));
+        far.angle = std::max(far.angle,
+                             angle_above(direction_of<Interval>(
+                                             mapped.state.poses[static_cast<std::size_t>(body)].p),
+                                         quaternion(mapped.system, z, body)));
     }
-    const auto all = wrenches(at.system, z, Interval(at.state.load));
-    for (std::size_t joint = 0; joint < all.size(); ++joint) {
-        const auto w = given(at.state, joint);
-        const auto df = all[joint].force - w.force, dm = all[joint].moment - w.moment;
+    const auto joint_wrenches = wrenches(mapped.system, z, Interval(mapped.state.load));
+    for (std::size_t joint = 0; joint < joint_wrenches.size(); ++joint) {
+        const auto w = given(mapped.state, joint);
+        const auto df = joint_wrenches[joint].force - w.force,
+                   dm = joint_wrenches[joint].moment - w.moment;
         far.force = std::max(far.force, size_above(df.x));
         far.moment = std::max(far.moment, size_above(dm.x));
     }
     return far;
 }
 
-bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Tolerance& near) {
-    const auto all = wrenches(at.system, z, Interval(at.state.load));
-    for (std::size_t joint = 0; joint < all.size(); ++joint) {
-        const auto w = given(at.state, joint);
+bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near) {
+    const auto joint_wrenches = wrenches(mapped.system, z, Interval(mapped.state.load));
+    for (std::size_t joint = 0; joint < joint_wrenches.size(); ++joint) {
+        const auto w = given(mapped.state, joint);
         for (std::size_t k = 0; k < 3; ++k)
-            if (mig(all[joint].force[k] - w.force[k]) > near.force ||
-                mig(all[joint].moment[k] - w.moment[k]) > near.moment)
+            if (mig(joint_wrenches[joint].force[k] - w.force[k]) > near.force ||
+                mig(joint_wrenches[joint].moment[k] - w.moment[k]) > near.moment)
                 return true;
     }
     return false;
@@ -242,10 +243,10 @@ std::string as_text(const Extent& far) {
 // μ acts in the balances as the wrench that holds idle motions, in the rows Φ as the gap.
 Held held_by(const System& system, const Border& border, const VectorXd& mu) {
     const Index balances = 6 * system.bodies;
-    const VectorXd all = border.U.cwiseAbs() * mu * (1 + 1e-12);
-    if (all.size() == 0 || mu.size() == 0) return {};
-    return {balances > 0 ? all.head(balances).maxCoeff() : 0,
-            all.size() > balances ? all.tail(all.size() - balances).maxCoeff() : 0};
+    const VectorXd bounds = border.U.cwiseAbs() * mu * (1 + 1e-12);
+    if (bounds.size() == 0 || mu.size() == 0) return {};
+    return {balances > 0 ? bounds.head(balances).maxCoeff() : 0,
+            bounds.size() > balances ? bounds.tail(bounds.size() - balances).maxCoeff() : 0};
 }
 
 std::string statement(const System& system, const Border& border, const Held& held,

@@ -22,12 +22,12 @@ StateAt state_at(const System& system, const Equilibrium& state);
 
 // Radii δ [n] of a box z ± δ that contains every z whose poses and joint wrenches are within `near`
 // of the state; infinite for reactions that the wrench of their joint does not determine.
-Eigen::VectorXd radii(const StateAt& at, const Tolerance& near);
+Eigen::VectorXd radii(const StateAt& mapped, const Tolerance& near);
 
 // Upper bound of the distance of any point of the box z from the state. And whether some joint
 // wrench is farther from that of the state than `near` at every point of the box.
-Extent distance(const StateAt& at, const std::vector<Interval>& z);
-bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Tolerance& near);
+Extent distance(const StateAt& mapped, const std::vector<Interval>& z);
+bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near);
 
 bool within(const Extent& far, const Tolerance& tolerance);
 std::string as_text(const Extent& far);  // "1 mm, 2 deg, 3 N and 4 N·m"

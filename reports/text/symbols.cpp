@@ -25,12 +25,13 @@ struct LineFrame {
 
 }  // namespace
 
-Stroke ring(PaperPoint at, double radius) {
+Stroke ring(PaperPoint centre, double radius) {
     Stroke stroke;
     constexpr int corners = 24;
     for (int k = 0; k <= corners; ++k) {
         const double angle = 2 * pi * k / corners;
-        stroke.push_back({at.x + radius * std::cos(angle), at.y + radius * std::sin(angle)});
+        stroke.push_back(
+            {centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
     }
     return stroke;
 }
@@ -66,38 +67,41 @@ Strokes damper(PaperPoint a, PaperPoint b) {
         {line.at(piston, 0), b}};
 }
 
-Strokes barrel(PaperPoint at, PaperPoint along, double half_length) {
+Strokes barrel(PaperPoint centre, PaperPoint along, double half_length) {
     constexpr double half = 4;
     const double seen = std::hypot(along.x, along.y);  // of a unit length
-    if (seen * half_length < half) return {ring(at, half + 1), ring(at, 1)};
-    const LineFrame line(at, {at.x + along.x, at.y + along.y});
+    if (seen * half_length < half) return {ring(centre, half + 1), ring(centre, 1)};
+    const LineFrame line(centre, {centre.x + along.x, centre.y + along.y});
     const double l = seen * half_length;
     return {{line.at(-l, -half), line.at(l, -half), line.at(l, half), line.at(-l, half),
              line.at(-l, -half)},
             {line.at(-l - 4, 0), line.at(l + 4, 0)}};
 }
 
-Strokes cross(PaperPoint at, double radius) {
-    return {ring(at, radius),
-            {{at.x - radius, at.y}, {at.x + radius, at.y}},
-            {{at.x, at.y - radius}, {at.x, at.y + radius}}};
+Strokes cross(PaperPoint centre, double radius) {
+    return {ring(centre, radius),
+            {{centre.x - radius, centre.y}, {centre.x + radius, centre.y}},
+            {{centre.x, centre.y - radius}, {centre.x, centre.y + radius}}};
 }
 
-Strokes diamond(PaperPoint at, double r) {
-    return {
-        {{at.x - r, at.y}, {at.x, at.y + r}, {at.x + r, at.y}, {at.x, at.y - r}, {at.x - r, at.y}}};
+Strokes diamond(PaperPoint centre, double r) {
+    return {{{centre.x - r, centre.y},
+             {centre.x, centre.y + r},
+             {centre.x + r, centre.y},
+             {centre.x, centre.y - r},
+             {centre.x - r, centre.y}}};
 }
 
-Strokes square(PaperPoint at, double h) {
-    const double l = at.x - h, r = at.x + h, low = at.y - h, high = at.y + h;
+Strokes square(PaperPoint centre, double h) {
+    const double l = centre.x - h, r = centre.x + h, low = centre.y - h, high = centre.y + h;
     return {{{l, low}, {r, low}, {r, high}, {l, high}, {l, low}}};
 }
 
-Strokes hatching(PaperPoint at) {
+Strokes hatching(PaperPoint centre) {
     constexpr double half = 8, below = 9;
-    const double y = at.y - below;
-    Strokes strokes{{at, {at.x, y}}, {{at.x - half, y}, {at.x + half, y}}};
-    for (double x = at.x - half + 4; x <= at.x + half; x += 4)
+    const double y = centre.y - below;
+    Strokes strokes{{centre, {centre.x, y}}, {{centre.x - half, y}, {centre.x + half, y}}};
+    for (double x = centre.x - half + 4; x <= centre.x + half; x += 4)
         strokes.push_back({{x, y}, {x - 4, y - 4}});
     return strokes;
 }

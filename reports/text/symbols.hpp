@@ -10,16 +10,16 @@ namespace elastocheck::reports {
 using Stroke = std::vector<PaperPoint>;
 using Strokes = std::vector<Stroke>;
 
-Stroke ring(PaperPoint at, double radius);
+Stroke ring(PaperPoint centre, double radius);
 Strokes coil(PaperPoint a, PaperPoint b);    // coil spring in side view; a ring in end view
 Strokes damper(PaperPoint a, PaperPoint b);  // a tube from a, a rod to b, the piston between
-Strokes barrel(PaperPoint at, PaperPoint along,
+Strokes barrel(PaperPoint centre, PaperPoint along,
                // a sleeve along its axis `along` (foreshortened, length up to 1)
                double half_length);
-Strokes cross(PaperPoint at, double radius);
-Strokes diamond(PaperPoint at, double radius);
-Strokes square(PaperPoint at, double half_side);
-Strokes hatching(PaperPoint at);  // ground symbol
+Strokes cross(PaperPoint centre, double radius);
+Strokes diamond(PaperPoint centre, double radius);
+Strokes square(PaperPoint centre, double half_side);
+Strokes hatching(PaperPoint centre);  // ground symbol
 Strokes arrow(PaperPoint from, PaperPoint to, bool both_ways = false);
 
 }  // namespace elastocheck::reports

@@ -112,19 +112,19 @@ struct Assembly {
             add(slots, row + 3 + k, on.moment[static_cast<std::size_t>(k)]);
         }
     }
-    // Adds the action times R, the unknown in column `of`.
+    // Adds the action times R, the unknown in column `column`.
     template <class T>
-    void add_times(const Slots& slots, BodyId body, const Acting<T>& on, const S& R, int of) {
+    void add_times(const Slots& slots, BodyId body, const Acting<T>& on, const S& R, int column) {
         if (body == ground) return;
         count(body, on, mag(range(R)));
         const int row = system.balance(body);
-        const auto one = [&](int to, const T& x) {
+        const auto add_row = [&](int to, const T& x) {
             add(slots, to, T(x * R));
-            if constexpr (!std::is_same_v<T, S>) add_slope(to, of, x.v);
+            if constexpr (!std::is_same_v<T, S>) add_slope(to, column, x.v);
         };
         for (int k = 0; k < 3; ++k) {
-            one(row + k, on.force[static_cast<std::size_t>(k)]);
-            one(row + 3 + k, on.moment[static_cast<std::size_t>(k)]);
+            add_row(row + k, on.force[static_cast<std::size_t>(k)]);
+            add_row(row + 3 + k, on.moment[static_cast<std::size_t>(k)]);
         }
     }
 
@@ -191,9 +191,9 @@ struct Assembly {
     static S constant_of(const S& x) { return x; }
     template <int N>
     static Dual<S, N> constant_of(const Dual<S, N>& x) {
-        Dual<S, N> of;
-        of.v = x.v;
-        return of;
+        Dual<S, N> result;
+        result.v = x.v;
+        return result;
     }
 
     static Quat<S> constant_of(const Quat<S>& q) { return q; }
@@ -229,12 +229,12 @@ struct Assembly {
     template <class T>
     OfOne<T> of_one(const AxialSpring& spring, const ElementPath& path, std::size_t,
                     const Frame<T>& i, const Frame<T>& j) {
-        OfOne<T> of;
-        of.on = pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
-            of.x = x;
+        OfOne<T> result;
+        result.on = pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
+            result.x = x;
             return constant<T>(1.);
         });
-        return of;
+        return result;
     }
     template <class T>
     OfOne<T> of_one(const Bushing& bushing, const ElementPath& path, std::size_t axis,
@@ -249,30 +249,31 @@ struct Assembly {
     }
     template <class T>
     void corner(std::size_t c) {
-        const SeparatedCorner& of = system.separated[c];
-        const ScalarLaw& law = law_of(system, of);
+        const SeparatedCorner& separated = system.separated[c];
+        const ScalarLaw& law = law_of(system, separated);
         const int to = system.corner(c), x_at = system.deformation(c), f_at = x_at + 1;
         const S &x = z[static_cast<std::size_t>(x_at)], &f = z[static_cast<std::size_t>(f_at)];
         std::visit(
             [&](const auto& kind) {
                 const Slots slots{kind.i.body, kind.j.body};
                 const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
-                const OfOne<T> one = of_one(kind, system.elements[of.element], of.axis, i, j);
+                const OfOne<T> one =
+                    of_one(kind, system.elements[separated.element], separated.axis, i, j);
                 add(slots, to, T(one.x - x));
                 add_times(slots, slots.i, one.on.i, f, f_at);
                 add_times(slots, slots.j, one.on.j, f, f_at);
             },
-            system.model->elastics[of.element].kind);
+            system.model->elastics[separated.element].kind);
         if constexpr (std::is_same_v<T, S>) {
             add({}, to + 1, f - force(law, x));
         } else {
-            Dual<S, 1> at;
-            at.v = x;
-            at.d[0] = constant<S>(1.);
-            at = force(law, at);
-            add({}, to + 1, f - at.v);
+            Dual<S, 1> law_at_x;
+            law_at_x.v = x;
+            law_at_x.d[0] = constant<S>(1.);
+            law_at_x = force(law, law_at_x);
+            add({}, to + 1, f - law_at_x.v);
             add_slope(to, x_at, constant<S>(-1.));
-            add_slope(to + 1, x_at, -at.d[0]);
+            add_slope(to + 1, x_at, -law_at_x.d[0]);
             add_slope(to + 1, f_at, constant<S>(1.));
         }
     }
@@ -287,11 +288,11 @@ struct Assembly {
                 const Rows<T> rows = rows_of(k, system.values[c].at(parameter<T>()), i, j);
                 for (int n = 0; n < elastocheck::rows(kind); ++n) {
                     const Row<T>& row = rows[static_cast<std::size_t>(n)];
-                    const int of = system.reaction(c) + n;
-                    const S& R = z[static_cast<std::size_t>(of)];
+                    const int column = system.reaction(c) + n;
+                    const S& R = z[static_cast<std::size_t>(column)];
                     add(slots, system.closure(c) + n, row.Phi);
-                    add_times(slots, slots.i, row.reaction.i, R, of);
-                    add_times(slots, slots.j, row.reaction.j, R, of);
+                    add_times(slots, slots.i, row.reaction.i, R, column);
+                    add_times(slots, slots.j, row.reaction.j, R, column);
                 }
             },
             kind);
@@ -373,30 +374,32 @@ Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Sl
 
 // Action on the joint's body i, moved from the body's origin to the joint's point.
 template <class S>
-JointWrench<S> about_joint(const Assembly<S>& at, const ModelJoint& joint, const Acting<S>& on) {
-    const Vec<S> arm = position(at.template frame<S>(joint.at.body, 0), joint.at.s_local) -
-                       at.template frame<S>(joint.i, 0).r;
+JointWrench<S> about_joint(const Assembly<S>& assembly, const ModelJoint& joint,
+                           const Acting<S>& on) {
+    const Vec<S> arm = position(assembly.template frame<S>(joint.at.body, 0), joint.at.s_local) -
+                       assembly.template frame<S>(joint.i, 0).r;
     return {on.force, on.moment - cross(arm, on.force)};
 }
 
 template <class S>
 std::vector<JointWrench<S>> unit_wrenches(const System& system, int joint, const std::vector<S>& z,
                                           const S& a) {
-    const Assembly<S> at{system, z, a, {}};
-    const ModelJoint& of = system.model->joints[static_cast<std::size_t>(joint)];
+    const Assembly<S> assembly{system, z, a, {}};
+    const ModelJoint& model_joint = system.model->joints[static_cast<std::size_t>(joint)];
     std::vector<JointWrench<S>> columns;
     for (std::size_t c = 0; c < system.model->constraints.size(); ++c) {
         const Constraint& constraint = system.model->constraints[c];
         if (constraint.joint != joint) continue;
         std::visit(
             [&](const auto& kind) {
-                const auto i = at.template frame<S>(kind.i.body, 0),
-                           j = at.template frame<S>(kind.j.body, 0);
+                const auto i = assembly.template frame<S>(kind.i.body, 0),
+                           j = assembly.template frame<S>(kind.j.body, 0);
                 const Rows<S> rows = rows_of(kind, system.values[c].at(a), i, j);
                 for (int n = 0; n < elastocheck::rows(constraint.kind); ++n) {
                     const OnBoth<S>& reaction = rows[static_cast<std::size_t>(n)].reaction;
                     columns.push_back(
-                        about_joint(at, of, kind.i.body == of.i ? reaction.i : reaction.j));
+                        about_joint(assembly, model_joint,
+                                    kind.i.body == model_joint.i ? reaction.i : reaction.j));
                 }
             },
             constraint.kind);
@@ -406,7 +409,7 @@ std::vector<JointWrench<S>> unit_wrenches(const System& system, int joint, const
 
 template <class S>
 std::vector<JointWrench<S>> wrenches(const System& system, const std::vector<S>& z, const S& a) {
-    std::vector<JointWrench<S>> all;
+    std::vector<JointWrench<S>> list;
     for (int joint = 0; joint < static_cast<int>(system.model->joints.size()); ++joint) {
         const auto columns = unit_wrenches(system, joint, z, a);
         const auto rows = rows_of_joint(system, joint);
@@ -417,9 +420,9 @@ std::vector<JointWrench<S>> wrenches(const System& system, const std::vector<S>&
             sum.force = sum.force + columns[k].force * R;
             sum.moment = sum.moment + columns[k].moment * R;
         }
-        all.push_back(sum);
+        list.push_back(sum);
     }
-    return all;
+    return list;
 }
 
 }  // namespace elastocheck::reference::certificate

@@ -29,34 +29,37 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     const int n = static_cast<int>(gradient.size()), m = static_cast<int>(values.Phi.size());
     const VectorXd S = scales.coordinates(n), D = scales.rows(model);
     const VectorXd g = S.cwiseProduct(gradient) / scales.energy();
-    Balance at{.lambda = VectorXd::Zero(m),
-               .left = g,
-               .Phi = D.cwiseProduct(values.Phi),
-               .J_t = transposed(scaled(values.Phi_q, D, S)),
-               .along = MatrixXd::Identity(n, n),
-               .independent = {},
-               .qr = {}};
-    if (m == 0 || n == 0 || !at.J_t.allFinite() || !g.allFinite()) return at;
+    Balance result{.lambda = VectorXd::Zero(m),
+                   .left = g,
+                   .Phi = D.cwiseProduct(values.Phi),
+                   .J_t = transposed(scaled(values.Phi_q, D, S)),
+                   .along = MatrixXd::Identity(n, n),
+                   .independent = {},
+                   .qr = {}};
+    if (m == 0 || n == 0 || !result.J_t.allFinite() || !g.allFinite()) return result;
 
-    auto& qr = at.qr;
+    auto& qr = result.qr;
     qr.setThreshold(rank_threshold);
-    qr.compute(at.J_t);
+    qr.compute(result.J_t);
     const int rank = static_cast<int>(qr.rank());
-    at.lambda = qr.solve(-g);
-    at.left = g + at.J_t * at.lambda;
-    at.along = MatrixXd::Identity(n, n).rightCols(n - rank);
-    at.along.applyOnTheLeft(qr.householderQ());
-    for (int i = 0; i < rank; ++i) at.independent.push_back(qr.colsPermutation().indices()[i]);
-    return at;
+    result.lambda = qr.solve(-g);
+    result.left = g + result.J_t * result.lambda;
+    result.along = MatrixXd::Identity(n, n).rightCols(n - rank);
+    result.along.applyOnTheLeft(qr.householderQ());
+    for (int i = 0; i < rank; ++i) result.independent.push_back(qr.colsPermutation().indices()[i]);
+    return result;
 }
 
-MatrixXd row_space(const Balance& at) {
-    MatrixXd basis = MatrixXd::Identity(at.along.rows(), std::ssize(at.independent));
-    if (basis.cols() > 0) basis.applyOnTheLeft(at.qr.householderQ());
+MatrixXd row_space(const Balance& conditions) {
+    MatrixXd basis =
+        MatrixXd::Identity(conditions.along.rows(), std::ssize(conditions.independent));
+    if (basis.cols() > 0) basis.applyOnTheLeft(conditions.qr.householderQ());
     return basis;
 }
 
-VectorXd shortest(const Balance& at, const VectorXd& Phi) { return at.qr.transpose().solve(Phi); }
+VectorXd shortest(const Balance& conditions, const VectorXd& Phi) {
+    return conditions.qr.transpose().solve(Phi);
+}
 
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart) {
@@ -71,10 +74,10 @@ Balance sparse_balance(const Model& model, const Prescribed& prescribed, const S
     auto [left, lambda] =
         left_over(scaled(values.Phi_q, D, S),
                   S.cwiseProduct(potential(model, prescribed, chart).gradient) / scales.energy());
-    Balance at;
-    at.lambda = std::move(lambda), at.left = std::move(left);
-    at.Phi = D.cwiseProduct(values.Phi);
-    return at;
+    Balance result;
+    result.lambda = std::move(lambda), result.left = std::move(left);
+    result.Phi = D.cwiseProduct(values.Phi);
+    return result;
 }
 
 Blocks scaled(Blocks H, const Scales& scales) {
@@ -154,13 +157,14 @@ double idle_limit(double stiffest) {
     return idle_stiffness + 50 * std::numeric_limits<double>::epsilon() * stiffest;
 }
 
-Modes modes_of(const Balance& at, const MatrixXd& H) {
+Modes modes_of(const Balance& conditions, const MatrixXd& H) {
     Modes modes;
-    if (at.along.cols() == 0) return {at.along, VectorXd(0), 0};
-    const bool free = at.independent.empty();  // `along` is then the unit matrix
-    const MatrixXd reduced = free ? H : MatrixXd(at.along.transpose() * H * at.along);
+    if (conditions.along.cols() == 0) return {conditions.along, VectorXd(0), 0};
+    const bool free = conditions.independent.empty();  // `along` is then the unit matrix
+    const MatrixXd reduced =
+        free ? H : MatrixXd(conditions.along.transpose() * H * conditions.along);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
-    modes.Z = free ? eigen.eigenvectors() : MatrixXd(at.along * eigen.eigenvectors());
+    modes.Z = free ? eigen.eigenvectors() : MatrixXd(conditions.along * eigen.eigenvectors());
     modes.stiffness = eigen.eigenvalues();
     modes.idle_limit = idle_limit(modes.stiffness.cwiseAbs().maxCoeff());
     return modes;
@@ -192,13 +196,14 @@ double allowed(const Scales& scales, double stiffness, double tolerance) {
 
 }  // namespace
 
-double excess(const Balance& at, const VectorXd& stiffness, const Scales& scales,
+double excess(const Balance& conditions, const VectorXd& stiffness, const Scales& scales,
               double tolerance) {
-    double worst = largest(at.Phi);
-    if (!std::isfinite(worst) || !at.left.allFinite())
+    double worst = largest(conditions.Phi);
+    if (!std::isfinite(worst) || !conditions.left.allFinite())
         return std::numeric_limits<double>::quiet_NaN();
-    for (Eigen::Index i = 0; i < at.left.size(); ++i)
-        worst = std::max(worst, std::abs(at.left[i]) / allowed(scales, stiffness[i], tolerance));
+    for (Eigen::Index i = 0; i < conditions.left.size(); ++i)
+        worst = std::max(worst,
+                         std::abs(conditions.left[i]) / allowed(scales, stiffness[i], tolerance));
     return worst;
 }
 

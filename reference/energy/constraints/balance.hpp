@@ -33,9 +33,9 @@ Balance balance(const Model& model, const Prescribed& prescribed, const Scales& 
 Balance sparse_balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                        const Chart& chart);
 // Orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank].
-Eigen::MatrixXd row_space(const Balance& at);
+Eigen::MatrixXd row_space(const Balance& conditions);
 // Shortest least-squares solution ξ of ∂DΦ/∂ξ ξ = Φ.
-Eigen::VectorXd shortest(const Balance& at, const Eigen::VectorXd& Phi);
+Eigen::VectorXd shortest(const Balance& conditions, const Eigen::VectorXd& Phi);
 
 // S H S in units of F·L.
 Blocks scaled(Blocks H, const Scales& scales);
@@ -72,7 +72,7 @@ struct Modes {
     bool unstable() const;
 };
 double idle_limit(double stiffest);
-Modes modes_of(const Balance& at, const Eigen::MatrixXd& H);
+Modes modes_of(const Balance& conditions, const Eigen::MatrixXd& H);
 
 // Acceptance measure, to be ≤ tolerance: the largest of the constraints and of the projected
 // gradient in each mode. In a stiff mode the rounding of a position is allowed for:
@@ -81,7 +81,7 @@ double excess(const Eigen::VectorXd& left, const Eigen::VectorXd& Phi, const Mod
               const Scales& scales, double tolerance);
 
 // The same where only the softest modes are known: coordinate by coordinate, with `stiffness` of each.
-double excess(const Balance& at, const Eigen::VectorXd& stiffness, const Scales& scales,
+double excess(const Balance& conditions, const Eigen::VectorXd& stiffness, const Scales& scales,
               double tolerance);
 
 // Largest absolute entry; NaN if any entry is NaN, 0 if there is none.

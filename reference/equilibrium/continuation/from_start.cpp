@@ -35,6 +35,7 @@ struct Known {
     VectorXd x;
     MatrixXd idle;  // orthonormal [6 nb × k]
 
+    // (to - x) of the bodies [6 nb], without its part along the idle motions.
     VectorXd from_here(const System& system, const VectorXd& to) const {
         VectorXd d = step_between(system, x, to).head(6 * system.bodies);
         if (idle.cols() > 0) d -= idle * (idle.transpose() * d).eval();
@@ -64,8 +65,8 @@ Known known_state(const System& system, double a, const Equilibrium& state) {
 double stretched(const System& system, const std::vector<Known>& known, const VectorXd& x,
                  const VectorXd& dx) {
     double eta = 0;
-    for (const auto& one : known) {
-        const VectorXd d = one.from_here(system, x);
+    for (const auto& state : known) {
+        const VectorXd d = state.from_here(system, x);
         const double s = d.squaredNorm();
         eta -= 2 * d.dot(dx.head(d.size())) / (s * (1 + s));
     }
@@ -83,40 +84,40 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
     const Loading loading{a};
     VectorXd x = unknowns_at(system, start);
     Counts counts;
-    Derivatives by = derivatives(system, loading, x, counts);
-    if (!by.E.allFinite() || !is_finite(by.J)) return {Outcome::not_finite};
+    Derivatives slopes = derivatives(system, loading, x, counts);
+    if (!slopes.E.allFinite() || !is_finite(slopes.J)) return {Outcome::not_finite};
     const Index n = 6 * system.bodies, m = system.constraint_rows;
     // E is linear in the reactions: start with those of least imbalance.
     if (n > 0 && m > 0) {
-        x.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
-        by = derivatives(system, loading, x, counts);
+        x.tail(m) -= least_squares(slopes.J.topRightCorner(n, m), slopes.E.head(n));
+        slopes = derivatives(system, loading, x, counts);
     }
-    Linearisation at = linearise(by.J, nullptr, counts);
+    Linearisation linearisation = linearise(slopes.J, nullptr, counts);
     for (int iteration = 0;; ++iteration) {
         if (iteration == options.iteration_limit) return {Outcome::iteration_limit};
-        VectorXd dx = solve_bordered(at.bordered, by.E).dx;
+        VectorXd dx = solve_bordered(linearisation.bordered, slopes.E).dx;
         if (!dx.allFinite()) return {Outcome::singular};
         dx *= stretched(system, others, x, dx);
         const double size = pose_size(system, dx);
         if (!std::isfinite(size)) return {Outcome::singular};
         if (size > longest_correction) dx *= longest_correction / size;
         x = moved(system, x, dx);
-        by = derivatives(system, loading, x, counts);
-        if (!by.E.allFinite() || !is_finite(by.J)) return {Outcome::not_finite};
-        at = linearise(by.J, &at, counts);
+        slopes = derivatives(system, loading, x, counts);
+        if (!slopes.E.allFinite() || !is_finite(slopes.J)) return {Outcome::not_finite};
+        linearisation = linearise(slopes.J, &linearisation, counts);
         if (size <= close) break;
     }
     const Attempt attempt =
-        newton(system, loading, x, linearise(by.J, nullptr, counts), options, counts);
+        newton(system, loading, x, linearise(slopes.J, nullptr, counts), options, counts);
     if (!(attempt.residual <= options.tolerance))
         return {std::isfinite(attempt.residual) ? Outcome::iteration_limit : Outcome::not_finite};
-    for (const auto& one : others)
-        if (pose_size(system, one.from_here(system, attempt.x)) <= one_state)
+    for (const auto& other : others)
+        if (pose_size(system, other.from_here(system, attempt.x)) <= one_state)
             return {Outcome::branch_lost};
-    const Stiffness left = stiffness(
+    const Stiffness softest = stiffness(
         system, linearise(derivatives(system, loading, attempt.x, counts).J, nullptr, counts));
-    return {Outcome::converged, state_of(system, loading, attempt.x), left.least,
-            left.least > left.round_off};
+    return {Outcome::converged, state_of(system, loading, attempt.x), softest.least,
+            softest.least > softest.round_off};
 }
 
 std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
@@ -130,20 +131,21 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
     // The curvature of the constraints depends on their reactions.
     VectorXd with_reactions = x;
     Counts counts;
-    Derivatives by = derivatives(system, {state.load}, x, counts);
-    if (!by.E.allFinite() || !is_finite(by.J)) return {};
+    Derivatives slopes = derivatives(system, {state.load}, x, counts);
+    if (!slopes.E.allFinite() || !is_finite(slopes.J)) return {};
     if (m > 0) {
-        with_reactions.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
-        by = derivatives(system, {state.load}, with_reactions, counts);
+        with_reactions.tail(m) -= least_squares(slopes.J.topRightCorner(n, m), slopes.E.head(n));
+        slopes = derivatives(system, {state.load}, with_reactions, counts);
     }
     // M = -Zᵀ ∂(balance)/∂q Z in the null space of the constraints
     MatrixXd Z = MatrixXd::Identity(n, n);
     if (m > 0) {
-        Eigen::ColPivHouseholderQR<MatrixXd> qr(MatrixXd(by.J.bottomLeftCorner(m, n)).transpose());
+        Eigen::ColPivHouseholderQR<MatrixXd> qr(
+            MatrixXd(slopes.J.bottomLeftCorner(m, n)).transpose());
         Z = matrix_Q(qr).rightCols(n - qr.rank());
     }
     if (Z.cols() == 0) return {};
-    const MatrixXd K = -MatrixXd(by.J.topLeftCorner(n, n)),
+    const MatrixXd K = -MatrixXd(slopes.J.topLeftCorner(n, n)),
                    M = Z.transpose() * (K + K.transpose()) / 2 * Z;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(M);
     const double idle = idle_eigenvalue * modes.eigenvalues().cwiseAbs().maxCoeff();

@@ -58,6 +58,8 @@ struct Spectrum {
 // rounding of M; otherwise, and for more coordinates than `few`, the result is empty.
 std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle, Index redundant) {
     constexpr Index few = 72;
+    // relative to the largest entry: an idle eigenvalue, the least other one; to that one:
+    // asymmetry
     constexpr double zero = 1e-11, enough = 1e-6, may_matter = 1e-3;
     const Index n = 6 * system.bodies, m = system.constraint_rows, d = n - m + redundant;
     if (n > few || d <= idle) return std::nullopt;
@@ -134,26 +136,26 @@ bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle,
 // x = Z M⁻¹ Zᵀ b, with the idle modes projected out of b and x: P = 1 - V (VᵀV)⁻¹ Vᵀ, V the body
 // part of the modes. Some columns of V may be zero; the small number regularises these.
 struct Inverse {
-    const Linearisation& at;
+    const Linearisation& source;
     Index n;
     Sparse V;
     Eigen::SimplicialLDLT<Sparse> gram;
-    Inverse(const Linearisation& linearised, Index size) : at(linearised), n(size) {
-        if (at.modes.count() == 0) return;
+    Inverse(const Linearisation& linearised, Index size) : source(linearised), n(size) {
+        if (source.modes.count() == 0) return;
         constexpr double zero_tolerance = 1e-14;
-        V = at.modes.right.topRows(n);
+        V = source.modes.right.topRows(n);
         Sparse one(V.cols(), V.cols());
         one.setIdentity();
         gram.compute(Sparse(Sparse(V.transpose()) * V + zero_tolerance * one));
     }
     VectorXd without_idle(const VectorXd& b) const {
-        if (at.modes.count() == 0) return b;
+        if (source.modes.count() == 0) return b;
         return b - V * gram.solve(VectorXd(V.transpose() * b));
     }
     VectorXd operator()(const VectorXd& b) const {
-        VectorXd right = VectorXd::Zero(at.J.rows());
+        VectorXd right = VectorXd::Zero(source.J.rows());
         right.head(n) = without_idle(b);
-        return without_idle(solve_bordered(at.bordered, right).dx.head(n));
+        return without_idle(solve_bordered(source.bordered, right).dx.head(n));
     }
 };
 
@@ -181,33 +183,33 @@ std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
 
 // Eigenvalues of M next to zero by Arnoldi's method on M⁻¹, whose largest they are: the first ones,
 // to a relative error of 1e-8, as soon as the very first has converged; or `all`, which is the
-// complete spectrum without multiplicity if at most `most` motions are free.
+// complete spectrum without multiplicity if at most `max_values` motions are free.
 std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative,
                                      bool all) {
-    constexpr Index most = 200, between_looks = 4;
-    constexpr double found = 1e-8, round_off = 1e-14;
-    const Index size = std::min(most, free);
+    constexpr Index max_values = 200, steps_between_checks = 4;
+    constexpr double tolerance = 1e-8, round_off = 1e-14;
+    const Index size = std::min(max_values, free);
     MatrixXd Q(n, size), H = MatrixXd::Zero(size, size);
     VectorXd next(n);  // generic start vector: fractions of multiples of the golden ratio
     for (Index k = 0; k < n; ++k)
         next[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
     next = inverse(next);
-    double left = next.norm();
-    if (!(std::isfinite(left) && left > 0)) return std::nullopt;
+    double remainder = next.norm();
+    if (!(std::isfinite(remainder) && remainder > 0)) return std::nullopt;
     for (Index k = 0; k < size; ++k) {
-        if (k > 0) H(k, k - 1) = left;
-        Q.col(k) = next / left;
+        if (k > 0) H(k, k - 1) = remainder;
+        Q.col(k) = next / remainder;
         next = inverse(Q.col(k));
         for (int pass = 0; pass < 2; ++pass) {
             const VectorXd part = Q.leftCols(k + 1).transpose() * next;
             next -= Q.leftCols(k + 1) * part;
             H.col(k).head(k + 1) += part;
         }
-        left = next.norm();
-        if (!std::isfinite(left)) return std::nullopt;
+        remainder = next.norm();
+        if (!std::isfinite(remainder)) return std::nullopt;
         const MatrixXd H_k = H.topLeftCorner(k + 1, k + 1);
-        const bool last = k + 1 == size || left <= round_off * H_k.norm();
-        if (!last && (all || (k + 1) % between_looks != 0)) continue;
+        const bool last = k + 1 == size || remainder <= round_off * H_k.norm();
+        if (!last && (all || (k + 1) % steps_between_checks != 0)) continue;
         const auto values = ritz(H_k, conservative);
         if (!values) return std::nullopt;
         std::vector<Index> order(static_cast<std::size_t>(k + 1));
@@ -215,13 +217,13 @@ std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free
         std::ranges::sort(order, std::greater{},
                           [&](Index j) { return std::abs(values->theta[j]); });
         const double largest = std::abs(values->theta[order.front()]);
-        const bool complete = last && (size == free || left <= round_off * largest);
+        const bool complete = last && (size == free || remainder <= round_off * largest);
         Spectrum spectrum;
         Index seen = 0;
         for (const Index j : order) {
             const double theta = std::abs(values->theta[j]);
             if (theta <= round_off * largest ||
-                (!complete && left * values->last[j] > found * theta))
+                (!complete && remainder * values->last[j] > tolerance * theta))
                 break;
             spectrum.see(1. / values->theta[j]);
             ++seen;
@@ -250,33 +252,34 @@ std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J,
     if (!is_finite(J)) return std::nullopt;
     const auto spectrum = formed(system, J, idle, redundant);
     if (!spectrum) return std::nullopt;
-    Stiffness found =
+    Stiffness result =
         spectrum->of(system, eigenvalue_round_off * largest_entry(balance_rows(system, J)));
-    found.redundant = redundant;
-    found.log_determinant = spectrum->log_product;
-    return found;
+    result.redundant = redundant;
+    result.log_determinant = spectrum->log_product;
+    return result;
 }
 
-Stiffness stiffness(const System& system, const Linearisation& at) {
-    if (!is_finite(at.J)) return {nan, nan};
+Stiffness stiffness(const System& system, const Linearisation& linearisation) {
+    if (!is_finite(linearisation.J)) return {nan, nan};
     if (system.bodies == 0) return {};
-    const Index n = 6 * system.bodies, m = system.constraint_rows, k = at.modes.count();
-    const Index redundant = k == 0 ? 0 : self_stresses(system, at.modes).cols();
+    const Index n = 6 * system.bodies, m = system.constraint_rows, k = linearisation.modes.count();
+    const Index redundant = k == 0 ? 0 : self_stresses(system, linearisation.modes).cols();
     const Index free = n - (m - redundant) - (k - redundant);
     if (free == 0) return {};
     // Nearly redundant constraints: J and Φ_q disagree on the number of dependencies, so nothing
     // can be decided.
     if (free < 0) return {nan, nan};
-    const Sparse K = -balance_rows(system, at.J);
+    const Sparse K = -balance_rows(system, linearisation.J);
     const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
-    if (auto few = stiffness_of_few(system, at.J, k - redundant, redundant)) return *few;
+    if (auto few = stiffness_of_few(system, linearisation.J, k - redundant, redundant)) return *few;
     const bool surely =
-        system.conservative &&
-        surely_stable(K, constraint_rows(system, at.J), at.modes, std::max(size, 1.0), round_off);
-    const auto spectrum = next_to_zero(Inverse(at, n), n, free, system.conservative, !surely);
-    Stiffness found = spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
-    found.redundant = redundant;
-    return found;
+        system.conservative && surely_stable(K, constraint_rows(system, linearisation.J),
+                                             linearisation.modes, std::max(size, 1.0), round_off);
+    const auto spectrum =
+        next_to_zero(Inverse(linearisation, n), n, free, system.conservative, !surely);
+    Stiffness result = spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
+    result.redundant = redundant;
+    return result;
 }
 
 bool constraints_keep_their_side(const System& system, const Linearisation& from,

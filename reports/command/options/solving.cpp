@@ -90,9 +90,9 @@ SolvedBranch solve_branch(const Model& model, const Branch& branch,
     // the last state of each side; the start a = 0 belongs to a side until that has another state
     std::vector<std::optional<Equilibrium>> last_states(sides.size());
     const auto row_at = [&](const Equilibrium& state) {
-        const auto index =
+        const auto side_index =
             static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
-        if (!last_states[index] || state.load != 0) last_states[index] = state;
+        if (!last_states[side_index] || state.load != 0) last_states[side_index] = state;
         auto row = compare::row_of(model, channels, sides.front(), solver, state, analyses);
         found(state, row);
         return row;
@@ -101,14 +101,15 @@ SolvedBranch solve_branch(const Model& model, const Branch& branch,
     // a method with steps of equal size has no error control
     const bool approximate =
         solver.leg == compare::Leg::recursive && recursive::has_steps(solver.recursion.method);
-    for (std::size_t index = 0; index < sides.size(); ++index) {
-        if (!last_states[index]) continue;
-        const bool reaches_end = is_end(sides[index].branch, last_states[index]->load);
-        if (reaches_end && approximate) solved.ends.emplace_back(sides[index], *last_states[index]);
+    for (std::size_t side_index = 0; side_index < sides.size(); ++side_index) {
+        if (!last_states[side_index]) continue;
+        const bool reaches_end = is_end(sides[side_index].branch, last_states[side_index]->load);
+        if (reaches_end && approximate)
+            solved.ends.emplace_back(sides[side_index], *last_states[side_index]);
         if (!reaches_end && solved.softest_motion.empty() &&
             solved.path.outcome != Outcome::converged)
             solved.softest_motion = recursive::softest_motion(
-                sides[index].model, sides[index].branch, *last_states[index]);
+                sides[side_index].model, sides[side_index].branch, *last_states[side_index]);
     }
     return solved;
 }
