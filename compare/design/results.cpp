@@ -115,7 +115,7 @@ double largest_difference(const VectorXd& a, const VectorXd& b) {
 Table goals_table(const OptimisedScene& scene) {
     const Optimum& optimum = scene.optimum;
     // the values of a goal's points
-    const auto of = [&](const VectorXd& values, Index goal) -> VectorXd {
+    const auto values_of = [&](const VectorXd& values, Index goal) -> VectorXd {
         Index first = 0;
         for (Index g = 0; g < goal; ++g) first += std::ssize(item(scene.goals, g).points);
         return values.segment(first, std::ssize(item(scene.goals, goal).points));
@@ -129,42 +129,49 @@ Table goals_table(const OptimisedScene& scene) {
          {"points", whole, [&](Index g) { return std::ssize(goal(g).points); }},
          {"low", given, [&](Index g) { return goal(g).low; }, "lower bound"},
          {"high", given, [&](Index g) { return goal(g).high; }, "upper bound"},
-         {"before", given, [&](Index g) { return worst_of(goal(g), of(optimum.start.value, g)); },
+         {"before", given,
+          [&](Index g) { return worst_of(goal(g), values_of(optimum.start.value, g)); },
           "value nearest to leaving the band, or furthest outside"},
-         {"after", given, [&](Index g) { return worst_of(goal(g), of(optimum.after, g)); },
+         {"after", given, [&](Index g) { return worst_of(goal(g), values_of(optimum.after, g)); },
           "likewise, by the equilibrium leg"},
          {"energy differs", size,
-          [&](Index g) { return largest_difference(of(scene.by.energy, g), of(optimum.after, g)); },
+          [&](Index g) {
+              return largest_difference(values_of(scene.by.energy, g), values_of(optimum.after, g));
+          },
           "largest difference of the energy leg"},
          {"series differs", size,
-          [&](Index g) { return largest_difference(of(scene.by.series, g), of(optimum.after, g)); },
+          [&](Index g) {
+              return largest_difference(values_of(scene.by.series, g), values_of(optimum.after, g));
+          },
           "largest difference of the series"},
          {"conflict", percent,
-          [&](Index g) { return optimum.met ? nan : of(optimum.conflict, g).norm(); },
+          [&](Index g) { return optimum.met ? nan : values_of(optimum.conflict, g).norm(); },
           "share in the conflict of the bands"}});
 }
 
-std::string bound_text(const OptimisedScene& scene, const Bound& one) {
-    const char* sign = one.upper ? "<=" : ">=";
-    if (one.of_number) {
-        const Number& number = item(scene.varied.numbers, one.which);
-        return fmt::format("{} {} {:g} {}", number.path, sign, one.bound, number.unit);
+std::string bound_text(const OptimisedScene& scene, const Bound& bound) {
+    const char* sign = bound.upper ? "<=" : ">=";
+    if (bound.of_number) {
+        const Number& number = item(scene.varied.numbers, bound.which);
+        return fmt::format("{} {} {:g} {}", number.path, sign, bound.bound, number.unit);
     }
-    const Figure& figure = item(scene.figures, one.which);
+    const Figure& figure = item(scene.figures, bound.which);
     return fmt::format("{}{} {} {:g} {} at {}", figure.name, figure.change ? " (change)" : "", sign,
-                       one.bound, figure.unit, figure.place);
+                       bound.bound, figure.unit, figure.place);
 }
 
 // Amount by which a bound is relaxed when its price is stated: a power of ten, up to a tenth of the
 // band or a hundredth of what the numbers move; of a number 1 mm or 1 %.
-double relaxed_by(const OptimisedScene& scene, const Bound& one) {
-    if (one.of_number) return step_of(item(scene.varied.numbers, one.which));
+double relaxed_by(const OptimisedScene& scene, const Bound& bound) {
+    if (bound.of_number) return step_of(item(scene.varied.numbers, bound.which));
     Index first = 0;
-    const auto goal = std::ranges::find_if(
-        scene.goals, [&](const Goal& of) { return one.which < (first += std::ssize(of.points)); });
+    const auto goal = std::ranges::find_if(scene.goals, [&](const Goal& candidate) {
+        return bound.which < (first += std::ssize(candidate.points));
+    });
     const double width = goal->high - goal->low,
-                 most = std::isfinite(width) ? width / 10 : scene.optimum.scale[one.which] / 100;
-    return std::pow(10, std::floor(std::log10(most) + 1e-9));
+                 largest =
+                     std::isfinite(width) ? width / 10 : scene.optimum.scale[bound.which] / 100;
+    return std::pow(10, std::floor(std::log10(largest) + 1e-9));
 }
 
 Table prices_table(const OptimisedScene& scene) {
@@ -188,20 +195,20 @@ Table prices_table(const OptimisedScene& scene) {
 }
 
 Table searches_table(const OptimisedScene& scene) {
-    const auto at = [&](Index k) -> const Search& { return item(scene.searches, k); };
+    const auto search = [&](Index k) -> const Search& { return item(scene.searches, k); };
     return rows_of("searches", std::ssize(scene.searches),
                    {{"start", hidden, [](Index k) { return k + 1; }},
                     {"result", hidden,
                      [&](Index k) {
-                         return !at(k).has_value   ? "no value at its start"
-                                : !at(k).met       ? "outside of the bands"
-                                : !at(k).converged ? "within the bands, not converged"
-                                                   : "within the bands";
+                         return !search(k).has_value   ? "no value at its start"
+                                : !search(k).met       ? "outside of the bands"
+                                : !search(k).converged ? "within the bands, not converged"
+                                                       : "within the bands";
                      }},
-                    {"cost", hidden, [&](Index k) { return at(k).cost; }},
-                    {"excess", hidden, [&](Index k) { return std::max(at(k).excess, 0.0); },
+                    {"cost", hidden, [&](Index k) { return search(k).cost; }},
+                    {"excess", hidden, [&](Index k) { return std::max(search(k).excess, 0.0); },
                      "over a band, as a share of its movement over the ranges"},
-                    {"evaluations", hidden, [&](Index k) { return at(k).evaluations; }}});
+                    {"evaluations", hidden, [&](Index k) { return search(k).evaluations; }}});
 }
 
 // ---- fit
@@ -218,52 +225,58 @@ std::string combination(const FittedScene& fit, const VectorXd& v) {
 }
 
 Table columns_table(const FittedScene& fit) {
-    const auto of = [&](Index c) -> const FittedColumn& { return item(fit.fitted.columns, c); };
+    const auto column = [&](Index c) -> const FittedColumn& { return item(fit.fitted.columns, c); };
     return rows_of("outputs", std::ssize(fit.columns),
                    {{"output", words, [&](Index c) { return item(fit.columns, c).name; }},
                     {"unit", words, [&](Index c) { return symbol(item(fit.columns, c).unit); }},
-                    {"values", whole, [&](Index c) { return of(c).values; }},
-                    {"rms before", three, [&](Index c) { return of(c).rms_before; },
+                    {"values", whole, [&](Index c) { return column(c).values; }},
+                    {"rms before", three, [&](Index c) { return column(c).rms_before; },
                      "of calculated less measured values"},
-                    {"noise", three, [&](Index c) { return of(c).noise; },
+                    {"noise", three, [&](Index c) { return column(c).noise; },
                      "estimated standard deviation of the measurements"},
-                    {"outliers", whole, [&](Index c) { return of(c).outliers; },
+                    {"outliers", whole, [&](Index c) { return column(c).outliers; },
                      "values with a residual of more than four times the noise"}});
 }
 
 Table combinations_table(const FittedScene& fit) {
-    const auto by = [&](Index k) -> const ProposedOutput& { return item(fit.proposed, k); };
-    Table all = rows_of(
+    const auto proposed_for = [&](Index k) -> const ProposedOutput& {
+        return item(fit.proposed, k);
+    };
+    Table table_of_changes = rows_of(
         "undetermined", std::ssize(fit.proposed),
         {{"change", words,
           [&](Index k) { return combination(fit, fit.fitted.undetermined.col(k)); }},
          {"measure", words,
-          [&](Index k) { return by(k).by.figure < 0 ? "no output moves" : by(k).figure.name; },
+          [&](Index k) {
+              return proposed_for(k).by.figure < 0 ? "no output moves"
+                                                   : proposed_for(k).figure.name;
+          },
           "output that was not measured and moves most with the change"},
-         {"at", words, [&](Index k) { return by(k).figure.place; }},
-         {"movement", three, [&](Index k) { return by(k).by.movement; }, "by the change"},
-         {"unit", words, [&](Index k) { return by(k).figure.unit; }},
-         {"share", percent, [&](Index k) { return by(k).by.share; }, "of the output's extent"}});
+         {"at", words, [&](Index k) { return proposed_for(k).figure.place; }},
+         {"movement", three, [&](Index k) { return proposed_for(k).by.movement; }, "by the change"},
+         {"unit", words, [&](Index k) { return proposed_for(k).figure.unit; }},
+         {"share", percent, [&](Index k) { return proposed_for(k).by.share; },
+          "of the output's extent"}});
     if (!fit.proposed.empty())
-        all.caption =
+        table_of_changes.caption =
             "The data do not determine these changes; what was not measured tells them apart:";
-    return all;
+    return table_of_changes;
 }
 
 }  // namespace
 
 Result result_of(const SolvedFor& solved) {
-    const Solution& found = solved.solution;
+    const Solution& solution = solved.solution;
     const bool met = solved.met();
-    const auto at = [&](Index k) -> const Figure& { return item(solved.wanted, k); };
+    const auto figure = [&](Index k) -> const Figure& { return item(solved.wanted, k); };
     Result result{.analysis = "solve-for"};
     result.tables.push_back(
-        numbers_table(solved.varied, found.p, met ? std::vector<int>{} : found.at_limit));
+        numbers_table(solved.varied, solution.p, met ? std::vector<int>{} : solution.at_limit));
     result.tables.push_back(rows_of(
         "wishes", solved.target.size(),
-        {{"output", words, [&](Index k) { return at(k).name; }},
-         {"unit", words, [&](Index k) { return at(k).unit; }},
-         {"at", words, [&](Index k) { return at(k).place; }},
+        {{"output", words, [&](Index k) { return figure(k).name; }},
+         {"unit", words, [&](Index k) { return figure(k).unit; }},
+         {"at", words, [&](Index k) { return figure(k).place; }},
          {"wanted", given, [&](Index k) { return solved.target[k]; }},
          {"before", given, [&](Index k) { return solved.start.value[k]; }},
          {"after", given, [&](Index k) { return solved.after[k]; }, "by the equilibrium leg"},
@@ -271,22 +284,22 @@ Result result_of(const SolvedFor& solved) {
          {"by series", given, [&](Index k) { return solved.by.series[k]; }},
          {"range", three, [&](Index k) { return solved.start.movement[k]; },
           "movement over the ranges of the numbers, to first order"},
-         {"conflict", percent, [&](Index k) { return met ? nan : found.conflict()[k]; },
+         {"conflict", percent, [&](Index k) { return met ? nan : solution.conflict()[k]; },
           "share in the conflict of the wishes"}}));
     if (!met) {
         std::vector<std::string> wishes;
         for (std::size_t k = 0; k < solved.wanted.size(); ++k)
-            if (found.conflict()[static_cast<Index>(k)] > least_share)
+            if (solution.conflict()[static_cast<Index>(k)] > least_share)
                 wishes.push_back(solved.wanted[k].name + " at " + solved.wanted[k].place);
         add_conflict(result, wishes, " Within the limits the numbers move them only together.",
-                     solved.varied, found.at_limit, "wishes");
-        if (!found.converged)
+                     solved.varied, solution.at_limit, "wishes");
+        if (!solution.converged)
             result.notes.emplace_back("The search has not converged: there may be nearer numbers.");
     }
-    set_confirmation(result, solved.by, grade_of(met, found.converged));
+    set_confirmation(result, solved.by, grade_of(met, solution.converged));
     result.verdict.sentence =
-        !found.converged ? fmt::format("The wishes are {}met, and the search has not converged.",
-                                       met ? "" : "not ")
+        !solution.converged ? fmt::format("The wishes are {}met, and the search has not converged.",
+                                          met ? "" : "not ")
         : met ? "All wishes are met; of all such numbers within the limits, these change least, as "
                 "shares of their ranges."
               : "The wishes cannot be met; these numbers come nearest.";
@@ -387,30 +400,32 @@ Result result_of(const FittedScene& fit) {
     return result;
 }
 
-Result result_of(const ToleratedScene& all, int most) {
-    const auto at = [&](Index k) -> const Figure& { return item(all.figures, k); };
+Result result_of(const ToleratedScene& scene, int max_shares) {
+    const auto figure_of = [&](Index k) -> const Figure& { return item(scene.figures, k); };
     Result result{.analysis = "tolerances"};
     result.tables.push_back(rows_of(
-        "figures", std::ssize(all.figures),
-        {{"output", words, [&](Index k) { return at(k).name; }},
-         {"unit", words, [&](Index k) { return at(k).unit; }},
-         {"at", words, [&](Index k) { return at(k).place; }},
-         {"nominal", given, [&](Index k) { return item(all.nominal, k); }},
-         {"sd", three, [&](Index k) { return item(all.scatter, k).sd; }, "standard deviation"},
-         {"worst case", three, [&](Index k) { return item(all.scatter, k).worst_case; }}}));
+        "figures", std::ssize(scene.figures),
+        {{"output", words, [&](Index k) { return figure_of(k).name; }},
+         {"unit", words, [&](Index k) { return figure_of(k).unit; }},
+         {"at", words, [&](Index k) { return figure_of(k).place; }},
+         {"nominal", given, [&](Index k) { return item(scene.nominal, k); }},
+         {"sd", three, [&](Index k) { return item(scene.scatter, k).sd; }, "standard deviation"},
+         {"worst case", three, [&](Index k) { return item(scene.scatter, k).worst_case; }}}));
     struct Share {
         const Figure* figure;
         std::string number;
         double share;
     };
     std::vector<Share> shares;
-    for (std::size_t k = 0; k < all.figures.size(); ++k) {
-        const VectorXd& of = all.scatter[k].share;
-        auto order = largest_first(of);
-        if (most > 0) order.resize(std::min(order.size(), static_cast<std::size_t>(most)));
+    for (std::size_t k = 0; k < scene.figures.size(); ++k) {
+        const VectorXd& share_of = scene.scatter[k].share;
+        auto order = largest_first(share_of);
+        if (max_shares > 0)
+            order.resize(std::min(order.size(), static_cast<std::size_t>(max_shares)));
         for (const Index i : order)
-            if (of[i] != 0)
-                shares.push_back({&all.figures[k], item(all.tolerances.numbers, i), of[i]});
+            if (share_of[i] != 0)
+                shares.push_back(
+                    {&scene.figures[k], item(scene.tolerances.numbers, i), share_of[i]});
     }
     result.tables.push_back(
         table("shares",
@@ -421,9 +436,9 @@ Result result_of(const ToleratedScene& all, int most) {
                   {"share", percent, [](const Share& s) { return s.share; }, "of the variance"}},
               shares));
     result.verdict.grade =
-        all.missing.empty() && !all.figures.empty() ? Grade::pass : Grade::not_judged;
-    result.verdict.reasons = all.missing;
-    result.verdict.compared = static_cast<int>(all.figures.size());
+        scene.missing.empty() && !scene.figures.empty() ? Grade::pass : Grade::not_judged;
+    result.verdict.reasons = scene.missing;
+    result.verdict.compared = static_cast<int>(scene.figures.size());
     return result;
 }
 

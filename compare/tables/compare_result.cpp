@@ -22,25 +22,25 @@ namespace {
 
 // Displayed channels: every main one, the worst force and moment component of each joint, and the
 // worst rate of a unit, or each.
-std::vector<std::size_t> shown(const Comparison& all, const BranchComparison& branch,
+std::vector<std::size_t> shown(const Comparison& comparison, const BranchComparison& branch,
                                const Reading& reading, bool each_rate) {
     std::vector<std::size_t> rows;
-    for (std::size_t c = 0; c < all.channels.size(); ++c)
-        if (all.channels[c].main && branch.determined[c]) rows.push_back(c);
-    for (std::size_t c = 0; c < all.channels.size(); ++c) {
-        const Channel& channel = all.channels[c];
+    for (std::size_t c = 0; c < comparison.channels.size(); ++c)
+        if (comparison.channels[c].main && branch.determined[c]) rows.push_back(c);
+    for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
+        const Channel& channel = comparison.channels[c];
         if (channel.main || channel.kinematic() || !branch.determined[c]) continue;
-        if (!rows.empty() && !all.channels[rows.back()].main &&
+        if (!rows.empty() && !comparison.channels[rows.back()].main &&
             (!each_rate || !channel.joints().empty()) &&
-            all.channels[rows.back()].joints() == channel.joints() &&
-            all.channels[rows.back()].unit == channel.unit) {
+            comparison.channels[rows.back()].joints() == channel.joints() &&
+            comparison.channels[rows.back()].unit == channel.unit) {
             if (reading.channels[c].max > reading.channels[rows.back()].max) rows.back() = c;
         } else {
             rows.push_back(c);
         }
     }
     std::erase_if(rows, [&](std::size_t c) {
-        return !all.channels[c].main && reading.channels[c].max < 1e-6;
+        return !comparison.channels[c].main && reading.channels[c].max < 1e-6;
     });
     return rows;
 }
@@ -54,12 +54,12 @@ std::string solver_of(const LegRun& run) {
 
 std::string judged_by_others(const BranchComparison& branch, const LegRun& run) {
     std::string text;
-    for (const Leg by : legs) {
-        if (by == run.leg || run.curve.a.empty()) continue;  // no points to judge
-        if (by == Leg::energy && branch.second != Leg::energy) continue;
-        const Residuals& r = run.judged[static_cast<std::size_t>(by)];
-        text += fmt::format("{}{}: {:.1e} {:.1e} {:.1e}", text.empty() ? "" : "   ", name(by),
-                            r.force, r.moment, 1e3 * r.length);
+    for (const Leg judging_leg : legs) {
+        if (judging_leg == run.leg || run.curve.a.empty()) continue;  // no points to judge
+        if (judging_leg == Leg::energy && branch.second != Leg::energy) continue;
+        const Residuals& r = run.judged[static_cast<std::size_t>(judging_leg)];
+        text += fmt::format("{}{}: {:.1e} {:.1e} {:.1e}", text.empty() ? "" : "   ",
+                            name(judging_leg), r.force, r.moment, 1e3 * r.length);
     }
     return text;
 }

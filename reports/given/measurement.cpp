@@ -122,34 +122,34 @@ Measurement read_measurement(std::string_view csv, const std::string& file, cons
     return measurement;
 }
 
-Measured compare_measurement(const Model& model, const compare::Comparison& all,
+Measured compare_measurement(const Model& model, const compare::Comparison& comparison,
                              const compare::DefinedCurves& defined, Measurement measurement) {
-    renumber(measurement, all.channels);
+    renumber(measurement, comparison.channels);
     Measured made{std::move(measurement), {}, {}};
     PointTable points = made.measurement.table;
     try {
-        made.found = compare::compare_measured(model, all, points.points, defined);
+        made.found = compare::compare_measured(model, comparison, points.points, defined);
     } catch (const std::invalid_argument& error) {
         fail_at(made.measurement.file, 1, error.what());
     }
     const compare::Points measured = points.points;
     keep_rows(points, [&](std::size_t k) {
-        return made.found.used[k] ? "" : why_not(made.found.places[k], measured, k, all);
+        return made.found.used[k] ? "" : why_not(made.found.places[k], measured, k, comparison);
     });
     made.left_out = std::move(points.left_out);
     return made;
 }
 
 compare::Table deviation_table(const Measured& measured, const compare::MeasuredReading& reading,
-                               const compare::Comparison& all) {
+                               const compare::Comparison& comparison) {
     using enum compare::Digits;
     using Row = compare::MeasuredRow;
-    const auto per = [&](const Row& r) { return gradient_unit(measured, reading, r, all); };
+    const auto per = [&](const Row& r) { return gradient_unit(measured, reading, r, comparison); };
     std::vector<compare::ColumnOf<Row>> columns{
-        {"reading", hidden, [&](const Row&) { return word_of(measured, reading, all); }},
+        {"reading", hidden, [&](const Row&) { return word_of(measured, reading, comparison); }},
         {"test", words, [](const Row& r) { return r.branch; }},
-        {"output", words, [&](const Row& r) { return all.channels[r.channel].name; }},
-        {"unit", words, [&](const Row& r) { return symbol(all.channels[r.channel].unit); }},
+        {"output", words, [&](const Row& r) { return comparison.channels[r.channel].name; }},
+        {"unit", words, [&](const Row& r) { return symbol(comparison.channels[r.channel].unit); }},
         {"points", whole, [](const Row& r) { return r.compared(); }},
         {"gradient measured", deviation,
          [=](const Row& r) { return per(r).second * r.measured_gradient; },
@@ -168,24 +168,25 @@ compare::Table deviation_table(const Measured& measured, const compare::Measured
                            [=](const Row& r) { return off(r).rms; }, "", "", "rms"});
     }
     compare::Table table = compare::table("measured", columns, reading.rows);
-    table.caption = "Deviation from the measurement, " + word_of(measured, reading, all);
+    table.caption = "Deviation from the measurement, " + word_of(measured, reading, comparison);
     return table;
 }
 
-compare::Table loop_table(const Measured& measured, const compare::Comparison& all) {
+compare::Table loop_table(const Measured& measured, const compare::Comparison& comparison) {
     using enum compare::Digits;
     using Loop = compare::Hysteresis;
     compare::Table table = compare::table<Loop>(
         "loops",
         {{"branch", words, [](const Loop& l) { return l.branch; }},
-         {"output", words, [&](const Loop& l) { return all.channels[l.channel].name; }},
-         {"unit", words, [&](const Loop& l) { return symbol(all.channels[l.channel].unit); }},
+         {"output", words, [&](const Loop& l) { return comparison.channels[l.channel].name; }},
+         {"unit", words,
+          [&](const Loop& l) { return symbol(comparison.channels[l.channel].unit); }},
          {"width", size, [](const Loop& l) { return l.width; }, "largest difference of both ways",
           "", "largest width"},
          {"at", place, [](const Loop& l) { return l.at; }},
          {"place unit", words,
           [&](const Loop& l) {
-              return symbol(unit_of_place(measured, l.by_parameter, l.branch, all));
+              return symbol(unit_of_place(measured, l.by_parameter, l.branch, comparison));
           },
           "", "", "its unit"},
          {"points", whole, [](const Loop& l) { return l.points; }}},
@@ -196,21 +197,21 @@ compare::Table loop_table(const Measured& measured, const compare::Comparison& a
 
 namespace {
 
-// A value of a point.
+// The value of a column at a point.
 struct PointValue {
     std::size_t point;
-    const compare::PointColumn* of;
+    const compare::PointColumn* column;
 };
 
-compare::Table point_table(const Measured& measured, const compare::Comparison& all) {
+compare::Table point_table(const Measured& measured, const compare::Comparison& comparison) {
     using enum compare::Digits;
     const compare::Points& points = measured.measurement.table.points;
     std::vector<PointValue> rows;
     for (std::size_t k = 0; k < measured.found.places.size(); ++k)
         for (const auto& column : measured.found.columns)
             if (std::isfinite(column.values[k])) rows.push_back({k, &column});
-    const auto value = [](const std::vector<double>& of, std::size_t k) {
-        return k < of.size() ? of[k] : compare::nan;
+    const auto value = [](const std::vector<double>& values, std::size_t k) {
+        return k < values.size() ? values[k] : compare::nan;
     };
     using V = PointValue;
     compare::Table table = compare::table<V>(
@@ -219,14 +220,15 @@ compare::Table point_table(const Measured& measured, const compare::Comparison& 
          {"branch", words,
           [&](const V& v) {
               const int b = measured.found.places[v.point].branch;
-              return b < 0 ? "" : all.branches[static_cast<std::size_t>(b)].branch;
+              return b < 0 ? "" : comparison.branches[static_cast<std::size_t>(b)].branch;
           }},
          {"parameter", place, [&](const V& v) { return value(points.a, v.point); }},
-         {points.abscissa ? all.channels[*points.abscissa].name : "abscissa", place,
+         {points.abscissa ? comparison.channels[*points.abscissa].name : "abscissa", place,
           [&](const V& v) { return value(points.at, v.point); }, "where the point was measured"},
-         {"output", words, [&](const V& v) { return all.channels[v.of->channel].name; }},
-         {"unit", words, [&](const V& v) { return symbol(all.channels[v.of->channel].unit); }},
-         {"value", four, [](const V& v) { return v.of->values[v.point]; }, "absolute"}},
+         {"output", words, [&](const V& v) { return comparison.channels[v.column->channel].name; }},
+         {"unit", words,
+          [&](const V& v) { return symbol(comparison.channels[v.column->channel].unit); }},
+         {"value", four, [](const V& v) { return v.column->values[v.point]; }, "absolute"}},
         rows);
     table.detail = true;
     return table;
@@ -234,15 +236,15 @@ compare::Table point_table(const Measured& measured, const compare::Comparison& 
 
 }  // namespace
 
-compare::Result result_of(const Measured& measured, const compare::Comparison& all) {
+compare::Result result_of(const Measured& measured, const compare::Comparison& comparison) {
     const auto& [measurement, found, left_out] = measured;
     compare::Result result{.analysis = "measured"};
     result.about = {fmt::format("{} points of {}, hash {}", measurement.table.lines.size(),
                                 measurement.file, measurement.hash)};
     for (const auto& reading : found.readings)
-        result.tables.push_back(deviation_table(measured, reading, all));
-    result.tables.push_back(loop_table(measured, all));
-    result.tables.push_back(point_table(measured, all));
+        result.tables.push_back(deviation_table(measured, reading, comparison));
+    result.tables.push_back(loop_table(measured, comparison));
+    result.tables.push_back(point_table(measured, comparison));
     result.notes = found.explanations;
     for (const auto& what : left_out) result.notes.push_back("left out: " + what);
     result.verdict = {

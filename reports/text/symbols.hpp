@@ -13,9 +13,8 @@ using Strokes = std::vector<Stroke>;
 Stroke ring(PaperPoint centre, double radius);
 Strokes coil(PaperPoint a, PaperPoint b);    // coil spring in side view; a ring in end view
 Strokes damper(PaperPoint a, PaperPoint b);  // a tube from a, a rod to b, the piston between
-Strokes barrel(PaperPoint centre, PaperPoint along,
-               // a sleeve along its axis `along` (foreshortened, length up to 1)
-               double half_length);
+// A sleeve along its axis `along` (foreshortened, length up to 1).
+Strokes barrel(PaperPoint centre, PaperPoint along, double half_length);
 Strokes cross(PaperPoint centre, double radius);
 Strokes diamond(PaperPoint centre, double radius);
 Strokes square(PaperPoint centre, double half_side);

@@ -26,58 +26,61 @@ const ModelJoint& joint_of(const Model& model, int joint) {
 
 // ---- Formulas: values in SI, one function per type that a channel reads.
 
-using At = Subject;
-
-double read(const At& at, const Coordinate& c) {
-    return at.placed(c.at).at[c.axis] - c.counted_from;
+double read(const Subject& subject, const Coordinate& c) {
+    return subject.placed(c.at).at[c.axis] - c.counted_from;
 }
-double read(const At& at, const Catalogued& c) {
+double read(const Subject& subject, const Catalogued& c) {
     // without the response
     if (c.entry->kind == ChannelKind::characteristic) return nan;
-    return c.entry->formula({at.model, at.state, c.of, at.branch});
+    return c.entry->formula({subject.model, subject.state, c.of, subject.branch});
 }
-double read(const At& at, const Effort& c) {
-    const int driven = joint_of(at.model, c.joint).driven;
+double read(const Subject& subject, const Effort& c) {
+    const int driven = joint_of(subject.model, c.joint).driven;
     if (driven < 0) return 0;  // inactive on this branch
     const auto k = static_cast<std::size_t>(driven);
-    const Wrench on_i = at.wrench(c.joint);
+    const Wrench on_i = subject.wrench(c.joint);
     return std::visit(
-        overloaded{[&](const DistanceBetween& b) {
-                       return on_i.force.dot((at.placed(b.i).at - at.placed(b.j).at).normalized());
-                   },
-                   [&](const PointInPlane& p) { return on_i.force.dot(at.direction(p.normal_j)); },
-                   [&](const DirectionAtAngle& a) {
-                       return on_i.moment.dot(at.direction(a.j).cross(at.direction(a.y_j)));
-                   },
-                   // No offset to drive: lowering never drives these.
-                   [](const CoincidentPoints&) { return std::nan(""); },
-                   [](const PerpendicularDirections&) { return std::nan(""); }},
-        at.model.constraints[k].kind);
+        overloaded{
+            [&](const DistanceBetween& b) {
+                return on_i.force.dot(
+                    (subject.placed(b.i).at - subject.placed(b.j).at).normalized());
+            },
+            [&](const PointInPlane& p) { return on_i.force.dot(subject.direction(p.normal_j)); },
+            [&](const DirectionAtAngle& a) {
+                return on_i.moment.dot(subject.direction(a.j).cross(subject.direction(a.y_j)));
+            },
+            // No offset to drive: lowering never drives these.
+            [](const CoincidentPoints&) { return std::nan(""); },
+            [](const PerpendicularDirections&) { return std::nan(""); }},
+        subject.model.constraints[k].kind);
 }
-double read(const At& at, const AxialForce& c) {
+double read(const Subject& subject, const AxialForce& c) {
     const auto k = static_cast<std::size_t>(c.constraint);
-    const auto& rod = std::get<DistanceBetween>(at.model.constraints[k].kind);
-    return at.wrench(c.joint).force.dot((at.placed(rod.j).at - at.placed(rod.i).at).normalized());
+    const auto& rod = std::get<DistanceBetween>(subject.model.constraints[k].kind);
+    return subject.wrench(c.joint).force.dot(
+        (subject.placed(rod.j).at - subject.placed(rod.i).at).normalized());
 }
-double read(const At& at, const Reaction& c) {
-    const Wrench on_i = at.wrench(c.joint);
+double read(const Subject& subject, const Reaction& c) {
+    const Wrench on_i = subject.wrench(c.joint);
     return c.component < 3 ? on_i.force[c.component] : on_i.moment[c.component - 3];
 }
-double read(const At& at, const Total& c) {
-    const auto point = [&](int joint) { return at.placed(joint_of(at.model, joint).at).at; };
+double read(const Subject& subject, const Total& c) {
+    const auto point = [&](int joint) {
+        return subject.placed(joint_of(subject.model, joint).at).at;
+    };
     const Vector3d about = point(c.joints.front());
     double sum = 0;
     for (const int k : c.joints) {
-        const ModelJoint& joint = joint_of(at.model, k);
+        const ModelJoint& joint = joint_of(subject.model, k);
         const double sign = joint.i == c.on ? 1 : -1;
-        const Wrench w = at.wrench(k);
+        const Wrench w = subject.wrench(k);
         const Vector3d moment = w.moment + (point(k) - about).cross(w.force);
         sum += sign * (c.component < 3 ? w.force[c.component] : moment[c.component - 3]);
     }
     return sum;
 }
 // Needs more than the state.
-double read(const At&, const OfElement&) { return nan; }
+double read(const Subject&, const OfElement&) { return nan; }
 
 // ---- Units, in the order of Unit.
 
@@ -302,12 +305,13 @@ int default_abscissa(std::span<const Channel> channels, const Curve& curve) {
 
 std::vector<double> evaluate(const Model& model, std::span<const Channel> channels,
                              const Equilibrium& state) {
-    const Subject at{model, &state};
+    const Subject subject{model, &state};
     std::vector<double> values;
     values.reserve(channels.size());
     for (const auto& channel : channels)
-        values.push_back(in_unit(channel.unit) *
-                         std::visit([&](const auto& c) { return read(at, c); }, channel.reads));
+        values.push_back(
+            in_unit(channel.unit) *
+            std::visit([&](const auto& c) { return read(subject, c); }, channel.reads));
     return values;
 }
 
