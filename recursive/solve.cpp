@@ -30,8 +30,9 @@ std::string in_contradiction(const Model& model, const Diagnosis& diagnosis) {
     return names;
 }
 
-std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& branch,
-                  const Method& method, Outcome outcome, const Stop& stop) {
+// Why a path ended, for the message after "branch 'NAME': ".
+std::string reason_of_end(const Model& model, const Diagnosis& diagnosis, const Branch& branch,
+                          const Method& method, Outcome outcome, const Stop& stop) {
     if (!stop.unstable_start.empty())
         return fmt::format("the equilibrium that settles at {} is unstable: {}",
                            in_unit(branch.unit, 0), stop.unstable_start);
@@ -52,9 +53,10 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
                     "one";
             break;
         case Outcome::inconsistent_constraints:
-            if (const auto gone = vanishing_length(model, branch);
-                gone && !std::isnan(stop.at) && std::abs(stop.at) >= 0.99 * std::abs(gone->at))
-                detail = no_length(model, branch, *gone);
+            if (const auto vanished = vanishing_length(model, branch);
+                vanished && !std::isnan(stop.at) &&
+                std::abs(stop.at) >= 0.99 * std::abs(vanished->at))
+                detail = no_length(model, branch, *vanished);
             else if (!std::isnan(stop.at))
                 detail += ": redundant joints are inconsistent";
             else
@@ -94,24 +96,25 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
     return detail;
 }
 
-EquilibriumPath found(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit) {
+// The path by one method. Where a method with equal steps could step over the end of the branch,
+// the end is located first (branch_events.hpp), and points past it are dropped.
+EquilibriumPath solve_by_method(const Model& model, const Branch& branch, const Options& options,
+                                const Analysis& analysis, const Visit& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
         return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
-    if (const auto gone = vanishing_length(model, branch); gone && gone->at == 0)
+    if (const auto vanished = vanishing_length(model, branch); vanished && vanished->at == 0)
         return {Outcome::inconsistent_constraints,
-                fmt::format("branch '{}': {}", branch.name, no_length(model, branch, *gone)),
+                fmt::format("branch '{}': {}", branch.name, no_length(model, branch, *vanished)),
                 {},
                 {}};
-    if (const auto* how = std::get_if<Series>(&options.method.kind)) {
+    if (const auto* settings = std::get_if<Series>(&options.method.kind)) {
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps
                                                : branch.steps;
-        return series::sample(model, series::follow(model, branch, *how, analysis), branch, points,
-                              visit);
+        return series::sample(model, series::follow(model, branch, *settings, analysis), branch,
+                              points, visit);
     }
-    // A method with equal steps may step across the end of the branch, and one with the stiffness
-    // of (19) cannot detect it. So the end is located first, and points past it are dropped.
+    // The stiffness of eq. (19) does not show the end of the branch.
     const bool linear = std::holds_alternative<Linear>(options.method.kind);
     std::optional<Event> event;
     if (has_steps(options.method)) event = watch(model, branch, analysis);
@@ -135,7 +138,7 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
     if (path.outcome != Outcome::converged)
         path.detail = fmt::format(
             "branch '{}': {}", branch.name,
-            words(model, analysis.diagnosis, branch, options.method, path.outcome, stop));
+            reason_of_end(model, analysis.diagnosis, branch, options.method, path.outcome, stop));
     if (path.outcome == Outcome::diverged && linear) {
         const auto limit = stability_limit(model, branch, options.method, analysis);
         path.detail +=
@@ -150,8 +153,9 @@ void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
     for (Pose& pose : point.poses) pose.r += c;
 }
 
-// Whether settling, which ended so, may reach an equilibrium by another homotopy. The linear
-// methods that store forces have their own settling, step by step, of which the path is a part.
+// Whether a start that did not settle, with this outcome, may settle by another homotopy
+// (load_growth.hpp). The linear methods that store forces settle step by step as a part of their
+// path.
 bool settles_otherwise(const Method& method, Outcome outcome) {
     const auto* linear = std::get_if<Linear>(&method.kind);
     return (!linear || linear->follow == everything) &&
@@ -192,14 +196,15 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
         begun = true;
         visit(point);
     };
-    EquilibriumPath path = found(model, branch, options, analysis, visit ? counted : Visit{});
+    EquilibriumPath path =
+        solve_by_method(model, branch, options, analysis, visit ? counted : Visit{});
     if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
         return path;
     // Where a drawing far from rest has several equilibria, homotopies may settle
     // at different ones.
     if (const auto other = grown(model, branch)) {
-        EquilibriumPath again = found(other->model, other->branch, options, analyse(other->model),
-                                      visit ? counted : Visit{});
+        EquilibriumPath again = solve_by_method(other->model, other->branch, options,
+                                                analyse(other->model), visit ? counted : Visit{});
         if (begun || !again.points.empty()) return again;
     }
     return path;

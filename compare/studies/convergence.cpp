@@ -104,16 +104,17 @@ Values values_of(Levels levels) {
     return values;
 }
 
-Line line(const Shape& at, Values& values) {
-    const double b = dot(values.v, at.phi) / at.phi_phi, p = at.p;
-    for (std::size_t k = 0; k < values.v.size(); ++k) values.r[k] = values.v[k] - b * at.phi[k];
-    return {.limit = values.mean - b * (at.phi_mean + 1 / p),
+Line line(const Shape& shape_at_p, Values& values) {
+    const double b = dot(values.v, shape_at_p.phi) / shape_at_p.phi_phi, p = shape_at_p.p;
+    for (std::size_t k = 0; k < values.v.size(); ++k)
+        values.r[k] = values.v[k] - b * shape_at_p.phi[k];
+    return {.limit = values.mean - b * (shape_at_p.phi_mean + 1 / p),
             .C = b / p,
             .R = dot(values.r, values.r),
-            .slope = -b * dot(values.r, at.psi),
-            .p_variance = 1 / (b * b * dot(at.psi, at.psi)),
+            .slope = -b * dot(values.r, shape_at_p.psi),
+            .p_variance = 1 / (b * b * dot(shape_at_p.psi, shape_at_p.psi)),
             .limit_variance = 1 / static_cast<double>(values.v.size()) +
-                              std::pow(at.phi_mean + 1 / p, 2) / at.phi_phi};
+                              std::pow(shape_at_p.phi_mean + 1 / p, 2) / shape_at_p.phi_phi};
 }
 
 struct Fit {
@@ -126,20 +127,21 @@ constexpr double lowest = -2, highest = 10;
 constexpr int cells = 240;
 double grid(int k) { return lowest + (highest - lowest) * k / cells; }
 
-// The shapes at all of these. A study fits thousands of values with the same steps.
+// The shapes at all orders of the grid, kept for the last 64 sets of steps: a study fits thousands
+// of values with the same steps.
 const std::vector<Shape>& shapes(const std::vector<double>& l) {
     struct KnownShapes {
         std::vector<double> l;
         std::vector<Shape> shapes;
     };
     constexpr std::size_t max_known = 64;
-    thread_local std::deque<KnownShapes> all;
-    for (const KnownShapes& known : all)
+    thread_local std::deque<KnownShapes> cache;
+    for (const KnownShapes& known : cache)
         if (known.l == l) return known.shapes;
-    if (all.size() == max_known) all.pop_front();
-    KnownShapes& made = all.emplace_back(KnownShapes{l, std::vector<Shape>(cells + 1)});
-    for (int k = 0; k <= cells; ++k) shape(l, grid(k), made.shapes[static_cast<std::size_t>(k)]);
-    return made.shapes;
+    if (cache.size() == max_known) cache.pop_front();
+    KnownShapes& added = cache.emplace_back(KnownShapes{l, std::vector<Shape>(cells + 1)});
+    for (int k = 0; k <= cells; ++k) shape(l, grid(k), added.shapes[static_cast<std::size_t>(k)]);
+    return added.shapes;
 }
 
 // Zero of a function that rises from below to above it, else the end that is nearer to one: regula
@@ -174,31 +176,32 @@ Fit fit(Levels levels) {
     const std::vector<double> l = logarithms(levels);
     Values values = values_of(levels);
     const auto& on_grid = shapes(l);
-    int best = 0;
-    double least = std::numeric_limits<double>::infinity();
+    int best_cell = 0;
+    double least_R = std::numeric_limits<double>::infinity();
     for (int k = 0; k <= cells; ++k)
-        if (const double R = line(on_grid[static_cast<std::size_t>(k)], values).R; R < least) {
-            best = k;
-            least = R;
+        if (const double R = line(on_grid[static_cast<std::size_t>(k)], values).R; R < least_R) {
+            best_cell = k;
+            least_R = R;
         }
     Shape shape_at;
-    const auto at = [&](double p) {
+    const auto line_at = [&](double p) {
         shape(l, p, shape_at);
         return line(shape_at, values);
     };
     Fit result;
-    result.p = zero_of([&](double p) { return at(p).slope; }, grid(std::max(best - 1, 0)),
-                       grid(std::min(best + 1, cells)));
-    const Line found = at(result.p);
-    result.limit = found.limit;
-    result.C = found.C;
+    result.p = zero_of([&](double p) { return line_at(p).slope; }, grid(std::max(best_cell - 1, 0)),
+                       grid(std::min(best_cell + 1, cells)));
+    const Line best_line = line_at(result.p);
+    result.limit = best_line.limit;
+    result.C = best_line.C;
     if (levels.size() < 4) return result;
-    result.sigma = std::sqrt(found.R / static_cast<double>(levels.size() - 3));
-    result.p_error = result.sigma * std::sqrt(found.p_variance);
+    result.sigma = std::sqrt(best_line.R / static_cast<double>(levels.size() - 3));
+    result.p_error = result.sigma * std::sqrt(best_line.p_variance);
     const double delta = 1e-3 * result.p;
-    const double dL_dp = (at(result.p + delta).limit - at(result.p - delta).limit) / (2 * delta);
+    const double dL_dp =
+        (line_at(result.p + delta).limit - line_at(result.p - delta).limit) / (2 * delta);
     result.limit_error =
-        std::hypot(result.sigma * std::sqrt(found.limit_variance), dL_dp * result.p_error);
+        std::hypot(result.sigma * std::sqrt(best_line.limit_variance), dL_dp * result.p_error);
     return result;
 }
 

@@ -10,9 +10,8 @@
 namespace elastocheck::reference::equilibrium {
 
 // models/neighbours.hpp with the residual E of system.hpp in the scales of `model`, one entry per
-// stencil. One factorisation. `state`
-// must be an equilibrium. Throws std::invalid_argument for a state or a neighbour of another model;
-// else as solve().
+// stencil, by one factorisation. `state` must be an equilibrium. Throws std::invalid_argument for a
+// state or a neighbour of another model; else as solve().
 std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& branch,
                                               const Equilibrium& state,
                                               std::span<const Neighbours> stencils);

@@ -16,12 +16,12 @@ namespace elastocheck::reports {
 // wheels), or "other".
 const char* load_case(const Model& model, const Branch& branch);
 
-// Force or moment on each wheel in the plane of the road per unit of the parameter, and the
-// direction, as the K&C figures count it: inwards, to the back at the patch, forward at the wheel
-// centre, towards toe-in. Empty where the branch is no such test.
+// Force or moment on each wheel in the plane of the road per unit of the parameter, positive in the
+// direction of the K&C figures: inwards, to the back at the patch, forward at the wheel centre,
+// towards toe-in. Empty where the branch is no such test.
 struct Pushes {
-    std::vector<double> per_unit;
-    std::string positive;
+    std::vector<double> per_unit;  // per wheel
+    std::string positive;          // the direction in words
 };
 std::optional<Pushes> pushes_of(const Model& model, const Branch& branch);
 

@@ -11,12 +11,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double above = 100;      // ρ over the largest stiffness
-constexpr int refinements = 40;    // of a minimum
-constexpr double refined = 1e-10;  // its last correction, over it
+constexpr int refinements = 40;    // largest number of corrections of a minimum x
+constexpr double refined = 1e-10;  // |last correction| / |x|
 constexpr int known_modes = 6;     // and as many again that only speed up the iteration
-constexpr int subspaces = 60;
-constexpr int closings = 3;
-constexpr double settled = 1e-3;  // of a stiffness: last change
+constexpr int subspaces = 60;      // largest number of subspace iterations
+constexpr int closings = 3;        // number of projections onto the constraints
+constexpr double settled = 1e-3;   // |last change of a stiffness| / stiffness
 
 // Unit vectors with entries of any sign, the same at every call.
 VectorXd any_direction(Eigen::Index n, Eigen::Index which) {
@@ -52,7 +52,7 @@ Quadratic::Least Quadratic::least(const VectorXd& b, const VectorXd& Phi,
     const MatrixXd Z = idle.cols() > 0 ? orthonormal(factor_.solve(idle)) : idle;
     const auto take_out = [&](VectorXd& x) { x -= Z * (Z.transpose() * x).eval(); };
     const VectorXd gap = Phi.size() > 0 ? VectorXd(-Phi) : VectorXd::Zero(J_.rows());
-    Least to{.x = VectorXd::Zero(H_.rows()), .lambda = VectorXd::Zero(J_.rows())};
+    Least result{.x = VectorXd::Zero(H_.rows()), .lambda = VectorXd::Zero(J_.rows())};
     VectorXd r = -b, c = gap;
     double last = std::numeric_limits<double>::infinity();
     for (int i = 0; i < refinements; ++i) {
@@ -61,15 +61,15 @@ Quadratic::Least Quadratic::least(const VectorXd& b, const VectorXd& Phi,
         take_out(dx);
         const double size = largest(dx);
         if (!(size < last)) break;  // rounding, or a motion that nothing resists
-        to.remains = largest(r);
-        to.x += dx;
-        to.lambda += rho_ * (J_ * dx - c);
-        if (size <= refined * largest(to.x)) break;
+        result.remains = largest(r);
+        result.x += dx;
+        result.lambda += rho_ * (J_ * dx - c);
+        if (size <= refined * largest(result.x)) break;
         last = size;
-        r = -b - gradient(to.x) - J_.transpose() * to.lambda;
-        c = gap - J_ * to.x;
+        r = -b - gradient(result.x) - J_.transpose() * result.lambda;
+        c = gap - J_ * result.x;
     }
-    return to;
+    return result;
 }
 
 // With eigenvectors X of S the motions are not exactly along the constraints, which a mode without
@@ -85,9 +85,9 @@ Modes Quadratic::softest(const Modes& near) const {
     const auto falling = (factor_.vectorD().array() < 0).count();
     for (Eigen::Index known = std::min<Eigen::Index>(n, std::max(known_modes, near.count()));;
          known = std::min(n, 2 * known)) {
-        const Eigen::Index all = std::min(n, 2 * known);
-        MatrixXd X(n, all);
-        for (Eigen::Index i = 0; i < all; ++i)
+        const Eigen::Index iterated = std::min(n, 2 * known);
+        MatrixXd X(n, iterated);
+        for (Eigen::Index i = 0; i < iterated; ++i)
             X.col(i) = i < near.Z.cols() ? VectorXd(near.Z.col(i)) : any_direction(n, i);
         VectorXd w = VectorXd::Constant(known, std::numeric_limits<double>::infinity()), before;
         for (int i = 0; i < subspaces; ++i) {

@@ -49,8 +49,8 @@ struct Pattern;  // of J (derivatives.hpp)
 struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
-    std::vector<Affine>
-        values;  // per Model::constraints: its offset, length or angle [m, rad], if it has one
+    // per Model::constraints: its offset, length or angle [m, rad], if it has one
+    std::vector<Affine> values;
     // per Model::constraints: from such an angle to its design value [rad], or 0
     std::vector<double> turns;
     std::vector<ElementPath> elements;                 // per Model::elastics
