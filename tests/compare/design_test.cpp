@@ -348,7 +348,7 @@ TEST(SolveFor, FindsTheTieRodWithoutBumpSteer) {
         }
 }
 
-TEST(SolveFor, SaysWhyANumberDoesNotMoveAFigure) {
+TEST(SolveFor, ReasonWhyANumberMovesNoFigureIsGiven) {
     EXPECT_TRUE(
         why_still(varied_of("parallel_springs", {"points.foot_1.x", "springs.first.rate"}),
                   {.name = "centre_x", .branch = "up", .at = 3000})
@@ -363,7 +363,7 @@ Optimum from(const Figures& figures, const Goals& goals, const SearchRange& rang
 
 // |p| ≥ 2 from (0.6, 0.8): the nearest point is (1.2, 1.6), 1 away, 0.1 as a share of the ranges;
 // each unit of the bound is a unit of the way. |p| ≥ 0.5 changes nothing.
-TEST(Optimise, MeetsABandWithTheSmallestChangeAndKnowsItsPrice) {
+TEST(Optimise, BandIsMetWithTheSmallestChangeAndItsPrice) {
     const SearchRange range{list_of({0.6, 0.8}), list_of({-5, -5}), list_of({5, 5})};
     const Optimum found =
         from(radius, {.low = list_of({2}), .high = list_of({3}), .goal = {0}}, range, 3);
@@ -574,7 +574,7 @@ TEST(Tolerances, ShareOfEachAddsUpAndTheWorstCaseIsTheSum) {
 // 400 samples of the references. The standard deviation of a sample's standard deviation is
 // σ / √(2 N) for a normal distribution and less for a sum with uniform parts: bounds of four of
 // these.
-TEST(Tolerances, OfAMcPhersonAreThoseOfAMonteCarloOfTheReferences) {
+TEST(Tolerances, LinearScatterOfAMcPhersonEqualsItsMonteCarlo) {
     const Varied varied =
         varied_of("mcpherson", {"points.tie_rod_inner.z", "points.tie_rod_outer.z",
                                 "points.arm_rear.z", "springs.K1_coil.rate"});

@@ -40,7 +40,7 @@ TEST(WorstDisagreement, ConsidersOnlyComparedOutputs) {
 
 // ---- Wheel rates
 
-TEST(RateErrors, AreSignedAndPerBranch) {
+TEST(RateErrors, RateErrorIsSignedAndPerBranch) {
     // The published recursion is too soft in jounce, too stiff in rebound.
     const auto errors = rate_errors(mcpherson(), compared());
     ASSERT_EQ(errors.size(), 2u);
@@ -93,7 +93,7 @@ TEST(RateErrors, RideRateOfAMovingRoadIsWheelAndTyreRateInSeries) {
     }
 }
 
-TEST(RateErrors, AreOmittedForBranchesWithOtherLoads) {
+TEST(RateErrors, BranchWithAnotherLoadHasNoRateError) {
     const auto with = [](auto&& change) {
         Scene scene = support::scene("chrono_mcpherson");
         scene.branches.resize(1);

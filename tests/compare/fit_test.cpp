@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Quantiles of Student's distribution from tables.
-TEST(Fit, KnowsStudentsDistribution) {
+TEST(Fit, QuantilesOfStudentsDistributionEqualTheTable) {
     EXPECT_NEAR(student_95(1), 12.7062, 1e-4);
     EXPECT_NEAR(student_95(2), 4.30265, 1e-5);
     EXPECT_NEAR(student_95(5), 2.57058, 1e-5);
@@ -42,7 +42,7 @@ SearchRange unlimited(const VectorXd& start) {
 }
 
 // A straight line a + b t: the intervals of the textbook.
-TEST(Fit, OfAStraightLineHasTheIntervalsOfTheTextbook) {
+TEST(Fit, StraightLineHasTheIntervalsOfTheTextbook) {
     const VectorXd t = VectorXd::LinSpaced(12, 0, 11);
     VectorXd y = 2 + 0.5 * t.array();
     for (Index k = 0; k < 12; ++k) y[k] += k % 3 == 0 ? 0.2 : -0.1;

@@ -299,7 +299,7 @@ TEST(Rows, StartOccursOnceWhicheverSideSettles) {
     }
 }
 
-TEST(Landmarks, AreTheEndsTheStartAndTheMiddleOfThePath) {
+TEST(Landmarks, LandmarksAreEndsStartAndMiddleOfThePath) {
     for (const auto* scene :
          {"bushing_pair", "double_wishbone", "chrono_mcpherson", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));

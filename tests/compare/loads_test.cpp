@@ -151,7 +151,7 @@ wheel: {body: arm, centre: centre, contact_patch: patch, contact: carrier, spin_
 }
 
 // What the ground bears is what the wheels and the weights put on the suspension: all bodies as one.
-TEST(Loads, GroundBearsWhatACasePutsOnTwoWheelsOfATrimmedAxle) {
+TEST(Loads, GroundReactionsBalanceTheLoadsOfACaseOnAnAxle) {
     const Scene scene = trim(support::scene("front_axle")).scene;
     const std::size_t left = 0, right = 1;
     const auto all = loads_of(scene, {{"static", {}},

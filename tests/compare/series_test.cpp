@@ -16,7 +16,7 @@ using recursive::series::evaluate;
 using recursive::series::find;
 using recursive::series::follow;
 
-TEST(Rates, AreTheDerivativesOfTheOutputs) {
+TEST(Rates, RatesEqualTheDerivativesOfTheOutputs) {
     for (const auto& name : support::small_scene_names()) {
         const Model model = compile(support::scene(name));
         const auto all = channels(model);

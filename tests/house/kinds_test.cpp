@@ -55,7 +55,7 @@ bool asks_one_kind(const std::string& text) {
     return std::regex_search(text, question);
 }
 
-TEST(Kinds, AreVisitedAllOrByTheirMembers) {
+TEST(Kinds, KindsAreVisitedExhaustivelyOrByMembers) {
     const fs::path root = ELASTOCHECK_ROOT;
     std::set<std::string> unused = implement_a_kind;
     for (const char* folder : {"include", "models", "recursive", "reference", "compare", "reports"})

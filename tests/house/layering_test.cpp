@@ -186,7 +186,7 @@ TEST(Layering, AFolderHoldsAtMostTwentySourceFiles) {
 }
 
 // What the rooms that show results include of the rooms that compute them.
-TEST(Layering, TheRoomsOfReportsIncludeOnlyWhatTheyShow) {
+TEST(Layering, FoldersOfReportsIncludeOnlyAllowedAnalyses) {
     const std::map<std::string, std::vector<std::string>> allowed{
         {"reports/page", {"compare/result", "compare/tables", "compare/outputs"}},
         {"reports/tables", {"compare"}},

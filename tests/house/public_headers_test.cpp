@@ -17,7 +17,7 @@ using elastocheck::support::text_of;
 
 const fs::path public_headers = fs::path(ELASTOCHECK_ROOT) / "include";
 
-TEST(PublicHeaders, AreAHandfulAndPullInNoInternals) {
+TEST(PublicHeaders, PublicHeadersAreFewAndIncludeNoInternalOnes) {
     std::set<std::string> headers;
     for (const auto& entry : fs::recursive_directory_iterator(public_headers))
         if (entry.is_regular_file()) headers.insert(fs::relative(entry.path(), public_headers));

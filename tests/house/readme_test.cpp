@@ -16,7 +16,7 @@ using elastocheck::support::text_of;
 
 const std::string root = ELASTOCHECK_ROOT;
 
-TEST(Readme, WhatItsWorkflowChecksOutIsThere) {
+TEST(Readme, CommitsOfTheExampleWorkflowExist) {
     const std::string git = "git -c safe.directory='*' -C '" + root + "' ";
     if (says(git + "rev-parse --show-prefix").out != "\n")
         GTEST_SKIP() << "not a checkout of its own";

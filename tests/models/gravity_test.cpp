@@ -47,7 +47,7 @@ TEST(Gravity, MassWithoutGravityIsReported) {
     EXPECT_EQ(scene.omitted[0].why, "the scene has no gravity");
 }
 
-TEST(Gravity, IsInMetresPerSecondSquaredWhateverTheUnits) {
+TEST(Gravity, AccelerationIsInMetresPerSecondSquaredInAllUnits) {
     const Scene scene = parse_scene(scene_text, "scene.yaml");
     const auto number = [&](const std::string& path) {
         return std::ranges::find(scene.numbers, path, &Number::path)->unit;

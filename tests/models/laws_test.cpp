@@ -233,7 +233,7 @@ TEST(BushingUndeformed, IsAnOffsetOfThreeLengthsAndThreeAngles) {
 }
 
 // One axis of the frame suffices if the law is symmetric about it.
-TEST(BushingFrame, OfOneAxisMayHaveCurvesAlongIt) {
+TEST(BushingFrame, FrameOfOneAxisAcceptsCurvesAlongIt) {
     EXPECT_NO_THROW(laws(bushing_with(
         "frame: {z: [1, 2, 3]}, rates: [7, 7, 0], rotational_rates: [2, 2, 0], curves: {z: {table: "
         "[[-1, -70], [2, 90]]}, rz: {table: [[-1, -70], [2, 90]]}}, undeformed: [0, 0, 4]")));

@@ -15,7 +15,7 @@ std::string refusal(const std::string& text, const std::string& name) {
     return "accepted";
 }
 
-TEST(Mistakes, AreRefusedWithTheirPlaceAndWhatIsAllowed) {
+TEST(Mistakes, MistakeIsRejectedWithItsPlaceAndTheAllowedValues) {
     int files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_FIXTURES)) {
         if (entry.path().extension() != ".mistakes") continue;

@@ -253,7 +253,7 @@ TEST(Units, MomentHasTheSameUnitOnBothKindsOfBranch) {
 
 // ---- Alternative notations.
 
-TEST(Numbers, AreReadInAllTheirSpellings) {
+TEST(Numbers, NumbersOfEverySpellingAreRead) {
     const std::pair<const char*, double> spellings[] = {
         {"28e3", 28e3},
         {"1.5e6", 1.5e6},

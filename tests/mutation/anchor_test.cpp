@@ -47,7 +47,7 @@ TEST(Anchor, IgnoresBracesAndNamesInCommentsAndStrings) {
               Texts{"f() { return '}' + g(\"}\") /* } */ + 1'0; }"});
 }
 
-TEST(Anchor, MatchesWhateverTheFormattingAndWholeIdentifiersOnly) {
+TEST(Anchor, MatchIgnoresFormattingAndNeedsWholeIdentifiers) {
     const std::string text = "a = b  // the sum\n    + c(d);  ab + c(de);  a = b + c(d)";
     const auto at = occurrences(text, {0, text.size()}, "b + c(d)");
     ASSERT_EQ(at.size(), 2U);
@@ -56,7 +56,7 @@ TEST(Anchor, MatchesWhateverTheFormattingAndWholeIdentifiersOnly) {
     EXPECT_EQ(occurrences(text, {0, 10}, "c(d)").size(), 0U);
 }
 
-TEST(Faults, AreRefusedWithTheLineWhereTheyAreMisspelt) {
+TEST(Faults, MisspeltFaultIsRejectedWithItsLine) {
     const auto faults = parse_faults("# one\nfault a\nsuite p.S\nis b\nin x f\nfind 1 \nmake 2\n");
     ASSERT_EQ(faults.size(), 1U);
     EXPECT_EQ(faults[0].edits[0].definition, "f");
@@ -66,7 +66,7 @@ TEST(Faults, AreRefusedWithTheLineWhereTheyAreMisspelt) {
         EXPECT_THROW(parse_faults(text), std::runtime_error) << text;
 }
 
-TEST(Faults, HaveExactlyOnePlace) {
+TEST(Faults, FaultOccursExactlyOnce) {
     const std::string root = testing::TempDir() + "mutation_faults";
     std::filesystem::create_directories(root + "/room");
     const Edit edit{"room", "f", "1 + 2", "1 - 2"};

@@ -24,14 +24,14 @@ std::uint64_t fingerprint(const std::string& text) {
     return hash;
 }
 
-TEST(RandomScene, IsTheSameForItsSeedWhereverItIsMade) {
+TEST(RandomScene, EqualSeedGivesTheSameSceneOnEveryMachine) {
     std::uint64_t all = 0;
     for (std::uint64_t seed = 1; seed <= 50; ++seed)
         all = all * 31 + fingerprint(random_scene(seed));
     EXPECT_EQ(all, 8521633227566751531u);
 }
 
-TEST(RandomScene, IsReadUnlessWhatItDrivesMovesNothing) {
+TEST(RandomScene, SceneIsValidUnlessItsDriverMovesNothing) {
     int read = 0;
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         try {
@@ -46,7 +46,7 @@ TEST(RandomScene, IsReadUnlessWhatItDrivesMovesNothing) {
     EXPECT_GE(read, 360);
 }
 
-TEST(RandomScene, OfTheDrivenFamilyMovesALengthAJackOrAnotherJoint) {
+TEST(RandomScene, DrivenFamilyDrivesLengthsJacksAndOtherJoints) {
     std::uint64_t hash = 0;
     for (std::uint64_t seed = 1; seed <= 50; ++seed)
         hash = hash * 31 + fingerprint(random_scene(seed, Family::driven));
@@ -82,7 +82,7 @@ TEST(RandomScene, OfTheDrivenFamilyMovesALengthAJackOrAnotherJoint) {
     EXPECT_GE(with_stops, 50);
 }
 
-TEST(RandomScene, HasEveryJointElementAndDriverSomewhere) {
+TEST(RandomScene, EveryJointElementAndDriverOccurs) {
     std::string all;
     for (std::uint64_t seed = 1; seed <= 400; ++seed) all += random_scene(seed);
     for (const char* word : {"spherical",

@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Two minutes each.
 class WholeAxles : public Axles {};
-TEST_P(WholeAxles, TheWholeReportIsJudged) {
+TEST_P(WholeAxles, WholeReportOfAnAxleIsJudged) {
     const Folder folder;
     expect_says("report " + file_of(GetParam()) + " --quiet -o " + (folder.path / "out").string(),
                 0, {.not_out = {"Not judged", "nan"}});

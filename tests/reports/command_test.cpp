@@ -13,7 +13,7 @@ namespace elastocheck {
 namespace {
 
 // Definitions of outputs have one source: README, inspect and result.json agree.
-TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
+TEST(Command, ReadmeHasTheDefinitionsOfInspect) {
     const std::string readme = text_of(scenes + "/../../reports/README.md") +
                                text_of(scenes + "/../../compare/outputs/catalogue/README.md");
     int rows = 0;

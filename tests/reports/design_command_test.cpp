@@ -68,7 +68,7 @@ TEST(SolveForCommand, WishesThatCannotBeMetAreExitCodeOneWithTheConflict) {
                  "nearer with springs.first.rate above 32"}});
 }
 
-TEST(SolveForCommand, RefusesWhatItCannotUnderstand) {
+TEST(SolveForCommand, InvalidArgumentsAreRejected) {
     const std::string vary = " --vary springs.first.rate=10:60 ",
                       want = " --want centre_z@up:3000=437";
     expect_says("solve-for " + springs + " --vary springs.frist.rate=10:60" + want, 2,
@@ -368,7 +368,7 @@ TEST(FitCommand, ReadsTheWordsOfARigAndCountsTheRowsThatItLeavesOut) {
                                        "1 row without a parameter or travel"});
 }
 
-TEST(FitCommand, NamesWhatTheDataDoNotDetermineWithExitCodeThree) {
+TEST(FitCommand, UndeterminedNumbersAreNamedWithExitCodeThree) {
     const Folder folder;
     const std::string csv = (folder.path / "rig.csv").string();
     expect_says("solve " + springs + " --steps 4 --channels centre_z -o " + csv, 0);

@@ -51,7 +51,7 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
     EXPECT_EQ(document("new pendulum")["templates"][0]["text"], text_of(scenes + "/pendulum.yaml"));
 }
 
-TEST(Json, OfACommandThatAlsoWritesIsWhatItWrites) {
+TEST(Json, PrintedDocumentEqualsTheWrittenOne) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
     const Said said = expect_says("compare " + bushing + " --steps 4 --json -o " + out, 0);
@@ -63,7 +63,7 @@ TEST(Json, OfACommandThatAlsoWritesIsWhatItWrites) {
     EXPECT_EQ(text_of(csv), elastocheck_says("solve " + bushing + " --steps 4").out);
 }
 
-TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
+TEST(Json, SolveDocumentHasTheNumbersOfTheCsv) {
     const json part = document(
         "solve " + bushing + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
     const auto cells =
@@ -86,7 +86,7 @@ TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
     EXPECT_EQ(part["verdict"]["conclusive"], true);
 }
 
-TEST(Json, OfInspectSaysWhatTheTextSays) {
+TEST(Json, InspectDocumentHasTheNumbersOfTheText) {
     const json part = document("inspect " + scenes +
                                "/mcpherson.yaml --set points.strut_top.z=0.58")["scenes"][0];
     EXPECT_EQ(part["model"]["unknowns"], 27);
@@ -102,7 +102,7 @@ TEST(Json, OfInspectSaysWhatTheTextSays) {
     for (const auto& channel : part["channels"]) EXPECT_NE(channel["definition"], "");
 }
 
-TEST(Json, KeepsTheExitCodeOfWhatIsNotConclusive) {
+TEST(Json, InconclusiveDocumentKeepsItsExitCode) {
     const std::string lost = scenes + "/two_spring_arch.yaml --set branches.down.to=-300";
     const json compared = document("compare " + lost, 3)["scenes"][0]["results"][0]["verdict"];
     EXPECT_EQ(compared["grade"], "not judged");
@@ -112,7 +112,7 @@ TEST(Json, KeepsTheExitCodeOfWhatIsNotConclusive) {
     EXPECT_FALSE(solved["reasons"].empty());
 }
 
-TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
+TEST(Json, GateDocumentHasEveryOffenceAndChangedNumber) {
     const Folder folder;
     const std::string own = folder.write("own.yaml", text_of(bushing));
     ASSERT_EQ(elastocheck_says("gate " + own + " --accept --reason first").code, 0);
@@ -192,7 +192,7 @@ TEST(Version, IsThatOfTheArchiveWhereThereIsNoCheckoutAndNeverOfOneAround) {
     EXPECT_EQ(commit_of(copy), "unknown") << "the checkout around it is somebody else's";
 }
 
-TEST(Help, OfAnInstalledCommandPointsToWhatWasInstalledWithIt) {
+TEST(Help, InstalledHelpNamesTheInstalledDocuments) {
     const Folder folder;
     namespace fs = std::filesystem;
     const fs::path prefix = fs::canonical(folder.path) / "prefix",
@@ -214,7 +214,7 @@ TEST(Help, OfAnInstalledCommandPointsToWhatWasInstalledWithIt) {
 
 // ---- the manual
 
-TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
+TEST(Manual, ManualHasTheHelpTextsAndIsValidRoff) {
     const std::string page = elastocheck_says("man").out;
     EXPECT_TRUE(page.starts_with(".TH ELASTOCHECK 1 ")) << page.substr(0, 80);
     expect_parts(page,
@@ -295,7 +295,7 @@ TEST(ReportCommand, LaysMeasuredPointsOverTheCurves) {
     EXPECT_EQ(report.draws(measured).code, 2) << "of a result that is not solved";
 }
 
-TEST(ReportCommand, OpensThePageByWhatBrowserSays) {
+TEST(ReportCommand, PageIsOpenedByTheBrowserVariable) {
     const Report report;
     const std::string seen = (report.folder.path / "seen").string();
     const std::string program =
@@ -311,7 +311,7 @@ TEST(ReportCommand, OpensThePageByWhatBrowserSays) {
     expect_said(report.draws("--open", "BROWSER=false"), 2);
 }
 
-TEST(ReportCommand, OpenSaysBeforeTheWorkThatNobodyCanLook) {
+TEST(ReportCommand, OpenWithoutABrowserIsRejectedBeforeTheWork) {
     const Report report;
     const std::string nothing = (report.folder.path / "empty").string();
     std::filesystem::create_directory(nothing);

@@ -156,7 +156,7 @@ std::string parting(const std::string& a, const std::string& b) {
     return "..." + part(a) + "...\nand\n..." + part(b) + "...";
 }
 
-TEST(DecimalComma, ChangesNothingThatACommandSaysOrWrites) {
+TEST(DecimalComma, LocaleWithDecimalCommaDoesNotChangeAnyOutput) {
     const German german;
     ASSERT_TRUE(german.make());
     for (const auto& [command, line] : lines) {

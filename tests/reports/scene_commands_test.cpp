@@ -31,7 +31,7 @@ TEST(New, ListsEverySceneWithALine) {
     expect_parts(said.out, {"McPherson strut (Kang 2004, section 3)"});
 }
 
-TEST(New, PrintsTheSceneAsItIsAndItStandsAlone) {
+TEST(New, PrintedTemplateEqualsTheSceneAndIsValidAlone) {
     const Folder folder;
     for (const auto& name : shipped()) {
         const std::string file = (folder.path / (name + ".yaml")).string();
@@ -173,7 +173,7 @@ TEST(Inspect, ShowsTheBeginningOfLongListsAndAllWhenVerbose) {
 
 // ---- too large for the energy leg
 
-TEST(TooLarge, IsSaidByTheEnergyLegWithoutSolving) {
+TEST(TooLarge, TooLargeSceneIsRejectedByTheEnergyLegBeforeSolving) {
     const Folder folder;
     const std::string scene = folder.write("chain.yaml", chain_of(150));
     expect_says("solve " + scene + " --method energy --set branches.push.steps=60000", 3,

@@ -121,7 +121,7 @@ TEST(SolveCommand, RefusesADefinitionThatDoesNotExistWithItsLine) {
 }
 
 // A row of the table is the branch with that value held.
-TEST(ExportCommand, WritesATableOverABranchAndWhatItHolds) {
+TEST(ExportCommand, TableOverABranchAndAHeldValueEqualsSingleRuns) {
     const std::string command =
         "export " + scenes +
         "/double_wishbone_rigid.yaml --set branches.steering.steps=20 --over "
@@ -199,7 +199,7 @@ BlocksFile blocks_of(const std::string& csv) {
 
 // Every node of every block, in both axes, is what `solve` finds there, turned by hand: x is the same
 // in both, y and z and angles about z change their sign; the parameter in m, angles in rad.
-TEST(ExportCommand, WritesBlocksOverTravelAndRackThatAreWhatSolveFinds) {
+TEST(ExportCommand, BlocksOverTravelAndRackEqualSolve) {
     const std::string scene = scenes + "/front_axle.yaml ",
                       few = "--set branches.steering.steps=4 ",
                       command = "export " + scene + few +
@@ -331,7 +331,7 @@ TEST(ExportCommand, WritesBlocksOverOneVariable) {
 }
 
 // The line says what the two solutions differ by at the end, in the output that differs most.
-TEST(SolveCommand, AFastMethodSaysHowFarItIsOffAtTheEndOfEveryBranchSide) {
+TEST(SolveCommand, FastMethodReportsItsErrorAtEveryEnd) {
     const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 20 ";
     const auto right = cells_of(elastocheck_says(command).out);
     for (const char* method : {"published", "tangent"}) {
@@ -387,7 +387,7 @@ TEST(SolveCommand, ParametersAreExactAtTheEndsOfABranch) {
     EXPECT_GT(ends, 30);
 }
 
-TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
+TEST(SolveCommand, RequestedChannelsAreColumnsInTheirOrder) {
     const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 3";
     const auto all = cells_of(elastocheck_says(command).out);
     const auto expect = [&](const std::string& asked, const std::vector<std::string>& heads) {
@@ -416,7 +416,7 @@ TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
 }
 
 // Element forces are columns only if requested; checked against the closed form of the scene.
-TEST(SolveCommand, WhatElementsBearIsWrittenWhereItIsAskedFor) {
+TEST(SolveCommand, RequestedElementForcesAreColumns) {
     const std::string command =
         "solve " + scenes + "/tyre_on_road.yaml --steps 10 --method equilibrium";
     expect_parts(elastocheck_says(command).out, {}, {"suspension.force"});

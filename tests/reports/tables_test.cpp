@@ -42,7 +42,7 @@ TEST(Tables, JsonHasNamesUnitsAndNullForAMissingNumber) {
               R"([["a, b","x",0.1,3.0],["c","x",null,4.0],["a, b","y",1e-07,3.0]])");
 }
 
-TEST(Tables, TextIsAsWideAsItNeedsAndLeavesOutWhatIsEmpty) {
+TEST(Tables, TextTableIsNarrowAndOmitsEmptyColumns) {
     EXPECT_EQ(text(small),
               "  who   error [mm]  count\n"
               "  a, b     1.0e-01      3\n"
@@ -101,7 +101,7 @@ TEST(Tables, ShadesAndDetailsAreForPages) {
     EXPECT_EQ(page_table(result.tables[0])["folded"], true);
 }
 
-TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
+TEST(Tables, OrdersAreEqualInEveryFormat) {
     const Model model = compile(support::scene("pinned_bar"));
     compare::ConvergenceStudies studies{
         .orders = compare::order_study(
@@ -118,7 +118,7 @@ TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
                  {"no result to compare with: the energy leg diverged"});
 }
 
-TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
+TEST(Tables, ConvergenceStudyIsEqualInEveryFormat) {
     const Model model = compile(support::scene("bushing_pair"));
     compare::ConvergenceStudies studies{
         .methods = compare::study(model, {.steps = {20, 40, 80, 160, 320}}),
@@ -162,7 +162,7 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     EXPECT_EQ(step_rows(study)[1].outcome, "diverged");
 }
 
-TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
+TEST(Tables, WorkPrecisionTableIsEqualInEveryFormat) {
     Scene scene = support::scene("pendulum");
     for (auto& branch : scene.branches) branch.to *= 2;  // large enough for a diverging row
     const Model model = compile(scene);

@@ -52,7 +52,7 @@ std::vector<std::string> drift(const Numbers& committed, const Numbers& now) {
     return found;
 }
 
-TEST(Validation, TheCommittedNumbersAreTheCodes) {
+TEST(Validation, CommittedNumbersEqualThoseOfTheCode) {
     std::vector<SceneAnalyses> scenes;
     auto names = support::small_scene_names();  // as in ./dev validation
     names.push_back("double_wishbone");
@@ -70,7 +70,7 @@ TEST(Validation, TheCommittedNumbersAreTheCodes) {
                       << "\nIf that is meant, run ./dev validation and commit what it writes.";
 }
 
-TEST(Validation, DriftIsSeen) {
+TEST(Validation, DriftBeyondItsToleranceIsDetected) {
     const Numbers old{{"a", {1, 0.1}}, {"b", {2, 0.1}}};
     EXPECT_TRUE(drift(old, {{"a", {1.05, 0.1}}, {"b", {2, 0.1}}}).empty());
     EXPECT_EQ(drift(old, {{"a", {1.2, 0.1}}, {"b", {2, 0.1}}}).size(), 1u);

@@ -283,7 +283,7 @@ TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
 }
 
 // A driven angle in the opposite direction satisfies Φ = 0 too; the residuals must distinguish it.
-TEST(Constraints, AnAngleKnowsItsOwnDirectionFromTheOpposite) {
+TEST(Constraints, OppositeDirectionOfADrivenAngleHasAResidual) {
     Model model;
     model.bodies = {{"a", {}}};
     for (const double angle : {-4.0, -1.0, 0.0, 0.4, 2.0, 3.1, 7.0}) {
