@@ -255,30 +255,36 @@ std::optional<Explanation> explain(const Beside& b) {
     const double allowed =
         std::min(explained * deviation,
                  std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, of_movement * movement));
-    std::optional<Explanation> found;
-    // A factor has to reproduce the level of the column, with an offset or from a start its movement.
+    std::optional<Explanation> accepted;
+    // A factor alone has to reproduce the level of the column; with an offset or from r_0 its
+    // range.
     const double level = std::max(off(v, Values(v.size(), 0)), span(v));
-    int tried = 0;
-    const auto try_it = [&](Explanation as, const Values& reading, bool is_level = true,
-                            int fitted = 0) {
-        ++tried;
-        as.left = off(v, reading);
-        as.column = b.column;
-        const bool scaled = as.kind == Kind::factor || as.kind == Kind::factor_and_offset;
-        if (scaled && !(as.left <= of_column * (is_level ? level : span(v)))) return;
-        if (!found && as.left <= allowed && !is_accident(b, as.left, fitted, tried)) found = as;
+    int tests = 0;
+    // Tests v = `transformed`; the first explanation that makes the column right is accepted.
+    const auto try_it = [&](Explanation explanation, const Values& transformed,
+                            bool is_level = true, int fitted = 0) {
+        ++tests;
+        explanation.left = off(v, transformed);
+        explanation.column = b.column;
+        const bool scaled =
+            explanation.kind == Kind::factor || explanation.kind == Kind::factor_and_offset;
+        if (scaled && !(explanation.left <= of_column * (is_level ? level : span(v)))) return;
+        if (!accepted && explanation.left <= allowed &&
+            !is_accident(b, explanation.left, fitted, tests))
+            accepted = explanation;
     };
-    const auto with_offset = [&](Explanation as, const Values& reading) {
-        as.offset = mean(less(v, reading));
-        try_it(as, plus(reading, as.offset), false, 1);
+    const auto with_offset = [&](Explanation explanation, const Values& transformed) {
+        explanation.offset = mean(less(v, transformed));
+        try_it(explanation, plus(transformed, explanation.offset), false, 1);
     };
+    // v = -r, v = r + c, v = ± unit r
     try_it({.kind = Kind::sign}, times(-1, r));
     with_offset({.kind = Kind::offset}, r);
     for (const double sign : {1., -1.})
         for (const auto& unit : units)
             try_it({.kind = Kind::factor, .factor = sign * unit.factor, .unit_word = unit.word},
                    times(sign * unit.factor, r));
-    // Fitted, for the whole column and for its change.
+    // v = f r and v = r_0 + f (r - r_0), with f by least squares
     if (const double rr = dot(r, r); rr > 0) {
         const double f = dot(v, r) / rr;
         try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, times(f, r), true,
@@ -287,12 +293,13 @@ std::optional<Explanation> explain(const Beside& b) {
     const Values change = less(r, b.begin);
     if (const double cc = dot(change, change); cc > 0) {
         const double f = dot(less(v, b.begin), change) / cc;
-        Values reading = times(f, change);
-        for (std::size_t k = 0; k < reading.size(); ++k) reading[k] += b.begin[k];
+        Values transformed = times(f, change);
+        for (std::size_t k = 0; k < transformed.size(); ++k) transformed[k] += b.begin[k];
         if (f > 0)
-            try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, reading, false,
-                   1);
+            try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, transformed,
+                   false, 1);
     }
+    // v = -r + c, v = ± another output, v = ± unit r + c
     with_offset({.kind = Kind::sign_and_offset}, times(-1, r));
     for (std::size_t o = 0; o < b.others.size(); ++o)
         if (b.others[o].size() == v.size()) {
@@ -306,16 +313,17 @@ std::optional<Explanation> explain(const Beside& b) {
                          .factor = sign * unit.factor,
                          .unit_word = unit.word},
                         times(sign * unit.factor, r));
-    if (!found || found->left > rounding_of_range * movement)
+    if (!accepted || accepted->left > rounding_of_range * movement)
         if (const auto other = by_definitions(
                 b,
-                found ? much_better * found->left
-                      // the figure may not move at all where another definition of it does
-                      : std::max(allowed, std::min(explained * deviation, of_movement * span(v))),
-                tried))
-            found = other;
-    if (!found) found = wrong_from(b);
-    return found;
+                accepted
+                    ? much_better * accepted->left
+                    // the figure may not move at all where another definition of it does
+                    : std::max(allowed, std::min(explained * deviation, of_movement * span(v))),
+                tests))
+            accepted = other;
+    if (!accepted) accepted = wrong_from(b);
+    return accepted;
 }
 
 // With v the column, r its reference, d = rms(v - r) and s = rms(v - mean v), the transformation
