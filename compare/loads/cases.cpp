@@ -85,24 +85,24 @@ void add_acceleration(const Scene& scene, const CaseInput& input, Branch& branch
             branch.name));
 }
 
-void check_heights(const LoadCase& one, const Scene& scene) {
-    for (const auto& held : one.inputs)
-        for (const auto& force : one.inputs)
+void check_heights(const LoadCase& load_case, const Scene& scene) {
+    for (const auto& held : load_case.inputs)
+        for (const auto& force : load_case.inputs)
             if (held.kind == Kind::travel && force.kind == Kind::patch_force && force.axis == 2 &&
                 force.of == held.of)
                 throw std::invalid_argument(fmt::format(
                     "case '{}' has the travel and the vertical force of wheel '{}': one follows "
                     "from the other; leave one cell empty",
-                    one.name, scene.wheels[held.of].name));
+                    load_case.name, scene.wheels[held.of].name));
 }
 
-Branch branch_of(const LoadCase& one, Scene& scene) {
-    check_heights(one, scene);
+Branch branch_of(const LoadCase& load_case, Scene& scene) {
+    check_heights(load_case, scene);
     Branch branch;
-    branch.name = one.name;
+    branch.name = load_case.name;
     branch.to = branch.steps = 1;
     branch.unit = ParameterUnit::none;
-    for (const auto& input : one.inputs) {
+    for (const auto& input : load_case.inputs) {
         if (input.kind == Kind::travel) {
             const int jack = jack_under(scene.wheels[input.of], scene);
             branch.drivers.push_back({Motion{jack}, 0, input.value});
@@ -124,7 +124,7 @@ Branch branch_of(const LoadCase& one, Scene& scene) {
 
 Scene with_cases(Scene scene, const std::vector<LoadCase>& cases) {
     std::vector<Branch> branches;
-    for (const auto& one : cases) branches.push_back(branch_of(one, scene));
+    for (const auto& load_case : cases) branches.push_back(branch_of(load_case, scene));
     scene.branches = std::move(branches);
     return scene;
 }

@@ -52,11 +52,11 @@ struct Largest {
     bool shared = false;
 };
 
-std::vector<Largest> largest(const PickupLoads& all) {
+std::vector<Largest> largest(const PickupLoads& loads) {
     std::vector<Largest> list;
-    for (std::size_t k = 0; k < all.pickups.size(); ++k) {
-        Largest& most = list.emplace_back(Largest{.pickup = all.pickups[k]});
-        for (const auto& solved : all.cases) {
+    for (std::size_t k = 0; k < loads.pickups.size(); ++k) {
+        Largest& most = list.emplace_back(Largest{.pickup = loads.pickups[k]});
+        for (const auto& solved : loads.cases) {
             if (solved.loads.empty()) continue;
             const Vector6& w = solved.loads[k].in_ground_axes;
             most.shared = most.shared || !w.allFinite();
@@ -93,18 +93,18 @@ std::vector<ColumnOf<Largest>> largest_columns() {
 // Joints whose share no load determines, in words.
 std::string shared_joints(const std::vector<Largest>& list) {
     std::vector<std::string> names;
-    for (const auto& one : list)
-        if (one.shared && std::ranges::find(names, one.pickup.connection) == names.end())
-            names.push_back(one.pickup.connection);
+    for (const auto& entry : list)
+        if (entry.shared && std::ranges::find(names, entry.pickup.connection) == names.end())
+            names.push_back(entry.pickup.connection);
     std::string text;
     for (const auto& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
     return text;
 }
 
-Verdict verdict_of(const PickupLoads& all) {
+Verdict verdict_of(const PickupLoads& loads) {
     Verdict verdict{.grade = Grade::pass};
     double imbalance = 0, disagreement = 0;
-    for (const auto& solved : all.cases) {
+    for (const auto& solved : loads.cases) {
         const auto refuse = [&](const std::string& why) {
             verdict.reasons.push_back(fmt::format("case '{}': {}", solved.name, why));
         };
@@ -134,19 +134,19 @@ Verdict verdict_of(const PickupLoads& all) {
         "Confirmed: in {} every body is in balance to {:.1g} of the largest load, and two "
         "solutions "
         "agree to {:.1g}.",
-        all.cases.size() == 1 ? "the one case" : fmt::format("all {} cases", all.cases.size()),
+        loads.cases.size() == 1 ? "the one case" : fmt::format("all {} cases", loads.cases.size()),
         imbalance, disagreement);
     return verdict;
 }
 
 }  // namespace
 
-Result result_of(const PickupLoads& all) {
-    Result result{.analysis = "loads", .verdict = verdict_of(all)};
-    const auto list = largest(all);
+Result result_of(const PickupLoads& loads) {
+    Result result{.analysis = "loads", .verdict = verdict_of(loads)};
+    const auto list = largest(loads);
     result.tables.push_back(table("pickups", largest_columns(), list));
     result.tables.back().caption = "largest loads on each body, in vehicle axes";
-    result.tables.push_back(table("loads", load_columns(all.pickups), all.cases));
+    result.tables.push_back(table("loads", load_columns(loads.pickups), loads.cases));
     if (const std::string names = shared_joints(list); !names.empty())
         result.notes.push_back(fmt::format(
             "statically indeterminate: the joints {} share loads in a way that no load determines. "

@@ -111,11 +111,11 @@ Failure unsolvable_load(const System& system, const VectorXd& left) {
 
 // M = ZᵀKZ, formed here with Z from a singular value decomposition of Φ_q. Its least eigenvalue is
 // that of stability.hpp, or that of an idle mode with a negative stiffness.
-std::string softest_motion(const System& system, const Linearisation& at) {
+std::string softest_motion(const System& system, const Linearisation& linearised) {
     constexpr int largest_dense = 600;  // coordinates
     const int n = 6 * system.bodies, m = system.constraint_rows;
     if (n > largest_dense) return "the model is too large to say which bodies move";
-    const Eigen::MatrixXd J = at.J;
+    const Eigen::MatrixXd J = linearised.J;
     Eigen::MatrixXd Z = Eigen::MatrixXd::Identity(n, n);
     if (m > 0) {
         constexpr double dependent = 1e-9;  // of the largest singular value
@@ -154,14 +154,14 @@ Failure too_soft(const System& system, const VectorXd& left) {
 Failure failure(Continuation& continuation, double t, const Trial& trial) {
     const System& system = continuation.system;
     const Attempt& attempt = trial.attempt;
-    const auto at = [&](double a) { return parameter(*system.branch, a); };
+    const auto parameter_at = [&](double a) { return parameter(*system.branch, a); };
     const bool settling = continuation.stage == Stage::settling;
     const std::string where =
-        settling ? fmt::format("while settling at {}, at {:.0f} % of the homotopy", at(0),
+        settling ? fmt::format("while settling at {}, at {:.0f} % of the homotopy", parameter_at(0),
                                100 * continuation.here.t)
-        : at(continuation.here.t) == at(t)
-            ? "at " + at(t)
-            : fmt::format("between {} and {}", at(continuation.here.t), at(t));
+        : parameter_at(continuation.here.t) == parameter_at(t)
+            ? "at " + parameter_at(t)
+            : fmt::format("between {} and {}", parameter_at(continuation.here.t), parameter_at(t));
 
     if (!settling && has_divided(continuation, trial))
         return {Outcome::bifurcation_point,
@@ -191,9 +191,9 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
                 settling
                     ? fmt::format("no pose near the design pose satisfies all joints at {}: {} "
                                   "cannot be closed",
-                                  at(0), joints_in(system, Phi))
+                                  parameter_at(0), joints_in(system, Phi))
                     : fmt::format("no pose satisfies all joints beyond {}: {} cannot be closed",
-                                  at(continuation.here.t), joints_in(system, Phi))};
+                                  parameter_at(continuation.here.t), joints_in(system, Phi))};
     if (const std::string bushing = bushing_without_angles(system, continuation.here.x);
         !bushing.empty())
         return {Outcome::branch_lost, fmt::format("{}, {}", bushing, where)};

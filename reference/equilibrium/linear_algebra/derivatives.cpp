@@ -76,10 +76,10 @@ namespace {
 // p: δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
 template <int N>
 Frame<JetOf<N>> stepping(const System& system, const VectorXd& x, BodyId body, int r) {
-    const Frame<double> at = frame_of(system, x, body);
-    Frame<JetOf<N>> frame{at.r.cast<JetOf<N>>(), at.p.cast<JetOf<N>>()};
+    const Frame<double> pose = frame_of(system, x, body);
+    Frame<JetOf<N>> frame{pose.r.cast<JetOf<N>>(), pose.p.cast<JetOf<N>>()};
     if (body == ground) return frame;
-    const double hx = at.p.x() / 2, hy = at.p.y() / 2, hz = at.p.z() / 2, hw = at.p.w() / 2;
+    const double hx = pose.p.x() / 2, hy = pose.p.y() / 2, hz = pose.p.z() / 2, hw = pose.p.w() / 2;
     const int pi = r + 3;
     for (int k = 0; k < 3; ++k) frame.r[k].v[r + k] = system.length;
     frame.p.x().v.template segment<3>(pi) << hw, hz, -hy;
@@ -210,13 +210,15 @@ Pattern pattern_of(const System& system, const Loading& loading, const VectorXd&
 
 // Frame of a body that moves along dx; the quaternion as above.
 using Dual = ceres::Jet<double, 1>;
-Frame<Dual> at_rest(const Frame<double>& at) { return {at.r.cast<Dual>(), at.p.cast<Dual>()}; }
+Frame<Dual> at_rest(const Frame<double>& pose) {
+    return {pose.r.cast<Dual>(), pose.p.cast<Dual>()};
+}
 Frame<Dual> moving_frame(const System& system, const VectorXd& x, const VectorXd& dx, BodyId body) {
-    const Frame<double> at = frame_of(system, x, body);
-    Frame<Dual> frame = at_rest(at);
+    const Frame<double> pose = frame_of(system, x, body);
+    Frame<Dual> frame = at_rest(pose);
     if (body == ground) return frame;
-    const Eigen::Vector3d v = at.p.vec(), turn = dx.segment<3>(6 * body + 3);
-    const Eigen::Vector3d dv = (at.p.w() * turn + cross(turn, v)) / 2;
+    const Eigen::Vector3d v = pose.p.vec(), turn = dx.segment<3>(6 * body + 3);
+    const Eigen::Vector3d dv = (pose.p.w() * turn + cross(turn, v)) / 2;
     for (int k = 0; k < 3; ++k) frame.r[k].v[0] = system.length * dx[6 * body + k];
     frame.p.x().v[0] = dv[0];
     frame.p.y().v[0] = dv[1];
@@ -232,33 +234,33 @@ Derivatives derivatives(const System& system, const Loading& loading, const Vect
     ++counts.evaluations;
     if (!system.pattern)
         system.pattern = std::make_shared<const Pattern>(pattern_of(system, loading, x));
-    Derivatives by{system.pattern->J, VectorXd::Zero(system.equations()),
-                   VectorXd::Zero(system.equations())};
-    double* values = by.J.valuePtr();
+    Derivatives result{system.pattern->J, VectorXd::Zero(system.equations()),
+                       VectorXd::Zero(system.equations())};
+    double* values = result.J.valuePtr();
     const int* place = system.pattern->places.data();
     for_each_row(system, loading, Seeds{system, x},
                  [&](const Part& part, int row, bool balance, const auto& term) {
-                     by.E[row] += term.a;
-                     by.E_rate[row] += by_parameter(term);
+                     result.E[row] += term.a;
+                     result.E_rate[row] += by_parameter(term);
                      for_each_entry(system, part, row, balance, [&](int, int, int n) {
                          values[*place++] += derivative(term, n);
                      });
                  });
-    by.E -= loading.held * system.at_design;
-    by.E_rate -= loading.held_rate * system.at_design;
-    return by;
+    result.E -= loading.held * system.at_design;
+    result.E_rate -= loading.held_rate * system.at_design;
+    return result;
 }
 
 void add_reactions(const System& system, const Loading& loading, const VectorXd& x,
-                   const VectorXd& R, Derivatives& by, Counts& counts) {
+                   const VectorXd& R, Derivatives& result, Counts& counts) {
     ++counts.evaluations;
-    double* values = by.J.valuePtr();
+    double* values = result.J.valuePtr();
     const int* place = system.pattern->places.data() + system.pattern->constraints;
     for_each_row(system, loading, Reacting{{system, x}, R},
                  [&](const Part& part, int row, bool balance, const auto& term) {
                      if (balance) {
-                         by.E[row] += term.a;
-                         by.E_rate[row] += by_parameter(term);
+                         result.E[row] += term.a;
+                         result.E_rate[row] += by_parameter(term);
                      }
                      // neither Φ nor the directions of the reactions change
                      for_each_entry(system, part, row, balance, [&](int, int, int n) {
@@ -321,7 +323,7 @@ Deforming deforming(const System& system, const Loading& loading, const VectorXd
     constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
     const auto& elastics = system.model->elastics;
     const auto rows = 6 * static_cast<Eigen::Index>(elastics.size());
-    Deforming all{VectorXd::Zero(rows), VectorXd::Zero(rows)};
+    Deforming rates{VectorXd::Zero(rows), VectorXd::Zero(rows)};
     for (std::size_t e = 0; e < elastics.size(); ++e) {
         const auto [i, j] = bodies_of(elastics[e].kind);
         const ElementPieces& on = loading.pieces.empty() ? all_by_themselves : loading.pieces[e];
@@ -331,22 +333,22 @@ Deforming deforming(const System& system, const Loading& loading, const VectorXd
         const Vec6<Dual> force = forces(elastics[e].kind, d, on);
         const auto row = 6 * static_cast<Eigen::Index>(e);
         for (int k = 0; k < 6; ++k) {
-            all.rate[row + k] = d[k].v[0];
-            all.force_rate[row + k] = force[k].v[0] / (system.force * system.length);
+            rates.rate[row + k] = d[k].v[0];
+            rates.force_rate[row + k] = force[k].v[0] / (system.force * system.length);
         }
         const auto* law = member<SpatialLaw>(elastics[e].kind);
         const Matrix6* coupled = law != nullptr ? matrix_of(*law) : nullptr;
         if (coupled == nullptr) continue;
-        const Vector6 sizes = coupled->cwiseAbs() * all.rate.segment<6>(row).cwiseAbs();
+        const Vector6 sizes = coupled->cwiseAbs() * rates.rate.segment<6>(row).cwiseAbs();
         for (int k = 0; k < 6; ++k)
-            if (std::abs(force[k].v[0]) <= rounding * sizes[k]) all.force_rate[row + k] = 0;
+            if (std::abs(force[k].v[0]) <= rounding * sizes[k]) rates.force_rate[row + k] = 0;
     }
-    return all;
+    return rates;
 }
 
 std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const VectorXd& x,
                                const VectorXd& dx) {
-    std::vector<OnCurve> all;
+    std::vector<OnCurve> components;
     Dual a(loading.a);
     a.v[0] = loading.a_rate;
     const auto& elastics = system.model->elastics;
@@ -360,10 +362,11 @@ std::vector<OnCurve> on_curves(const System& system, const Loading& loading, con
         for (std::size_t k = 0; k < 6; ++k)
             if (curves[k] != nullptr) {
                 const Dual& value = now[static_cast<int>(k)];
-                all.push_back({e, k, curves[k], k < 3 ? system.length : 1, value.a, value.v[0]});
+                components.push_back(
+                    {e, k, curves[k], k < 3 ? system.length : 1, value.a, value.v[0]});
             }
     }
-    return all;
+    return components;
 }
 
 }  // namespace elastocheck::reference::equilibrium

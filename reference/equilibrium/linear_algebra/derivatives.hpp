@@ -15,12 +15,12 @@ struct Derivatives {
 Derivatives derivatives(const System& system, const Loading& loading, const Eigen::VectorXd& x,
                         Counts& counts);
 
-// Adds reactions R [m] to those of `by`: E is linear in them, so only the constraints are evaluated
-// again, at the poses of x.
+// Adds reactions R [m] to those of `result`: E is linear in them, so only the constraints are
+// evaluated again, at the poses of x.
 void add_reactions(const System& system, const Loading& loading, const Eigen::VectorXd& x,
-                   const Eigen::VectorXd& R, Derivatives& by, Counts& counts);
+                   const Eigen::VectorXd& R, Derivatives& result, Counts& counts);
 
-// dE/dt alone, of what moves.
+// dE/dt alone [n]: only the terms that depend on t are evaluated.
 Eigen::VectorXd rate_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
 // A deformation that follows a curve, and its rate.
