@@ -69,31 +69,32 @@ Trend trend(std::span<const double> x) {
 
 Abscissa abscissa(std::span<const Channel> channels, int channel, const Curve& a, const Curve& b) {
     if (channel < 0) return {-1, "the scene has no position that can be the abscissa"};
-    const Channel& by = channels[static_cast<std::size_t>(channel)];
+    const Channel& candidate = channels[static_cast<std::size_t>(channel)];
     std::string why;
     Course first = Course::rising;
     for (const Curve* curve : {&a, &b}) {
         const auto x = curve->channel(static_cast<std::size_t>(channel));
-        const Trend found = trend(x);
-        switch (found.course) {
+        const Trend along_curve = trend(x);
+        switch (along_curve.course) {
             case Course::rising:
             case Course::falling: break;
-            case Course::still: why = fmt::format("{} does not move", by.name); break;
+            case Course::still: why = fmt::format("{} does not move", candidate.name); break;
             case Course::turning:
-                why = fmt::format("{} turns back at {:.4g} {} (at {:.4g} {})", by.name,
-                                  curve->a[found.at], symbol(curve->unit), x[found.at],
-                                  symbol(by.unit));
+                why = fmt::format("{} turns back at {:.4g} {} (at {:.4g} {})", candidate.name,
+                                  curve->a[along_curve.at], symbol(curve->unit), x[along_curve.at],
+                                  symbol(candidate.unit));
                 break;
             case Course::not_finite:
-                why = fmt::format("{} is not a number at {:.4g} {}", by.name, curve->a[found.at],
-                                  symbol(curve->unit));
+                why = fmt::format("{} is not a number at {:.4g} {}", candidate.name,
+                                  curve->a[along_curve.at], symbol(curve->unit));
                 break;
             case Course::too_short: why = "a curve has fewer than two points"; break;
         }
         if (!why.empty()) return {channel, why};
-        if (curve == &a) first = found.course;
-        if (curve == &b && found.course != first)
-            return {channel, fmt::format("{} has opposite directions on the two curves", by.name)};
+        if (curve == &a) first = along_curve.course;
+        if (curve == &b && along_curve.course != first)
+            return {channel,
+                    fmt::format("{} has opposite directions on the two curves", candidate.name)};
     }
     return {channel, ""};
 }

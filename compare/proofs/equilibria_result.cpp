@@ -31,12 +31,12 @@ struct BodyPose {
     Pose pose;
 };
 
-Table poses(const Model& model, const AllEquilibria& all) {
+Table poses(const Model& model, const AllEquilibria& equilibria) {
     std::vector<BodyPose> rows;
-    for (std::size_t k = 0; k < all.list.size(); ++k)
+    for (std::size_t k = 0; k < equilibria.list.size(); ++k)
         for (std::size_t b = 0; b < model.bodies.size(); ++b)
-            rows.push_back(
-                {static_cast<double>(k + 1), model.bodies[b].name, all.list[k].state.poses[b]});
+            rows.push_back({static_cast<double>(k + 1), model.bodies[b].name,
+                            equilibria.list[k].state.poses[b]});
     const auto part = [](const char* name, const char* unit, auto&& value) {
         return ColumnOf<BodyPose>{.name = name, .cell = value, .unit = unit};
     };
@@ -55,39 +55,43 @@ Table poses(const Model& model, const AllEquilibria& all) {
 
 }  // namespace
 
-Result result_of(const Model& model, const AllEquilibria& all) {
+Result result_of(const Model& model, const AllEquilibria& equilibria) {
     Result result{.analysis = "equilibria"};
-    Table list = table("equilibria", found_columns(), all.list);
+    Table list = table("equilibria", found_columns(), equilibria.list);
     list.columns.insert(list.columns.begin(), {.name = "number", .digits = Digits::whole});
     for (std::size_t k = 0; k < list.rows.size(); ++k)
         list.rows[k].insert(list.rows[k].begin(), static_cast<double>(k + 1));
     list.caption = fmt::format(
         "branch '{}' at {:.8g} {}: {} {}, {} stable; {}\nthe branch up to there: {}{}{}",
-        all.branch, all.a * in_unit(all.unit), symbol(all.unit), all.list.size(),
-        all.list.size() == 1 ? "equilibrium" : "equilibria", all.stable(),
-        all.list.empty() ? "none was found"
-        : all.proved     ? "each is proved, and all are distinct"
-                         : "not all of this is proved",
-        elastocheck::name(all.outcome), all.detail.empty() ? "" : ": ", all.detail);
-    for (const auto& one : all.list)
-        if (one.proof.state != reference::certificate::ProofState::proved)
-            list.notes.push_back(fmt::format("{}: {}", name(one.proof.state), one.proof.detail));
-    result.tables = {std::move(list), poses(model, all)};
+        equilibria.branch, equilibria.a * in_unit(equilibria.unit), symbol(equilibria.unit),
+        equilibria.list.size(), equilibria.list.size() == 1 ? "equilibrium" : "equilibria",
+        equilibria.stable(),
+        equilibria.list.empty() ? "none was found"
+        : equilibria.proved     ? "each is proved, and all are distinct"
+                                : "not all of this is proved",
+        elastocheck::name(equilibria.outcome), equilibria.detail.empty() ? "" : ": ",
+        equilibria.detail);
+    for (const auto& entry : equilibria.list)
+        if (entry.proof.state != reference::certificate::ProofState::proved)
+            list.notes.push_back(
+                fmt::format("{}: {}", name(entry.proof.state), entry.proof.detail));
+    result.tables = {std::move(list), poses(model, equilibria)};
     result.notes.push_back(
-        fmt::format("{} starts with deflation; completeness is not proved", all.starts));
-    if (all.other_way_round > 0)
+        fmt::format("{} starts with deflation; completeness is not proved", equilibria.starts));
+    if (equilibria.other_way_round > 0)
+        result.notes.push_back(fmt::format("left out: {} with a joint assembled in reverse",
+                                           equilibria.other_way_round));
+    if (equilibria.turned_over > 0)
         result.notes.push_back(
-            fmt::format("left out: {} with a joint assembled in reverse", all.other_way_round));
-    if (all.turned_over > 0)
-        result.notes.push_back(
-            fmt::format("left out: {} with a body turned over", all.turned_over));
-    const bool reached = all.outcome == Outcome::converged;
-    result.verdict = {.grade = reached && all.proved ? Grade::pass : Grade::not_judged,
-                      .compared = static_cast<int>(all.list.size())};
+            fmt::format("left out: {} with a body turned over", equilibria.turned_over));
+    const bool reached = equilibria.outcome == Outcome::converged;
+    result.verdict = {.grade = reached && equilibria.proved ? Grade::pass : Grade::not_judged,
+                      .compared = static_cast<int>(equilibria.list.size())};
     if (!reached)
-        result.verdict.reasons.push_back(fmt::format("branch '{}': {}: {}", all.branch,
-                                                     elastocheck::name(all.outcome), all.detail));
-    else if (!all.proved)
+        result.verdict.reasons.push_back(fmt::format("branch '{}': {}: {}", equilibria.branch,
+                                                     elastocheck::name(equilibria.outcome),
+                                                     equilibria.detail));
+    else if (!equilibria.proved)
         result.verdict.reasons.emplace_back("not every equilibrium is proved, or proved distinct");
     return result;
 }

@@ -74,6 +74,6 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
 
 // Tables "equilibria" and "poses" (of every body in each); passes where the branch reaches the load and
 // all of the list is proved.
-Result result_of(const Model& model, const AllEquilibria& all);
+Result result_of(const Model& model, const AllEquilibria& equilibria);
 
 }  // namespace elastocheck::compare

@@ -14,13 +14,13 @@ using Eigen::VectorXd;
 constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
 
 // Whether the branch turns back here: its drivers move a motion without stiffness.
-bool turns_back(const Model& model, const StateTangent& at) {
-    const Chart chart = chart_about(at.state.poses);
-    const Prescribed& rate = at.course.rate;
-    const ConstraintRates rates = constraint_rates(model, at.prescribed, rate, chart);
-    const VectorXd b = gradient_rate(model, at.prescribed, rate, chart) +
-                       transposed_times(rates.Phi_qa, at.lambda);
-    return solve_tangent(at, b, rate.offset.isZero(0) ? VectorXd() : rates.Phi_a).outcome ==
+bool turns_back(const Model& model, const StateTangent& tangent) {
+    const Chart chart = chart_about(tangent.state.poses);
+    const Prescribed& rate = tangent.course.rate;
+    const ConstraintRates rates = constraint_rates(model, tangent.prescribed, rate, chart);
+    const VectorXd b = gradient_rate(model, tangent.prescribed, rate, chart) +
+                       transposed_times(rates.Phi_qa, tangent.lambda);
+    return solve_tangent(tangent, b, rate.offset.isZero(0) ? VectorXd() : rates.Phi_a).outcome ==
            Outcome::loaded_idle_mode;
 }
 

@@ -71,43 +71,45 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     return t;
 }
 
-TangentSolution solve_tangent(const StateTangent& at, const VectorXd& b_SI,
+TangentSolution solve_tangent(const StateTangent& tangent, const VectorXd& b_SI,
                               const VectorXd& Phi_rate, double rounding) {
     VectorXd t = VectorXd::Zero(b_SI.size());
     if (Phi_rate.size() > 0) {
-        const VectorXd driven_rate = -at.D.cwiseProduct(Phi_rate);
-        t = shortest(at.state.at, driven_rate);
+        const VectorXd driven_rate = -tangent.D.cwiseProduct(Phi_rate);
+        t = shortest(tangent.state.at, driven_rate);
         if (std::isfinite(rounding) &&
-            !((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
+            !((tangent.state.at.J_t.transpose() * t - driven_rate).norm() <=
+              open * driven_rate.norm()))
             return {
                 Outcome::inconsistent_constraints, "redundant joints prevent this motion", {}, {}};
     }
-    const double energy = at.scales.energy();
-    const VectorXd b = at.S.cwiseProduct(b_SI) / energy;
+    const double energy = tangent.scales.energy();
+    const VectorXd b = tangent.S.cwiseProduct(b_SI) / energy;
 
-    VectorXd left = Phi_rate.size() > 0 ? VectorXd(b + at.K * t) : b;
+    VectorXd left = Phi_rate.size() > 0 ? VectorXd(b + tangent.K * t) : b;
     const double size = largest(b) + largest(left - b);
     const auto correct = [&] {
-        if (at.Z.cols() == 0) return;
-        t -= at.Z * at.W.solve(at.Z.transpose() * left);
-        left = b + at.K * t;
+        if (tangent.Z.cols() == 0) return;
+        t -= tangent.Z * tangent.W.solve(tangent.Z.transpose() * left);
+        left = b + tangent.K * t;
     };
     correct();
-    const double remainder = at.Z.cols() > 0 ? largest(at.Z.transpose() * left) : 0;
+    const double remainder = tangent.Z.cols() > 0 ? largest(tangent.Z.transpose() * left) : 0;
     correct();
     if (!t.allFinite()) return {Outcome::not_finite, "the response is not finite", {}, {}};
     // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
     if (!(remainder <= unanswered * size))
         return {Outcome::singular, "the stiffness of a motion vanishes", {}, {}};
-    if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size + rounding))
+    if (!(largest(tangent.idle.transpose() * left) <= rest_on_idle * size + rounding))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}, {}};
-    return {Outcome::converged, "", at.S.cwiseProduct(t), std::move(left)};
+    return {Outcome::converged, "", tangent.S.cwiseProduct(t), std::move(left)};
 }
 
-VectorXd multiplier_rates(const StateTangent& at, const TangentSolution& solution) {
-    if (at.lambda.size() == 0 || solution.left.size() == 0) return VectorXd::Zero(at.lambda.size());
-    const VectorXd dlambda = at.state.at.qr.solve(-solution.left);
-    return at.scales.energy() * at.D.cwiseProduct(dlambda);
+VectorXd multiplier_rates(const StateTangent& tangent, const TangentSolution& solution) {
+    if (tangent.lambda.size() == 0 || solution.left.size() == 0)
+        return VectorXd::Zero(tangent.lambda.size());
+    const VectorXd dlambda = tangent.state.at.qr.solve(-solution.left);
+    return tangent.scales.energy() * tangent.D.cwiseProduct(dlambda);
 }
 
 }  // namespace elastocheck::reference::energy

@@ -59,9 +59,9 @@ struct TangentSolution {
     Eigen::VectorXd x;     // dx [6nb], SI
     Eigen::VectorXd left;  // rest [6nb]: of ∂V/∂ξ, units of F·L
 };
-TangentSolution solve_tangent(const StateTangent& at, const Eigen::VectorXd& b,
+TangentSolution solve_tangent(const StateTangent& tangent, const Eigen::VectorXd& b,
                               const Eigen::VectorXd& Phi_rate, double rounding = 0);
 // The change dλ [m], SI, of the same solution.
-Eigen::VectorXd multiplier_rates(const StateTangent& at, const TangentSolution& solution);
+Eigen::VectorXd multiplier_rates(const StateTangent& tangent, const TangentSolution& solution);
 
 }  // namespace elastocheck::reference::energy
