@@ -364,14 +364,15 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
     const reader::Cursor top{&tree, "", &file, &numbers};
     top.only_keys({"columns", "branches"});
     // Names of another tool may contain brackets.
-    const auto entries = [](const reader::Cursor& of) {
-        if (of.value->kind != reader::Value::Kind::map)
-            of.fail("expected a map of their names, found " + of.found());
+    const auto entries = [](const reader::Cursor& section) {
+        if (section.value->kind != reader::Value::Kind::map)
+            section.fail("expected a map of their names, found " + section.found());
         std::vector<std::pair<std::string, reader::Cursor>> list;
-        for (std::size_t k = 0; k < of.value->items.size(); ++k)
+        for (std::size_t k = 0; k < section.value->items.size(); ++k)
             list.emplace_back(
-                of.value->keys[k],
-                of.at(of.value->items[k], of.path + "." + reader::shown(of.value->keys[k])));
+                section.value->keys[k],
+                section.at(section.value->items[k],
+                           section.path + "." + reader::shown(section.value->keys[k])));
         return list;
     };
     const auto columns = top.optional("columns");

@@ -97,13 +97,13 @@ double turning_circle(const Subject& x) {
 
 // Lines from the patches to the instant centres of the planes of the wishbones, in the transverse plane
 // of the drawn wheel centre; for one wheel, with the middle of the vehicle.
-double roll_centre_by_planes(const Subject& of) {
+double roll_centre_by_planes(const Subject& subject) {
     struct PatchLine {
         double y, z, slope;  // of the patch; dz/dy
     };
     std::vector<PatchLine> lines;
-    for (std::size_t w = 0; w < of.model.wheels.size(); ++w) {
-        const Subject wheel = of.of(w);
+    for (std::size_t w = 0; w < subject.model.wheels.size(); ++w) {
+        const Subject wheel = subject.of(w);
         const auto planes = wishbone_planes(wheel);
         if (planes.size() != 2) return undefined;
         const double x = wheel.drawn().centre().at.x();

@@ -12,20 +12,20 @@ namespace elastocheck::compare {
 namespace {
 
 std::vector<Entry> whole_catalogue() {
-    std::vector<Entry> all;
-    add_angles(all);
-    const std::size_t rates = all.size();
-    add_rates(all);
-    const std::size_t otherwise = all.size();
-    add_angles_otherwise(all);
-    const std::size_t rates_otherwise = all.size();
-    add_rates_otherwise(all);
-    for (std::size_t e = 0; e < all.size(); ++e) {
-        all[e].on_request = e >= otherwise;
+    std::vector<Entry> entries;
+    add_angles(entries);
+    const std::size_t rates = entries.size();
+    add_rates(entries);
+    const std::size_t otherwise = entries.size();
+    add_angles_otherwise(entries);
+    const std::size_t rates_otherwise = entries.size();
+    add_rates_otherwise(entries);
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+        entries[e].on_request = e >= otherwise;
         if ((e >= rates && e < otherwise) || e >= rates_otherwise)
-            all[e].kind = ChannelKind::characteristic;
+            entries[e].kind = ChannelKind::characteristic;
     }
-    return all;
+    return entries;
 }
 
 bool drives_an_angle(const Model& model, int joint) {
@@ -34,13 +34,13 @@ bool drives_an_angle(const Model& model, int joint) {
 }
 
 // Whether a model has what figures of this owner need beside it.
-bool has_what_it_needs(const Model& model, Owner of) {
+bool has_what_it_needs(const Model& model, Owner owner) {
     const auto steers = [&](bool by_angle) {
         const int joint = steering_joint(model);
         return joint >= 0 && drives_an_angle(model, joint) == by_angle;
     };
     const auto is_at = [&](Axle axle) { return model.vehicle && model.vehicle->axle == axle; };
-    switch (of) {
+    switch (owner) {
         case Owner::steered_wheel: return steering_joint(model) >= 0;
         case Owner::wheel_on_rack: return steers(false);
         case Owner::wheel_on_column: return steers(true);
@@ -52,12 +52,12 @@ bool has_what_it_needs(const Model& model, Owner of) {
         case Owner::wheel_without_axle: return !is_axle(model);
         case Owner::two_wheels: return model.wheels.size() == 2;
         case Owner::front_axle: return is_axle(model) && is_at(Axle::front);
-        default: return !model.wheels.empty() || of == Owner::spring || of == Owner::damper;
+        default: return !model.wheels.empty() || owner == Owner::spring || owner == Owner::damper;
     }
 }
 
-bool is_one(const Wheel& wheel, Owner of) {
-    switch (of) {
+bool is_one(const Wheel& wheel, Owner owner) {
+    switch (owner) {
         case Owner::rolling_wheel: return wheel.rolls();
         case Owner::wheel_with_fixed_patch: return !wheel.rolls();
         case Owner::wheel_with_steering_axis: return wheel.steering_axis.has_value();
@@ -77,21 +77,21 @@ std::vector<Channel> rates(const Model& model, bool on_request) {
 }
 
 const Entry* entry_of(const Channel& channel) {
-    const auto* of = std::get_if<Catalogued>(&channel.reads);
-    return of == nullptr ? nullptr : of->entry;
+    const auto* catalogued = std::get_if<Catalogued>(&channel.reads);
+    return catalogued == nullptr ? nullptr : catalogued->entry;
 }
 
 }  // namespace
 
 const std::vector<Entry>& catalogue() {
-    static const std::vector<Entry> all = whole_catalogue();
-    return all;
+    static const std::vector<Entry> entries = whole_catalogue();
+    return entries;
 }
 
-std::vector<Named> owners(const Model& model, Owner of) {
+std::vector<Named> owners(const Model& model, Owner owner) {
     std::vector<Named> list;
-    if (!has_what_it_needs(model, of)) return list;
-    switch (of) {
+    if (!has_what_it_needs(model, owner)) return list;
+    switch (owner) {
         case Owner::wheels:
         case Owner::two_wheels:
         case Owner::axle:
@@ -109,7 +109,7 @@ std::vector<Named> owners(const Model& model, Owner of) {
             break;
         default:
             for (std::size_t w = 0; w < model.wheels.size(); ++w)
-                if (is_one(model.wheels[w], of)) list.push_back({model.wheels[w].name, w});
+                if (is_one(model.wheels[w], owner)) list.push_back({model.wheels[w].name, w});
     }
     return list;
 }
@@ -126,21 +126,22 @@ Channel channel_of(const Model& model, const Entry& entry, const Named& owner) {
 }
 
 std::vector<const Entry*> definitions() {
-    std::vector<const Entry*> all;
+    std::vector<const Entry*> list;
     for (const bool of_states : {true, false})
         for (const Entry& entry : catalogue())
             if (entry.name.find('@') != entry.name.npos &&
                 (entry.kind != ChannelKind::characteristic) == of_states)
-                all.push_back(&entry);
-    return all;
+                list.push_back(&entry);
+    return list;
 }
 
 std::vector<DrawnFigure> drawn_over(Over over) {
     std::vector<std::pair<int, DrawnFigure>> placed;
     for (const Entry& entry : catalogue())
-        for (const Drawing& of : entry.is.drawn)
-            if (of.over == over)
-                placed.push_back({of.place, {entry.name, of.title, of.sign, of.shown}});
+        for (const Drawing& drawing : entry.is.drawn)
+            if (drawing.over == over)
+                placed.push_back(
+                    {drawing.place, {entry.name, drawing.title, drawing.sign, drawing.shown}});
     std::ranges::sort(placed, {}, &std::pair<int, DrawnFigure>::first);
     std::vector<DrawnFigure> list;
     for (auto& [place, quantity] : placed) list.push_back(std::move(quantity));

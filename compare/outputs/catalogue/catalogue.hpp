@@ -47,7 +47,7 @@ struct Named {
     std::string name;
     std::size_t k = 0;
 };
-std::vector<Named> owners(const Model& model, Owner of);
+std::vector<Named> owners(const Model& model, Owner owner);
 struct Entry;
 Channel channel_of(const Model& model, const Entry& entry, const Named& owner);
 

@@ -167,10 +167,10 @@ double inward(const Subject& x) { return -x.side(); }
 //
 //   f = -k (z + C f)      (1 + k C) f = -k z
 double steer_on_tyres(const Subject& x) {
-    const Motions* by = unheld(x, at_patch + 1);
+    const Motions* under_force = unheld(x, at_patch + 1);
     const auto& free = x.response->free;
     const std::size_t n = free.size();
-    if (by == nullptr || n > 2) return without_free(x);
+    if (under_force == nullptr || n > 2) return without_free(x);
     const auto rise = [&](const Motions& motions, std::size_t w) {
         return x.moved_by(motions, x.of(w).patch()).z();
     };
@@ -178,12 +178,13 @@ double steer_on_tyres(const Subject& x) {
     const auto entry = [&](std::size_t i, std::size_t j) {
         return double(i == j ? 1 : 0) + k(i) * rise(free[j][at_patch + 2], i);
     };
-    std::vector<std::pair<double, const Motions*>> weighted{{1, by}};
+    std::vector<std::pair<double, const Motions*>> weighted{{1, under_force}};
     const double determinant =
         n == 1 ? entry(0, 0) : entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0);
     for (std::size_t i = 0; i < n; ++i) {
-        double f = -k(i) * rise(*by, i);
-        if (n == 2) f = f * entry(1 - i, 1 - i) + k(1 - i) * rise(*by, 1 - i) * entry(i, 1 - i);
+        double f = -k(i) * rise(*under_force, i);
+        if (n == 2)
+            f = f * entry(1 - i, 1 - i) + k(1 - i) * rise(*under_force, 1 - i) * entry(i, 1 - i);
         weighted.emplace_back(f / determinant, &free[i][at_patch + 2]);
     }
     return inward(x) * x.toe(sum(weighted));

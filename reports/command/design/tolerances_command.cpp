@@ -28,15 +28,15 @@ struct TolerancesRequest : SceneRequest {
     int most = 5;
 };
 
-void add_correlation(const Cursor& entry, compare::ToleratedNumbers& all) {
+void add_correlation(const Cursor& entry, compare::ToleratedNumbers& tolerated) {
     const auto parts = entry.list(3, "two numbers of the file and their correlation");
     Index k[2];
     for (std::size_t i = 0; i < 2; ++i)
-        k[i] = static_cast<Index>(parts[i].one_of("a number with a tolerance", all.numbers));
+        k[i] = static_cast<Index>(parts[i].one_of("a number with a tolerance", tolerated.numbers));
     const double rho = parts[2].number();
     if (k[0] == k[1]) entry.fail("a number with itself");
     if (!(std::abs(rho) <= 1)) parts[2].fail(fmt::format("{:g}; allowed: -1 to 1", rho));
-    all.correlation(k[0], k[1]) = all.correlation(k[1], k[0]) = rho;
+    tolerated.correlation(k[0], k[1]) = tolerated.correlation(k[1], k[0]) = rho;
 }
 
 // reports/README.md, "Tolerances". Throws SceneError "file:line: field: ...".
@@ -46,57 +46,60 @@ compare::ToleratedNumbers read_tolerances(const std::string& file, const Scene& 
     const Cursor whole{&tree, "", &file, &ignored};
     std::vector<std::string> known;
     for (const Number& number : scene.numbers) known.push_back(number.path);
-    compare::ToleratedNumbers all;
-    for (const auto& [name, at] : whole.entries(Cursor::Keys::numbers)) {
+    compare::ToleratedNumbers tolerated;
+    for (const auto& [name, entry] : whole.entries(Cursor::Keys::numbers)) {
         if (name == "correlations") continue;
         if (!find_number(scene, name))
-            at.fail("the scene has no such number" + reader::did_you_mean(name, known, "numbers"));
-        at.only_keys({"normal", "uniform"});
-        const auto normal = at.optional("normal"), uniform = at.optional("uniform");
+            entry.fail("the scene has no such number" +
+                       reader::did_you_mean(name, known, "numbers"));
+        entry.only_keys({"normal", "uniform"});
+        const auto normal = entry.optional("normal"), uniform = entry.optional("uniform");
         if (normal.has_value() == uniform.has_value())
-            at.fail("allowed: one of {normal: {sd: ...}} and {uniform: {half_width: ...}}");
+            entry.fail("allowed: one of {normal: {sd: ...}} and {uniform: {half_width: ...}}");
         const char* field = normal ? "sd" : "half_width";
         (normal ? normal : uniform)->only_keys({field});
         const Cursor size = (normal ? normal : uniform)->require(field);
         const double value = size.number();
         if (!(value > 0)) size.fail(fmt::format("{:g}; allowed: more than zero", value));
-        all.numbers.push_back(name);
-        const auto n = std::ssize(all.numbers);
-        all.sd.conservativeResize(n), all.largest.conservativeResize(n);
-        all.sd[n - 1] = normal ? value : value / std::sqrt(3.0);
-        all.largest[n - 1] = normal ? 3 * value : value;
+        tolerated.numbers.push_back(name);
+        const auto n = std::ssize(tolerated.numbers);
+        tolerated.sd.conservativeResize(n), tolerated.largest.conservativeResize(n);
+        tolerated.sd[n - 1] = normal ? value : value / std::sqrt(3.0);
+        tolerated.largest[n - 1] = normal ? 3 * value : value;
     }
-    if (all.numbers.empty()) whole.fail("no tolerance; allowed: NUMBER: {normal: {sd: 0.5}}");
-    all.correlation = MatrixXd::Identity(all.sd.size(), all.sd.size());
+    if (tolerated.numbers.empty()) whole.fail("no tolerance; allowed: NUMBER: {normal: {sd: 0.5}}");
+    tolerated.correlation = MatrixXd::Identity(tolerated.sd.size(), tolerated.sd.size());
     if (const auto correlations = whole.optional("correlations")) {
-        for (const Cursor& entry : correlations->items()) add_correlation(entry, all);
-        if (!compare::is_correlation(all.correlation))
+        for (const Cursor& entry : correlations->items()) add_correlation(entry, tolerated);
+        if (!compare::is_correlation(tolerated.correlation))
             correlations->fail("contradict each other: their matrix has a negative eigenvalue");
     }
-    return all;
+    return tolerated;
 }
 
 // The requested figures; without a request the characteristics at the start of the first branch.
-std::vector<compare::Figure> requested_figures(std::vector<std::string> of, const Model& model) {
-    if (of.empty())
-        for (const auto& channel : compare::characteristics(model)) of.push_back(channel.name);
-    if (of.empty())
+std::vector<compare::Figure> requested_figures(std::vector<std::string> requested,
+                                               const Model& model) {
+    if (requested.empty())
+        for (const auto& channel : compare::characteristics(model))
+            requested.push_back(channel.name);
+    if (requested.empty())
         throw std::invalid_argument(
             "--of: a scene without a wheel has no characteristics; name outputs");
-    std::vector<compare::Figure> all;
-    for (const auto& word : of) try {
-            all.push_back(parse_figure(word, model));
+    std::vector<compare::Figure> figures;
+    for (const auto& word : requested) try {
+            figures.push_back(parse_figure(word, model));
         } catch (const std::invalid_argument& error) {
             throw std::invalid_argument(fmt::format("--of: {}", error.what()));
         }
-    return all;
+    return figures;
 }
 
 // Exit code 0: every figure has a scatter; 3: not every requested one.
 int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
-    compare::ToleratedScene all{read_tolerances(request.file, loaded.scene)};
-    compare::Varied varied = parse_varied(all.tolerances.numbers, loaded.scene);
+    compare::ToleratedScene tolerated{read_tolerances(request.file, loaded.scene)};
+    compare::Varied varied = parse_varied(tolerated.tolerances.numbers, loaded.scene);
     set_scene(varied, request.scene, request.settings);
     const auto figures = requested_figures(request.of, loaded.model);
     const compare::Figures solved =
@@ -106,16 +109,16 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
     for (std::size_t k = 0; k < figures.size(); ++k) {
         const auto i = static_cast<Index>(k);
         if (std::isfinite(nominal[i]) && gradient.row(i).allFinite()) {
-            all.figures.push_back(figures[k]);
-            all.nominal.push_back(nominal[i]);
-            all.scatter.push_back(compare::scatter(gradient.row(i), all.tolerances));
+            tolerated.figures.push_back(figures[k]);
+            tolerated.nominal.push_back(nominal[i]);
+            tolerated.scatter.push_back(compare::scatter(gradient.row(i), tolerated.tolerances));
         } else if (!request.of.empty()) {
-            all.missing.push_back(request.of[k] + ": " +
-                                  why_not_solved(varied, {&figures[k], 1}, varied.start));
+            tolerated.missing.push_back(request.of[k] + ": " +
+                                        why_not_solved(varied, {&figures[k], 1}, varied.start));
         }
     }
     return deliver_result(delivery, document_of(loaded, request.scene),
-                          result_of(all, delivery.as_json ? 0 : request.most));
+                          result_of(tolerated, delivery.as_json ? 0 : request.most));
 }
 
 }  // namespace

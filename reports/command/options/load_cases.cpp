@@ -98,22 +98,22 @@ std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::
             fail_at(file, line, "column 'case' is missing, with the name of each case");
     };
     const auto row = [&](const Cells& cells, int line) {
-        compare::LoadCase one;
+        compare::LoadCase load_case;
         for (std::size_t c = 0; c < columns.size(); ++c) {
             if (columns[c].is_name) {
-                one.name = cells[c];
+                load_case.name = cells[c];
                 continue;
             }
             const double value = number_in(cells[c], file, line, columns[c].heading);
             if (std::isnan(value)) continue;
-            one.inputs.push_back(columns[c].input);
-            one.inputs.back().value = columns[c].factor * value;
+            load_case.inputs.push_back(columns[c].input);
+            load_case.inputs.back().value = columns[c].factor * value;
         }
-        if (one.name.empty()) fail_at(file, line, "case: empty; allowed: a name");
-        if (std::ranges::find(cases, one.name, &compare::LoadCase::name) != cases.end())
+        if (load_case.name.empty()) fail_at(file, line, "case: empty; allowed: a name");
+        if (std::ranges::find(cases, load_case.name, &compare::LoadCase::name) != cases.end())
             fail_at(file, line,
-                    fmt::format("case: {} stands there twice", reader::quote(one.name)));
-        cases.push_back(std::move(one));
+                    fmt::format("case: {} stands there twice", reader::quote(load_case.name)));
+        cases.push_back(std::move(load_case));
     };
     read_sheet(csv, file, most_cases, head, row);
     return cases;
