@@ -50,36 +50,41 @@ std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
     return loads;
 }
 
-// Anderson's method (1965) for P = P + r(P): of all combinations of the corrections so far the one
-// with the least r. Springs and preloads bear a part of what settles; where that is large, as in the
-// soft motion of a subframe, P + r alone takes hundreds of corrections.
+// Anderson's method (1965) for r(P) = 0, P the preloads [N, N·m] and r the loads that the bushings
+// gain while the model settles. The columns of dP and dr are the changes of P and r from one
+// correction to the next:
+//
+//   P ← P + r - (dP + dr) γ,   γ minimises |r - dr γ|
+//
+// P + r alone takes hundreds of corrections where springs bear much of what the bushings lose, as
+// in the soft motion of a subframe.
 struct Corrections {
-    Eigen::VectorXd P, r;    // the last ones, all bushings of the model one after the other
-    Eigen::MatrixXd dP, dr;  // their changes, a column each
+    Eigen::VectorXd P, r;    // of the last correction, six rows per bushing
+    Eigen::MatrixXd dP, dr;  // a column per correction but the first
 };
 
-void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Corrections& of) {
+void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Corrections& history) {
     std::vector<Vector6*> preloads;
     for (Elastic& element : scene.elastics)
         if (loads.contains(element.name))
             preloads.push_back(&std::get<Bushing>(element.kind).preload);
     Eigen::VectorXd P(6 * std::ssize(preloads)), r(P.size());
-    Eigen::Index at = 0;
+    Eigen::Index row = 0;
     for (const Elastic& element : scene.elastics)
         if (const auto load = loads.find(element.name); load != loads.end()) {
-            P.segment<6>(at) = std::get<Bushing>(element.kind).preload;
-            r.segment<6>(at) = load->second;
-            at += 6;
+            P.segment<6>(row) = std::get<Bushing>(element.kind).preload;
+            r.segment<6>(row) = load->second;
+            row += 6;
         }
     Eigen::VectorXd next = P + r;
-    if (of.P.size() == P.size()) {
-        const Eigen::Index k = of.dP.cols();
-        of.dP.conservativeResize(P.size(), k + 1), of.dP.col(k) = P - of.P;
-        of.dr.conservativeResize(P.size(), k + 1), of.dr.col(k) = r - of.r;
-        next -= (of.dP + of.dr) * of.dr.colPivHouseholderQr().solve(r);
+    if (history.P.size() == P.size()) {
+        const Eigen::Index k = history.dP.cols();
+        history.dP.conservativeResize(P.size(), k + 1), history.dP.col(k) = P - history.P;
+        history.dr.conservativeResize(P.size(), k + 1), history.dr.col(k) = r - history.r;
+        next -= (history.dP + history.dr) * history.dr.colPivHouseholderQr().solve(r);
     }
-    of.P = P;
-    of.r = r;
+    history.P = P;
+    history.r = r;
     for (std::size_t k = 0; k < preloads.size(); ++k)
         *preloads[k] = next.segment<6>(6 * static_cast<Eigen::Index>(k));
 }
@@ -124,16 +129,16 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     Corrections corrections;
     for (int balances = 0; balances < max_balances; ++balances) {
         SettledTrim settled;
-        Trimmed found = trim_once(loaded, solver, false, &last, &settled);
-        if (!found.record->reached()) return {scene, found.record};
+        Trimmed trimmed = trim_once(loaded, solver, false, &last, &settled);
+        if (!trimmed.record->reached()) return {scene, trimmed.record};
         distance = farthest(settled);
         if (distance <= in_place) {
             if (start != nullptr) *start = last;
-            if (confirm) found = trim_once(loaded, solver, true, &last, nullptr);
-            if (!found.record->reached()) return {scene, found.record};
-            found.record->bushings = Trim::Bushings::balanced;
-            record_preloads(scene, found.scene, *found.record);
-            return found;
+            if (confirm) trimmed = trim_once(loaded, solver, true, &last, nullptr);
+            if (!trimmed.record->reached()) return {scene, trimmed.record};
+            trimmed.record->bushings = Trim::Bushings::balanced;
+            record_preloads(scene, trimmed.scene, *trimmed.record);
+            return trimmed;
         }
         correct(loaded, loads_of_bushings(settled), corrections);
     }

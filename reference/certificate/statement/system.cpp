@@ -35,7 +35,8 @@ bool resists_rotation(const SpatialLaw& law) {
         law);
 }
 
-// Whether the law is isotropic in two axes of the frame: k (d_i² + d_j²) / 2.
+// Whether the law is isotropic in two axes of the frame: k (d_i² + d_j²) / 2. Its undeformed
+// lengths and preloads along them must be zero. A driven free length acts along axis 2.
 bool is_round(const Bushing& bushing, const ElementPath& path, std::size_t i, std::size_t j) {
     const auto I = static_cast<Eigen::Index>(i), J = static_cast<Eigen::Index>(j);
     for (const std::size_t k : {i, j})
@@ -90,7 +91,8 @@ void for_corners(const Model& model, const Visit& visit) {
                 visit(SeparatedCorner{e, k});
 }
 
-// Origin and size of the model. The proof does not depend on them.
+// Origin c, the mean of all origins and attachment points, and size L, the largest distance of one
+// from c [m]. The proof does not depend on them.
 void set_size(System& system) {
     std::vector<Vector3d> points;
     const auto add = [&](BodyId body, const Vector3d& s_local) {
@@ -168,12 +170,12 @@ System make_system(const Model& model, const Branch& branch, Corners corners) {
 }
 
 std::vector<int> rows_of_joint(const System& system, int joint) {
-    std::vector<int> all;
+    std::vector<int> list;
     for (std::size_t c = 0; c < system.values.size(); ++c)
         if (system.model->constraints[c].joint == joint)
             for (int n = 0; n < rows(system.model->constraints[c].kind); ++n)
-                all.push_back(system.first_row[c] + n);
-    return all;
+                list.push_back(system.first_row[c] + n);
+    return list;
 }
 
 }  // namespace elastocheck::reference::certificate
