@@ -26,8 +26,8 @@ using Eigen::VectorXd;
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
 
-constexpr int most_shorter = 3;     // steps of an eighth
-constexpr double one_slope = 1e-3;  // difference of the slopes to both sides that is none
+constexpr int most_shorter = 3;     // how often h is divided by eight
+constexpr double one_slope = 1e-3;  // of the largest change by 2h: a smaller kink is none
 
 // Outputs of a model by their names: a figure of the catalogue is made alone; the list of all outputs
 // when another one is asked for, with the sums, which take an analysis, only where it has none.
@@ -133,7 +133,9 @@ struct OnBranch {
 struct Changes {
     VectorXd far_down, down, up, far_up;
 
-    // Of one side where the other has no value; zero within rounding.
+    // dy/dp [figure's unit / number's unit]. With both sides by figures.hpp, error O(h⁴). Where one
+    // side has no value, by the other alone: (4 Δy(h) - Δy(2h)) / 2h, error O(h²). Zero where y
+    // moves no more than its rounding.
     double rate(Index k, double h, double rounding) const {
         const double near = up[k] - down[k], far = far_up[k] - far_down[k];
         if (std::abs(near) <= rounding && std::abs(far) <= rounding) return 0;
@@ -145,7 +147,8 @@ struct Changes {
         const double largest = std::max(std::abs(far_up[k]), std::abs(far_down[k]));
         return std::isfinite(largest) ? largest : 0;
     }
-    // h^4 of smooth functions, in proportion to h where the slopes to both sides differ
+    // |2 (Δy(h) + Δy(-h)) - ½ (Δy(2h) + Δy(-2h))|: of smooth functions ½ h⁴ |d⁴y/dp⁴|, of
+    // slopes that differ by s to both sides h |s|
     double kink(Index k) const {
         return std::abs(2 * (up[k] + down[k]) - (far_up[k] + far_down[k]) / 2);
     }
@@ -202,13 +205,13 @@ MatrixXd Figures::gradient(const VectorXd& p) const {
         std::vector<Index> kinked;
         for (std::size_t k = 1; k < y.size(); k += 4) {
             const Index i = open[k / 4];
-            const Changes by{y[k] - here, y[k + 1] - here, y[k + 2] - here, y[k + 3] - here};
+            const Changes changes{y[k] - here, y[k + 1] - here, y[k + 2] - here, y[k + 3] - here};
             bool settled = true;
             for (Index j = 0; j < here.size(); ++j) {
-                if (pass == 0) size[j] = std::max(size[j], by.size(j));
+                if (pass == 0) size[j] = std::max(size[j], changes.size(j));
                 if (pass > 0 && !std::isnan(rate(j, i))) continue;
-                const bool kink = by.kink(j) > one_slope * share * size[j] + rounding[j];
-                rate(j, i) = kink ? nan : by.rate(j, share * step[i], rounding[j]);
+                const bool kink = changes.kink(j) > one_slope * share * size[j] + rounding[j];
+                rate(j, i) = kink ? nan : changes.rate(j, share * step[i], rounding[j]);
                 settled = settled && !kink;
             }
             if (!settled) kinked.push_back(i);

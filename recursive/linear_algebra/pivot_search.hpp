@@ -67,10 +67,10 @@ void search_all(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
     for (std::size_t j = 0; j < n; ++j) {
         search.row[j] = search.col[j] = static_cast<int>(j);
         for (int e = pattern.first[j]; e < pattern.first[j + 1]; ++e) {
-            const std::size_t at =
+            const std::size_t place =
                 static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(e)]) * n + j;
-            search.filled[at] = 1;
-            search.W[at] = values[e];
+            search.filled[place] = 1;
+            search.W[place] = values[e];
         }
     }
     // The remaining matrix is the block right of and below (k, k).

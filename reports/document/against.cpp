@@ -68,8 +68,8 @@ Line thinned(const Line& line) {
     Line few;
     const std::size_t count = std::min(line.a.size(), most);
     for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t at = count == 1 ? 0 : k * (line.a.size() - 1) / (count - 1);
-        few.a.push_back(line.a[at]), few.y.push_back(line.y[at]);
+        const std::size_t from = count == 1 ? 0 : k * (line.a.size() - 1) / (count - 1);
+        few.a.push_back(line.a[from]), few.y.push_back(line.y[from]);
     }
     return few;
 }
@@ -100,51 +100,52 @@ void add_figure(std::vector<Against::Figure>& figures, const SceneAnalyses& base
 // Adds a curve that differs, at the variant's parameters.
 void add_curve(std::vector<Against::Curve>& curves, const Channel& channel, const Line& was,
                const Line& is) {
-    double largest = 0, at = nan;
+    double largest = 0, place = nan;
     for (std::size_t k = 0; k < is.a.size(); ++k) {
         if (!compare::reaches(was.a, is.a[k])) continue;
         const double difference = is.y[k] - compare::interpolate(was.a, was.y, is.a[k], 6);
-        if (std::abs(difference) > std::abs(largest)) largest = difference, at = is.a[k];
+        if (std::abs(difference) > std::abs(largest)) largest = difference, place = is.a[k];
     }
     if (std::abs(largest) > 1e-9)
-        curves.push_back({channel.name, symbol(channel.unit), largest, at,
+        curves.push_back({channel.name, symbol(channel.unit), largest, place,
                           noticed(channel, 0, largest), thinned(was), thinned(is)});
 }
 
 }  // namespace
 
 Against differences(const SceneAnalyses& base, const SceneAnalyses& variant) {
-    Against found{variant.scene.name, variant.scene.source, variant.hash};
-    found.numbers = compare::changes(base.scene.numbers, variant.scene.numbers);
+    Against against{variant.scene.name, variant.scene.source, variant.hash};
+    against.numbers = compare::changes(base.scene.numbers, variant.scene.numbers);
     std::vector<Channel> common;
     for (const auto& channel : variant.comparison.channels)
         if (has(base, channel))
             common.push_back(channel);
         else
-            found.only_variant.push_back("output " + channel.name);
+            against.only_variant.push_back("output " + channel.name);
     for (const auto& channel : base.comparison.channels)
-        if (!has(variant, channel)) found.only_base.push_back("output " + channel.name);
+        if (!has(variant, channel)) against.only_base.push_back("output " + channel.name);
     for (const auto& channel : common)
         if (channel.kinematic() || channel.kind() == compare::ChannelKind::characteristic)
-            add_figure(found.figures, base, variant, channel);
+            add_figure(against.figures, base, variant, channel);
     // what an engineer notices first; what is undefined on one side before all
-    std::ranges::stable_sort(found.figures, std::greater{}, &Against::Figure::noticed);
+    std::ranges::stable_sort(against.figures, std::greater{}, &Against::Figure::noticed);
     for (const auto& branch : variant.comparison.branches) {
         const BranchComparison* same = find(base, branch);
         if (same == nullptr) {
-            found.only_variant.push_back("branch " + branch.branch);
+            against.only_variant.push_back("branch " + branch.branch);
             continue;
         }
         auto& both =
-            found.branches.emplace_back(Against::Branch{branch.branch, symbol(branch.unit), {}});
+            against.branches.emplace_back(Against::Branch{branch.branch, symbol(branch.unit), {}});
         for (const auto& channel : common)
             if (channel.main && channel.kinematic())
                 add_curve(both.curves, channel, line_of(base, *same, channel),
                           line_of(variant, branch, channel));
     }
     for (const auto& branch : base.comparison.branches)
-        if (find(variant, branch) == nullptr) found.only_base.push_back("branch " + branch.branch);
-    return found;
+        if (find(variant, branch) == nullptr)
+            against.only_base.push_back("branch " + branch.branch);
+    return against;
 }
 
 namespace {
