@@ -477,6 +477,8 @@ const Command import_command{
                            "with --as: part on which the damper stands: upright, lower, upper");
         command.add_option("--role", request->options.roles,
                            "with --as: the point of a role: tie_rod_inner=NAME");
+        command.add_flag("--both-wheels", request->options.both_wheels,
+                         "with --as: the other wheel too, as the mirror image, with roll");
         as_file(command.add_option("--rates", request->options.rates,
                                    "with --as: table of rates by role (.csv: role, x, y, z, rx, "
                                    "ry, rz): bushings there, and springs beside the dampers"));

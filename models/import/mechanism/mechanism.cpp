@@ -387,6 +387,58 @@ struct Maker {
         draft.branches.insert(draft.branches.begin(), {"travel", travel(both), {}});
         draft.title += fmt::format(", {}", reader::small_letters(entry(made, "title")->text));
         draft.mirror.reset();
+        if (options.both_wheels && both)
+            fail("--both-wheels", fmt::format("{} has both", options.as));
+        if (options.both_wheels) add_other_wheel();
+    }
+
+    // All but the rack and a bar gets the wheel's side before its name, and is mirrored.
+    void add_other_wheel() {
+        Entry& wheel = draft.wheels.front();
+        const bool left = wheel.fields.ends_with("side: left}");
+        const std::string side = left ? "left" : "right", of_side = side + "_";
+        std::set<std::string> names;
+        const std::vector<std::vector<Entry>*> lists{&draft.points.entries(), &draft.bodies,
+                                                     &draft.joints,           &draft.bushings,
+                                                     &draft.springs,          &draft.dampers};
+        for (const auto* list : lists)
+            for (const Entry& one : *list)
+                if (one.name != "rack" && one.name != "antiroll_bar") names.insert(one.name);
+        const auto renamed = [&](std::string_view fields) {
+            std::string text;
+            for (std::size_t n = 0; !fields.empty(); fields.remove_prefix(n)) {
+                for (n = 0; n < fields.size() && (reader::is_word(fields[n]) || fields[n] == '.');)
+                    ++n;
+                const std::string word(fields.substr(0, n));
+                const bool is_key = n < fields.size() && fields[n] == ':';
+                text += !is_key && names.contains(word) ? of_side + word : word;
+                if (n == 0) text += fields[n++];
+            }
+            return with(text, "at_wheel: true", "at_wheel: " + side);
+        };
+        for (auto* list : lists)
+            for (Entry& one : *list) {
+                if (one.name == "rack") one.fields = with(one.fields, "tie_rod_inner", "middle");
+                if (names.contains(one.name)) one.name = of_side + one.name;
+                one.fields = renamed(one.fields);
+            }
+        const auto rod = std::ranges::find(roles, "tie_rod_inner", &Role::name);
+        if (rod != roles.end() &&
+            std::ranges::find(draft.bodies, "rack", &Entry::name) != draft.bodies.end())
+            draft.points.add({rod->point->at.x(), 0, rod->point->at.z()}, "middle",
+                             {0, "of the rack"});
+        wheel = {side, renamed(wheel.fields), {}};
+        draft.mirror = left ? "left -> right" : "right -> left";
+        for (Entry& branch : draft.branches)
+            branch.fields =
+                with(with(branch.fields, "drive: travel", "drive: [left.travel, right.travel]"),
+                     "{travel: 0}", "{left.travel: 0, right.travel: 0}");
+        draft.branches.push_back(
+            {"opposite",
+             entry(*entry(*entry(mechanism_table("templates"), "live_axle"), "branches"),
+                   "opposite")
+                 ->text,
+             {}});
     }
 
     // Rigid links that leave an axle one motion couple its wheels: one of them is driven, and there is no roll.

@@ -157,7 +157,11 @@ struct AssettoReader {
         add_spring("spring", type.type == "STRUT"
                                  ? "bodies: [wheel, strut], from: strut_lower, to: strut_top"
                                  : "at_wheel: true");
-        warn("ARB", axle.name, " N/m between both wheels is not in the scene, which has one");
+        if (options.both_wheels)
+            add_bar();
+        else
+            warn("ARB", axle.name,
+                 " N/m between both wheels is not in the scene, which has one (--both-wheels)");
     }
 
     void add_spring(const std::string& name, const std::string& place) {
@@ -222,14 +226,18 @@ struct AssettoReader {
                                  name, computed(leaf / 1000)),
                      {of.value("LEAF_SPRING_LAT_K").line, "LEAF_SPRING_LAT_K"}});
         }
-        if (const auto bars = ini.find("ARB"); bars != ini.end()) {
-            const AssettoAxle bar{file, bars->first, bars->second};
-            if (const double k = bar.number_or(axle.name, 0); k != 0)
-                draft.springs.push_back(
-                    {"antiroll_bar",
-                     fmt::format("{{at_wheel: [left, right], rate: {}}}", computed(k / 1000)),
-                     {bar.value(axle.name).line, axle.name}});
-        }
+        add_bar();
+    }
+
+    void add_bar() {
+        const auto bars = ini.find("ARB");
+        if (bars == ini.end()) return;
+        const AssettoAxle bar{file, bars->first, bars->second};
+        if (const double k = bar.number_or(axle.name, 0); k != 0)
+            draft.springs.push_back(
+                {"antiroll_bar",
+                 fmt::format("{{at_wheel: [left, right], rate: {}}}", computed(k / 1000)),
+                 {bar.value(axle.name).line, axle.name}});
     }
 
     void warn_of_the_rest() {

@@ -70,6 +70,31 @@ TEST(Mechanism, MovesAsTheSceneWrittenByHand) {
     expect_same_motion(made_of("strut.csv", as("strut")), by_hand("mcpherson_rigid.yaml"));
 }
 
+TEST(Mechanism, HasTheOtherWheelAsAMirrorImage) {
+    for (const char* file : {"optimum_names.csv", "saved.shk"}) {
+        const bool left = std::string_view(file).ends_with("csv");
+        auto options = as("double_wishbone", left ? "x-forward,y-left" : "x-rearward,y-right");
+        if (left) options.pushrod = "lower";
+        const Scene one = made_of(file, options);
+        options.both_wheels = true;
+        const Scene two = made_of(file, options);
+        ASSERT_EQ(two.wheels.size(), 2u);
+        EXPECT_EQ(two.bodies.size(), 2 * one.bodies.size() - 1);  // one rack
+        for (const char* branch : {"travel", "steering"})
+            EXPECT_LT((wheel_at_end_of(one, branch).r - wheel_at_end_of(two, branch).r).norm(),
+                      1e-9)
+                << file << " " << branch;
+        EXPECT_LT((wheel_at_end_of(one, "travel").r -
+                   wheel_at_end_of(two, left ? "opposite" : "travel").r)
+                      .norm(),
+                  1e-9);
+    }
+    auto options = as("live_axle");
+    options.both_wheels = true;
+    EXPECT_TRUE(says(refusal_of(points_named("live_axle.csv"), "p.csv", options),
+                     "--both-wheels: live_axle has both"));
+}
+
 TEST(Mechanism, StandsOnARockerByAPushrod) {
     auto options = as("double_wishbone");
     options.pushrod = "lower";
@@ -182,9 +207,12 @@ TEST(Mechanism, OfAssettoCorsaHasSpringsAndBars) {
     EXPECT_TRUE(says(notes_of(front),
                      "Warning: line 9, FRONT: 12000 N/m between both wheels is not in the scene"));
     EXPECT_TRUE(says(notes_of(front), "PROGRESSIVE_SPRING_RATE: 100, at the wheel, is not"));
+    options.both_wheels = true;
+    const Scene pair = parse_scene(importer::import_text(text, "s.ini", options).yaml, "scene");
+    options.both_wheels = false;
     options.axle = "rear";
     const Scene axle = parse_scene(importer::import_text(text, "s.ini", options).yaml, "scene");
-    const Model model = compile(axle);
+    Model model = compile(pair);
     const auto forces = [&](const char* branch, const std::string& spring) {
         const auto found = std::ranges::find(model.branches, branch, &Branch::name);
         const auto sides = compare::sides_of(model, *found);
@@ -196,6 +224,8 @@ TEST(Mechanism, OfAssettoCorsaHasSpringsAndBars) {
         if (channel == channels.end()) return std::nan("");
         return compare::evaluate(model, *found, {&*channel, 1}, path.points.back()).at(0);
     };
+    EXPECT_NEAR(std::abs(forces("opposite", "antiroll_bar.elastic_force_z")), 720, 1e-6);
+    model = compile(axle);
     // 30 mm each way: the bar has 8 N/mm of 60 mm, and nothing in parallel travel
     EXPECT_NEAR(std::abs(forces("opposite", "antiroll_bar.elastic_force_z")), 480, 1e-6);
     EXPECT_NEAR(forces("travel", "antiroll_bar.elastic_force_z"), 0, 1e-6);
