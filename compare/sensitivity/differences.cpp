@@ -244,6 +244,20 @@ MatrixXd rounding_of(const Entries& entries, std::span<const Neighbouring> near)
     return rounding;
 }
 
+// Of these outputs alone.
+ReadSide with_rows(const ReadSide& of, const std::vector<Index>& rows) {
+    ReadSide some{of.side, {}};
+    for (const Index c : rows)
+        some.outputs.channels.push_back(of.outputs.channels[static_cast<std::size_t>(c)]);
+    some.outputs.placed = [&of, rows](const Model& on_side, const std::optional<Trim>& trim) {
+        const Outputs::Placed all = of.outputs.placed(on_side, trim);
+        Outputs::Placed placed{{}, all.from(rows)};
+        for (const Index c : rows) placed.reads.push_back(all.reads[static_cast<std::size_t>(c)]);
+        return placed;
+    };
+    return some;
+}
+
 // Shortens h where the entries of a number are not settled, then asks for the slopes to both sides.
 struct Refining {
     const ReadSide& of;
@@ -254,7 +268,8 @@ struct Refining {
     bool judges_kinks;
     Analyses& analyses;
 
-    Entries with(const Stencil* stencil, double h) const {
+    // Of the outputs `some`.
+    Entries with(const ReadSide& some, const Stencil* stencil, double h) const {
         Changing shorter = number;
         shorter.h = h;
         Compiled points;
@@ -262,15 +277,28 @@ struct Refining {
             points = compiled(shorter);
         else
             (void)compile_points(shorter, *stencil, h, points);
-        const Neighbouring near = on_side(points, of);
-        return differences(of, leg, state, {&near, 1}, analyses);
+        const Neighbouring near = on_side(points, some);
+        return differences(some, leg, state, {&near, 1}, analyses);
     }
-    // The largest error of the rows, in `settled`.
+    // The largest error that counts as settled.
+    double limit(Index c) const {
+        return settled * sizes[static_cast<std::size_t>(c)] / number.step;
+    }
+    // The rows whose error is larger, and those that cost little to read: all but characteristics.
+    std::vector<Index> unsettled(const VectorXd& check, bool and_cheap) const {
+        std::vector<Index> rows;
+        for (Index c = 0; c < check.size(); ++c)
+            if (const Channel& output = of.outputs.channels[static_cast<std::size_t>(c)];
+                std::abs(check[c]) > limit(c) ||
+                (and_cheap && output.kind() != ChannelKind::characteristic))
+                rows.push_back(c);
+        return rows;
+    }
+    // The largest error in `limit`.
     double worst(const VectorXd& check) const {
         double largest = 0;
         for (Index c = 0; c < check.size(); ++c)
-            largest = std::max(largest, std::abs(check[c]) * number.step /
-                                            (settled * sizes[static_cast<std::size_t>(c)]));
+            largest = std::max(largest, std::abs(check[c]) / limit(c));
         return largest;
     }
     void refine(Index column, Rates& rates, VectorXd check) const {
@@ -279,30 +307,35 @@ struct Refining {
         for (int shorter = 0; shorter < most_shorter && worst(check) > 1; ++shorter) {
             h /= 8;
             const double before = worst(check);
-            const Entries finer = with(nullptr, h);
-            for (Index c = 0; c < check.size(); ++c)
-                if (finer.check(c, 0) < check[c]) {
-                    rates.at(c, column) = finer.rate(c, 0), check[c] = finer.check(c, 0);
+            const auto rows = unsettled(check, true);
+            const Entries finer = with(with_rows(of, rows), nullptr, h);
+            for (std::size_t n = 0; n < rows.size(); ++n)
+                if (const auto at = static_cast<Index>(n); finer.check(at, 0) < check[rows[n]]) {
+                    const Index c = rows[n];
+                    rates.at(c, column) = finer.rate(at, 0), check[c] = finer.check(at, 0);
                     rates.rounding(c, column) = rounding[c] / h;
                 }
             if (worst(check) > before / 2) break;  // rounding, or a kink at the number itself
         }
-        if (worst(check) <= 1 || !judges_kinks) return;
-        const Entries up = with(&above, number.h / 8), down = with(&below, number.h / 8);
+        const auto rows = unsettled(check, false);
+        if (rows.empty() || !judges_kinks) return;
+        const ReadSide some = with_rows(of, rows);
+        const Entries up = with(some, &above, number.h / 8),
+                      down = with(some, &below, number.h / 8);
         if (!up.why.front().empty() || !down.why.front().empty())
             return;  // at the end of its range
-        for (Index c = 0; c < check.size(); ++c) {
-            const double rounded = 50 * rounding[c] / number.h;
-            const double size = settled * sizes[static_cast<std::size_t>(c)] / number.step;
-            if (std::abs(check[c]) <= size ||
-                std::abs(up.rate(c, 0) - down.rate(c, 0)) <= one_slope / settled * size + rounded)
-                continue;
+        for (std::size_t n = 0; n < rows.size(); ++n) {
+            const Index c = rows[n];
+            const double growing = up.rate(static_cast<Index>(n), 0),
+                         falling = down.rate(static_cast<Index>(n), 0),
+                         rounded = 50 * rounding[c] / number.h;
+            if (std::abs(growing - falling) <= one_slope / settled * limit(c) + rounded) continue;
             if (rates.one_sided.empty())
                 rates.one_sided = {MatrixXd::Constant(rates.at.rows(), rates.at.cols(), nan),
                                    MatrixXd::Constant(rates.at.rows(), rates.at.cols(), nan)};
             rates.at(c, column) = nan;
-            rates.one_sided.growing(c, column) = up.rate(c, 0);
-            rates.one_sided.falling(c, column) = down.rate(c, 0);
+            rates.one_sided.growing(c, column) = growing;
+            rates.one_sided.falling(c, column) = falling;
             rates.why[static_cast<std::size_t>(column)] =
                 "the derivative differs on both sides of this value";
         }
