@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <functional>
 #include <variant>
@@ -138,6 +139,45 @@ bool is_unresisted(const std::vector<std::array<Motions, causes>>& free) {
     return false;
 }
 
+// The responses of the jacked model by those of the free one, whose answers to forces F of the jacks have
+// to hold the heights z of the wheel centres: z - C F = travel. In the order of on_jacks below; none where
+// C is nearly singular. `all`: of the wrenches, `each` per wheel, and perhaps of the steering.
+std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& all,
+                                                  const Model& model, const Equilibrium& state,
+                                                  std::size_t each) {
+    constexpr double well_posed = 1e-4;
+    const std::size_t wheels = model.wheels.size();
+    if (wheels == 0) return {};
+    Eigen::MatrixXd z(wheels, all.size()), C(wheels, wheels);
+    for (std::size_t w = 0; w < wheels; ++w) {
+        const Placed centre = Subject{model, &state, w}.centre();
+        for (std::size_t k = 0; k < all.size(); ++k)
+            z(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(k)) =
+                Subject::moved_by(all[k], centre).z();
+    }
+    const auto lifted_at = [&](std::size_t w) { return each * w + at_centre + 2; };
+    for (std::size_t w = 0; w < wheels; ++w)
+        C.col(static_cast<Eigen::Index>(w)) = z.col(static_cast<Eigen::Index>(lifted_at(w)));
+    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(C);
+    if (!(lu.rcond() > well_posed)) return {};
+    const auto pushed = [&](Motions motions, const Eigen::VectorXd& F) {
+        for (std::size_t w = 0; w < wheels; ++w)
+            for (std::size_t b = 0; b < motions.size(); ++b) {
+                motions[b].dr += F[static_cast<Eigen::Index>(w)] * all[lifted_at(w)][b].dr;
+                motions[b].dpi += F[static_cast<Eigen::Index>(w)] * all[lifted_at(w)][b].dpi;
+            }
+        return motions;
+    };
+    std::vector<Motions> held;
+    for (std::size_t k = 0; k < all.size(); ++k)
+        held.push_back(pushed(all[k], lu.solve(-z.col(static_cast<Eigen::Index>(k)))));
+    const Eigen::MatrixXd lifts = lu.inverse();
+    for (std::size_t w = 0; w < wheels; ++w)
+        held.insert(held.begin() + static_cast<std::ptrdiff_t>(each * wheels + w),
+                    pushed(Motions(model.bodies.size()), lifts.col(static_cast<Eigen::Index>(w))));
+    return held;
+}
+
 std::string failure_text(const Response& response) {
     return std::string(name(response.outcome)) +
            (response.detail.empty() ? "" : ": " + response.detail);
@@ -170,12 +210,26 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     const ResponseCase freed_case = freed(side, state);
     // The references refine their answers, so that those at the patch of a wheel that does not roll
     // may be summed. The recursion does not: its sums would differ from its own answers by 1e-10.
-    const bool with_patches = solver.leg == Leg::recursive || solver.leg == Leg::series ||
-                              std::ranges::any_of(side.model.wheels, &Wheel::rolls);
+    const bool refines = solver.leg == Leg::equilibrium || solver.leg == Leg::energy,
+               with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);
     const auto wrenches = causes_at(side.model, state, with_patches);
+    const std::size_t first = freed_case.model.joints.size();
+    const bool steers =
+        steering >= 0 && freed_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
+    std::optional<std::vector<Motions>> held;  // by the same factorisation
     if (with_free) {
-        const Response free = linear_response(solver, freed_case.model, freed_case.branch,
-                                              freed_case.state, wrenches, analyses.free);
+        const auto answers_to = [&](std::span<const Disturbance> list) {
+            return linear_response(solver, freed_case.model, freed_case.branch, freed_case.state,
+                                   list, analyses.free);
+        };
+        std::vector<Disturbance> all = wrenches;
+        if (steers && refines) all.push_back(Motion{steering});
+        Response free = answers_to(all);
+        if (free.outcome == Outcome::converged && refines)
+            held =
+                held_by_jacks(free.increments, side.model, state, with_patches ? causes : at_patch);
+        else if (all.size() > wrenches.size())
+            free = answers_to(wrenches);
         if (free.outcome == Outcome::converged) {
             response.free = by_wheel(free.increments, side.model, state, with_patches);
         } else {
@@ -186,11 +240,8 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     }
     if (is_unresisted(response.free))
         response.free.clear(), response.why_not_free = "only rounding resists a motion",
-                               response.nothing_resists = true;
+                               response.nothing_resists = true, held.reset();
 
-    const std::size_t first = freed_case.model.joints.size();
-    const bool steers =
-        steering >= 0 && freed_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
     const auto on_jacks = [&](std::size_t count,
                               std::optional<recursive::ResponseAnalysis>& analysis) {
         const ResponseCase up = jacked_up(freed_case, count);
@@ -200,7 +251,8 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         if (steers) changes.push_back(Motion{steering});
         return linear_response(solver, up.model, up.branch, up.state, changes, analysis);
     };
-    Response jacked = on_jacks(wheels, analyses.jacked);
+    Response jacked = held ? Response{Outcome::converged, "", std::move(*held)}
+                           : on_jacks(wheels, analyses.jacked);
     if (jacked.outcome == Outcome::inconsistent_constraints && wheels > 1)
         if (Response one = on_jacks(1, analyses.tied); one.outcome == Outcome::converged) {
             jacked = std::move(one);

@@ -12,6 +12,8 @@
 //
 // A jack and a dead force at its point are both vertical and have the same geometric stiffness when
 // the wheel turns. The tangent therefore equals that of the branch except for the removed supports.
+// A leg that refines its answers gives those of the jacked model by the forces of the jacks on the
+// free one, from one factorisation; only where these forces are not determined is it solved itself.
 #pragma once
 
 #include <array>
