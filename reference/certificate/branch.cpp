@@ -231,39 +231,32 @@ VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>>
 struct RestAlong {
     std::vector<MatrixXd> rest;  // per k, the first sum
     MatrixXd Y;                  // Σ |Y_i|
-    std::vector<MatrixXd> M, R;
+    std::vector<Split> J;        // |M_j|, R_j
     double gamma = 0;
-    bool finite = true;
     VectorXd operator()(const VectorXd& r) const {
         VectorXd sum = VectorXd::Zero(r.size()), lost = sum;
         for (const MatrixXd& part : rest) sum += above(part, r);
-        for (std::size_t k = 0; k < M.size(); ++k) lost += above(R[k], r) + gamma * above(M[k], r);
+        for (const Split& part : J) lost += above(part.R, r) + gamma * above(part.M, r);
         return (sum + above(Y, lost)) * (1 + 1e-13);
     }
 };
-RestAlong rest_along(const std::vector<MatrixXd>& Y, const std::vector<std::vector<Interval>>& J) {
+RestAlong rest_along(const std::vector<MatrixXd>& Y, std::vector<Split> J) {
     const Index n = Y.front().rows();
     RestAlong result;
-    std::vector<MatrixXd> M;
-    for (const auto& part : J) {
-        const Contraction c = contraction(MatrixXd::Zero(n, n), part);  // for its middle and radius
-        result.finite = result.finite && c.finite;
-        if (!result.finite) return result;
-        result.M.push_back(c.M);
-        result.R.push_back(c.R);
-        result.gamma = std::max(result.gamma, c.gamma);
-        M.push_back(middle(part, n));
-    }
-    result.gamma *= 2;  // a coefficient is a sum of at most two products
     result.Y = MatrixXd::Zero(n, n);
     for (const MatrixXd& factor : Y) result.Y += factor.cwiseAbs();
-    for (std::size_t k = 0; k + 1 < Y.size() + M.size(); ++k) {
+    for (std::size_t k = 0; k + 1 < Y.size() + J.size(); ++k) {
         MatrixXd sum = MatrixXd::Zero(n, n);
         if (k == 0) sum.setIdentity();
         for (std::size_t i = 0; i < Y.size(); ++i)
-            if (k >= i && k - i < M.size()) sum -= Y[i] * M[k - i];
+            if (k >= i && k - i < J.size()) sum -= product(Y[i], J[k - i].M);
         result.rest.push_back(sum.cwiseAbs());
     }
+    for (Split& part : J) {
+        result.gamma = std::max(result.gamma, 2 * part.gamma);  // a coefficient is a sum of two products
+        part.M = part.M.cwiseAbs();
+    }
+    result.J = std::move(J);
     return result;
 }
 
@@ -329,17 +322,17 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
     if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
     // Range of the tube over which F' is evaluated.
     const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
-    const auto J = coefficients<J_order>([&](const Interval& S) {
-        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
-                        Slopes::yes)
-            .J;
-    });
-    for (const auto& part : J)
-        for (const Interval& entry : part)
-            if (!bounded(entry)) return false;
-    const std::vector<MatrixXd> Y{Y0, -Y0 * middle(J[1], problem.size()) * Y0};
-    const RestAlong rest = rest_along(Y, J);
-    if (!rest.finite) return false;
+    std::vector<Split> J;
+    for (const auto& part : coefficients<J_order>([&](const Interval& S) {
+             return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
+                             Slopes::yes)
+                 .J;
+         })) {
+        J.push_back(split(part, problem.size()));
+        if (!J.back().finite) return false;
+    }
+    const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
+    const RestAlong rest = rest_along(Y, std::move(J));
     piece.r = tube(step(Y, F, n).cwiseMax(joint), rest, room);
     return piece.r.size() > 0 && within(solver.system, piece.r, tolerance);
 }

@@ -1,6 +1,10 @@
 #include "reference/certificate/krawczyk.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace elastocheck::reference::certificate {
 namespace {
@@ -8,6 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;
 
 constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
@@ -26,34 +31,50 @@ double gamma(Index p) {
 }  // namespace
 
 VectorXd above(const MatrixXd& A, const VectorXd& x) { return raised(A * x, A.cols()); }
+VectorXd above(const SparseMatrix& A, const VectorXd& x) { return raised(A * x, A.cols()); }
 
 VectorXd Contraction::operator()(const VectorXd& r) const {
     return raised(above(rest, r) + above(Y, above(R, r)) + gamma * above(Y, above(M, r)), 4);
 }
 
+Split split(const std::vector<Interval>& J, Index n) {
+    Split of;
+    std::vector<Eigen::Triplet<double>> M, R;
+    std::vector<Index> entries(static_cast<std::size_t>(n));  // of each column
+    for (Index k = 0; k < n * n; ++k) {
+        const Interval& entry = J[static_cast<std::size_t>(k)];
+        if (is_zero(entry)) continue;
+        if (!bounded(entry)) return of;
+        M.emplace_back(k / n, k % n, mid(entry));
+        if (const double radius = rad(entry); radius > 0) R.emplace_back(k / n, k % n, radius);
+        ++entries[static_cast<std::size_t>(k % n)];
+    }
+    of.M.resize(n, n), of.R.resize(n, n);
+    of.M.setFromTriplets(M.begin(), M.end());
+    of.R.setFromTriplets(R.begin(), R.end());
+    of.gamma = gamma((n > 0 ? *std::ranges::max_element(entries) : 0) + 2);
+    of.finite = true;
+    return of;
+}
+
+MatrixXd product(const MatrixXd& Y, const SparseMatrix& M) {
+    MatrixXd sum = MatrixXd::Zero(Y.rows(), M.cols());
+    for (Index column = 0; column < M.cols(); ++column)
+        for (SparseMatrix::InnerIterator at(M, column); at; ++at)
+            sum.col(column) += Y.col(at.row()) * at.value();
+    return sum;
+}
+
 Contraction contraction(const MatrixXd& inverse, const std::vector<Interval>& J) {
     const Index n = inverse.rows();
     Contraction of;
-    of.M = of.R = MatrixXd::Zero(n, n);
-    MatrixXd product = MatrixXd::Zero(n, n);  // fl(Y M), over the entries of M, most are zero
-    Index most = 0;
-    for (Index col = 0; col < n; ++col) {
-        Index entries = 0;
-        for (Index row = 0; row < n; ++row) {
-            const Interval& entry = J[static_cast<std::size_t>(row * n + col)];
-            if (is_zero(entry)) continue;
-            if (!bounded(entry)) return of;
-            of.M(row, col) = mid(entry);
-            of.R(row, col) = rad(entry);
-            ++entries;
-            product.col(col) += inverse.col(row) * of.M(row, col);
-        }
-        most = std::max(most, entries);
-    }
-    of.rest = (MatrixXd::Identity(n, n) - product).cwiseAbs();
+    Split parts = split(J, n);
+    if (!parts.finite) return of;
+    of.rest = (MatrixXd::Identity(n, n) - product(inverse, parts.M)).cwiseAbs();
     of.Y = inverse.cwiseAbs();
-    of.M = of.M.cwiseAbs();
-    of.gamma = gamma(most + 2);
+    of.M = parts.M.cwiseAbs();
+    of.R = std::move(parts.R);
+    of.gamma = parts.gamma;
     of.finite = std::isfinite(of.rest.sum() + of.Y.sum() + of.R.sum());  // none is negative
     return of;
 }
@@ -63,7 +84,7 @@ VectorXd passing(const VectorXd& first, const Contraction& rest) {
     const Index n = first.size();
     const VectorXd covered = first.cwiseMax(least) * 1.05;
     const MatrixXd A =
-        MatrixXd::Identity(n, n) - rest.rest - rest.Y * (rest.R + rest.gamma * rest.M);
+        MatrixXd::Identity(n, n) - rest.rest - product(rest.Y, rest.R + rest.gamma * rest.M);
     const VectorXd r = Eigen::PartialPivLU<MatrixXd>(A).solve(covered);
     return r.allFinite() && all_less((first + rest(r.cwiseMax(0))) * (1 + 1e-14), r) ? r
                                                                                      : VectorXd();

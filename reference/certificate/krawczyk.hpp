@@ -15,6 +15,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "reference/certificate/interval/interval.hpp"
@@ -23,10 +24,22 @@ namespace elastocheck::reference::certificate {
 
 // Upper bound of A x, for A and x ≥ 0.
 Eigen::VectorXd above(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
+Eigen::VectorXd above(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& x);
+
+// F' = M ± R, where most entries are zero.
+struct Split {
+    Eigen::SparseMatrix<double> M, R;
+    double gamma = 0;  // of a product with M
+    bool finite = false;
+};
+// J by rows.
+Split split(const std::vector<Interval>& J, Eigen::Index n);
+// fl(Y M)
+Eigen::MatrixXd product(const Eigen::MatrixXd& Y, const Eigen::SparseMatrix<double>& M);
 
 struct Contraction {
-    Eigen::MatrixXd rest;     // |I - fl(Y M)|
-    Eigen::MatrixXd Y, M, R;  // |Y|, |M|, and the radii
+    Eigen::MatrixXd rest, Y;           // |I - fl(Y M)|, |Y|
+    Eigen::SparseMatrix<double> M, R;  // |M|, and the radii
     double gamma = 0;
     bool finite = false;
     // Upper bound of |I - Y F'| r.
