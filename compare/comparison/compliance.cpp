@@ -187,16 +187,18 @@ std::string failure_text(const Response& response) {
 
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
-                         std::optional<recursive::ResponseAnalysis>& analysis) {
+                         ResponseCache& cache) {
     const auto recursion = [&](const recursive::Method& method) {
-        if (!analysis) analysis.emplace(recursive::analyse(model));
-        return recursive::linear_response(model, branch, state, disturbances, method, *analysis);
+        if (!cache.recursion) cache.recursion.emplace(recursive::analyse(model));
+        return recursive::linear_response(model, branch, state, disturbances, method,
+                                          *cache.recursion);
     };
     switch (solver.leg) {
         case Leg::recursive: return recursion(solver.recursion.method);
         case Leg::series: return recursion(recursive::find_method("series").value());
         case Leg::equilibrium:
-            return reference::equilibrium::linear_response(model, branch, state, disturbances);
+            return reference::equilibrium::linear_response(model, branch, state, disturbances,
+                                                           &cache.equilibrium);
         case Leg::energy:
             return reference::energy::linear_response(model, branch, state, disturbances);
     }
@@ -242,14 +244,13 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         response.free.clear(), response.why_not_free = "only rounding resists a motion",
                                response.nothing_resists = true, held.reset();
 
-    const auto on_jacks = [&](std::size_t count,
-                              std::optional<recursive::ResponseAnalysis>& analysis) {
+    const auto on_jacks = [&](std::size_t count, ResponseCache& cache) {
         const ResponseCase up = jacked_up(freed_case, count);
         std::vector<Disturbance> changes = wrenches;
         for (std::size_t w = 0; w < count; ++w)
             changes.push_back(Motion{static_cast<int>(first + w)});
         if (steers) changes.push_back(Motion{steering});
-        return linear_response(solver, up.model, up.branch, up.state, changes, analysis);
+        return linear_response(solver, up.model, up.branch, up.state, changes, cache);
     };
     Response jacked = held ? Response{Outcome::converged, "", std::move(*held)}
                            : on_jacks(wheels, analyses.jacked);

@@ -17,6 +17,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,13 +28,21 @@
 #include "models/response.hpp"
 #include "recursive/linear_response.hpp"
 
+namespace elastocheck::reference::equilibrium {
+struct Orders;  // linear_response.hpp
+}
+
 namespace elastocheck::compare {
 
-// Cached analyses of the recursion for the response models of a branch side. They do not depend on
-// the state, but for the elimination orders, which are those of the last one: they change rounding.
+// What a leg keeps of the response models of a branch side, made on first use. It does not depend on the
+// state, but for the elimination orders, which are those of the last one: they change rounding.
+struct ResponseCache {
+    std::optional<recursive::ResponseAnalysis> recursion;
+    std::shared_ptr<const reference::equilibrium::Orders> equilibrium;
+};
 struct Analyses {
-    std::optional<recursive::ResponseAnalysis> free, jacked, tied;  // computed on first use
-    std::optional<std::vector<int>> dependent_rows;                 // of diagnosis.hpp, likewise
+    ResponseCache free, jacked, tied;
+    std::optional<std::vector<int>> dependent_rows;  // of diagnosis.hpp, likewise
 };
 
 // Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix
@@ -48,10 +58,10 @@ inline WheelResponse wheel_response(const BranchSide& side, const SolverSettings
     return wheel_response(side, solver, steering, state, analyses);
 }
 
-// Response by one leg. `analysis` is that of the recursion, computed here if empty.
+// Response by one leg.
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
-                         std::optional<recursive::ResponseAnalysis>& analysis);
+                         ResponseCache& cache);
 
 // ---- Compliance matrices.
 

@@ -253,7 +253,8 @@ RestAlong rest_along(const std::vector<MatrixXd>& Y, std::vector<Split> J) {
         result.rest.push_back(sum.cwiseAbs());
     }
     for (Split& part : J) {
-        result.gamma = std::max(result.gamma, 2 * part.gamma);  // a coefficient is a sum of two products
+        result.gamma =
+            std::max(result.gamma, 2 * part.gamma);  // a coefficient is a sum of two products
         part.M = part.M.cwiseAbs();
     }
     result.J = std::move(J);

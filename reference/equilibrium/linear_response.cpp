@@ -9,8 +9,8 @@
 namespace elastocheck::reference::equilibrium {
 namespace {
 
-// The disturbance as the only driver, of rate one and value zero at a.
-System disturbed(System system, const Disturbance& disturbance, double a) {
+// Drives the system, which has no driver, by the disturbance alone: of rate one and value zero at a.
+void disturb(System& system, const Disturbance& disturbance, double a) {
     const Model& model = *system.model;
     std::visit(
         overloaded{
@@ -29,7 +29,6 @@ System disturbed(System system, const Disturbance& disturbance, double a) {
                 value = {value.start - a, 1};
             }},
         disturbance);
-    return system;
 }
 
 std::string name_of(const Model& model, const Disturbance& disturbance) {
@@ -56,23 +55,29 @@ std::vector<Increment> increments_of(const System& system, const Eigen::VectorXd
 }  // namespace
 
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
-                         std::span<const Disturbance> disturbances) {
+                         std::span<const Disturbance> disturbances,
+                         std::shared_ptr<const Orders>* orders) {
     const double a = state.load;
     const auto fail = [&](Outcome outcome, const std::string& what) {
         return Response{outcome,
                         fmt::format("branch '{}', {}: {}", branch.name, parameter(branch, a), what),
                         {}};
     };
-    const StateTangent tangent = tangent_at(model, branch, state);
+    Orders known;
+    if (orders != nullptr && *orders) known = **orders;
+    const StateTangent tangent = tangent_at(model, branch, state, known);
+    if (orders != nullptr) *orders = std::make_shared<const Orders>(std::move(known));
     if (tangent.outcome != Outcome::converged) return fail(tangent.outcome, tangent.what);
-    const System& system = tangent.system;
+    System driven = tangent.system;
     Response response;
     for (const Disturbance& disturbance : disturbances) {
-        const Solved solved = solve_at_state(
-            tangent, rate_of(disturbed(system, disturbance, a), tangent.loading, tangent.x));
+        driven.values = tangent.system.values;
+        driven.loads.clear();  // static here
+        disturb(driven, disturbance, a);
+        const Solved solved = solve_at_state(tangent, rate_of(driven, tangent.loading, tangent.x));
         if (solved.outcome != Outcome::converged)
             return fail(solved.outcome, name_of(model, disturbance) + ": " + solved.what);
-        response.increments.push_back(increments_of(system, solved.dx));
+        response.increments.push_back(increments_of(tangent.system, solved.dx));
     }
     return response;
 }

@@ -1,6 +1,7 @@
 // Forward sensitivity of a state to small disturbances, by the Jacobian of the full equations.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "elastocheck/equilibrium.hpp"
@@ -23,7 +24,12 @@ namespace elastocheck::reference::equilibrium {
 // the range of ∂E/∂x; the detail names a body or joints. Throws std::invalid_argument as `solve`
 // does, and where a wrench acts on no body, a moved joint has no offset, or `state` does not have
 // one pose per body.
+//
+// `orders`: kept over states of models of one structure (models/structure.hpp), made where empty. They save
+// time and change no digit.
+struct Orders;
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
-                         std::span<const Disturbance> disturbances);
+                         std::span<const Disturbance> disturbances,
+                         std::shared_ptr<const Orders>* orders = nullptr);
 
 }  // namespace elastocheck::reference::equilibrium

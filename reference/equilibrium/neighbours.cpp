@@ -26,7 +26,8 @@ System in_scales_of(const System& of, const Model& model, double a) {
 std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& branch,
                                               const Equilibrium& state,
                                               std::span<const Neighbours> stencils) {
-    const StateTangent tangent = tangent_at(model, branch, state);
+    Orders none;
+    const StateTangent tangent = tangent_at(model, branch, state, none);
     if (tangent.outcome != Outcome::converged)
         return {stencils.size(), NeighbourStates{tangent.outcome, tangent.what, {}}};
     const Eigen::VectorXd here = residual(tangent.system, tangent.loading, tangent.x);

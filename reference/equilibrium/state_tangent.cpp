@@ -30,10 +30,12 @@ System stopped(System system, double a) {
 
 // Reactions of least imbalance: E is linear in them.
 void balance(const System& system, const Loading& loading, VectorXd& x, Derivatives& by,
-             Counts& counts) {
+             Orders& orders) {
+    Counts counts;
     const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
     if (n == 0 || m == 0 || !is_finite(by.J) || !by.E.allFinite()) return;
-    const VectorXd R = -least_squares(by.J.topRightCorner(n, m), by.E.head(n));
+    const VectorXd R =
+        -least_squares(by.J.topRightCorner(n, m), by.E.head(n), &orders.of_reactions);
     x.tail(m) += R;
     add_reactions(system, loading, x, R, by, counts);
 }
@@ -59,22 +61,25 @@ bool is_pushed(const Rate& rate, const VectorXd& E_rate, double rounding = 0) {
 
 }  // namespace
 
-StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state) {
+StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state,
+                        Orders& orders) {
     const double a = state.load;
     const System moving = make_system(model, branch, {&a, 1});
     if (state.poses.size() != model.bodies.size())
         throw std::invalid_argument("the state belongs to another model");
     StateTangent t{.system = stopped(moving, a), .loading = {.a = a, .a_rate = 1}};
+    t.system.pattern = orders.pattern;
     Counts unused;
     t.x = unknowns_at(t.system, state.poses);
     Derivatives by = derivatives(t.system, t.loading, t.x, unused);
-    balance(t.system, t.loading, t.x, by, unused);
+    orders.pattern = t.system.pattern;
+    balance(t.system, t.loading, t.x, by, orders);
     if (!t.x.allFinite() || !is_finite(by.J)) {
         t.outcome = Outcome::not_finite;
         t.what = "the equations give a number that is not finite";
         return t;
     }
-    t.at = linearise(std::move(by.J), nullptr, unused);
+    t.at = linearise(std::move(by.J), nullptr, unused, &orders.of_J);
     const VectorXd ahead = rate_of(moving, t.loading, t.x);
     if (t.system.equations() > 0 &&
         (t.at.bordered.sign() == 0 || is_pushed(solve_bordered_refined(t.at, ahead), ahead))) {

@@ -17,8 +17,15 @@ struct StateTangent {
     Outcome outcome = Outcome::converged;
     std::string what = {};
 };
+// Places of the terms in J, and the orders of elimination of J and of the system of its reactions: of the
+// last state of a model of this structure.
+struct Orders {
+    std::shared_ptr<const Pattern> pattern = {};
+    Factors of_J = {}, of_reactions = {};
+};
 // Throws std::invalid_argument where state, model and branch do not fit.
-StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state);
+StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state,
+                        Orders& orders);
 
 // J dx = -E_rate, with minimum-norm motion in the idle modes. `rounding`: of the entries of E_rate,
 // where that is more than their own last digits; a part outside the range of J that is smaller does

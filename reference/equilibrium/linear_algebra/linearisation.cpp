@@ -173,7 +173,7 @@ Factors bordered_like(const Linearisation& like, const Sparse& J) {
     return Factors(bordered_matrix(J, like.modes), &like.bordered);
 }
 
-Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
+Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts, Factors* order) {
     Linearisation result;
     result.J = std::move(J);
     if (result.J.rows() == 0 || !is_finite(result.J)) return result;
@@ -188,7 +188,8 @@ Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
     }
     // Most matrices are regular by their own factors, without equilibration. The estimate of their
     // condition counts as a factorisation.
-    result.bordered = Factors(result.J);
+    result.bordered = Factors(result.J, order);
+    if (order != nullptr) *order = result.bordered;
     counts.factorisations += 2;
     if (result.bordered.condition(result.J) < surely_regular) {
         result.modes = {Sparse(result.J.rows(), 0), Sparse(result.J.rows(), 0)};
@@ -231,7 +232,7 @@ Rate solve_bordered_refined(const Linearisation& linearisation, const VectorXd& 
 //
 // On the left: r is orthogonal to the columns of A, and x has no part in the null space. On the
 // right: x is in the row space of A, and the border takes the part of b outside the range of A.
-VectorXd least_squares(const Sparse& A, const VectorXd& b) {
+VectorXd least_squares(const Sparse& A, const VectorXd& b, Factors* order) {
     const bool tall = A.rows() >= A.cols();
     const Index first = std::max(A.rows(), A.cols()), size = A.rows() + A.cols();
     std::vector<Eigen::Triplet<double>> entries;
@@ -249,7 +250,7 @@ VectorXd least_squares(const Sparse& A, const VectorXd& b) {
     right.segment(tall ? 0 : first, b.size()) = -b;
     Counts counts;
     const VectorXd solution =
-        solve_bordered_refined(linearise(std::move(G), nullptr, counts), right).dx;
+        solve_bordered_refined(linearise(std::move(G), nullptr, counts, order), right).dx;
     return solution.segment(tall ? first : 0, A.cols());
 }
 

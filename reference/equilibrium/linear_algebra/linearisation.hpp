@@ -33,8 +33,10 @@ struct Linearisation {
 };
 
 // `before`: linearisation at the previous point of the branch, from which the modes are tracked;
-// nullptr at the first point.
-Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts);
+// nullptr at the first point. `order`: factors of a matrix of the same pattern, whose order is used
+// again; replaced by those of J.
+Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts,
+                        Factors* order = nullptr);
 
 // J bordered by the modes of `like`.
 Factors bordered_like(const Linearisation& like, const Sparse& J);
@@ -48,7 +50,7 @@ Rate solve_bordered(const Factors& bordered, const Eigen::VectorXd& E_rate);
 // With one step of iterative refinement, which recovers digits lost in the factors.
 Rate solve_bordered_refined(const Linearisation& at, const Eigen::VectorXd& E_rate);
 
-// Minimum-norm solution of the least-squares problem min |A x - b|.
-Eigen::VectorXd least_squares(const Sparse& A, const Eigen::VectorXd& b);
+// Minimum-norm solution of the least-squares problem min |A x - b|. `order`: likewise.
+Eigen::VectorXd least_squares(const Sparse& A, const Eigen::VectorXd& b, Factors* order = nullptr);
 
 }  // namespace elastocheck::reference::equilibrium

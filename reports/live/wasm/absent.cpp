@@ -24,7 +24,7 @@ Residuals residuals(const Model&, const Branch&, const Equilibrium&) {
     absent("the equilibrium leg");
 }
 Response linear_response(const Model&, const Branch&, const Equilibrium&,
-                         std::span<const Disturbance>) {
+                         std::span<const Disturbance>, std::shared_ptr<const Orders>*) {
     absent("the equilibrium leg");
 }
 }  // namespace reference::equilibrium
