@@ -48,6 +48,11 @@ VaryingScene varying(File file, std::vector<VariedNumber> numbers) {
             }};
 }
 
+// Of a branch's steps, which are whole.
+bool is_count(std::string_view path) {
+    return path.starts_with("branches.") && path.ends_with(".steps");
+}
+
 // The group of a number: "bushings.mount" of "bushings.mount.rates.y".
 std::string_view group(std::string_view path) {
     const auto dot = path.find('.');
@@ -150,7 +155,7 @@ VaryingScene varying(const std::filesystem::path& file, std::span<const Setting>
     const Scene scene = of.parsed->read(settings);
     for (const Number& number : scene.numbers) {
         numbers.push_back(varied_number(number));
-        chosen.push_back(!wanted || wanted(number.path));
+        chosen.push_back(wanted ? wanted(number.path) : !is_count(number.path));
         for (const auto& [side, value] : number.sides)
             if (const std::string path = number.path + "@" + side; wanted && wanted(path)) {
                 numbers.push_back(varied_number({path, value, number.unit, {}}));

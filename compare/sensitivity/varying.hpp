@@ -37,9 +37,10 @@ struct VaryingScene {
 // By these numbers. Throws SceneError for a path that is not in Scene::numbers.
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
                      std::span<const std::string> paths);
-// By the wanted of all numbers of the file, of both sides or of one, or all of both, in their order. Numbers that the file accepts only
-// together, such as the rates across the only axis of a bushing's frame, or the entries (1, 2) and
-// (2, 1) of a stiffness matrix, are one, at the place of the first.
+// By the wanted of all numbers of the file, of both sides or of one, or all of both but the counts of
+// steps of the branches, in their order. Numbers that the file accepts only together, such as the rates
+// across the only axis of a bushing's frame, or the entries (1, 2) and (2, 1) of a stiffness matrix, are
+// one, at the place of the first.
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings = {},
                      const std::function<bool(const std::string& path)>& wanted = {});
 

@@ -103,8 +103,10 @@ compare::Gradients gradients_of(const std::string& file, const Settings& setting
     std::set<std::string> wanted;
     for (const std::size_t k : matching("--to", "number", "numbers", names, request.to))
         wanted.insert(names[k]);
-    const auto varying = compare::varying(
-        file, settings, [&](const std::string& path) { return wanted.contains(path); });
+    std::function<bool(const std::string&)> is_wanted;  // none: all
+    if (!request.to.empty())
+        is_wanted = [&](const std::string& path) { return wanted.contains(path); };
+    const auto varying = compare::varying(file, settings, is_wanted);
     const auto branches = of_names("--branch", "branch", "branches", model.branches,
                                    request.branches, [](const Branch& b) { return b.name; });
     std::vector<std::string> of_branches;
