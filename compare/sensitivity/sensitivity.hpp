@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/result/result.hpp"
 #include "compare/sensitivity/differences.hpp"
 #include "compare/sensitivity/varying.hpp"
 #include "elastocheck/channels.hpp"
@@ -114,5 +115,9 @@ struct GradientGroup {
 std::vector<Gradients> gradients(const Scene& scene, const Trimmed& trimmed, const Model& model,
                                  const VaryingScene& varying,
                                  std::span<const GradientGroup> groups);
+
+// For every side and output the numbers with the largest effect, `most` of them (0: all), at the start
+// and the end of the side; and in tables for programs every derivative, by the equilibrium leg.
+Result result_of(const Gradients& all, int most);
 
 }  // namespace elastocheck::compare

@@ -7,11 +7,8 @@
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/command/program/command.hpp"
-#include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
-#include "reports/files/terminal.hpp"
 #include "reports/render/render.hpp"
-#include "reports/tables/studies/sensitivity.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -35,16 +32,10 @@ int sensitivity(const SensitivityRequest& request, const Delivery& delivery) {
     const compare::Gradients all = gradients_of(request.scene, request.settings, loaded, gradients,
                                                 [](const std::string& what) { progress(what); });
     progress("");
-    if (!request.csv.empty()) write_whole(request.csv, csv(sensitivity_table(all)), gradients_file);
-    delivery.print_text(sensitivity_text(all, request.most));
-    if (delivery.as_json) {
-        nlohmann::ordered_json document = {{"schema", sensitivity_schema},
-                                           {"reproduce", delivery.command},
-                                           {"provenance", provenance_json(provenance())}};
-        document.update(sensitivity_json(all));
-        print_document(document);
-    }
-    return all.conclusive() ? fine : could_not_judge;
+    const compare::Result result = result_of(all, request.most);
+    if (!request.csv.empty())
+        write_whole(request.csv, csv(whole_table(result, "derivatives")), gradients_file);
+    return deliver_result(delivery, document_of(loaded, request.scene), result);
 }
 
 }  // namespace

@@ -57,7 +57,8 @@ def test_sensitivity_is_that_of_the_command(scenes, command):
     said, _, _ = command("sensitivity", file, *options, "--json")
     document = json.loads(said)
     assert all(same(value, document[key]) for key, value in report.document.items() if key != "reproduce")
-    assert len(report.frame("derivatives")) == len(document["derivatives"]["rows"])
+    derivatives = document["scenes"][0]["results"][0]["tables"]["derivatives"]
+    assert len(report.frame("derivatives")) == len(derivatives["rows"])
 
 
 def test_fit_is_that_of_the_command(scenes, command, tmp_path):

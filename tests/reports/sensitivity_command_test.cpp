@@ -6,11 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/reports/command.hpp"
+#include "tests/reports/documents.hpp"
 
 namespace elastocheck {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 TEST(SensitivityCommand, ShowsWhatMovesAnOutputMostAndThatTheLegsAgree) {
     expect_says("sensitivity " + scenes + "/pinned_bar.yaml --of tip_z --to 'points.*' --points 2",
@@ -47,10 +48,12 @@ TEST(SensitivityCommand, WritesEveryDerivative) {
                                       "--json --csv " +
                                       file,
                                   0);
-    const json document = json::parse(said.out);
-    EXPECT_EQ(document["schema"], "elastocheck/sensitivity/1");
-    EXPECT_EQ(document["conclusive"], true);
-    EXPECT_EQ(document["derivatives"]["rows"].size(), 2 * 2 * 3);  // sides, stations, outputs
+    const json result = reports::result_in(json::parse(said.out)["scenes"][0], "sensitivity");
+    EXPECT_EQ(result["verdict"]["grade"], "pass");
+    EXPECT_EQ(result["tables"]["derivatives"]["rows"].size(),
+              2 * 2 * 3);  // sides, stations, outputs
+    EXPECT_EQ(result["tables"]["numbers"]["rows"][0][0], "points.tip.x");
+    EXPECT_EQ(result["tables"]["agreement"]["rows"].size(), 2 * 3);  // sides, legs
     EXPECT_TRUE(contains(text_of(file), "branch,parameter,unit,output,number,derivative,per"));
 }
 
@@ -69,7 +72,7 @@ TEST(SensitivityCommand, ShowsAndJudgesRoundingAsZero) {
                     "/double_wishbone.yaml --of toe --to points.tie_rod_inner.z --branch travel "
                     "--points 1 --csv " +
                     file,
-                0, {.out = {"points.tie_rod_inner.z         0      82  deg per m       0"}});
+                0, {.out = {"points.tie_rod_inner.z         0      82  deg per m      0"}});
     EXPECT_TRUE(contains(text_of(file), "travel to 80 mm,0,mm,toe,points.tie_rod_inner.z,0,"));
     expect_says("sensitivity " + scenes +
                     "/multi_link.yaml --of aligning_torque_steer --branch aligning --points 1",
@@ -77,15 +80,15 @@ TEST(SensitivityCommand, ShowsAndJudgesRoundingAsZero) {
 }
 
 TEST(SensitivityCommand, NamesEveryLegThatMakesItInconclusive) {
-    expect_says(
-        "sensitivity " + scenes +
-            "/two_spring_arch.yaml --of apex_z --branch down --set branches.down.to=-400",
-        3,
-        {.out = {"NOT CONCLUSIVE\n  down: equilibrium leg: limit point: ",
-                 "\n  down: energy leg: limit point: ", "\n  down: series leg: limit point: "}});
+    expect_says("sensitivity " + scenes +
+                    "/two_spring_arch.yaml --of apex_z --branch down --set branches.down.to=-400",
+                3,
+                {.out = {"inconclusive: down: equilibrium leg: limit point: ",
+                         "\ninconclusive: down: energy leg: limit point: ",
+                         "\ninconclusive: down: series leg: limit point: "}});
     expect_says(
         "sensitivity " + scenes + "/pinned_bar.yaml --of tip_z --to branches.up.steps --points 1",
-        3, {.out = {"NOT CONCLUSIVE\n  no derivative was compared"}});
+        3, {.out = {"inconclusive: no derivative was compared"}});
 }
 
 // Under a mirror a number of both sides moves an output by the sum of what each side moves it by.
@@ -98,7 +101,8 @@ TEST(SensitivityCommand, OfBothSidesIsTheSumOfEach) {
                         "points.lower_ball_left.y@right --branch roll --points 1 --json",
                     0);
     std::map<std::string, std::map<std::string, double>> rates;  // by output and place, by number
-    const json table = json::parse(said.out)["derivatives"];
+    const json table = reports::result_in(json::parse(said.out)["scenes"][0],
+                                          "sensitivity")["tables"]["derivatives"];
     std::map<std::string, std::size_t> column;
     for (std::size_t c = 0; c < table["columns"].size(); ++c)
         column[table["columns"][c]["name"]] = c;
@@ -123,6 +127,12 @@ TEST(SensitivityCommand, SaysWhyThereIsNoDerivative) {
     expect_says("sensitivity " + scenes +
                     "/pinned_bar.yaml --of tip_z --to branches.up.steps,points.tip.x --points 1",
                 0, {.out = {"no derivative: ", "branches.up.steps"}});
+}
+
+// Steps are counts: without --to they are no reason why a derivative is missing.
+TEST(SensitivityCommand, LeavesOutCountsThatAreNotAskedFor) {
+    expect_says("sensitivity " + scenes + "/pinned_bar.yaml --of tip_z --points 1 --most 0", 0,
+                {.out = {"points.tip.x"}, .not_out = {"steps", "no derivative"}});
 }
 
 }  // namespace
