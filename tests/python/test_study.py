@@ -384,7 +384,7 @@ def test_there_is_one_content_on_the_workers_of_a_cluster(here):
 def test_killed_at_any_moment_it_goes_on_to_the_same_content(here):
     whole = run(LINEAR, folder="whole", count=100_000 // 8).content
     moments, part, killed = random.Random(1), 0, 0
-    for turn in range(20):
+    for turn in range(21):  # twenty times by kill -9, once by Ctrl-C
         process = subprocess.Popen([sys.executable, "-m", "elastocheck.study", "study.yaml", "-o", "out", "--count", str(100_000 // 8), "--jobs",
                                     str(1 + turn % 2)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         before = os.path.exists("out/ledger.sqlite") and os.path.getsize("out/ledger.sqlite")
@@ -393,7 +393,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_content(here):
                 break
             time.sleep(0.01)
         time.sleep(moments.uniform(0, 0.1))
-        process.send_signal([signal.SIGKILL, signal.SIGKILL, signal.SIGINT][turn % 3])
+        process.send_signal(signal.SIGKILL if turn < 20 else signal.SIGINT)
         killed += process.wait() != 0
         part += 0 < sqlite3.connect("out/ledger.sqlite").execute("SELECT count(*) FROM variants").fetchone()[0] < 100_000 // 8
     assert killed > 1 and part > 0, "never killed in the middle"
@@ -459,7 +459,42 @@ def test_two_processes_do_not_write_one_ledger_and_no_link_is_followed(here):
             run(folder="linked", **options)
 
 
+MEMORY = """import resource, sys
+from elastocheck.study.file import Study
+from elastocheck.study.ledger import Ledger
+from elastocheck import study
+import numpy as np
+count = int(sys.argv[1])
+ledger = Ledger("ledger.sqlite", Study("study.yaml", count))
+heights = np.random.default_rng(1).normal(size=count)
+for first in range(0, count, 4096):
+    rows = [(k, "solved", "series", None, heights[k].item()) for k in range(first, min(first + 4096, count))]
+    ledger.add(rows, [row for row in rows if row[0] % 1024 == 0])
+study.run("study.yaml", ".", count, show=True, csv="rows.csv")
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+def test_a_row_of_a_ledger_needs_less_than_a_hundred_bytes_of_memory(here):
+    write(LINEAR.replace("seed: 3", "seed: 3, indices: true"))
+    kilobytes = []
+    for count in (4096, 400_000):
+        pathlib.Path("ledger.sqlite").unlink(missing_ok=True)
+        done = subprocess.run([sys.executable, "-c", MEMORY, str(count)], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        kilobytes.append(int(done.stdout))
+    assert kilobytes[1] - kilobytes[0] < 40_000 and kilobytes[1] < 200_000, kilobytes
+
+
 # ---- A damaged ledger.
+
+def test_zeros_with_a_sign_are_no_damage(here):
+    """Camber as drawn is -0: SQLite keeps 0."""
+    assert math.copysign(1, elastocheck.read("mcpherson.yaml").variants({"springs.K1_coil.rate": [3e4]}, "camber")[0][0, 0]) == -1
+    report, said = run(MCPHERSON.replace("toe: toe@jounce:3000", "toe: camber"), count=20), []
+    assert run(count=20, say=said.append).content == report.content and not any("computed" in line for line in said)
+    assert run(count=20, show=True).frame()["toe [deg]"].tolist() == [0] * 20
+
 
 @pytest.mark.parametrize("change, row", [
     ("variants SET f1 = f1 + 1e-12 WHERE k = 17", 17), ("variants SET reason = 'x' WHERE k = 17", 17),

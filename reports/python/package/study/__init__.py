@@ -15,7 +15,7 @@ import numpy as np
 
 from elastocheck._errors import ArgumentError, FileError
 from elastocheck.study.file import Study, scene_hash
-from elastocheck.study.ledger import OUTCOMES, Ledger, locked, with_checksum
+from elastocheck.study.ledger import OUTCOMES, Ledger, locked
 
 BATCH = 256  # variants that are solved and recorded together; the unit that shards divide
 
@@ -24,9 +24,10 @@ def _solved(solver, ks, numbers, witnesses):
     """Rows of the ledger of these variants, and of the witnesses among them (positions)."""
     tables = []
     for at, leg in [(range(len(ks)), "series"), (witnesses, "equilibrium")]:
-        rows = zip(at, *solver.solve(numbers[at], leg, 1)) if len(at) else ()
-        tables.append([with_checksum((ks[i], outcome, by, reason or None, *(None if v != v else v for v in values.tolist())))
-                       for i, values, outcome, by, reason in rows])
+        values, outcomes, legs, reasons = solver.solve(numbers[at], leg, 1)
+        # Where SQLite stores a number otherwise: none for nan, and zero has no sign.
+        stored = np.where(np.isnan(values), None, values + 0.0).tolist()
+        tables.append([(ks[i], outcome, by, reason or None, *row) for i, outcome, by, reason, row in zip(at, outcomes, legs, reasons, stored)])
     return tables
 
 
@@ -139,8 +140,8 @@ class Report:
 
     def frame(self):
         """A pandas.DataFrame with a row for each variant: its number, outcome, reason, variables, figures."""
-        from elastocheck.study.output import frame
-        return frame(self)
+        from elastocheck.study.output import frames
+        return next(frames(self, at_once=self.study.count))
 
 
 def _shard(words):

@@ -4,20 +4,15 @@ import warnings
 import numpy as np
 
 _BITS = 53
-_DRAWN = 256  # points that a generator of a Monte Carlo design draws
 
 
 def _marginal(variable):
     from scipy import stats
-    n = variable.numbers
-    if variable.kind == "normal":
-        return stats.norm(*n)
-    if variable.kind == "uniform":
-        return stats.uniform(n[0], n[1] - n[0])
-    if variable.kind == "triangular":
-        return stats.triang((n[1] - n[0]) / (n[2] - n[0]), n[0], n[2] - n[0])
-    mean, sd, low, high = n
-    return stats.truncnorm((low - mean) / sd, (high - mean) / sd, mean, sd)
+    return {"normal": stats.norm,
+            "uniform": lambda low, high: stats.uniform(low, high - low),
+            "triangular": lambda low, mode, high: stats.triang((mode - low) / (high - low), low, high - low),
+            "truncated_normal": lambda mean, sd, low, high: stats.truncnorm((low - mean) / sd, (high - mean) / sd, mean, sd),
+            }[variable.kind](*variable.numbers)
 
 
 class Design:
@@ -69,9 +64,8 @@ class Design:
         if self.study.kind == "latin_hypercube":
             return self.cube[first:end]
         if self.study.kind == "monte_carlo":
-            parts = [np.random.default_rng([self.study.seed, b]).random((_DRAWN, self.dimension))
-                     for b in range(first // _DRAWN, (end - 1) // _DRAWN + 1)]
-            return np.concatenate(parts)[first % _DRAWN:][:end - first]
+            numbers = np.random.PCG64(self.study.seed).advance(first * self.dimension)
+            return np.random.Generator(numbers).random((end - first, self.dimension))
         if first < self.sobol.num_generated:
             self.sobol.reset()
         with warnings.catch_warnings():  # that a number of points is not a power of 2

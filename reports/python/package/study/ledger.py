@@ -7,41 +7,27 @@ ledger without the rows of its open transaction.
 import contextlib
 import fcntl
 import hashlib
-import math
+import marshal
 import os
 import sqlite3
-import struct
 
 import numpy as np
 
 from elastocheck._errors import FileError
 
-FORMAT = "elastocheck/ledger/3"
+FORMAT = "elastocheck/ledger/4"
 OUTCOMES = ["solved", "no scene", "not trimmed", "ended early", "no value"]
 TABLES = ("variants", "witnesses")
 
 
-def packed(row):
-    """The content of a row (k, outcome, method, reason, figures...) as bytes."""
-    k, outcome, method, reason, *values = row
-    words = f"{k}\0{outcome}\0{method}\0{reason or ''}\0".encode()
-    return words + struct.pack(f"<{len(values)}d", *[math.nan if x is None else x for x in values])
-
-
-def _checksum(content):
+def checksum(row):
+    """Of the content of a row (k, outcome, method, reason, figures...), its types included."""
+    content = marshal.dumps(row, 2)  # the last version in which equal values have equal bytes
     return int.from_bytes(hashlib.blake2b(content, digest_size=8).digest(), "little", signed=True)
 
 
-def with_checksum(row):
-    return (*row, _checksum(packed(row)))
-
-
 def _is_intact(row):
-    """Whether a row has the types of its columns and the content of its checksum."""
-    k, outcome, method, reason, *values, checksum = row
-    types = [type(k), type(outcome), type(method), type(checksum)] == [int, str, str, int]
-    return (types and isinstance(reason, (str, type(None))) and all(isinstance(x, (float, type(None))) for x in values)
-            and _checksum(packed(row[:-1])) == checksum)
+    return checksum(row[:-1]) == row[-1]
 
 
 @contextlib.contextmanager
@@ -146,10 +132,10 @@ class Ledger:
                                 f"another {what} needs another folder")
 
     def add(self, variants, witnesses):
-        """In one transaction."""
+        """Rows without checksums, in one transaction."""
         with self.transaction():
-            self._insert("variants", variants)
-            self._insert("witnesses", witnesses)
+            self._insert("variants", [(*row, checksum(row)) for row in variants])
+            self._insert("witnesses", [(*row, checksum(row)) for row in witnesses])
 
     def _insert(self, table, rows):
         self.base.executemany(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * (self.figures + 5))})", rows)
@@ -170,21 +156,24 @@ class Ledger:
     def present(self, count):
         """Whether each variant below `count` has a row."""
         has = np.zeros(count, bool)
-        for k, in self.base.execute("SELECT k FROM variants WHERE k < ?", (count,)):
-            has[k] = True
+        has[self._columns("SELECT k FROM variants WHERE k < ?", "i8", count)["f0"]] = True
         return has
 
     def values(self, j, count, table="variants"):
         """Of one figure, by variant; nan where there is none."""
-        values = np.full(count, np.nan)
-        for k, x in self.base.execute(f"SELECT k, f{j + 1} FROM {table} WHERE k < ?", (count,)):
-            values[k] = np.nan if x is None else x
+        values, f = np.full(count, np.nan), f"f{j + 1}"
+        there = self._columns(f"SELECT k, {f} FROM {table} WHERE k < ? AND {f} IS NOT NULL", "i8,f8", count)
+        values[there["f0"]] = there["f1"]
         return values
 
     def content_hash(self, count):
-        """Of all rows of variants below `count`: equal for equal content."""
+        """Of the checksums of all rows of variants below `count`: equal for equal content."""
         content = hashlib.blake2b(digest_size=8)
         for table in TABLES:
-            for row in self.each(table, end=count):
-                content.update(packed(row[:-1]))
+            content.update(self._columns(f"SELECT checksum FROM {table} WHERE k < ? ORDER BY k", "i8", count).tobytes())
         return content.hexdigest()
+
+    def _columns(self, sql, types, *values):
+        """Of numbers, f0, f1, ... of a structured array."""
+        with self.failing():
+            return np.fromiter(self.base.execute(sql, values), np.dtype([(f"f{j}", t) for j, t in enumerate(types.split(","))]))

@@ -174,33 +174,44 @@ def write(report, folder):
 
 # ---- All rows.
 
-def frame(report):
-    """A pandas.DataFrame with a row for each variant: its number, outcome, reason, variables, figures."""
+def frames(report, at_once):
+    """pandas.DataFrames with a row for each variant: its number, outcome, reason, variables, figures."""
     import pandas
-    study = report.study
-    rows = list(report.ledger.each("variants", end=study.count))
-    k = np.array([row[0] for row in rows], int)
-    head = pandas.DataFrame({"variant": k, "outcome": [row[1] for row in rows], "reason": [row[3] or "" for row in rows]})
-    drawn = pandas.DataFrame(Design(study).values(0, study.count)[k], columns=map(heading, study.variables))
-    figures = pandas.DataFrame([row[4:-1] for row in rows], columns=map(heading, study.figures), dtype=float)
-    return pandas.concat([head, drawn, figures], axis=1)
+    study, design = report.study, Design(report.study)
+    for first in range(0, study.count, at_once):
+        end = min(first + at_once, study.count)
+        rows = list(report.ledger.each("variants", first, end))
+        k = np.array([row[0] for row in rows], int)
+        head = pandas.DataFrame({"variant": k, "outcome": [row[1] for row in rows], "reason": [row[3] or "" for row in rows]})
+        drawn = pandas.DataFrame(design.values(first, end)[k - first], columns=map(heading, study.variables))
+        figures = pandas.DataFrame([row[4:-1] for row in rows], columns=map(heading, study.figures), dtype=float)
+        yield pandas.concat([head, drawn, figures], axis=1)
 
 
-def _write_hdf5(table, file):
+def _write_hdf5(tables, file):
     """A data set for each column; a "/" in its name is a "|"."""
     import h5py
     with h5py.File(file, "w") as out:
-        for name, column in table.items():
-            values = column.to_numpy()
-            out.create_dataset(name.replace("/", "|"), data=values, dtype=h5py.string_dtype() if values.dtype == object else None)
+        for table in tables:
+            for name, column in table.items():
+                values, name = column.to_numpy(), name.replace("/", "|")
+                kind = h5py.string_dtype() if values.dtype == object else values.dtype
+                data = out[name] if name in out else out.create_dataset(name, (0,), kind, maxshape=(None,))
+                data.resize(len(data) + len(values), axis=0)
+                data[len(data) - len(values):] = values
 
 
 def write_rows(report, file, kind):
     """As "csv" or "hdf5"; the file is replaced when it is complete."""
     _core.check_may_write(file, *KINDS[kind])
     try:
-        table = frame(report)
-        table.to_csv(file + ".part", index=False) if kind == "csv" else _write_hdf5(table, file + ".part")
+        tables = frames(report, at_once=16384)
+        if kind == "hdf5":
+            _write_hdf5(tables, file + ".part")
+        else:
+            with open(file + ".part", "w", newline="") as out:
+                for j, table in enumerate(tables):
+                    table.to_csv(out, index=False, header=not j)
         os.replace(file + ".part", file)
     finally:
         with contextlib.suppress(FileNotFoundError):
