@@ -75,13 +75,19 @@ const Command study_command{
                         "number of variants, instead of that in the file; more than before "
                         "extends the study")
             ->check(CLI::Range(1, 1'000'000'000));
-        command.add_option("--shard", "compute part K of N, into ledger-K-of-N.sqlite")
+        command
+            .add_option("--shard",
+                        "compute part K of N, into ledger-K-of-N.sqlite: a job of an array, as "
+                        "models/studies/study.sbatch submits it to Slurm")
             ->type_name("K/N");
         as_folder(
             command.add_option("--merge",
                                "add the rows of all shards in these folders, and compute nothing"))
             ->expected(1, -1);
-        command.add_option("--scheduler", "compute on the workers of a dask cluster")
+        command
+            .add_option("--scheduler",
+                        "compute on the workers of a dask cluster (`./dev study` installs "
+                        "python3-distributed)")
             ->type_name("tcp://HOST:8786");
         command.add_flag("--show")->description(
             "compute nothing, write nothing: show what there is");
