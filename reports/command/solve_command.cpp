@@ -1,4 +1,6 @@
 // `elastocheck solve`: solves one scene by one leg or method and writes its curves as CSV.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -23,6 +25,7 @@
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/given/state_file.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/csv.hpp"
 
 namespace elastocheck::reports {
@@ -102,15 +105,18 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
     const auto write = [&](const std::string& lines) {
         csv ? csv->add(lines) : delivery.print_text(lines);
     };
-    std::vector<compare::PathCurve> kept;  // only for the document
+    std::vector<compare::BranchComparison> kept;  // of this leg alone, for the document
+    compare::Result result{.analysis = "solve",
+                           .verdict = {.grade = compare::Grade::pass, .requested = false}};
     write(curves_header(channels));
     std::vector<bool> is_undefined(channels.size(), false);
-    int code = fine;
-    const std::string who =
-        leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
+    compare::LegRun whole;
+    whole.leg = leg;
+    if (leg == compare::Leg::recursive) whole.method = how.method.name;
+    const std::string who = whole.method.empty() ? name(leg) : whole.method;
     for (const auto& branch : model.branches) {
         if (csv) progress(branch.name);
-        compare::PathCurve whole;
+        whole.curve = {}, whole.constraint_error = {};
         whole.curve.unit = compare::unit_of(branch.unit);
         const SolvedBranch solved = solve_branch(
             model, branch, channels, solver,
@@ -130,7 +136,8 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         if (csv) progress("");
         if (delivery.as_json) {
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
-            kept.push_back(std::move(whole));
+            compare::BranchComparison& alone = kept.emplace_back();
+            alone.branch = branch.name, alone.runs = {whole};
         }
         for (const auto& event : compare::lift_offs(
                  model, branch, leg == compare::Leg::recursive ? compare::Leg::series : leg))
@@ -138,10 +145,12 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         for (const auto& [side, state] : solved.ends)
             print_error("{}: {}: {}\n", who, branch.name, error_at_end(model, side, state));
         if (path.outcome == Outcome::converged) continue;
+        result.verdict.grade = compare::Grade::not_judged;
+        result.verdict.reasons.push_back(
+            fmt::format("{}: {}: {}", branch.name, name(path.outcome), path.detail));
         const std::string& motion = solved.softest_motion;
         print_error("{}: {}: {}{}\n", who, name(path.outcome), path.detail,
                     motion.empty() ? "" : "; the softest motion before it is " + motion);
-        code = could_not_judge;
     }
     if (const auto why =
             compare::not_determined(channels, [&](std::size_t c) { return bool(is_undefined[c]); });
@@ -154,11 +163,14 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         print_error("{}: not written: no state was reached\n", request.states);
     if (delivery.as_json) {
         nlohmann::ordered_json part = document_of(loaded, request.scene);
-        add_curves(part, model, channels, leg,
-                   leg == compare::Leg::recursive ? std::string(how.method.name) : "", kept);
+        add_curves(part, model, channels, kept);
+        result.tables = {with_columns(compare::leg_table(kept),
+                                      {"branch", "leg", "outcome", "detail", "points",
+                                       "factorisations", "iterations", "evaluations"})};
+        part["results"] = nlohmann::ordered_json::array({json_of(result)});
         deliver({.as_json = true, .command = delivery.command}, std::move(part), {});
     }
-    return code;
+    return exit_code_of(result.verdict.grade);
 }
 
 }  // namespace

@@ -33,24 +33,17 @@ std::string curves_csv(
     return csv;
 }
 
-namespace {
-
-struct SceneForce {
-    std::string scene{};
-    compare::ForceRow force{};
-};
-void describe(auto& field, compare::Described<SceneForce> auto& r) {
-    field("scene", r.scene);
-    describe(field, r.force);
-}
-
-}  // namespace
-
 std::string forces_csv(const std::vector<SceneAnalyses>& scenes) {
-    std::vector<SceneForce> all;
-    for (const auto& scene : scenes)
-        for (const auto& row : force_rows(scene.model, scene.comparison))
-            all.push_back({scene.scene.name, row});
+    compare::Table all;
+    for (const auto& scene : scenes) {
+        compare::Table one = table_of(force_rows(scene.model, scene.comparison));
+        all.columns = std::move(one.columns);
+        for (auto& row : one.rows) {
+            row.insert(row.begin(), scene.scene.name);
+            all.rows.push_back(std::move(row));
+        }
+    }
+    all.columns.insert(all.columns.begin(), {.name = "scene", .words = true});
     return csv(all);
 }
 

@@ -1,7 +1,6 @@
 #include "reports/document/document.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "compare/comparison/elements.hpp"
 #include "compare/deviation/agreement.hpp"
@@ -54,13 +53,6 @@ json model_json(const Model& model, const recursive::Diagnosis& d,
             {"condition_raw", condition.raw}};
 }
 
-json residuals_json(const Residuals& r) {
-    return {{"constraint_mm", 1e3 * r.length},
-            {"constraint_direction", r.direction},
-            {"force_N", r.force},
-            {"moment_Nm", r.moment}};
-}
-
 // Moved and held drivers of a branch.
 json drivers_json(const Model& model, const Branch& branch) {
     json moved = json::array(), held = json::array();
@@ -99,51 +91,23 @@ json numbers_json(const Scene& scene) {
     return numbers;
 }
 
-json counts_json(const Counts& counts) {
-    return {{"factorisations", counts.factorisations},
-            {"iterations", counts.iterations},
-            {"evaluations", counts.evaluations}};
-}
-
-json curve_json(const compare::Curve& curve, const std::vector<double>& constraint_error,
-                const std::vector<compare::Channel>& channels) {
-    json values = json::object();
-    for (std::size_t c = 0; c < channels.size(); ++c) values[channels[c].name] = curve.channel(c);
-    return {{"a", curve.a}, {"constraint_error", constraint_error}, {"values", values}};
-}
-
-json proof_json(const compare::Tally& tally) {
-    const bool any = tally.proved > 0;
-    const auto number = [&](double value) {
-        return any && std::isfinite(value) ? json(value) : json(nullptr);
-    };
-    constexpr double degrees = 180 / std::numbers::pi;
-    return {{"points", tally.points},
-            {"proved", tally.proved},
-            {"excluded", tally.excluded},
-            {"stable", tally.stable},
-            {"off_at_most_mm", number(1e3 * tally.error.length)},
-            {"off_at_most_deg", number(degrees * tally.error.angle)},
-            {"off_at_most_N", number(tally.error.force)},
-            {"off_at_most_Nm", number(tally.error.moment)},
-            {"alone_within_mm", number(1e3 * tally.unique.length)},
-            {"not_proved", tally.not_proved},
-            {"says_also", tally.theorem}};
-}
-
-json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& channels) {
-    json judged = json::object();
-    for (const Leg by : compare::legs)
-        judged[name(by)] = residuals_json(run.judged[static_cast<std::size_t>(by)]);
-    return {{"leg", name(run.leg)},
-            {"method", run.method},
-            {"outcome", elastocheck::name(run.outcome)},
-            {"detail", run.detail},
-            {"counts", counts_json(run.counts)},
-            {"seconds", run.seconds},
-            {"residuals_by", judged},
-            {"proof", run.proved.points > 0 ? proof_json(run.proved) : json(nullptr)},
-            {"curve", curve_json(run.curve, run.constraint_error, channels)}};
+json legs_json(const std::vector<compare::LegRun>& runs,
+               const std::vector<compare::Channel>& channels) {
+    json legs = json::array();
+    for (const compare::LegRun& run : runs) {
+        json values = json::object();
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            values[channels[c].name] = run.curve.channel(c);
+        legs.push_back({{"leg", name(run.leg)},
+                        {"method", run.method},
+                        {"outcome", elastocheck::name(run.outcome)},
+                        {"detail", run.detail},
+                        {"curve",
+                         {{"a", run.curve.a},
+                          {"constraint_error", run.constraint_error},
+                          {"values", values}}}});
+    }
+    return legs;
 }
 
 json reading_json(const compare::Reading& reading, const compare::Comparison& all,
@@ -205,22 +169,6 @@ json wheels_json(const Model& model) {
             {"settled_on", model.branches[settled_on(model)].name}};
 }
 
-// Residuals of the equilibrium leg's states in the equations of the energy leg, and their bounds,
-// where the scene is too large for states of the energy leg; null where the energy leg judges as
-// usual.
-json witness_json(const compare::BranchComparison& branch) {
-    if (!energy_judges_states(branch)) return nullptr;
-    const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
-    const auto three = [](double force, double moment, double length) {
-        return json{{"force_N", force}, {"moment_Nm", moment}, {"constraint_mm", length}};
-    };
-    const compare::Bounds& b = branch.bounds;
-    return {{"leg", name(compare::Leg::energy)},
-            {"states_of", name(compare::Leg::equilibrium)},
-            {"left", three(left.force, left.moment, 1e3 * left.length)},
-            {"at_most", three(b.residual_force, b.residual_moment, b.residual_length)}};
-}
-
 }  // namespace
 
 std::string driven_name(const Model& model, const Driven& what) {
@@ -263,8 +211,6 @@ json branches_json(const SceneAnalyses& scene) {
     json branches = json::array();
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const auto& branch = comparison.branches[b];
-        json legs = json::array();
-        for (const auto& run : branch.runs) legs.push_back(run_json(run, comparison.channels));
         const auto pair = [&](const compare::Pair& p) {
             return pair_json(p, comparison, branch.determined);
         };
@@ -274,13 +220,12 @@ json branches_json(const SceneAnalyses& scene) {
               branch.abscissa < 0
                   ? json(nullptr)
                   : json(comparison.channels[static_cast<std::size_t>(branch.abscissa)].name)},
-             {"legs", legs},
+             {"legs", legs_json(branch.runs, comparison.channels)},
              {"deviation", pair(branch.deviation)},
              {"cross_check", pair(branch.cross_check)},
              {"reference_uncertainty", pair(branch.uncertainty)},
              {"second_reference", name(branch.second)},
              {"why_not_energy", branch.why_not_energy},
-             {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()},
              {"case", load_case(model, model.branches[b])},
@@ -314,31 +259,15 @@ void add_compared(json& part, const SceneAnalyses& scene) {
 }  // namespace
 
 void add_curves(json& scene_document, const Model& model,
-                const std::vector<compare::Channel>& channels, compare::Leg leg,
-                const std::string& method, const std::vector<compare::PathCurve>& branches) {
-    std::vector<std::string> reasons;
+                const std::vector<compare::Channel>& channels,
+                std::span<const compare::BranchComparison> branches) {
     json list = json::array();
-    int numbers = 0;
     for (std::size_t b = 0; b < branches.size(); ++b) {
-        const compare::PathCurve& walked = branches[b];
-        json one = branch_json(model, model.branches[b]);
-        one["legs"] =
-            json::array({{{"leg", name(leg)},
-                          {"method", method},
-                          {"outcome", elastocheck::name(walked.outcome)},
-                          {"detail", walked.detail},
-                          {"counts", counts_json(walked.counts)},
-                          {"curve", curve_json(walked.curve, walked.constraint_error, channels)}}});
-        list.push_back(std::move(one));
-        numbers += static_cast<int>(walked.curve.a.size() * channels.size());
-        if (walked.outcome != Outcome::converged)
-            reasons.push_back(model.branches[b].name + ": " + elastocheck::name(walked.outcome) +
-                              ": " + walked.detail);
+        list.push_back(branch_json(model, model.branches[b]));
+        list.back()["legs"] = legs_json(branches[b].runs, channels);
     }
     scene_document["channels"] = channels_json(channels);
     scene_document["branches"] = list;
-    scene_document["verdict"] = {
-        {"conclusive", reasons.empty()}, {"numbers", numbers}, {"reasons", reasons}};
 }
 
 void add_inspection(json& scene_document, const Scene& scene, const Model& model) {

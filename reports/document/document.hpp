@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "compare/comparison/compare.hpp"
@@ -12,7 +13,7 @@
 namespace elastocheck::reports {
 
 // Incremented when a field changes its meaning or is removed; new fields do not increment it.
-inline constexpr const char* result_schema = "elastocheck/result/5";
+inline constexpr const char* result_schema = "elastocheck/result/6";
 
 // "vertical", "left.jack", "free length of coil"
 std::string driven_name(const Model& model, const Driven& what);
@@ -33,11 +34,10 @@ nlohmann::ordered_json scene_json(const SceneAnalyses& scene);
 // The tables of a comparison that are only in files.
 void add_tables(compare::Result& compared, const SceneAnalyses& scene);
 
-// "channels", "branches" and the "verdict" of `solve`: every point of one leg, without a
-// comparison.
+// "channels" and "branches" of `solve`: every point of the runs of each branch, without a comparison.
 void add_curves(nlohmann::ordered_json& scene_document, const Model& model,
-                const std::vector<compare::Channel>& channels, compare::Leg leg,
-                const std::string& method, const std::vector<compare::PathCurve>& branches);
+                const std::vector<compare::Channel>& channels,
+                std::span<const compare::BranchComparison> branches);
 
 // "channels" and "inspection": bodies, elements, branches and their settled states, the numbers of
 // the file.

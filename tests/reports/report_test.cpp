@@ -161,7 +161,7 @@ TEST(Report, ReplacesOnlyFilesOfItsManifest) {
     // Nor does a result.json beside it.
     const fs::path result = folder.path / "result";
     fs::create_directory(result);
-    std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/5\"}";
+    std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/6\"}";
     std::ofstream(result / "curves.csv") << "measured by hand";
     before = contents_of(result);
     expect_parts(refusal(result), {"curves.csv: is no part of a report"});

@@ -6,7 +6,6 @@
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compare_with.hpp"
 #include "compare/tables/compare_result.hpp"
-#include "compare/tables/rows.hpp"
 #include "elastocheck/recursive.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/options/limits.hpp"
@@ -14,7 +13,6 @@
 #include "reports/command/program/command.hpp"
 #include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
-#include "reports/render/render.hpp"
 #include "reports/tables/judgement.hpp"
 
 namespace elastocheck::reports {
@@ -68,8 +66,7 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     std::vector<NamedContent> files;
     nlohmann::ordered_json scene;
     if (delivery.wants_document()) {
-        files = {{"curves.csv", curves_csv({{loaded.scene.name, &comparison}})},
-                 {"forces.csv", csv(force_rows(model, comparison))}};
+        files = {{"curves.csv", curves_csv({{loaded.scene.name, &comparison}})}};
         SceneAnalyses found = analyses_of(loaded, request.scene);
         add_comparison(found, std::move(comparison));
         add_tables(result, found);
