@@ -10,28 +10,6 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double zero_tolerance = 1e-9;  // [mm], [deg]: smaller deviations are rounding
-
-std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& reading) {
-    std::optional<Worst> worst;
-    for (const auto& branch : comparison.branches) {
-        const Reading& found = reading(branch);
-        for (std::size_t c = 0; c < found.channels.size(); ++c) {
-            const Channel& channel = comparison.channels[c];
-            if (!channel.main || channel.unit != unit || !branch.determined[c]) continue;
-            const Deviation& d = found.channels[c];
-            if (worst && (std::isnan(worst->max) || d.max <= worst->max)) continue;
-            worst = Worst{.branch = branch.branch,
-                          .channel = channel.name,
-                          .unit = unit,
-                          .max = d.max,
-                          .end = d.end,
-                          .range = d.range};
-        }
-    }
-    return worst;
-}
-
 // ---- What a branch does to a wheel.
 
 bool vertical(const Eigen::Vector3d& v) { return v.head<2>().norm() <= 1e-9 * std::abs(v.z()); }
@@ -121,19 +99,24 @@ bool is_readable(const Comparison& comparison, const BranchComparison& branch) {
     return high - low >= min_travel;
 }
 
-std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit) {
-    static const Reading none{};
-    return worst_of(comparison, unit, [&](const BranchComparison& branch) -> const Reading& {
-        return kind == ReadingKind::equal_parameter || is_readable(comparison, branch)
-                   ? reading_of(branch.deviation, kind)
-                   : none;
-    });
-}
-
 std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit) {
-    return worst_of(comparison, unit, [](const BranchComparison& branch) -> const Reading& {
-        return branch.uncertainty.equal_parameter;
-    });
+    std::optional<Worst> worst;
+    for (const auto& branch : comparison.branches) {
+        const auto& found = branch.uncertainty.equal_parameter.channels;
+        for (std::size_t c = 0; c < found.size(); ++c) {
+            const Channel& channel = comparison.channels[c];
+            if (!channel.main || channel.unit != unit || !branch.determined[c]) continue;
+            const Deviation& d = found[c];
+            if (worst && (std::isnan(worst->max) || d.max <= worst->max)) continue;
+            worst = Worst{.branch = branch.branch,
+                          .channel = channel.name,
+                          .unit = unit,
+                          .max = d.max,
+                          .end = d.end,
+                          .range = d.range};
+        }
+    }
+    return worst;
 }
 
 std::vector<RateError> rate_errors(const Model& model, const Comparison& comparison) {

@@ -17,10 +17,8 @@ const Reading& reading_of(const Pair& pair, ReadingKind kind);
 // Whether outputs are compared at equal abscissa on a branch: a wheel's travel must change by at
 // least `min_travel`; a main output is always accepted.
 bool is_readable(const Comparison& comparison, const BranchComparison& branch);
-// The worst deviation of the recursion from the equilibrium leg among the main outputs of this
-// unit; none if there are no such outputs.
-std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit);
-// Likewise of the second reference from the equilibrium leg, at equal parameter.
+// The worst distance of the second reference from the equilibrium leg among the main outputs of this
+// unit, at equal parameter; none if there are no such outputs.
 std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit);
 
 // Wheel rate (force over travel from a = 0) at one end of a branch, and its error in the

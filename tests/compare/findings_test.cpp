@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
+#include "compare/candidate/judgement.hpp"
 #include "compare/candidate/measured.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
@@ -30,10 +32,8 @@ TEST(WorstDisagreement, ConsidersOnlyComparedOutputs) {
     const auto camber = channel("camber");
     auto& branch = comparison.branches[0];
     branch.determined[camber] = false;
-    for (Pair* pair : {&branch.uncertainty, &branch.deviation})
-        pair->equal_parameter.channels[camber].max = NAN;
+    branch.uncertainty.equal_parameter.channels[camber].max = NAN;
     EXPECT_LT(worst_disagreement(comparison, Unit::deg)->max, 1e-6);
-    EXPECT_LT(worst_deviation(comparison, ReadingKind::equal_parameter, Unit::deg)->max, 90);
     branch.determined[camber] = true;
     EXPECT_TRUE(std::isnan(worst_disagreement(comparison, Unit::deg)->max));
 }
@@ -126,21 +126,24 @@ TEST(RateErrors, BranchWithAnotherLoadHasNoRateError) {
 // ---- Worst deviation, and its parts
 
 TEST(Findings, TheWorstDeviationIsTheLargestOfAnyBranch) {
-    for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa})
-        for (const Unit unit : {Unit::mm, Unit::deg}) {
-            const auto worst = worst_deviation(compared(), kind, unit);
-            ASSERT_TRUE(worst);
-            for (const auto& branch : compared().branches)
-                for (std::size_t c = 0; c < compared().channels.size(); ++c)
-                    if (compared().channels[c].main && compared().channels[c].unit == unit) {
-                        EXPECT_LE(reading_of(branch.deviation, kind).channels[c].max, worst->max);
-                    }
-        }
+    const Assessment found = assess(mcpherson(), compared(), default_tolerance);
+    for (const auto& [kind, unit, worst] :
+         {std::tuple{ReadingKind::equal_parameter, Unit::mm, found.position},
+          {ReadingKind::equal_parameter, Unit::deg, found.angle},
+          {ReadingKind::equal_abscissa, Unit::mm, found.position_across},
+          {ReadingKind::equal_abscissa, Unit::deg, found.angle_across}}) {
+        ASSERT_TRUE(worst);
+        for (const auto& branch : compared().branches)
+            for (std::size_t c = 0; c < compared().channels.size(); ++c)
+                if (compared().channels[c].main && compared().channels[c].unit == unit) {
+                    EXPECT_LE(reading_of(branch.deviation, kind).channels[c].max, worst->max);
+                }
+    }
     Comparison broken = compared();
     broken.branches[0].deviation.equal_parameter.channels[0].max = std::nan("");
-    EXPECT_TRUE(std::isnan(worst_deviation(broken, ReadingKind::equal_parameter, Unit::mm)->max));
+    EXPECT_TRUE(std::isnan(assess(mcpherson(), broken, default_tolerance).position->max));
     EXPECT_LE(worst_disagreement(compared(), Unit::mm)->max, 1e-6);
-    EXPECT_FALSE(worst_deviation({}, ReadingKind::equal_parameter, Unit::mm));
+    EXPECT_FALSE(worst_disagreement({}, Unit::mm));
 }
 
 // ---- Measured points
