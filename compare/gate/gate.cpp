@@ -364,22 +364,22 @@ Grade GateVerdict::grade() const {
 }
 
 Tolerances default_tolerances(ToleranceClass kind) {
-    struct Usual {
+    struct OfKey {
         const char* key;
         // same-build: the last digit of the file; cross-build: five times the worst of
         // tests/gate/README.md
         std::array<Allowance, tolerance_classes.size()> of_class;
     };
     static const std::array usual{
-        Usual{"mm", {{{2e-9, 0}, {5e-9, 0}, {0.01, 1e-3}}}},
-        Usual{"deg", {{{2e-9, 0}, {5e-9, 0}, {0.001, 1e-3}}}},
-        Usual{"N", {{{2e-9, 0}, {7e-8, 0}, {1, 1e-3}}}},
-        Usual{"N·m", {{{2e-9, 0}, {5e-9, 0}, {0.1, 1e-3}}}},
+        OfKey{"mm", {{{2e-9, 0}, {5e-9, 0}, {0.01, 1e-3}}}},
+        OfKey{"deg", {{{2e-9, 0}, {5e-9, 0}, {0.001, 1e-3}}}},
+        OfKey{"N", {{{2e-9, 0}, {7e-8, 0}, {1, 1e-3}}}},
+        OfKey{"N·m", {{{2e-9, 0}, {5e-9, 0}, {0.1, 1e-3}}}},
         // of a cotangent at 2 deg: 5e-9 deg changes it by 800 times as much, in percent
-        Usual{"%", {{{2e-9, 0}, {2e-5, 0}, {0.5, 1e-3}}}},
-        Usual{"count", {{{0, 0}, {1, 0.012}, {2, 0.5}}}},
-        Usual{"characteristic", {{{2e-9, 1e-12}, {1e-8, 1e-8}, {1e-3, 5e-3}}}},
-        Usual{"compliance", {{{2e-9, 1e-12}, {1e-8, 1e-8}, {1e-3, 5e-3}}}}};
+        OfKey{"%", {{{2e-9, 0}, {2e-5, 0}, {0.5, 1e-3}}}},
+        OfKey{"count", {{{0, 0}, {1, 0.012}, {2, 0.5}}}},
+        OfKey{"characteristic", {{{2e-9, 1e-12}, {1e-8, 1e-8}, {1e-3, 5e-3}}}},
+        OfKey{"compliance", {{{2e-9, 1e-12}, {1e-8, 1e-8}, {1e-3, 5e-3}}}}};
     Tolerances tolerances;
     for (const auto& [key, of_class] : usual)
         tolerances[key] = of_class.at(static_cast<std::size_t>(kind));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <list>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/path.hpp"
 #include "reports/document/drawing.hpp"
+#include "reports/given/wheels.hpp"
 #include "reports/live/outputs.hpp"
 
 namespace elastocheck::live {
@@ -89,7 +91,9 @@ struct Solver {
         return compare::solve_branch(
             sides, solver,
             [&](const Equilibrium& state) {
-                compare::Row row = row_of(model, read, sides.front(), solver, state, analyses);
+                std::optional<compare::WheelResponse> response;
+                compare::Row row =
+                    row_of(model, read, sides.front(), solver, state, analyses, response);
                 row.values.resize(channels.size(), not_computed);
                 if (!geometry) return row;
                 for (const Point& point : points)
@@ -99,6 +103,9 @@ struct Solver {
                     for (const double x :
                          Vector3d(compare::pose(state.poses, wheel.body).p * wheel.spin_axis_local))
                         row.values.push_back(x);
+                for (const Vector3d& p : compare::points_of_figures(
+                         sides.front().model, state, response.value_or(compare::WheelResponse{})))
+                    for (const double x : p) row.values.push_back(1e3 * x);
                 return row;
             },
             [&](compare::Row row) {
@@ -152,6 +159,27 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
     return result;
 }
 
+// The first curves over a branch, by what it moves; of any other by its travel.
+std::vector<std::string> usual_curves(const Model& model, const Branch& branch) {
+    using compare::Usual;
+    static const std::map<std::string_view, int Usual::*> moved{
+        {"roll", &Usual::roll},
+        {"steering", &Usual::steering},
+        {"lateral force", &Usual::lateral},
+        {"longitudinal force", &Usual::longitudinal},
+        {"moment", &Usual::moment}};
+    const auto of = moved.find(reports::load_case(model, branch));
+    return compare::usual_over(of == moved.end() ? &Usual::heave : of->second);
+}
+// Position of the wheel whose figure a channel is.
+json wheel_of(const Model& model, const Channel& channel) {
+    for (std::size_t w = 0; w < model.wheels.size(); ++w)
+        if (const std::string& name = model.wheels[w].name;
+            !name.empty() && channel.name.starts_with(name + "."))
+            return w;
+    return nullptr;
+}
+
 }  // namespace
 
 std::vector<Channel> channels_of(const Model& model) {
@@ -186,7 +214,8 @@ json open(Session& session, std::string_view text, const std::string& name,
                                       {"unit", symbol(unit)},
                                       {"from", compare::parameter_in(unit, branch.from)},
                                       {"to", compare::parameter_in(unit, branch.to)},
-                                      {"steps", branch.steps}});
+                                      {"steps", branch.steps},
+                                      {"usual", usual_curves(model, branch)}});
     }
     answer["channels"] = json::array();
     for (const Channel& channel : channels_of(model)) {
@@ -198,7 +227,8 @@ json open(Session& session, std::string_view text, const std::string& name,
                                       {"main", channel.main},
                                       {"at_rest", is.at_rest},
                                       {"cause", is.cause},
-                                      {"usual", is.live},
+                                      {"figure", compare::without_owner(channel.name)},
+                                      {"wheel", wheel_of(model, channel)},
                                       {"definition", channel.definition},
                                       {"undefined", compare::why_undefined(channel)}});
     }

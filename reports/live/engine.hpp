@@ -29,8 +29,9 @@ struct Session {
 //   title, warnings      of the reader, "file:line: field: ..."
 //   numbers              path, value, unit of every number of the file, as written
 //   points               hardpoints [mm]: name, position
-//   branches             name, unit, from, to [unit], steps
-//   channels             name, unit, kind, main, definition, undefined, of all that solve() returns
+//   branches             name, unit, from, to [unit], steps; usual: figures that are shown first over it
+//   channels             name, unit, kind, main, definition, undefined, of all that solve() returns; figure: the
+//                        name without its owner; wheel: position of the wheel whose figure it is, else null
 nlohmann::ordered_json open(Session& session, std::string_view text, const std::string& name,
                             const reader::Folder& folder = std::nullopt);
 
@@ -50,7 +51,8 @@ struct Request {
 //   drawing   drawing_json() of the trimmed design position
 //   branches  name, unit, outcome, detail, idle: motions that nothing resists, as text,
 //             points, start: position of a = 0, at: position of its first number, published: outcome, detail, steps, points, at; null unless asked for
-// `numbers`, per point of a branch in ascending order of the parameter: parameter, channels, positions of the drawing's points [mm], spin axes of the wheels.
+// `numbers`, per point of a branch in ascending order of the parameter: parameter, channels, positions of the drawing's
+// points [mm], spin axes of the wheels, points_of_figures() [mm].
 // Of a point of the published method: parameter, channels. NaN: not computed; infinite: undefined.
 struct Answer {
     nlohmann::ordered_json head;

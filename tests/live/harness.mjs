@@ -1,10 +1,11 @@
 // What the tests of the live page share: the browser, pages of scenes, numbers of the program, the run of the tests.
-// node TESTS.mjs ELASTOCHECK SCENES-FOLDER [PICTURES-FOLDER]
+// [BROWSER=firefox] node TESTS.mjs ELASTOCHECK SCENES-FOLDER [PICTURES-FOLDER]
 import {execFileSync} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {Browser} from './browser.mjs';
+import {Firefox} from './firefox.mjs';
 
 export const [program, scenes, pictures] = process.argv.slice(2).map(file => path.resolve(file));
 export const folder = mkdtempSync(path.join(tmpdir(), 'live-pages-'));
@@ -17,7 +18,8 @@ export const pageOf = (file, name) => {
 const failures = [];
 export const check = (met, what) => { if (!met) { failures.push(what); console.error('failed: ' + what); } };
 export const near = (a, b, bound, what) => check(Math.abs(a - b) <= bound, `${what}: ${a} is not ${b} within ${bound}`);
-export const browser = await Browser.start();
+export const inFirefox = process.env.BROWSER === 'firefox';
+export const browser = await (inFirefox ? Firefox : Browser).start();
 export const run = expression => browser.run(expression);
 // A move of the mouse is handled with the next frame.
 export const idle = async () => {

@@ -33,6 +33,12 @@ for (const [name, {imports, body}] of modules) {
     if (from !== name && !imported.has(item) && uses(body, item) && !declares(body, item))
       failures.push(`${name}: ${item} of ${from} is used and not imported`);
 }
+// One script has them all: no name stands for two things.
+const first = new Map();
+for (const [name, text] of [['suspension', readFileSync(suspension, 'utf8')], ...sources])
+  for (const [, item] of name === 'worker.js' ? [] : text.matchAll(/^(?:export )?(?:const|let|class|function) ([\w$]+)/gm))
+    if (first.has(item)) failures.push(`${name}: ${item} is a name of ${first.get(item)}, too`);
+    else first.set(item, name);
 const longest = {line: 100, function: 60};
 for (const [name, text] of [...sources, ['suspension', readFileSync(suspension, 'utf8')]]) {
   let begin = 0;

@@ -13,8 +13,9 @@ const check = (met, what) => { if (!met) failures.push(what); };
 // elements 5e-11, characteristics 6e-9, toe of the published recursion on the double wishbone's braking 2e-11). The two
 // differ in the mathematical library (glibc, musl) and in the order of sums (vectors of two, none), by an ulp here and
 // there. Positions and angles of the series stay within 1e-12 (Ackermann is a quotient of small angles); a force is a stiffness times a difference of positions, a
-// characteristic near a pole a quotient of such differences, and the published recursion adds up its rounding.
-const bounds = {parameter: 0, geometry: 1e-12, motion: 1e-12, published: 3e-11, ratio: 1e-11, drive: 1e-11, reaction: 1e-11, element: 1e-10, characteristic: 1e-8};
+// characteristic near a pole a quotient of such differences, as are instant centres and roll centres (each of its own size);
+// and the published recursion adds up its rounding.
+const bounds = {parameter: 0, geometry: 1e-12, motion: 1e-12, published: 3e-11, ratio: 1e-11, drive: 1e-11, reaction: 1e-11, element: 1e-10, characteristic: 1e-8, centre: 1e-8};
 const worsts = {};
 let matrices = 0, proved = 0, compared = 0, worst = 0, where = '', identical = 0;
 
@@ -48,12 +49,13 @@ const compare = (name, settings) => {
       check(own.answer !== 'proved' || (own.error_mm <= proof.claim.mm && own.error_mm < 10 * station.error_mm && station.error_mm < 10 * own.error_mm), `${name}: bound ${own.error_mm} ${station.error_mm}`);
     });
   }
-  const {head} = there, wide = 1 + head.channels.length + 3 * head.drawing.points.length + 3 * head.drawing.wheels.length;
+  const {head} = there, wheels = head.drawing.wheels.length, seen = head.channels.length + 3 * (head.drawing.points.length + wheels);
+  const wide = 1 + seen + 3 * (wheels ? 4 * wheels + 1 : 0);
   check(solved.numbers.length === there.numbers.length, `${name}: another count of numbers`);
   head.branches.forEach((branch, b) => {
     const own = solved.head.branches[b];
     for (const key of ['name', 'unit', 'outcome', 'points', 'at', 'start']) check(branch[key] === own[key], `${name}: ${branch.name}: ${key}`);
-    const unitOf = column => column === 0 ? 'parameter' : there.open.channels[column - 1]?.unit ?? 'geometry';
+    const unitOf = column => column === 0 ? 'parameter' : column > seen ? `coordinate ${column - seen}` : there.open.channels[column - 1]?.unit ?? 'geometry';
     for (const [part, size] of [[branch, wide], [branch.published, 1 + head.channels.length]]) {
       if (!part) continue;
       // relative to the largest number of that unit on the branch, of lengths and angles at least 1: what is zero but for
@@ -66,14 +68,14 @@ const compare = (name, settings) => {
       for (let column = 0; column < size; ++column) {
         const scale = scales.get(unitOf(column)) ?? 1;
         for (let k = 0; k < part.points; ++k) {
-          const a = there.numbers[part.at + k * size + column], x = a === 'nan' || a === '-nan' ? NaN : a === 'inf' ? Infinity : +a;
+          const a = there.numbers[part.at + k * size + column], x = a === 'nan' || a === '-nan' ? NaN : a === 'inf' ? Infinity : a === '-inf' ? -Infinity : +a;
           const y = solved.numbers[part.at + k * size + column];
           if (Number.isNaN(x) && Number.isNaN(y)) continue;
           ++compared;
           if (x === y) { ++identical; continue; }
           const off = Math.abs(x - y) / scale, at = `${name} ${settings} ${branch.name} ${head.channels[column - 1] ?? 'geometry'} ${k}: ${x} ${y}`;
           if (!(off <= worst)) { worst = off; where = at; }
-          const moves = column === 0 ? 'parameter' : there.open.channels[column - 1]?.kind ?? 'geometry';
+          const moves = column === 0 ? 'parameter' : column > seen ? 'centre' : there.open.channels[column - 1]?.kind ?? 'geometry';
           const kind = moves !== 'motion' ? moves : part === branch.published ? 'published' : unitOf(column) === '%' ? 'ratio' : 'motion';
           check(off <= bounds[kind], `${at}: ${off}`);
           if (!(off <= worsts[kind]?.[0])) worsts[kind] = [off, at];

@@ -12,32 +12,13 @@ try {
     view.yaw = 40; view.pitch = 18; view.zoom = 1.15; draw3d(); state.curves = ['toe', 'camber', 'roll_centre_height', 'wheel_rate']; drawCharts(); })()`);
   await browser.until('isIdle() && state.settings.size === 1 && proofOf(state.branch)?.done', 'solved and proved');
   writeFileSync(output, await browser.run(`(() => {
-    // The style of each element becomes its attributes, as it is on the page.
-    const own = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin', 'font-size', 'font-weight', 'opacity', 'paint-order'];
-    const usual = {'fill-opacity': '1', 'stroke-dasharray': 'none', 'stroke-linecap': 'butt', 'stroke-linejoin': 'miter', 'font-weight': '400', opacity: '1', 'paint-order': 'normal', stroke: 'none'};
-    const copy = element => {
-      if (element.matches('.hit, title')) return null;
-      const style = getComputedStyle(element), fresh = document.createElementNS(element.namespaceURI, element.localName);
-      for (const name of ['d', 'x', 'y', 'x1', 'x2', 'y1', 'y2', 'cx', 'cy', 'r', 'width', 'height', 'viewBox', 'transform', 'text-anchor'])
-        if (element.hasAttribute(name)) fresh.setAttribute(name, element.getAttribute(name));
-      if (!['svg', 'g'].includes(element.localName))
-        for (const name of own) {
-          const value = style.getPropertyValue(name);
-          if (value !== usual[name] && (element.localName === 'text' || !name.startsWith('font')) && (style.stroke !== 'none' || !name.startsWith('stroke'))) fresh.setAttribute(name, value);
-        }
-      for (const child of element.childNodes) {
-        const made = child.nodeType === 3 ? child.cloneNode() : copy(child);
-        if (made) fresh.append(made);
-      }
-      return fresh;
-    };
     const wide = 900, high = 356, whole = make('svg', {xmlns: 'http://www.w3.org/2000/svg', viewBox: '0 0 ' + wide + ' ' + high, 'font-family': 'system-ui, sans-serif'});
     whole.append(make('rect', {width: wide, height: high, fill: '#fff'}), make('rect', {x: 0, y: 0, width: 420, height: high, rx: 6, fill: '#f5f7f9'}));
-    const drawing = copy(document.getElementById('drawing'));
+    const drawing = copyOf(document.getElementById('drawing'));
     for (const [name, value] of Object.entries({x: 0, y: 0, width: 420, height: high})) drawing.setAttribute(name, value);
     whole.append(drawing);
     [...document.querySelectorAll('#charts .chart')].forEach((chart, k) => {
-      const x = 436 + 236 * (k % 2), y = 178 * Math.floor(k / 2), svg = copy(chart.querySelector('svg'));
+      const x = 436 + 236 * (k % 2), y = 178 * Math.floor(k / 2), svg = copyOf(chart.querySelector('svg'));
       for (const [name, value] of Object.entries({x, y: y + 22, width: 224, height: 122})) svg.setAttribute(name, value);
       const say = (text, px, py, more) => whole.append(make('text', {x: px, y: py, 'font-size': 11, fill: '#22272e', ...more}, text));
       say(chart.querySelector('h3 span').textContent, x, y + 16, {'font-weight': 600});

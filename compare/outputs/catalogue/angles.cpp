@@ -165,7 +165,8 @@ const Entry of_wheel[] = {
                       "or the axle's total",
          .main = true,
          .at_rest = true,
-         .live = 1,
+         .live =
+             {.heave = 1, .roll = 3, .steering = 3, .lateral = 1, .longitudinal = 1, .moment = 1},
          .rig = "toe, toe angle, wheel toe",
          .block = {"toe"},
          .plausible = {-10, 10, "is a tie rod missing, or a rate in another unit?"},
@@ -178,7 +179,8 @@ const Entry of_wheel[] = {
           {.elsewhere = "-asin(e_z). ISO 8855, SAE J670",
            .main = true,
            .at_rest = true,
-           .live = 2,
+           .live =
+               {.heave = 2, .roll = 4, .steering = 4, .lateral = 2, .longitudinal = 2, .moment = 2},
            .rig = "camber, camber angle, wheel camber",
            .block = {"camber"},
            .plausible = {-15, 15, "is a link missing, or a rate in another unit?"},
@@ -190,7 +192,6 @@ const Entry of_wheel[] = {
           "(up)",
           "", wheel_travel,
           {.elsewhere = "wheel travel, bump",
-           .live = 16,
            .rig = "travel, wheel travel, jounce, wheel vertical displacement, wheel centre z "
                   "displacement, wheel center z displacement"}),
 };
@@ -202,7 +203,7 @@ const Entry of_patch[] = {
           "",
           [](const Subject& x) { return x.side() * (x.patch().at.y() - x.drawn().patch().at.y()); },
           {.elsewhere = "half-track change",
-           .live = 3,
+           .live = {.heave = 6, .roll = 6},
            .rig = "track change, half track change",
            .drawn = {{Over::travel, 3, "Lateral position of the contact patch",
                       "from its drawn position, outwards positive"},
@@ -217,7 +218,6 @@ const Entry of_patch[] = {
               return forward * (x.patch().at.x() - x.drawn().patch().at.x());
           },
           {.elsewhere = "only with a `vehicle` in the scene, which has the axle",
-           .live = 4,
            .rig = "wheelbase change"}),
     Entry(Owner::wheel_with_steering_axis, std::string(figure::caster), Unit::deg,
           "angle of the steering axis to the vertical seen from the side, positive where its top "
@@ -226,7 +226,7 @@ const Entry of_patch[] = {
           {.elsewhere = "atan(-u_x/u_z). Castor angle of ISO 8855; Reimpell's τ",
            .quotient = true,
            .at_rest = true,
-           .live = 8,
+           .live = {.heave = 7, .steering = 6},
            .rig = "caster, castor, caster angle, castor angle",
            .block = {"caster"},
            .drawn = {{Over::travel, 5, "Caster angle", "top backwards positive"},
@@ -285,7 +285,7 @@ const Entry of_patch[] = {
                "Ackermann's condition cot δ_outer - cot δ_inner = j/l (Reimpell, Milliken). Other "
                "tools give a ratio of the angles, which is a different number",
            .quotient = true,
-           .live = 15,
+           .live = {.steering = 1},
            .drawn = {{Over::steering, 3, "Ackermann", "100 %: no tyre slips at low speed"}}}),
     Entry(
         Owner::front_axle, "turning_circle", Unit::mm,
@@ -295,7 +295,8 @@ const Entry of_patch[] = {
         "", turning_circle,
         {.elsewhere = "turning circle (track circle); between kerbs half a tyre's width more on "
                       "each side",
-         .quotient = true}),
+         .quotient = true,
+         .live = {.steering = 5}}),
     Entry(Owner::spring, "compression", Unit::mm,
           "design length less length of spring '{}', positive in compression", "",
           [](const Subject& x) {

@@ -135,6 +135,16 @@ std::vector<const Entry*> definitions() {
     return list;
 }
 
+namespace {
+template <class T>
+std::vector<T> in_places(std::vector<std::pair<int, T>> placed) {
+    std::ranges::sort(placed, {}, &std::pair<int, T>::first);
+    std::vector<T> list;
+    for (auto& [place, entry] : placed) list.push_back(std::move(entry));
+    return list;
+}
+}  // namespace
+
 std::vector<DrawnFigure> drawn_over(Over over) {
     std::vector<std::pair<int, DrawnFigure>> placed;
     for (const Entry& entry : catalogue())
@@ -142,10 +152,15 @@ std::vector<DrawnFigure> drawn_over(Over over) {
             if (drawing.over == over)
                 placed.push_back(
                     {drawing.place, {entry.name, drawing.title, drawing.sign, drawing.shown}});
-    std::ranges::sort(placed, {}, &std::pair<int, DrawnFigure>::first);
-    std::vector<DrawnFigure> list;
-    for (auto& [place, quantity] : placed) list.push_back(std::move(quantity));
-    return list;
+    return in_places(std::move(placed));
+}
+
+std::vector<std::string> usual_over(int Usual::*moved) {
+    std::vector<std::pair<int, std::string>> placed;
+    for (const Entry& entry : catalogue())
+        if (const int place = entry.is.live.*moved; place > 0)
+            placed.push_back({place, entry.name});
+    return in_places(std::move(placed));
 }
 
 std::string_view without_owner(std::string_view output) {

@@ -79,6 +79,11 @@ struct Plausible {
     const char* asks = nullptr;  // null: nothing is known
 };
 
+// Place among the first curves of a live page over a branch that moves this; 0: not among them.
+struct Usual {
+    int heave = 0, roll = 0, steering = 0, lateral = 0, longitudinal = 0, moment = 0;
+};
+
 inline constexpr const char* vertical_cause = "vertical travel and load";
 
 struct Properties {
@@ -92,7 +97,7 @@ struct Properties {
     bool key = false;            // shown first in a report
     bool explained = false;      // a report shows which numbers of the scene move it
     bool compliance = false;     // a coefficient of compliance at the design position
-    int live = 0;                // place among the usual curves of the live page; 0: none
+    Usual live = {};             // on a live page
     const char* cause = vertical_cause;  // what a characteristic responds to
     const char* rig = "";                // headings of measured files, lower case, with commas
     Block block = {};
@@ -128,6 +133,15 @@ struct DrawnFigure {
     Shown shown = Shown::as_is;
 };
 std::vector<DrawnFigure> drawn_over(Over over);
+// Figures that a live page shows first over such a branch, in their places.
+std::vector<std::string> usual_over(int Usual::*moved);
+
+// What figures of wheels are read from, as points of a drawing [m]: per wheel the lower and the upper
+// end of its steering axis, the instant centres of its carrier seen from the front and from the side,
+// all wheels rising alike; then the roll centre of all. Not finite where there is none.
+std::vector<Vector3> points_of_figures(const Model& model, const Equilibrium& state,
+                                       const WheelResponse& response);
+inline constexpr std::size_t points_of_wheel = 4;
 
 // The entry of an output of this name, "left.camber@kingpin" or "camber"; null if there is none. Owners
 // of several kinds may have it.

@@ -16,7 +16,7 @@ struct ForceFigure {
     Seen seen;
     const char* stiffness = "";  // of Seen::along_the_force: force over displacement
     bool key = false, explained = false;
-    int live = 0;  // place on the live page, of its first loading
+    int live = 0;  // place on a live page, of its first loading
 };
 struct Loading {
     const char* name;  // after "@"
@@ -31,6 +31,7 @@ struct ForceTest {
     Loading alone;
     std::vector<Loading> on_a_rig;
     std::vector<ForceFigure> figures;
+    int Usual::*moved;  // of a branch that loads so
 };
 
 constexpr auto programs = "programs that load one wheel";
@@ -50,27 +51,31 @@ const std::vector<ForceTest>& force_tests() {
            "rigs: lateral force, parallel"},
           {"opposed", -1, "a force at each contact patch, both towards the middle of the vehicle",
            "rigs: lateral force, opposed"}},
-         {{"lateral_force_steer", Unit::deg_per_kN, Seen::toe, "", true, true, 9},
-          {"lateral_force_camber", Unit::deg_per_kN, Seen::camber},
+         {{"lateral_force_steer", Unit::deg_per_kN, Seen::toe, "", true, true, 3},
+          {"lateral_force_camber", Unit::deg_per_kN, Seen::camber, "", false, false, 5},
           {"lateral_stiffness", Unit::newton_per_mm, Seen::along_the_force,
-           "lateral force at the contact patch over its lateral displacement", false, false, 12}}},
+           "lateral force at the contact patch over its lateral displacement", false, false, 7}},
+         &Usual::lateral},
         {at_patch,
          -1,
          "braking force at the contact patch",
          {"alone", 0, "a force to the back at the contact patch", programs},
          {{"both", 1, "a force to the back at each contact patch", "rigs: both wheels braked"}},
-         {{"braking_force_steer", Unit::deg_per_kN, Seen::toe, "", true, false, 13},
-          {"braking_force_camber", Unit::deg_per_kN, Seen::camber},
+         {{"braking_force_steer", Unit::deg_per_kN, Seen::toe, "", true, false, 3},
+          {"braking_force_camber", Unit::deg_per_kN, Seen::camber, "", false, false, 4},
           {"longitudinal_stiffness", Unit::newton_per_mm, Seen::along_the_force,
-           "longitudinal force at the contact patch over its longitudinal displacement"}}},
+           "longitudinal force at the contact patch over its longitudinal displacement", false,
+           false, 6}},
+         &Usual::longitudinal},
         {at_centre,
          1,
          "traction force at the wheel centre",
          {"alone", 0, "a force forward at the wheel centre", programs},
          {{"both", 1, "a force forward at each wheel centre", "rigs: both wheels driven"}},
-         {{"traction_force_steer", Unit::deg_per_kN, Seen::toe, "", true},
+         {{"traction_force_steer", Unit::deg_per_kN, Seen::toe, "", true, false, 5},
           {"longitudinal_stiffness_at_centre", Unit::newton_per_mm, Seen::along_the_force,
-           "longitudinal force at the wheel centre over its longitudinal displacement"}}},
+           "longitudinal force at the wheel centre over its longitudinal displacement"}},
+         &Usual::longitudinal},
         {moment_on + 2,
          0,
          "aligning torque",
@@ -79,8 +84,9 @@ const std::vector<ForceTest>& force_tests() {
            "rigs: aligning torque, parallel"},
           {"opposed", -1, "a moment about z on each wheel towards toe-in",
            "rigs: aligning torque, opposed"}},
-         {{"aligning_torque_steer", Unit::deg_per_100Nm, Seen::toe},
-          {"aligning_torque_camber", Unit::deg_per_100Nm, Seen::camber}}}};
+         {{"aligning_torque_steer", Unit::deg_per_100Nm, Seen::toe, "", false, false, 3},
+          {"aligning_torque_camber", Unit::deg_per_100Nm, Seen::camber, "", false, false, 5}},
+         &Usual::moment}};
     return tests;
 }
 
@@ -126,8 +132,9 @@ std::string definition(bool axle, const ForceTest& test, const Loading& loading,
 // `place`: of the loading among those of its owner; -1: of one wheel of an axle alone.
 Entry entry(Owner owner, const ForceTest& test, const Loading& loading, const ForceFigure& figure,
             int place) {
-    const bool axle = owner == Owner::wheel_of_axle, usual = place >= 0,
-               shown = usual && figure.live != 0 && (!axle || figure.seen == Seen::toe);
+    const bool axle = owner == Owner::wheel_of_axle, usual = place >= 0;
+    Usual live;
+    if (usual && figure.live != 0) live.*test.moved = figure.live + place;
     return {owner,
             axle ? fmt::format("{}@{}", figure.name, loading.name) : figure.name,
             figure.unit,
@@ -137,9 +144,9 @@ Entry entry(Owner owner, const ForceTest& test, const Loading& loading, const Fo
              seen = figure.seen](const Subject& x) { return value(x, cause, sign, other, seen); },
             {.elsewhere = loading.rig,
              .key = usual && figure.key,
-             .explained = shown && figure.explained && loading.other >= 0,
+             .explained = usual && figure.explained && loading.other >= 0,
              .compliance = usual,
-             .live = shown ? figure.live + place : 0,
+             .live = live,
              .cause = test.what}};
 }
 

@@ -32,6 +32,12 @@ Motions raised(const Subject& x);
 // Roll: the wheels of an axle in opposition, the left up by 1 m; not for tied wheels.
 Motions rolled(const Subject& x);
 
+// Instant centre of the carrier of a wheel, all wheels rising alike: seen from the front, in the
+// transverse plane of the wheel centre, and from the side, in its longitudinal plane. At infinity it
+// is undefined.
+Vector3d front_instant_centre(const Subject& x);
+Vector3d side_instant_centre(const Subject& x);
+
 // Vertical force on this wheel, and `other` times as much on the other one, over the rise of a point
 // [N/m]; the wheels free.
 double vertical_rate(const Subject& x, int force, const Placed& at, double other = 1);

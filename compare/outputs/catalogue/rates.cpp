@@ -202,7 +202,10 @@ const Entry over_travel[] = {
           "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
           "positive towards toe-in in jounce",
           never, [](const Subject& x) { return x.toe(raised(x)); },
-          {.elsewhere = "ride steer, toe gradient", .key = true, .explained = true, .live = 6}),
+          {.elsewhere = "ride steer, toe gradient",
+           .key = true,
+           .explained = true,
+           .live = {.heave = 8}}),
     Entry(Owner::wheel, "bump_camber", Unit::deg_per_100mm,
           "change of camber over travel of the wheel centre, all wheels rising by the same amount; "
           "positive where the top leans out in jounce",
@@ -235,7 +238,7 @@ const Entry over_travel[] = {
         {.elsewhere = "SAE J670: suspension rate at the wheel",
          .key = true,
          .explained = true,
-         .live = 5,
+         .live = {.heave = 4},
          .block = {"wheel_rate"},
          .plausible = {-INFINITY, 2000, "is a rate in another unit?"},
          .drawn = {{Over::travel, 7, "Wheel rate", "both wheels loaded alike, without the tyre"}}}),
@@ -248,11 +251,11 @@ const Entry of_response[] = {
     Entry(Owner::wheel_on_rack, "steer_gradient", Unit::deg_per_mm,
           "change of toe over the displacement of the steering joint, wheel centres held at their "
           "height; positive towards toe-in",
-          not_steered, steer_gradient, {.key = true, .cause = "steering"}),
+          not_steered, steer_gradient, {.key = true, .live = {.steering = 2}, .cause = "steering"}),
     Entry(Owner::wheel_on_column, "steer_gradient", Unit::deg_per_deg,
           "change of toe over the angle of the steering joint, wheel centres held at their height; "
           "positive towards toe-in",
-          not_steered, steer_gradient, {.key = true, .cause = "steering"}),
+          not_steered, steer_gradient, {.key = true, .live = {.steering = 2}, .cause = "steering"}),
     Entry(
         Owner::steered_wheel, "caster_steered", Unit::deg,
         "angle to the vertical seen from the side of the axis about which the carrier turns when "
@@ -275,7 +278,7 @@ const Entry of_response[] = {
           "patch: share of the load transfer under braking that the links carry; positive where "
           "they resist dive",
           no_vertical, [](const Subject& x) { return anti(x, x.braked(), brake_share(x), 1); },
-          {.elsewhere = milliken, .key = true, .explained = true}),
+          {.elsewhere = milliken, .key = true, .explained = true, .live = {.heave = 5}}),
     Entry(Owner::front_wheel, std::string(figure::anti_lift), Unit::percent,
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist lift of the front "
@@ -293,7 +296,7 @@ const Entry of_response[] = {
           "centre (of a rigid axle the patch); positive where the links resist squat when the axle "
           "drives",
           no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), -1); },
-          {.elsewhere = milliken, .key = true}),
+          {.elsewhere = milliken, .key = true, .live = {.heave = 5}}),
 };
 
 const Entry of_springs[] = {
@@ -497,6 +500,21 @@ const Entry more_otherwise[] = {
 };
 
 }  // namespace
+
+Vector3d front_instant_centre(const Subject& x) {
+    const Motions by = raised(x);
+    const double arm = front_view_arm(x);
+    if (!std::isfinite(arm)) return Vector3d::Constant(undefined);
+    const double up = x.moved_by(by, x.centre()).y() / x.turned_by(by).x();
+    return x.centre().at + Vector3d(0, -x.side() * arm, up);
+}
+Vector3d side_instant_centre(const Subject& x) {
+    const Motions by = raised(x);
+    const double arm = side_view_arm(x);
+    if (!std::isfinite(arm)) return Vector3d::Constant(undefined);
+    const double up = -x.moved_by(by, x.centre()).x() / x.turned_by(by).y();
+    return x.centre().at + Vector3d(arm, 0, up);
+}
 
 void add_rates(std::vector<Entry>& all) {
     std::ranges::copy(over_travel, std::back_inserter(all));

@@ -116,7 +116,7 @@ const Entry of_roll[] = {
                       "same wherever virtual work holds, which a test shows",
          .key = true,
          .explained = true,
-         .live = 7,
+         .live = {.heave = 3, .roll = 1},
          .cause = "roll",
          .drawn = {{Over::travel, 8, "Roll centre height", "above the road"}}}),
     Entry(Owner::axle, "roll_centre_lateral", Unit::mm,
@@ -126,16 +126,18 @@ const Entry of_roll[] = {
               const auto centre = centre_of_axle(x, &Subject::patch);
               return centre ? centre->x() : undefined;
           },
-          {.elsewhere = "migration of the roll centre in roll", .cause = "roll"}),
-    Entry(
-        Owner::axle, "roll_stiffness", Unit::newton_metre_per_deg,
-        "moment of opposite vertical forces at the patches over the roll of the wheel centres, "
-        "without the tyres",
-        no_rate, roll_stiffness,
-        {.elsewhere = "suspension roll rate with springs, bar and bushings",
-         .reads_free = true,
-         .key = true,
-         .cause = "roll"}),
+          {.elsewhere = "migration of the roll centre in roll",
+           .live = {.roll = 5},
+           .cause = "roll"}),
+    Entry(Owner::axle, "roll_stiffness", Unit::newton_metre_per_deg,
+          "moment of opposite vertical forces at the patches over the roll of the wheel centres, "
+          "without the tyres",
+          no_rate, roll_stiffness,
+          {.elsewhere = "suspension roll rate with springs, bar and bushings",
+           .reads_free = true,
+           .key = true,
+           .live = {.roll = 2},
+           .cause = "roll"}),
     Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "
           "positive towards toe-in",
@@ -176,6 +178,37 @@ const Entry of_roll_otherwise[] = {
 };
 
 }  // namespace
+
+std::vector<Vector3> points_of_figures(const Model& model, const Equilibrium& state,
+                                       const WheelResponse& response) {
+    std::vector<Vector3> points;
+    const Vector3 none = Vector3::Constant(undefined);
+    const bool moves = !response.travel.empty();
+    const auto subject = [&](std::size_t w) {
+        return Subject{model, &state, w, nullptr, &response};
+    };
+    Vector3 roll = Vector3::Zero();  // its middle of the wheel centres in x, of the patches in z
+    for (std::size_t w = 0; w < model.wheels.size(); ++w) {
+        const Subject x = subject(w);
+        const auto& axis = x.wheel().steering_axis;
+        points.push_back(axis ? Vector3(x.placed(axis->lower).at) : none);
+        points.push_back(axis ? Vector3(x.placed(axis->upper).at) : none);
+        points.push_back(moves ? front_instant_centre(x) : none);
+        points.push_back(moves ? side_instant_centre(x) : none);
+        roll += Vector3(x.centre().at.x(), 0, x.patch().at.z()) / double(model.wheels.size());
+    }
+    if (model.wheels.empty()) return points;
+    if (!moves || (model.wheels.size() > 1 && !is_axle(model)))
+        roll = none;
+    else if (!is_axle(model))
+        roll.z() += roll_centre(subject(0), &Subject::patch);
+    else if (const auto centre = centre_of_axle(subject(0), &Subject::patch))
+        roll += Vector3(0, centre->x(), centre->y());
+    else
+        roll = none;
+    points.push_back(roll);
+    return points;
+}
 
 void add_roll(std::vector<Entry>& all) { std::ranges::copy(of_roll, std::back_inserter(all)); }
 

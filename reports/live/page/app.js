@@ -1,5 +1,5 @@
 // ---- The page: what is drawn when, its tools, and its start
-import {$, make, shown, trouble} from './base.js';
+import {$, make, shown, trouble, write} from './base.js';
 import {
   begin, openScene, settle, showBranch, showStation, state, stationOf, stepBack
 } from './state.js';
@@ -13,11 +13,12 @@ import {clearEffects, listEffects} from './effects.js';
 import {fillNumbers, makeNumbers, markInvalid} from './numbers.js';
 import {makeFiles} from './files.js';
 import {drawVariants, restoreWork} from './variants.js';
-import {resetWishes} from './wish.js';
+import {drawPreview, resetWishes} from './wish.js';
 
 // After a change of a number, before it is solved.
 export const drawChange = () => {
   clearEffects();
+  drawPreview();
   fillNumbers();
   drawHandles(axesOf());
   drawButtons();
@@ -30,6 +31,7 @@ export const draw = () => {
   drawButtons();
   drawStatus();
   if (!state.now) return;
+  drawPreview();
   if (view.size === 1) fitView(state.now);
   draw3d();
   drawCharts();
@@ -43,8 +45,8 @@ const drawMotion = () => {
   if (!branch?.points) return;
   slider.max = branch.points - 1;
   slider.value = k;
-  $('motion-name').textContent = branch.name;
-  $('motion-at').textContent = `${shown(state.now.a(branch, k))} ${branch.unit}`;
+  write($('motion-name'), branch.name);
+  write($('motion-at'), `${shown(state.now.a(branch, k))} ${branch.unit}`);
   slider.setAttribute('aria-valuetext', $('motion-at').textContent);
 };
 export const moveTo = (branchName, a) => {
@@ -83,7 +85,7 @@ const makeBranches = () => {
 const drawButtons = () => {
   $('undo').disabled = !state.undo.length;
   $('redo').disabled = !state.redo.length;
-  for (const id of ['line', 'save', 'csv']) $(id).disabled = !state.info;
+  for (const id of ['line', 'save', 'save-page', 'csv']) $(id).disabled = !state.info;
   $('reset').disabled = !state.settings.size;
 };
 
@@ -103,17 +105,17 @@ const drawScene = () => {
   resetWishes();
   $('point').hidden = $('target').hidden = $('effects').hidden = true;
 };
-const openText = async (source, file, files) => {
+const openText = async (source, file, files, work) => {
   const head = await openIn({source, name: file, files});
   letGo();
   openScene(head, source, file, files);
   view.size = 1;
-  restoreWork();
   drawScene();
+  restoreWork(work);
   changed();
 };
-export const tryOpen = async (source, file, files) => {
-  try { await openText(source, file, files); } catch (error) {
+export const tryOpen = async (source, file, files, work) => {
+  try { await openText(source, file, files, work); } catch (error) {
     trouble(error.message);
     if (!state.info) Object.assign(state, {failure: error});
     drawStatus();
@@ -166,8 +168,8 @@ const start = async () => {
   makeFiles();
   try {
     await startSolvers();
-    const {text, name, files} = JSON.parse($('scene').textContent);
-    await tryOpen(text, name, files);
+    const {text, name, files, work} = JSON.parse($('scene').textContent);
+    await tryOpen(text, name, files, work);
     await warmUp();
   } catch (error) {
     if (state.info) return;

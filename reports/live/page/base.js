@@ -1,4 +1,5 @@
-// ---- Elements, numbers, vectors
+// ---- Elements, numbers, units
+export const wholePage = document.documentElement.outerHTML;  // as it was read
 export const $ = id => document.getElementById(id);
 const assign = (element, name, value) => typeof value === 'function' ? element[name] = value :
     value === false ? element.removeAttribute(name) :
@@ -51,9 +52,33 @@ export const signed = value =>
     Number.isFinite(value) && value >= 5e-10 ? '+' + shown(value) : shown(value);
 // The shortest decimal of ten digits, for a setting.
 export const written = value => String(+value.toPrecision(10));
-export const millimetres = {mm: 1, cm: 10, m: 1000, in: 25.4};
+// ---- Units of the page, mm, deg, N and N·m, for those of the file: [unit, factor to it].
+const pageUnits = {
+  mm: ['mm', 1], m: ['mm', 1e3], cm: ['mm', 10], in: ['mm', 25.4], deg: ['deg', 1],
+  rad: ['deg', 180 / Math.PI], N: ['N', 1], kN: ['N', 1e3], 'N·m': ['N·m', 1],
+  'N·mm': ['N·m', 1e-3], 'kN·m': ['N·m', 1e3], 'kN·mm': ['N·m', 1]
+};
+export const pageUnit = unit => {
+  const parts = unit.split('/').map(part => pageUnits[part]);
+  return !parts.every(Boolean) || parts.length > 2 ? [unit, 1]
+    : [parts.map(p => p[0]).join('/'), parts[0][1] / (parts[1]?.[1] ?? 1)];
+};
+// Text is written only where it differs: the browser lays out anew what is written.
+export const write = (element, text) => {
+  if (element.textContent !== text) element.textContent = text;
+};
+// Words beside the pointer.
+export const readAt = ({clientX, clientY}, words) => {
+  const box = $('readout');
+  box.hidden = !words;
+  if (!words) return;
+  box.textContent = words;
+  const {clientWidth: wide} = document.documentElement;
+  box.style.left = `${Math.max(4, Math.min(clientX + 14, wide - box.offsetWidth - 8))}px`;
+  box.style.top = `${clientY + 16}px`;
+};
 // A message over the page, which moves nothing.
 export const trouble = text => {
-  if ($('trouble').textContent !== text) $('trouble').textContent = text;
+  write($('trouble'), text);
   $('trouble').hidden = !text;
 };

@@ -1,10 +1,11 @@
 // ---- Curves: one chart for each chosen output of the shown branch, or of every branch
-import {$, make, show, shown, sketch} from './base.js';
+import {$, make, readAt, show, shown, sketch} from './base.js';
 import {
   isChanged, reference, referenceName, shownBranches, state, stationIn
 } from './state.js';
 import {proofStrip} from './proof.js';
 import {drawNotes, stopsOf} from './notes.js';
+import {saveChart} from './picture.js';
 import {moveTo} from './app.js';
 
 export const words = name => name.replaceAll('_', ' ').replace('@', ', ');
@@ -16,19 +17,24 @@ const moves = curve => {
   const r = range(curve);
   return r && r[1] - r[0] > 1e-6 * Math.max(1, Math.abs(r[0]), Math.abs(r[1]));
 };
+// Those that the catalogue has for a branch of this kind, else the main ones that move.
 const defaultCurves = (run, branch) => {
-  const usable = state.info.channels.filter(c =>
-    ['motion', 'characteristic'].includes(c.kind) && moves(run.curve(branch, c.name)));
-  const list = usable.filter(c => c.usual).sort((a, b) => a.usual - b.usual);
-  for (const channel of usable)
-    if (list.length < 4 && channel.main && !list.includes(channel)) list.push(channel);
-  return list.slice(0, 9).map(c => c.name);
+  const usual = state.info.branches.find(b => b.name === branch.name).usual;
+  const usable = [...state.figures].filter(([, channels]) =>
+    channels.some(c => ['motion', 'characteristic'].includes(c.kind) &&
+      moves(run.curve(branch, c.name))));
+  const list = [...new Set(usual)].filter(key => usable.some(([name]) => name === key));
+  for (const [key, [{main}]] of usable)
+    if (list.length < 4 && main && !list.includes(key)) list.push(key);
+  return list.slice(0, 9);
 };
+const defaults = new WeakMap();  // of a solved branch
 // By the scene as opened, so that a drag keeps the charts in their places.
 export const curvesOf = branch => {
-  const base = state.base.branch(branch.name);
-  const names =
-      state.curves ?? (base ? defaultCurves(state.base, base) : defaultCurves(state.now, branch));
+  const base = state.base.branch(branch.name), of = base ?? branch;
+  if (!state.curves && !defaults.has(of))
+    defaults.set(of, defaultCurves(base ? state.base : state.now, of));
+  const names = state.curves ?? defaults.get(of);
   return state.branch === '' && !state.curves ? names.slice(0, 3) : names;
 };
 const ticks = (low, high, count) => {
@@ -52,16 +58,30 @@ const headroom = 6;
 
 // What is in one chart.
 const dataOf = (branchName, name) => {
-  const channel = state.channel.get(name), now = state.now.branch(branchName),
-        old = reference().branch(branchName);
-  const curve = state.now.curve(now, name), before = reference().curve(old, name);
-  const fast = state.now.published(now, name), target = state.targets.get(`${branchName}|${name}`);
-  const variants = state.variants.filter(v => v.run !== reference()).map(
-    v => ({name: v.name, points: v.run.curve(v.run.branch(branchName), name)}));
-  const all = [curve, before, fast, ...variants.map(v => v.points)].flat()
-    .filter(p => Number.isFinite(p[1]));
-  const here = curve[now ? stationIn(state.now, now) : 0];
-  return {branchName, name, channel, now, curve, before, fast, target, variants, all, here};
+  const channels = state.figures.get(name) ?? [], now = state.now.branch(branchName),
+        old = reference().branch(branchName), k = now ? stationIn(state.now, now) : 0;
+  const others = [...state.variants, ...state.preview ? [state.preview] : []];
+  const series = channels.map(channel => {
+    const curve = state.now.curve(now, channel.name);
+    return {
+      channel, curve, here: curve[k], before: reference().curve(old, channel.name),
+      fast: state.now.published(now, channel.name),
+      variants: others.filter(v => v.run !== reference()).map(v => (
+        {name: v.name, points: v.run.curve(v.run.branch(branchName), channel.name)})),
+    };
+  });
+  const all = series.flatMap(s => [s.curve, s.before, s.fast, ...s.variants.map(v => v.points)])
+    .flat().filter(p => Number.isFinite(p[1]));
+  const target = state.targets.get(`${branchName}|${name}`);
+  return {branchName, name, channel: channels[0], now, series, target, all};
+};
+// "left 1.2 · right 1.4", once where they agree; the owner of a wheel's output is before its name.
+export const ownerOf = ({name, figure, wheel}) =>
+  wheel === null ? '' : name.slice(0, -figure.length - 1);
+const valuesIn = (series, value) => {
+  const texts = series.map(s => shown(value(s)));
+  return texts.every(t => t === texts[0]) ? texts[0]
+    : series.map((s, k) => `${ownerOf(s.channel)} ${texts[k]}`).join(' · ');
 };
 // Its axes. A pole of a figure does not flatten the rest of its curve.
 const scaleOf = ({all, channel, target}) => {
@@ -103,9 +123,9 @@ const gridOf = ({branchName, now}, {x0, x1, y0, y1, at, cut, whole}) => {
 };
 // Met where every point of a branch that reaches its end lies in the band, missed where one does
 // not.
-const answerTo = ({target, curve, now}) => !target ? ''
-  : curve.some(p => !(p[1] >= target[0] && p[1] <= target[1])) ? 'missed'
-    : curve.length && now?.outcome === 'converged' ? 'met' : 'open';
+const answerTo = ({target, series, now}) => !target ? ''
+  : series.some(s => s.curve.some(p => !(p[1] >= target[0] && p[1] <= target[1]))) ? 'missed'
+    : series[0]?.curve.length && now?.outcome === 'converged' ? 'met' : 'open';
 const targetOf = ({target}, {x0, y0, y1, at}) => {
   if (!target) return [];
   const [from, to] = [Math.max(y0, target[0]), Math.min(y1, target[1])].map(v => at([x0, v])[1]);
@@ -120,25 +140,29 @@ const pieces = (points, at) => {
   for (const p of points) Number.isFinite(p[1]) ? parts.at(-1).push(at(p)) : parts.push([]);
   return parts.map(p => path(p)).join('');
 };
-const curvesIn = ({curve, before, fast, variants}, {at}) => {
+const curvesIn = ({curve, before, fast, variants}, {at}, side) => {
   const list = [], same = new Map(fast.map(p => [p[0], p[1]]));
   for (const {name: kept, points} of variants)
     list.push(sketch('path', {class: `variant ${kept}`, d: pieces(points, at)}));
-  if (isChanged()) list.push(sketch('path', {class: 'was', d: pieces(before, at)}));
+  if (isChanged()) list.push(sketch('path', {class: 'was' + side, d: pieces(before, at)}));
   const pairs = curve.filter(p => Number.isFinite(p[1]) && Number.isFinite(same.get(p[0])));
   const back = pairs.map(p => at([p[0], same.get(p[0])])).reverse();
   if (pairs.length > 1)
     list.push(sketch('path', {class: 'band', d: path([...pairs.map(at), ...back], 'Z')}),
       sketch('path', {class: 'fastline', d: pieces(fast, at)}));
-  return [...list, sketch('path', {class: 'now', d: pieces(curve, at)})];
+  return [...list, sketch('path', {class: 'now' + side, d: pieces(curve, at)})];
 };
-const marksIn = ({branchName, now, curve, here}, {y0, at}) => {
-  const list = [];
+// The second wheel of an axle is dashed.
+const sideOf = k => k ? ' other' : '';
+const marksIn = ({branchName, now, series}, {y0, at}) => {
+  const list = [], [{curve, here}] = series;
   if (here) {
     const x = px(at(here)[0]);
     list.push(sketch('line', {class: 'here', x1: x, x2: x, y1: headroom, y2: H - footroom}));
-    if (Number.isFinite(here[1]))
-      list.push(sketch('circle', {class: 'dot', cx: x, cy: px(at(here)[1]), r: 2.8}));
+    for (const [k, {here: [, value]}] of series.entries())
+      if (Number.isFinite(value))
+        list.push(sketch(
+          'circle', {class: 'dot' + sideOf(k), cx: x, cy: px(at([here[0], value])[1]), r: 2.8}));
   }
   list.push(sketch('g', {class: 'proof'}, ...proofStrip(branchName, a => at([a, y0])[0])));
   for (const [a, stop, way] of now ? stopsOf(state.now, now) : [])
@@ -153,8 +177,8 @@ const marksIn = ({branchName, now, curve, here}, {y0, at}) => {
           sketch('title', {}, now.detail)));
   return list;
 };
-const fastWords = ({now, curve, fast, channel}) => {
-  const off = worst(curve, fast);
+const fastWords = ({now, series, channel}) => {
+  const off = Math.max(...series.map(s => worst(s.curve, s.fast)), -1);
   return !now?.published || off < 0 ? '' : off < 5e-7 ? 'published recursion: no error'
     : `published recursion off by up to ${shown(+off.toPrecision(2))} ${channel.unit}`;
 };
@@ -162,10 +186,16 @@ export const scales = new Map();  // of the charts on the page, by their keys
 export const keyOfChart = chart => `${chart.dataset.branch}|${chart.dataset.channel}`;
 const button = (kind, text, title, label, onclick) =>
   sketch('button', {type: 'button', class: kind, title, 'aria-label': label, onclick}, text);
+const sidesOf = series => series.length < 2 ? []
+  : series.map((s, k) => sketch(
+    'span', {class: 'side'}, sketch('i', {class: 'key now' + sideOf(k)}), ownerOf(s.channel)));
 const footOf = data => {
-  const {name, branchName} = data, key = `${branchName}|${name}`;
+  const {name, branchName, series} = data, key = `${branchName}|${name}`;
   return sketch(
-      'p', {class: 'fast'}, sketch('span', {}, fastWords(data)),
+      'p', {class: 'fast'}, ...sidesOf(series), sketch('span', {}, fastWords(data)),
+      button(
+          'shot', 'PNG', 'As a picture', `Picture of ${name} on ${branchName}`,
+          event => saveChart(event.target.closest('.chart'))),
       button(
           'enlarge', state.large === key ? 'smaller' : 'larger', 'Enlarge',
           `Enlarge ${name} on ${branchName}`, () => enlarge(key)),
@@ -176,7 +206,7 @@ const footOf = data => {
 const verdicts = {met: 'the whole branch lies in the band', missed: 'a point lies out of the band',
   open: 'in the band, but the branch ends early'};
 const chartOf = (branchName, name) => {
-  const data = dataOf(branchName, name), {channel, here, all} = data,
+  const data = dataOf(branchName, name), {channel, series, all} = data,
         key = `${branchName}|${name}`, verdict = answerTo(data);
   const title = words(name) + (state.branch === '' ? ' · ' + branchName : '');
   const kind =
@@ -188,7 +218,8 @@ const chartOf = (branchName, name) => {
           'h3', {title: [channel?.definition ?? '', verdicts[verdict] ?? ''].join('\n').trim()},
           sketch('span', {}, title),
           sketch(
-              'span', {class: 'value'}, here ? `${shown(here[1])} ${channel?.unit ?? ''}` : '–')));
+              'span', {class: 'value'}, series[0]?.here ?
+                `${valuesIn(series, s => s.here[1])} ${channel.unit}` : '–')));
   scales.delete(key);
   if (!all.length) {
     figure.children.push(
@@ -205,7 +236,8 @@ const chartOf = (branchName, name) => {
         height: H - footroom + 3,
         viewBox: `${left} 0 ${W - left - right} ${H - footroom + 3}`
       },
-      ...targetOf(data, scale), ...curvesIn(data, scale), ...marksIn(data, scale));
+      ...targetOf(data, scale), ...series.flatMap((s, k) => curvesIn(s, scale, sideOf(k))),
+      ...marksIn(data, scale));
   figure.children.push(
       sketch(
           'svg',
@@ -221,7 +253,7 @@ const editTarget = (name, branchName) => {
   const entries = [form.elements.low, form.elements.high];
   form.hidden = false;
   form.querySelector('span').textContent =
-      `target of ${name} on ${branchName} [${state.channel.get(name).unit}]`;
+      `target of ${name} on ${branchName} [${state.figures.get(name)[0].unit}]`;
   entries.forEach((entry, k) => {
     entry.value = Number.isFinite(given[k]) ? given[k] : '';
     entry.oninput = () => {
@@ -265,25 +297,32 @@ const pointed = event => {
         scale = svg && scales.get(keyOfChart(svg.closest('.chart')));
   if (!scale) return null;
   const box = svg.getBoundingClientRect(), x = (event.clientX - box.left) * W / box.width;
-  return x < left || x > W - right ? null : {...scale, a: scale.parameter(x)};
+  return x < left || x > W - right ? null : {...scale, box, a: scale.parameter(x)};
 };
 const nearest = (curve, a) => curve.reduce(
     (best, p) => Math.abs(p[0] - a) < Math.abs(best[0] - a) ? p : best, [Infinity, NaN]);
 const readOut = event => {
-  const there = pointed(event), box = $('readout');
-  box.hidden = !there?.curve.length;
-  if (box.hidden) return;
-  const {curve, before, channel, now} = there, [a, value] = nearest(curve, there.a);
-  const [b, old] = nearest(before, a),
+  const there = pointed(event), line = $('cursor');
+  line.hidden = !there?.series[0].curve.length;
+  if (line.hidden) { readAt(event, ''); return; }
+  const {box, at, y0} = there, size = box.width / W;
+  const {series, channel, now} = there, [a] = nearest(series[0].curve, there.a);
+  const [b] = nearest(series[0].before, a),
             same = isChanged() && Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(a));
-  box.textContent = `${shown(a)} ${now.unit}: ${shown(value)} ${channel.unit}` +
-      (same ? `, ${referenceName()} ${shown(old)}` : '');
-  box.style.left = `${Math.min(event.clientX + 14, innerWidth - box.offsetWidth - 8)}px`;
-  box.style.top = `${event.clientY + 16}px`;
+  line.style.left = `${box.left + size * at([a, y0])[0]}px`;
+  line.style.top = `${box.top + size * headroom}px`;
+  line.style.height = `${size * (H - headroom - footroom)}px`;
+  readAt(event, `${shown(a)} ${now.unit}: ` +
+      `${valuesIn(series, s => nearest(s.curve, a)[1])} ${channel.unit}` +
+      (same ? `, ${referenceName()} ${valuesIn(series, s => nearest(s.before, a)[1])}` : ''));
 };
 export const makeCharts = () => {
   $('charts').addEventListener('pointermove', readOut);
-  $('charts').addEventListener('pointerleave', () => { $('readout').hidden = true; });
+  $('charts').addEventListener('pointerleave', event => {
+    $('cursor').hidden = true;
+    readAt(event, '');
+  });
+  addEventListener('scroll', () => { $('cursor').hidden = true; }, {passive: true});
   $('charts').addEventListener('click', event => {
     const there = pointed(event);
     if (there) moveTo(there.branchName, there.a);
@@ -304,17 +343,19 @@ const presets = {
   'forces of springs, stops and links': c =>
       c.kind === 'element' && c.unit === 'N' && !/elastic_force/.test(c.name),
 };
+const keysOf = channels => [...state.figures].filter(
+  ([, list]) => list.some(c => channels.includes(c))).map(([key]) => key);
 const chooseCurves = list => {
   state.curves = list.length ? list : null;
   drawCharts();
 };
 export const makeChoice = () => {
   const box = $('choose').querySelector('div');
-  box.replaceChildren(...state.info.channels.map(channel => {
-    const tick = make('input', {type: 'checkbox', value: channel.name});
+  box.replaceChildren(...[...state.figures].map(([key, [{definition, unit}]]) => {
+    const tick = make('input', {type: 'checkbox', value: key});
     tick.onchange = () =>
         chooseCurves([...box.querySelectorAll('input:checked')].map(t => t.value));
-    return make('label', {title: channel.definition}, tick, `${channel.name} [${channel.unit}]`);
+    return make('label', {title: definition}, tick, `${key} [${unit}]`);
   }));
   $('preset').selectedIndex = 0;
 };
@@ -323,7 +364,7 @@ $('preset').replaceChildren(
 export const choosePreset = () => {
   const chosen = state.info?.channels.filter(presets[$('preset').value]) ?? [];
   if (!chosen.length) $('preset').selectedIndex = 0;
-  chooseCurves(chosen.map(c => c.name));
+  chooseCurves(keysOf(chosen));
 };
 $('choose').addEventListener('toggle', () => {
   if (!$('choose').open || !state.now) return;

@@ -6,7 +6,8 @@ import {Run} from './run.js';
 import {begin, numberOf, put, settle, stationOf, state} from './state.js';
 import {solvers} from './solver.js';
 import {changed, requestOf, restSoon} from './solve.js';
-import {axesOf, drawHandles, handles, mm, paths} from './view.js';
+import {images, mm, paths} from './points.js';
+import {axesOf, drawHandles, handles} from './view.js';
 
 const nudge = .1;  // [mm]
 // What moves a figure by less is rounding.
@@ -14,8 +15,9 @@ const least = value => 1e-7 * Math.max(1, Math.abs(value));
 
 export const listEffects = () => {
   const select = $('effect'), old = select.value;
-  const names =
-      [...new Set([...document.querySelectorAll('#charts .chart')].map(c => c.dataset.channel))];
+  const keys = new Set([...document.querySelectorAll('#charts .chart')].map(
+    c => c.dataset.channel));
+  const names = [...keys].flatMap(key => state.figures.get(key)?.map(c => c.name) ?? []);
   if ([...select.options].slice(1).map(o => o.value).join() === names.join()) return;
   select.replaceChildren(
       make('option', {value: ''}, 'none'), ...names.map(n => make('option', {value: n}, n)));
@@ -24,7 +26,9 @@ export const listEffects = () => {
 // A figure at a parameter of a branch with other settings; NaN where it has none.
 const valueWith = async (settings, branch, name, a) => {
   const run = new Run([...settings]);
-  run.take(await solvers.back.ask('solve', {request: requestOf(settings, branch)}));
+  // Characteristics are not computed for a figure that is none.
+  const more = state.channel.get(name).kind === 'characteristic' ? {} : {full: []};
+  run.take(await solvers.back.ask('solve', {request: requestOf(settings, branch, more)}));
   return run.valueAt(run.branches[0], name, run.exact(run.branches[0], a));
 };
 export const clearEffects = () => {
@@ -33,13 +37,11 @@ export const clearEffects = () => {
   $('effects').hidden = true;
   drawHandles(axesOf());
 };
-export const measureEffects = async more => {
-  const name = $('effect').value, all = [];
-  clearEffects();
-  if (!name || !state.now) return;
-  const [branch, k] = stationOf(state.now), a = state.now.a(branch, k);
-  const value = state.now.valueAt(branch, name, k);
-  for (const point of handles.keys())
+// Of every coordinate on a figure at a station of a branch: {point, path, axis, by: per mm}; null
+// where something else is to be done.
+export const effectsOn = async (name, branch, k, more) => {
+  const all = [], a = state.now.a(branch, k), value = state.now.valueAt(branch, name, k);
+  for (const point of [...handles.keys()].filter(key => !images.has(key)))
     for (const p of paths(point)) {
       const values = [];
       for (const sign of [1, -1]) {
@@ -50,15 +52,23 @@ export const measureEffects = async more => {
         } catch {
           values.push(NaN);
         }
-        if (!more()) return;
+        if (!more()) return null;
       }
       const by = Math.abs(values[0] - values[1]) < least(value) ?
           0 :
           (values[0] - values[1]) / (2 * nudge);
       all.push({point, path: p, axis: 'xyz'.indexOf(p.at(-1)), by});
     }
-  state.effects = all.filter(e => Number.isFinite(e.by));
-  showEffects(name, branch, a, value);
+  return all.filter(e => Number.isFinite(e.by));
+};
+export const measureEffects = async more => {
+  const name = $('effect').value;
+  clearEffects();
+  if (!name || !state.now) return;
+  const [branch, k] = stationOf(state.now), effects = await effectsOn(name, branch, k, more);
+  if (!effects) return;
+  state.effects = effects;
+  showEffects(name, branch, state.now.a(branch, k), state.now.valueAt(branch, name, k));
   drawHandles(axesOf());
 };
 const showEffects = (name, branch, a, value) => {

@@ -1,10 +1,11 @@
 // ---- What goes in and out: scenes opened, dropped or pasted; the varied scene, its command line,
 // the shown curves
-import {$, make, trouble} from './base.js';
+import {$, make, trouble, wholePage} from './base.js';
 import {keyOf} from './run.js';
 import {reference, referenceName, shownBranches, state} from './state.js';
 import {solvers} from './solver.js';
 import {curvesOf} from './charts.js';
+import {workOf} from './variants.js';
 import {tryOpen} from './app.js';
 
 export const save = (text, name, type = 'text/yaml') => {
@@ -12,7 +13,7 @@ export const save = (text, name, type = 'text/yaml') => {
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 };
-const stem = () => state.file.replace(/^.*[/\\]/, '').replace(/\.ya?ml$/, '');
+export const stem = () => state.file.replace(/^.*[/\\]/, '').replace(/\.ya?ml$/, '');
 // Numbers that the reader refuses are not written.
 $('save').onclick = async () => {
   const settings = [...state.settings], {failure} = state;
@@ -24,6 +25,15 @@ $('save').onclick = async () => {
     state.saved = keyOf(settings);
     save(text, `${stem()}_varied.yaml`);
   } catch (error) { trouble(error.message); }
+};
+// The whole page with its scene, its numbers and its variants.
+$('save-page').onclick = () => {
+  const {source: text, file: name, files} = state;
+  const [head, tail] = wholePage.split($('scene').textContent);
+  const scene = JSON.stringify({text, name, files, work: workOf()}).replaceAll('<', '\\u003c');
+  window.live.saved = `<!doctype html>\n${head}${scene}${tail}`;
+  save(window.live.saved, `${stem()}.html`, 'text/html');
+  state.saved = keyOf(state.settings);
 };
 export const quoted = word =>
     /^[\w./=+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
@@ -49,9 +59,8 @@ export const curvesAsCsv = () => {
   const rows =
       [['branch', 'parameter', 'unit of the parameter', 'output', 'unit', 'now', referenceName()]];
   for (const branch of shownBranches())
-    for (const name of curvesOf(branch)) {
-      const before = new Map(reference().curve(reference().branch(branch.name), name)),
-            {unit} = state.channel.get(name);
+    for (const {name, unit} of curvesOf(branch).flatMap(key => state.figures.get(key) ?? [])) {
+      const before = new Map(reference().curve(reference().branch(branch.name), name));
       for (const [a, value] of state.now.curve(branch, name))
         rows.push([branch.name, a, branch.unit, name, unit, value, before.get(a) ?? '']);
     }

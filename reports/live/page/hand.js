@@ -1,9 +1,10 @@
 // ---- The hand on the drawing: hardpoints are dragged, the background turns (with Shift, or the
 // right button: is shifted), the wheel and two fingers zoom. The page scrolls over the drawing
 // until it is pressed.
-import {$} from './base.js';
+import {$, readAt} from './base.js';
 import {abandon, begin, settle, state} from './state.js';
-import {axesOf, coordinatesOf, draw3d, putCoordinates, view, zoomView, panView} from './view.js';
+import {axesOf, draw3d, drawHandles, linkAt, view, zoomView, panView} from './view.js';
+import {coordinatesOf, groupOf, movePoints, toggleInGroup} from './points.js';
 import {changed} from './solve.js';
 import {choose} from './numbers.js';
 
@@ -23,7 +24,7 @@ const axisOf = (held, dx, dy, axes) => {
   return held.axis;
 };
 const isPlane = axes => [0, 1, 2].some(k => Math.hypot(axes.right[k], axes.up[k]) < 1e-6);
-export const moved = (held, dx, dy, fine = false) => {
+export const movedBy = (held, dx, dy, fine = false) => {
   const axes = axesOf(), step = +$('snap').value * (fine ? .1 : 1);
   const pixel = Math.min(1 / axes.scale, +$('snap').value || Infinity) * (fine ? .1 : 1);
   let d = [0, 0, 0];
@@ -31,14 +32,11 @@ export const moved = (held, dx, dy, fine = false) => {
     d = add(add(d, dx * pixel, axes.right), -dy * pixel, axes.up);
   else {
     const k = axisOf(held, dx, dy, axes);
-    if (k === undefined) return held.from;
+    if (k === undefined) return d;
     const s = [axes.right[k], -axes.up[k]], size = Math.hypot(...s);
     if (size > .03) d[k] = pixel * (s[0] * dx + s[1] * dy) / size;
   }
-  return held.from.map(
-      (v, k) => Math.abs(d[k]) < 1e-9 ? v :
-          step                        ? v + Math.round(d[k] / step) * step :
-                                        v + d[k]);
+  return d.map(v => step ? Math.round(v / step) * step : v);
 };
 const inDrawing = ([x, y]) => {
   const box = $('drawing').getBoundingClientRect();
@@ -62,10 +60,14 @@ const press = event => {
   if (pointers.size > 1) { release(); return; }
   const handle = event.target.closest('.handle'), {clientX: x, clientY: y} = event;
   if (handle && !event.button) {
+    const {name} = handle.dataset;
     handle.focus({preventScroll: true});
-    choose(handle.dataset.name);
-    const from = coordinatesOf(handle.dataset.name);
-    state.held = {name: handle.dataset.name, from, x, y};
+    if (event.ctrlKey || event.metaKey) {
+      toggleInGroup(name);
+      drawHandles(axesOf());
+    }
+    choose(name);
+    state.held = {name, group: groupOf(name).map(n => [n, coordinatesOf(n)]), x, y};
     begin();
   } else
     state.held = {turn: !event.button && !event.shiftKey, x, y, yaw: view.yaw, pitch: view.pitch};
@@ -82,16 +84,20 @@ const pinch = (event, before) => {
   const apart = p => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
   zoomView(apart(to) / apart(before), ...inDrawing(other));
 };
+const moveGroup = (group, by) => {
+  movePoints(group.map(([name, from]) => [name, add(from, 1, by)]));
+  changed();
+};
 const move = event => {
   const before = pointers.get(event.pointerId), {held} = state;
   if (!before) return;
   pointers.set(event.pointerId, [event.clientX, event.clientY]);
   if (pointers.size === 2) pinch(event, before);
   else if (held?.name) {
-    const to = moved(held, event.clientX - held.x, event.clientY - held.y, event.shiftKey);
-    if (to.every((v, k) => v === coordinatesOf(held.name)[k])) return;
-    putCoordinates(held.name, to);
-    changed();
+    const by = movedBy(held, event.clientX - held.x, event.clientY - held.y, event.shiftKey);
+    if (by.every((v, k) => v === (held.by?.[k] ?? 0))) return;
+    held.by = by;
+    moveGroup(held.group, by);
     return;
   } else if (held?.turn) turn3d(held, event.clientX - held.x, event.clientY - held.y);
   else if (held) panView(event.clientX - before[0], event.clientY - before[1]);
@@ -100,16 +106,15 @@ const move = event => {
 const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 // One step along the axis nearest to the arrow in this view.
 const nudgeBy = (name, [x, y], fine) => {
-  const axes = axesOf(), step = (+$('snap').value || .1) * (fine ? .1 : 1),
-        from = coordinatesOf(name);
+  const axes = axesOf(), step = (+$('snap').value || .1) * (fine ? .1 : 1);
   const along = $('along').value === '' ? [0, 1, 2] : [+$('along').value];
   const fit = k => x * axes.right[k] - y * axes.up[k];
   const k = along.reduce((best, i) => Math.abs(fit(i)) > Math.abs(fit(best)) ? i : best, along[0]);
   if (Math.abs(fit(k)) < 1e-6) return;
   begin();
-  putCoordinates(name, from.map((v, i) => i === k ? v + Math.sign(fit(k)) * step : v));
+  moveGroup(groupOf(name).map(n => [n, coordinatesOf(n)]),
+    [0, 1, 2].map(i => i === k ? Math.sign(fit(k)) * step : 0));
   settle();
-  changed();
 };
 const pressKey = event => {
   const handle = event.target.closest('.handle');
@@ -129,6 +134,11 @@ export const makeHand = () => {
       pointers.delete(event.pointerId);
       release();
     });
+  svg.addEventListener('pointermove', event => {
+    const words = event.buttons ? '' : linkAt(...inDrawing([event.clientX, event.clientY]));
+    readAt(event, words);
+  });
+  svg.addEventListener('pointerleave', event => readAt(event, ''));
   svg.addEventListener('contextmenu', event => event.preventDefault());
   svg.addEventListener('wheel', event => {
     if (!svg.classList.contains('active')) return;

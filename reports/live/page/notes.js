@@ -1,6 +1,6 @@
 // ---- Notes on the shown branches: early ends, stops that close, motions that nothing resists,
 // the state of the proof
-import {$, make, minus, shown} from './base.js';
+import {$, minus, show, shown, sketch, write} from './base.js';
 import {isChanged, reference, referenceName, shownBranches, state} from './state.js';
 import {proofOf, proofWords} from './proof.js';
 
@@ -85,7 +85,7 @@ export const drawNotes = () => {
   }
   // Notes that all branches share are said once.
   const texts = new Map(notes.map(([kind, text]) => [text, kind]));
-  $('notes').replaceChildren(...[...texts].map(([text, kind]) => make('li', {class: kind}, text)));
+  show($('notes'), ...[...texts].map(([text, kind]) => sketch('li', {class: kind}, text)));
   $('ending').hidden = !ended.length;
-  $('ending').textContent = ended.join('\n');
+  write($('ending'), ended.join('\n'));
 };

@@ -1,10 +1,21 @@
 // ---- The list of numbers, and the entry of the chosen hardpoint
-import {$, make, written} from './base.js';
+import {$, make, pageUnit, show, shown, sketch, written} from './base.js';
 import {begin, put, settle, state} from './state.js';
 import {changed} from './solve.js';
-import {axesOf, drawHandles, paths} from './view.js';
+import {images, isLocked, linksAt, paths, toggleInGroup, toggleLock} from './points.js';
+import {axesOf, drawHandles} from './view.js';
 
 export const rowsOf = new Map();  // path -> [row, ...]
+const isNumber = text => /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text.trim());
+// A text in the unit of the file as one in that of the page, and back; what is no number stays.
+export const toPage = (path, text) => {
+  const [, factor] = pageUnit(state.of.get(path).unit);
+  return factor === 1 || !isNumber(text) ? text : written(+text * factor);
+};
+export const fromPage = (path, text) => {
+  const [, factor] = pageUnit(state.of.get(path).unit);
+  return factor === 1 || !isNumber(text) ? text : written(+text / factor);
+};
 const sliderOf = (number, filled) => {
   const size = Math.abs(number.value);
   const slider = make('input', {
@@ -31,23 +42,25 @@ const numberRow = (number, words, slides) => {
       {type: 'text', inputmode: 'decimal', 'aria-label': number.path, autocomplete: 'off'});
   const row =
       make('div', {class: 'row', 'data-path': number.path}, make('span', {class: 'path'}, words));
-  let typed = false,
-      slid = null;  // the entry has text of its own; the text that the slider stands at
-  entry.oninput = () => { typed = true; };
+  // The entry has text of its own; the settings that entry and slider stand at.
+  let typed = false, filled = null, slid = null;
+  entry.oninput = () => { typed = true; filled = null; };
   entry.onchange = () => {
     typed = false;
+    filled = null;
     begin();
-    put(number.path, entry.value.trim());
+    put(number.path, fromPage(number.path, entry.value.trim()));
     settle();
     changed();
   };
-  row.title = `as opened: ${number.value} ${number.unit}`;
+  const [unit] = pageUnit(number.unit);
+  row.title = `as opened: ${toPage(number.path, String(number.value))} ${unit}`;
   const slider = slides && number.value !== 0 ? sliderOf(number, () => { slid = null; }) : null;
-  row.append(slider ?? make('span'), entry, make('span', {class: 'unit'}, number.unit));
+  row.append(slider ?? make('span'), entry, make('span', {class: 'unit'}, unit));
   // Sets only what differs: the browser paints an entry again that is set to its own value.
   row.fill = () => {
     const text = state.settings.get(number.path) ?? String(number.value);
-    if (!typed && entry.value !== text) entry.value = text;
+    if (!typed && filled !== text) entry.value = toPage(number.path, filled = text);
     if (slider && slid !== text && document.activeElement !== slider) slider.value = slid = text;
     row.classList.toggle('changed', state.settings.has(number.path));
   };
@@ -65,10 +78,29 @@ const numberRow = (number, words, slides) => {
 export const fillNumbers = () => {
   for (const rows of rowsOf.values())
     for (const row of rows) row.fill();
+  drawLinks();
+};
+// The links of the chosen hardpoint, with lengths that a drag can keep.
+const drawLinks = () => {
+  const name = state.point, list = $('links');
+  if (!name || !list) return;
+  show(list, ...linksAt(name).map(({link, other, length}) => {
+    const locked = isLocked(name, other), label = `keep the length to ${other}`;
+    const tick = sketch('input', {type: 'checkbox', checked: locked, 'aria-label': label,
+      onchange: () => { toggleLock(name, other); drawLinks(); }});
+    return sketch('li', {}, `${link}, to ${other}: ${shown(length)} mm `,
+      sketch('label', {}, tick, 'keep'));
+  }));
+  $('group').setAttribute('aria-pressed', String(state.group.includes(name)));
+  $('group').textContent = state.group.length ? `Moves with the group of ${state.group.length}`
+    : 'Moves with a group';
 };
 // Marks the entries that the message is about, or that are no number.
+let marked = false;
 export const markInvalid = () => {
   const text = state.failure?.message ?? '';
+  if (!text && !marked) return;
+  marked = text !== '';
   for (const [path, rows] of rowsOf)
     for (const row of rows) {
       const entry = row.querySelector('input[type=text]'), given = state.settings.get(path);
@@ -103,7 +135,7 @@ const filterNumbers = () => {
   }
 };
 export const choose = name => {
-  if (state.point === name && !$('point').hidden) return;
+  if (state.point === name && !$('point').hidden) { drawLinks(); return; }
   for (const [path, rows] of rowsOf)
     rowsOf.set(path, rows.filter(row => !$('point').contains(row)));
   state.point = name;
@@ -115,8 +147,14 @@ export const choose = name => {
     changed();
   };
   const rows = paths(name).map((p, k) => numberRow(state.of.get(p), 'xyz'[k], false));
-  $('point').replaceChildren(make('h3', {}, name), ...rows, back);
+  const group = make('button', {id: 'group', type: 'button',
+    title: 'All points of the group move together; also by Ctrl and a click'});
+  group.onclick = () => { toggleInGroup(name); drawLinks(); drawHandles(axesOf()); };
+  $('point').replaceChildren(
+    make('h3', {}, images.has(name) ? `${name}, of the numbers of ${images.get(name)}` : name),
+    ...rows, back, group, make('ul', {id: 'links'}));
   $('point').hidden = false;
+  drawLinks();
   drawHandles(axesOf());
 };
 $('find').oninput = filterNumbers;

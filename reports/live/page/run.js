@@ -16,7 +16,8 @@ export class Run {
       Object.assign(this, more);
       this.count = head.channels.length;
       this.place = new Map(head.channels.map((name, k) => [name, k]));
-      this.wide = 1 + this.count + 3 * (head.drawing.points.length + head.drawing.wheels.length);
+      const {points: {length: points}, wheels: {length: wheels}} = head.drawing;
+      this.wide = 1 + this.count + 3 * (points + wheels + (wheels ? 4 * wheels + 1 : 0));
     }
     for (const branch of branches)
       if (!this.branch(branch.name)) this.branches.push({...branch, numbers});
@@ -47,6 +48,10 @@ export class Run {
   }
   point(branch, k, i) { return this.vector(branch, k, i); }
   spin(branch, k, wheel) { return this.vector(branch, k, this.drawing.points.length + wheel); }
+  // Of what figures are read from: four points of each wheel, then the roll centre.
+  guide(branch, k, i) {
+    return this.vector(branch, k, this.drawing.points.length + this.drawing.wheels.length + i);
+  }
   // [[a, value], ...] of a channel by its name
   curve(branch, name) {
     const c = this.place.get(name);

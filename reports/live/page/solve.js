@@ -1,6 +1,6 @@
 // ---- Solving: the newest numbers of the shown branch at once; the other branches, the scene as
 // opened, effects and proofs when nothing is moved.
-import {$} from './base.js';
+import {$, write} from './base.js';
 import {Run, keyOf} from './run.js';
 import {
   demandSolve, isSolved, keptRuns, reference, showFailure,
@@ -25,7 +25,7 @@ window.live = {
   state
 };  // for tests: seconds of every solve, and from the change to the picture
 
-const solveInto = async (run, solver, only) => {
+export const solveInto = async (run, solver, only) => {
   const {info} = state, place = b => info.branches.findIndex(entry => entry.name === b.name);
   const answer =
       await solver.ask('solve', {request: requestOf(run.settings, only, {published: run.fast})});
@@ -158,7 +158,7 @@ const showWaiting = () => {
 export const drawStatus = () => {
   const [kind, text] = statusOf();
   if (document.body.dataset.status !== kind) document.body.dataset.status = kind;
-  if ($('state').textContent !== text) $('state').textContent = $('state').title = text;
+  write($('state'), $('state').title = text);
   if (!state.busy) $('cancel').hidden = true;
 };
 $('cancel').onclick = () => solvers.front.restart('cancelled', 'cancelled');

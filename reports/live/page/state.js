@@ -4,8 +4,10 @@
 import {Run, keyOf} from './run.js';
 
 const fresh = () => ({
-  // The open scene, as engine.hpp opens it; its numbers by path, its outputs by name.
+  // The open scene, as engine.hpp opens it; its numbers by path, its outputs by name, and its
+  // figures: each the outputs of one chart, one of every wheel.
   info: null, source: '', file: '', files: undefined, of: new Map(), channel: new Map(),
+  figures: new Map(),
   // path -> text of the numbers that are changed; the last saved
   settings: new Map(), saved: keyOf([]),
   // settings before each change, and before the one that goes on
@@ -17,13 +19,26 @@ const fresh = () => ({
   // shown: a branch of '' is all, a station of null is the start
   branch: '', station: null, curves: null, targets: new Map(), point: null, effects: null,
   large: '',
+  // points that move together; lengths that stay [mm], by their ends; what a wish would arrive at:
+  // {name, run, numbers}
+  group: [], locks: new Map(), preview: null,
 });
-export const state = {...fresh(), busy: false, due: false, since: 0, published: false, solves: 0};
+export const state = {
+  ...fresh(), busy: false, due: false, since: 0, published: false, guides: true, solves: 0
+};
 
+const figuresOf = channels => {
+  const figures = new Map();
+  for (const channel of channels) {
+    const key = channel.wheel === null ? channel.name : channel.figure;
+    figures.set(key, [...figures.get(key) ?? [], channel]);
+  }
+  return figures;
+};
 export const openScene = (head, source, file, files) => Object.assign(state, fresh(), {
   info: head, source, file, files, branch: head.branches[0]?.name ?? '',
   of: new Map(head.numbers.map(n => [n.path, n])),
-  channel: new Map(head.channels.map(c => [c.name, c])),
+  channel: new Map(head.channels.map(c => [c.name, c])), figures: figuresOf(head.channels),
 });
 
 // ---- What is shown
@@ -55,7 +70,8 @@ export const showStation = (branch, a) => {
 export const isSolved = () => state.now !== null && state.now.key === keyOf(state.settings) &&
   state.now.fast === state.published;
 export const isChanged = () => state.now.key !== reference().key;
-export const keptRuns = () => [state.base, ...state.variants.map(v => v.run)];
+export const keptRuns = () =>
+  [state.base, ...state.variants.map(v => v.run), ...state.preview ? [state.preview.run] : []];
 
 // ---- Numbers and settings
 export const numberOf = path =>

@@ -1,6 +1,6 @@
 // ---- Tables: what the trim adjusts, static values, characteristics by what acts, forces,
 // compliance matrices; each as opened, now, and the change
-import {$, show, shown, signed, sketch} from './base.js';
+import {$, show, shown, signed, sketch, write} from './base.js';
 import {
   isSolved, reference, referenceName, stationInReference,
   stationOf, state
@@ -62,7 +62,7 @@ export const drawTables = () => {
           ...group(now.trim ? 'static values after the trim' : 'static values', plain.map(rowOf)),
           ...[...new Set(rates.map(c => c.cause))].flatMap(
               cause => group(cause, rates.filter(c => c.cause === cause).map(rowOf)))));
-  $('table-place').textContent = `${where}${is.name} ${shown(now.a(is, k) ?? NaN)} ${is.unit}`;
+  write($('table-place'), `${where}${is.name} ${shown(now.a(is, k) ?? NaN)} ${is.unit}`);
   drawForces();
   drawMatrix();
 };

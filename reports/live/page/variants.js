@@ -1,8 +1,10 @@
 // ---- Work that is kept: variants A, B and C beside the scene, overlaid in the charts, to return
 // to or to compare with; and in the browser, until the same scene is opened again.
-import {$, make} from './base.js';
+import {$, make, write} from './base.js';
 import {Run, keyOf} from './run.js';
-import {dropVariant, isSolved, keepVariant, referenceName, state} from './state.js';
+import {
+  dropVariant, isChanged, isSolved, keepVariant, referenceName, state
+} from './state.js';
 import {draw, edit} from './app.js';
 import {changed} from './solve.js';
 
@@ -21,7 +23,10 @@ export const drawVariants = () => {
   const names = ['', ...state.variants.map(v => v.name)];
   $('keep').disabled = !isSolved() || !state.settings.size || state.variants.length > 2 ||
     state.variants.some(v => v.run.key === state.now.key);
-  $('was-name').textContent = referenceName();
+  const kept = state.variants.some(v => v.run.key === state.now.key);
+  $('refer').disabled = !isSolved() || !isChanged() ||
+    (state.settings.size > 0 && !kept && state.variants.length > 2);
+  write($('was-name'), referenceName());
   if (names.join() === $('compare').dataset.names) return;
   $('compare').dataset.names = names.join();
   $('variants').replaceChildren(...state.variants.map(chipOf));
@@ -29,10 +34,18 @@ export const drawVariants = () => {
   $('compare').value = state.compared;
   $('compare-with').hidden = !state.variants.length;
 };
-$('keep').onclick = () => {
-  keepVariant(state.now);
+const keepNow = () => {
+  if (state.variants.every(v => v.run.key !== state.now.key)) keepVariant(state.now);
   draw();
   storeWork();
+};
+$('keep').onclick = keepNow;
+// What is on the screen is what is compared with from now on: the scene as opened, or a variant.
+$('refer').onclick = () => {
+  if (state.settings.size) keepNow();
+  state.compared = state.variants.find(v => v.run.key === state.now.key)?.name ?? '';
+  $('compare').dataset.names = '?';
+  changed();
 };
 $('compare').onchange = () => {
   state.compared = $('compare').value;
@@ -41,14 +54,14 @@ $('compare').onchange = () => {
 
 // ---- In the browser, by the file and the text of the scene; a browser may forbid it.
 const place = () => `elastocheck live: ${state.file}`;
+export const workOf = () => ({source: state.source, settings: [...state.settings],
+  variants: state.variants.map(v => v.run.settings)});
 export const storeWork = () => {
-  const {source, variants} = state, settings = [...state.settings];
-  const nothing = !settings.length && !variants.length;
+  const work = workOf(), nothing = !work.settings.length && !work.variants.length;
   if (nothing && !$('restore').hidden) return;  // it is still offered
   try {
     if (nothing) localStorage.removeItem(place());
-    else localStorage.setItem(place(), JSON.stringify({source, settings,
-      variants: variants.map(v => v.run.settings)}));
+    else localStorage.setItem(place(), JSON.stringify(work));
   } catch { /* nothing is kept */ }
 };
 const stored = () => {
@@ -57,18 +70,26 @@ const stored = () => {
     return work?.source === state.source ? work : null;
   } catch { return null; }
 };
-// Offers what was kept of this scene.
-export const restoreWork = () => {
-  const work = stored(), all = work ? [...work.variants, work.settings] : [];
-  const known = all.every(list => list.every(([path]) => state.of.has(path)));
+const take = work => {
+  for (const list of work.variants)
+    if (state.variants.every(v => v.run.key !== keyOf(list))) keepVariant(new Run(list));
+  edit(() => { state.settings = new Map(work.settings); });
+};
+const isOfScene = work => work?.source === state.source &&
+  [...work.variants, work.settings].every(list => list.every(([path]) => state.of.has(path)));
+// Takes what a saved page has of its scene; offers what the browser has kept of it.
+export const restoreWork = inFile => {
+  const work = stored();
   $('compare').dataset.names = '?';
-  $('restore').hidden = !work || !known;
-  if (!work || !known) return;
+  $('restore').hidden = !isOfScene(work) || inFile !== undefined;
+  if (isOfScene(inFile)) {
+    take(inFile);
+    state.saved = keyOf(state.settings);
+  }
+  if ($('restore').hidden) return;
   $('restore').textContent = `Restore the work of last time (${changesOf(work.settings)})`;
   $('restore').onclick = () => {
     $('restore').hidden = true;
-    for (const list of work.variants)
-      if (state.variants.every(v => v.run.key !== keyOf(list))) keepVariant(new Run(list));
-    edit(() => { state.settings = new Map(work.settings); });
+    take(work);
   };
 };

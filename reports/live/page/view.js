@@ -1,10 +1,9 @@
 // ---- The drawing: orthographic, of the shown station, with the suspension as opened in pale
 // lines
-import {$, make, minus, millimetres, show, sketch, written} from './base.js';
-import {
-  isChanged, numberOf, put, reference,
-  stationInReference, stationOf, state
-} from './state.js';
+import {$, make, minus, show, shown, sketch} from './base.js';
+import {isChanged, reference, stationInReference, stationOf, state} from './state.js';
+import {coordinatesOf, findImages, isMoved, movable} from './points.js';
+import {guides} from './guides.js';
 
 export const views = {
   Oblique: [38, 24],
@@ -32,11 +31,7 @@ const flat = (p, {right, up, scale}) => {
   const d = add(p, -1, view.centre);
   return [view.wide / 2 + scale * dot(d, right), view.high / 2 - scale * dot(d, up)];
 };
-// ---- Hardpoints: their coordinates [mm], and where they are drawn
-export const paths = name => [0, 1, 2].map(k => `points.${name}.${'xyz'[k]}`);
-export const mm = path => millimetres[state.of.get(path).unit] ?? 1;
-export const coordinatesOf = name => paths(name).map(p => numberOf(p) * mm(p));
-const isMoved = name => paths(name).some(p => state.settings.has(p));
+// ---- Hardpoints where they are drawn
 // With its body at the shown station.
 const placeOf = name => {
   const design = coordinatesOf(name), {now} = state;
@@ -45,10 +40,6 @@ const placeOf = name => {
   if (i < 0 || !branch?.points || k === branch.start) return design;
   return add(add(design, 1, now.point(branch, k, i)), -1, now.point(branch, branch.start, i));
 };
-export const putCoordinates = (name, coordinates) => paths(name).forEach((p, k) => {
-  if (Math.abs(coordinates[k] - numberOf(p) * mm(p)) > 1e-9)
-    put(p, written(coordinates[k] / mm(p)));
-});
 // ---- What is in sight
 const tyresOf = (run, branch, k) => run.drawing.wheels.map(
     (wheel, index) => tyre(
@@ -88,13 +79,6 @@ const scenery = (run, branch, k, axes, was) => {
   return was ? pale(run.drawing, at) : suspension(run.drawing, at,
     tyresOf(run, branch, k).map(edges => edges.map(edge => edge.map(p => flat(p, axes)))));
 };
-// The road below the wheels, where it is seen from the side.
-const ground = (run, branch, k, axes) => {
-  if (Math.abs(axes.up[2]) < .5 || !run.drawing.wheels.length) return '';
-  const patches = run.drawing.wheels.map(w => flat(run.point(branch, k, w.patch), axes));
-  const y = Math.max(...patches.map(p => p[1]));
-  return view.pitch ? '' : `<path class="road" d="M0,${px(y)}H${px(view.wide)}"/>`;
-};
 const triad = axes => {
   const from = [30, view.high - 30];
   return ['x', 'y', 'z'].map((name, k) => {
@@ -109,8 +93,8 @@ const triad = axes => {
 export const handles = new Map();
 // What the drag has moved so far, beside the handle.
 const movedWords = name => {
-  const {from, name: held} = state.held ?? {};
-  if (held !== name) return '';
+  const from = state.held?.group?.find(([held]) => held === name)?.[1];
+  if (!from) return '';
   const by = coordinatesOf(name).map((v, k) => v - from[k]);
   const parts = by.flatMap(
       (v, k) =>
@@ -125,7 +109,8 @@ export const drawHandles = axes => {
     handle.setAttribute('transform', `translate(${px(x)} ${px(y)})`);
     handle.setAttribute(
         'class',
-        'handle' + (state.point === name ? ' chosen' : '') + (isMoved(name) ? ' moved' : ''));
+        'handle' + (state.point === name ? ' chosen' : '') + (isMoved(name) ? ' moved' : '') +
+            (state.group.includes(name) ? ' grouped' : ''));
     handle.setAttribute(
         'aria-label', `${name}: ${place.map(v => minus(v.toFixed(1))).join(', ')} mm`);
     const text = name + movedWords(name);
@@ -166,7 +151,9 @@ export const draw3d = () => {
     if (j >= 0) layers.push(scenery(reference(), old, j, axes, true));
   }
   if (branch?.points)
-    layers.push(ground(now, branch, k, axes), scenery(now, branch, k, axes, false));
+    layers.push(
+        guides(now, branch, k, {flat: p => flat(p, axes), axes, wide: view.wide}),
+        scenery(now, branch, k, axes, false));
   layers.push(triad(axes));
   $('scenery').innerHTML = layers.join('');
   drawHandles(axes);
@@ -176,15 +163,36 @@ export const draw3d = () => {
 export const makeHandles = () => {
   handles.clear();
   $('handles').replaceChildren();
-  for (const point of state.info.points) {
-    if (!paths(point.name).every(p => state.of.has(p))) continue;
+  findImages();
+  for (const name of movable()) {
     const group = make(
         'g', {tabindex: 0, role: 'button', class: 'handle'}, make('circle', {class: 'hit', r: 13}),
-        make('circle', {class: 'dot', r: 4.5}), make('text', {x: 8, y: -7}, point.name));
-    group.dataset.name = point.name;
-    handles.set(point.name, group);
+        make('circle', {class: 'dot', r: 4.5}), make('text', {x: 8, y: -7}, name));
+    group.dataset.name = name;
+    handles.set(name, group);
   }
   $('handles').classList.toggle('many', handles.size > 14);
+};
+// The link nearest to a place of the drawing, in words: its length, and its angles to the road as
+// seen from the front and from the side.
+export const linkAt = (x, y) => {
+  const {now} = state, [branch, k] = now ? stationOf(now) : [];
+  if (!branch?.points) return '';
+  const axes = axesOf(), off = ([a, b]) => {
+    const d = [b[0] - a[0], b[1] - a[1]], l = d[0] ** 2 + d[1] ** 2 || 1;
+    const t = Math.min(1, Math.max(0, ((x - a[0]) * d[0] + (y - a[1]) * d[1]) / l));
+    return Math.hypot(x - a[0] - t * d[0], y - a[1] - t * d[1]);
+  };
+  let best = [7, ''];
+  for (const {name, kind, points} of now.drawing.links) {
+    const ends = points.map(i => now.point(branch, k, i)), far = off(ends.map(p => flat(p, axes)));
+    if (kind === 'stop' || far >= best[0]) continue;
+    const d = add(ends[1], -1, ends[0]);
+    const angle = i => shown(Math.atan2(d[2], Math.abs(d[i])) * 180 / Math.PI);
+    best = [far, `${name}: ${shown(Math.hypot(...d))} mm, ${angle(1)} deg from the front, ` +
+      `${angle(0)} deg from the side`];
+  }
+  return best[1];
 };
 export const makeView = () => {
   measureView();
@@ -195,6 +203,7 @@ export const makeView = () => {
     button.onclick = () => { [view.yaw, view.pitch] = views[name]; view.name = name; draw3d(); };
     $('views').append(button);
   }
+  $('guides').onchange = () => { state.guides = $('guides').checked; draw3d(); };
   $('fit').onclick = () => { if (state.now) { fitView(state.now); draw3d(); } };
   new ResizeObserver(() => { measureView(); draw3d(); }).observe($('suspension'));
 };

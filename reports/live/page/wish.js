@@ -1,11 +1,14 @@
 // ---- Wanted values of several figures by several numbers within limits: the code of `elastocheck
 // solve-for` (reports/live/wishes.hpp), from the numbers as they are now.
-import {$, make, millimetres, shown, signed, written} from './base.js';
+import {$, make, pageUnit, shown, signed, written} from './base.js';
+import {Run, keyOf} from './run.js';
 import {begin, numberOf, put, settle, stationOf, state} from './state.js';
 import {solvers} from './solver.js';
-import {changed} from './solve.js';
-import {rowsOf} from './numbers.js';
+import {changed, resting, solveInto} from './solve.js';
+import {effectsOn} from './effects.js';
+import {fromPage, rowsOf} from './numbers.js';
 import {quoted} from './files.js';
+import {draw} from './app.js';
 
 const wishEntry = (value, label, more = {}) => make('input', {
   type: 'text',
@@ -45,10 +48,12 @@ export const addWant = (name, branchName, a, value = '') => {
   $('wants').append(removableRow(row));
   wishLine();
 };
+// In the unit of the page.
+const unitOf = path => state.of.has(path) ? pageUnit(state.of.get(path).unit)[0] : '';
 const rangeOf = path => {
-  const {unit} = state.of.get(path), value = numberOf(path), mmPerUnit = millimetres[unit];
-  const half = mmPerUnit && Math.abs(value * mmPerUnit) > 1e-9 || path.startsWith('points.') ?
-      20 / (mmPerUnit ?? 1) :
+  const [unit, factor] = pageUnit(state.of.get(path).unit), value = numberOf(path) * factor;
+  const half = unit === 'mm' && Math.abs(value) > 1e-9 || path.startsWith('points.') ?
+      20 :
       .5 * Math.abs(value) || 1;
   return [value - half, value + half].map(written);
 };
@@ -65,13 +70,13 @@ export const addVaried = (path = '') => {
   const [from, to] = [wishEntry(low, 'lower limit'), wishEntry(high, 'upper limit')];
   const row = make(
       'div', {class: 'vary'}, name, ' from ', from, ' to ', to,
-      make('span', {class: 'unit'}, known ? state.of.get(path).unit : ''));
+      make('span', {class: 'unit'}, unitOf(path)));
   name.onchange = () => {
     const known = state.of.has(name.value.trim());
     name.setAttribute('aria-invalid', String(!known));
     if (!known) return;
     [from.value, to.value] = rangeOf(name.value.trim());
-    row.querySelector('.unit').textContent = state.of.get(name.value.trim()).unit;
+    row.querySelector('.unit').textContent = unitOf(name.value.trim());
   };
   $('varies').append(removableRow(row));
   wishLine();
@@ -95,7 +100,8 @@ const wishes = () => {
                       known = state.of.has(path);
     name.setAttribute('aria-invalid', String(!known));
     sound &&= known;
-    return [path, number(low), number(high)];
+    const ends = [number(low), number(high)];
+    return [path, ...known ? ends.map(v => +fromPage(path, String(v))) : ends];
   });
   return sound && want.length && vary.length ? {want, vary} : null;
 };
@@ -110,6 +116,32 @@ export const wishLine = () => {
     ...vary.flatMap(([p, low, high]) => ['--vary', quoted(`${p}=${low}:${high}`)]),
     ...want.flatMap(([c, b, a, v]) => ['--want', quoted(`${c}@${b}:${a}=${v}`)])
   ].join(' ');
+};
+const changeOf = ({path, from, to}) => {
+  const [unit, factor] = pageUnit(state.of.get(path).unit);
+  return `${path} ${signed((to - from) * factor)} ${unit}`.trim();
+};
+// What is found is shown in the charts beside what is, and taken over by a click.
+const previewWish = async numbers => {
+  const settings = new Map(state.settings);
+  for (const {path, to} of numbers) settings.set(path, written(to));
+  const run = new Run([...settings], state.published), from = keyOf(state.settings);
+  await solveInto(run, solvers.back, state.branch);
+  if (from !== keyOf(state.settings)) return;
+  state.preview = {name: 'preview', run, numbers, from};
+  draw();
+};
+// A preview is of the numbers from which it was found.
+export const drawPreview = () => {
+  if (state.preview && state.preview.from !== keyOf(state.settings)) state.preview = null;
+  $('wish-take').hidden = $('wish-drop').hidden = $('preview-name').hidden = !state.preview;
+};
+const takeWish = () => {
+  const {numbers} = state.preview;
+  begin();
+  for (const n of numbers) put(n.path, written(n.to));
+  settle();
+  changed();
 };
 const grantWishes = async () => {
   const given = wishes(), said = $('wish-answer');
@@ -133,10 +165,7 @@ const grantWishes = async () => {
           found.why_not ?? `${dead.name} on ${dead.branch}: none of these numbers moves it.`;
       return;
     }
-    begin();
-    for (const n of found.numbers) put(n.path, written(n.to));
-    settle();
-    changed();
+    await previewWish(found.numbers);
     const limits = found.numbers.filter(n => n.at_limit)
                        .map(n => `${n.path} at its ${n.at_limit < 0 ? 'lower' : 'upper'} limit`);
     const conflicts =
@@ -147,7 +176,7 @@ const grantWishes = async () => {
                                                           ', stopped without convergence'}: `) +
         found.figures.map(f => `${f.name} ${shown(f.before)} → ${shown(f.after ?? NaN)} ${f.unit}`)
             .join(', ') +
-        ' by ' + found.numbers.map(n => `${n.path} ${signed(n.to - n.from)}`).join(', ') +
+        ' by ' + found.numbers.map(changeOf).join(', ') +
         (limits.length ? `; ${limits.join(', ')}` : '') +
         (!found.met && conflicts.length > 1 ? `; in conflict: ${conflicts.join(', ')}` : '') + '.';
   } catch (error) { said.textContent = error.message; } finally { $('wish-go').disabled = false; }
@@ -158,17 +187,38 @@ export const resetWishes = () => {
   $('wish-answer').textContent = $('wish-line').textContent = '';
   $('paths').replaceChildren(...state.info.numbers.map(n => make('option', {value: n.path})));
   $('wishes').open = false;
+  drawPreview();
+};
+// The first figure, with its value as it is, to be changed: at the shown position, or at the end
+// of the branch, since a trim may hold the start.
+const wantedStation = () => {
+  const [branch, k] = stationOf(state.now);
+  return [branch, branch?.points && k === branch.start ? branch.points - 1 : k];
 };
 const addShownWant = () => {
-  const [branch, k] = stationOf(state.now),
-                 name = $('effect').value ||
-      document.querySelector('#charts .chart')?.dataset.channel || figuresToWant()[0]?.name;
-  if (branch?.points && name)
-    addWant(name, branch.name, +state.now.a(branch, k).toPrecision(6), '');
+  const [branch, k] = wantedStation(), first = document.querySelector('#charts .chart');
+  const name = $('effect').value || state.figures.get(first?.dataset.channel)?.[0].name ||
+      figuresToWant()[0]?.name;
+  if (!branch?.points || !name) return;
+  const value = state.now.valueAt(branch, name, k);
+  addWant(name, branch.name, +state.now.a(branch, k).toPrecision(6),
+    Number.isFinite(value) ? String(+value.toPrecision(4)) : '');
 };
-const addMostEffect = () => {
+// The coordinates that move the first figure most, measured where they are not known.
+const addMostEffect = async () => {
+  const figure = $('wants').querySelector('select')?.value, rows = $('varies').children.length;
+  const same = () =>
+    resting() && $('varies').children.length === rows && !$('wish-go').disabled;
+  let effects = stationOf(state.now)[1] === wantedStation()[1] ? state.effects : null;
+  if (!effects && figure && same()) {
+    $('wish-answer').textContent = 'Looking for the coordinates that move it most…';
+    effects = await effectsOn(figure, ...wantedStation(), same);
+    if (!same()) return;
+    $('wish-answer').textContent = '';
+  }
   const used = new Set([...$('varies').querySelectorAll('input[list]')].map(i => i.value));
-  const best = [...state.effects ?? []]
+  const best = [...effects ?? []]
+                   .filter(e => e.by !== 0)
                    .sort((a, b) => Math.abs(b.by) - Math.abs(a.by))
                    .map(e => e.path)
                    .filter(p => !used.has(p))
@@ -184,4 +234,6 @@ $('wishes').addEventListener('toggle', () => {
 $('want-more').onclick = () => state.now && addShownWant();
 $('vary-more').onclick = () => state.now && addMostEffect();
 $('wish-go').onclick = () => state.now && grantWishes();
+$('wish-take').onclick = takeWish;
+$('wish-drop').onclick = () => { state.preview = null; draw(); };
 $('wishes').addEventListener('input', wishLine);

@@ -11,7 +11,7 @@ cat "$page/style.css" >"$part/style"
 "$(dirname "$0")/bundle.sh" "$page" >"$part/script"
 cat "$page/worker.js" >"$part/worker"
 gzip -9 -n -c "$wasm" | base64 -w 0 >"$part/solver"
-printf "default-src 'none'; script-src 'sha256-%s' 'wasm-unsafe-eval'; style-src 'sha256-%s'; worker-src blob:; base-uri 'none'; form-action 'none'" \
+printf "default-src 'none'; script-src 'sha256-%s' 'wasm-unsafe-eval'; style-src 'sha256-%s'; worker-src blob:; img-src blob:; base-uri 'none'; form-action 'none'" \
     "$(digest "$part/script")" "$(digest "$part/style")" >"$part/policy"
 # A line has one placeholder at most, @SCENE@ stays.
 awk -v part="$part" '
