@@ -41,7 +41,7 @@ std::pair<Direction, Direction> perpendicular_axes(const JointFields& f) {
     if (!are_near(cosine, 0, square)) {
         const double sine = i.u_local.cross(j.u_local).norm();
         const double angle = std::atan2(sine, cosine) * 180 / std::numbers::pi;  // [deg]
-        f.field.require("axis_j").fail(
+        f.joint.require("axis_j").fail(
             fmt::format("{:.10g} deg from axis_i; the two axes must be perpendicular", angle));
     }
     j.u_local = (j.u_local - cosine * i.u_local).normalized();
@@ -71,8 +71,8 @@ JointKind fixed(const JointFields& f) {
 }
 
 JointKind distance(const JointFields& f) {
-    const auto [i, j, drawn] = between(f.field, f.defs, "a distance joint");
-    const auto given = f.field.optional("length");
+    const auto [i, j, drawn] = between(f.joint, f.defs, "a distance joint");
+    const auto given = f.joint.optional("length");
     return Distance{i, j, given ? above_zero(*given, "not a length", f.defs.units.length) : drawn};
 }
 
