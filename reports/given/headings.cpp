@@ -211,11 +211,11 @@ Meaning mapped(const ColumnMap::Entry& entry, const Names& names) {
         const std::string unit = reader::quote(entry.unit);
         if (entry.output == "parameter" || entry.output == "load")
             wrong("unit",
-                  fmt::format("{} is no unit; allowed: mm, m, deg, rad, N, kN, Nm, ...", unit));
+                  fmt::format("{} is not a unit; allowed: mm, m, deg, rad, N, kN, Nm, ...", unit));
         if (channel >= 0)
             wrong(
                 "unit",
-                fmt::format("{} is no unit of {}; allowed: {}", unit, entry.output,
+                fmt::format("{} is not a unit of {}; allowed: {}", unit, entry.output,
                             allowed_units(names.channels[static_cast<std::size_t>(channel)].unit)));
         std::vector<std::string> outputs{"parameter", "branch"};
         for (const auto& c : names.channels) outputs.push_back(c.name);

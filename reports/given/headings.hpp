@@ -99,7 +99,7 @@ std::string branch_of_cell(std::string_view cell, const Names& names, const std:
 // "the scene has no branch 'jonce', did you mean 'jounce'?"
 std::string no_branch(const std::string& name, const std::vector<std::string>& branches);
 
-// Factor from a written unit to the base unit; empty where it is no unit of that kind. An empty text
+// Factor from a written unit to the base unit; empty where it is not a unit of that kind. An empty text
 // is the base unit.
 std::optional<double> factor_of(std::string_view written, compare::Unit unit);
 std::string allowed_units(compare::Unit unit);

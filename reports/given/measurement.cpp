@@ -28,7 +28,7 @@ void drop_changes(PointTable& table, const std::vector<compare::Channel>& channe
     std::erase_if(table.points.columns, [&](const compare::PointColumn& column) {
         if (!column.change || channels[column.channel].kinematic()) return false;
         table.left_out.push_back(channels[column.channel].name +
-                                 ": a change of an output that is no position or angle");
+                                 ": a change of an output that is neither a position nor an angle");
         return true;
     });
 }

@@ -58,7 +58,7 @@ class Variants {
             paths_.push_back(one.path);
             settings_.push_back(number->value);
         }
-        (void)reader::VariedScene(*scene_->parsed, paths_);  // throws for what is no number
+        (void)reader::VariedScene(*scene_->parsed, paths_);  // throws for what is not a number
     }
 
     std::size_t numbers() const { return varied_; }

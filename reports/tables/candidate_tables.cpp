@@ -250,7 +250,7 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
             if (!j.hints.empty() && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
                     return w.max <= w.limit;
                 }))
-                return fmt::format("Fail: {} is no solution: {}. The tolerance is {}.{}", who,
+                return fmt::format("Fail: {} is not a solution: {}. The tolerance is {}.{}", who,
                                    joined(j.hints, 4), tolerance_of(j), partly);
             return fmt::format(
                 "Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}", who,

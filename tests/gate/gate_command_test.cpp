@@ -93,7 +93,7 @@ TEST(GateCommand, EachDamageOfABaselineHasItsExitCode) {
         {"truncated curves", 3, {good.review, truncated(good.curves)}},
         {"curves of another acceptance", 3, {good.review, set_first(0).curves}},
         {"figures of another acceptance", 3, {set_first(0).review, good.curves}},
-        {"a bound that is no number", 3,
+        {"a bound that is not a number", 3,
          replaced("\"mm\":{\"atol\":2e-09", "\"mm\":{\"atol\":null")},
         {"an infinite bound", 3,  // 1e999 is no JSON number that a double holds
          replaced("\"atol\":2e-09", "\"atol\":1e999")},

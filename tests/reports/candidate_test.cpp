@@ -319,13 +319,13 @@ TEST(CandidateCommand, MapTranslatesNamesUnitsAndSignsOfATable) {
         1, {.out = {"with its sign turned"}});
     const struct {
         const char *text, *what;
-    } cases[] = {
-        {"columns:\n  TOE: {output: toes}\n",
-         "map.yaml:2: columns.TOE.output: there is no output 'toes', did you mean 'toe'?"},
-        {"columns:\n  TOE: {output: toe, unit: mm}\n", "columns.TOE.unit: 'mm' is no unit of toe"},
-        {"columns:\n  TOE: {output: toe, sign: 2}\n", "expected 1 or -1"},
-        {"columns:\n  GONE: {output: toe}\n", "there is no column 'GONE'"},
-        {"rows: {}\n", "rows"}};
+    } cases[] = {{"columns:\n  TOE: {output: toes}\n",
+                  "map.yaml:2: columns.TOE.output: there is no output 'toes', did you mean 'toe'?"},
+                 {"columns:\n  TOE: {output: toe, unit: mm}\n",
+                  "columns.TOE.unit: 'mm' is not a unit of toe"},
+                 {"columns:\n  TOE: {output: toe, sign: 2}\n", "expected 1 or -1"},
+                 {"columns:\n  GONE: {output: toe}\n", "there is no column 'GONE'"},
+                 {"rows: {}\n", "rows"}};
     for (const auto& [text, what] : cases)
         expect_said(
             judge("--steps 10 --candidate " + theirs + " --map " + folder.write("map.yaml", text)),
@@ -381,7 +381,7 @@ TEST(CandidateCommand, NonNumericOrMissingValueNeverPasses) {
     auto nan = part;
     nan.replace(nan.rfind(',') + 1, nan.size(), "nan\n");
     expect_said(judge("--steps 10 --partial --candidate " + folder.write("nan.csv", nan)), 3,
-                {.out = {"is no number at"}});
+                {.out = {"is not a number at"}});
 }
 
 // The same results as a file and from a command have the same verdict, with --partial and without.

@@ -300,7 +300,7 @@ std::size_t resolved(const Sheet& sheet, const std::string& file, const Chosen& 
         std::ranges::copy_if(row->cells, std::back_inserter(words),
                              [](const std::string& cell) { return !cell.empty(); });
     fail(file, row != nullptr ? row->line : 0, "--columns",
-         "{}: {} is no heading and no number or letter of the {} columns{}", key,
+         "{}: {} is neither a heading nor a number or letter of the {} columns{}", key,
          reader::quote(column), width, reader::did_you_mean(column, words, "headings"));
 }
 
@@ -344,7 +344,7 @@ bool is_unit(const std::string& word) {
     return std::ranges::find(length_units, word) != std::end(length_units);
 }
 
-// The unit in a heading: "X [mm]", "X_mm", "X/mm", "X in mm"; what stands in brackets and is no unit
+// The unit in a heading: "X [mm]", "X_mm", "X/mm", "X in mm"; what stands in brackets and is not a unit
 // is returned too.
 std::string unit_in_heading(std::string_view heading) {
     const auto open = heading.find_last_of("[("), end = heading.find_last_of(" _/");
@@ -375,7 +375,7 @@ SaidUnit unit_of(const Sheet& sheet, const std::string& file,
             said.from = fmt::format("by the heading {} in line {}", reader::quote(cell), said.line);
         } else if (!may_be_unknown) {
             fail(file, said.line, axis,
-                 "{} is no unit of a coordinate; allowed: {}; or say it with --unit",
+                 "{} is not a unit of a coordinate; allowed: {}; or say it with --unit",
                  reader::quote(word), fmt::join(length_units, ", "));
         }
     }

@@ -30,7 +30,7 @@ std::string side_in(std::string_view cell, const std::string& file, int line) {
     if (is_one_of(word, {"r", "right", "rh", "re", "rechts"})) return "right_";
     if (is_one_of(word, {"", "-", "c", "centre", "center"})) return "";
     fail(file, line, "side",
-         "{} is no side; allowed: left, right, l, r, lh, rh, links, rechts; nothing, -, c or "
+         "{} is not a side; allowed: left, right, l, r, lh, rh, links, rechts; nothing, -, c or "
          "centre in the middle",
          reader::quote(cell));
 }
@@ -97,7 +97,7 @@ std::vector<NamedPoint> points_of_table(std::string_view text, const std::string
                          row.cells.size(), axis, letters_of(c));
                 const auto value = coordinate(row.at(c), decimal_comma);
                 if (!value)
-                    fail(file, row.line, point.name, "{} is no number: {} in column {}", axis,
+                    fail(file, row.line, point.name, "{} is not a number: {} in column {}", axis,
                          reader::quote(row.at(c)), letters_of(c));
                 point.at[k] = mm * *value;
             }
@@ -197,7 +197,7 @@ Draft import_points(std::string_view text, const std::string& name, const Option
              fmt::join(axes_of_tables, " "));
     if (!options.unit.empty() &&
         std::ranges::find(length_units, options.unit) == std::end(length_units))
-        fail(name, 0, "--unit", "{} is no unit of a coordinate; allowed: {}",
+        fail(name, 0, "--unit", "{} is not a unit of a coordinate; allowed: {}",
              reader::quote(options.unit), fmt::join(length_units, ", "));
     const auto along = directions(options.axes, name);
     Draft draft;

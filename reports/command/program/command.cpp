@@ -18,8 +18,8 @@ std::vector<const Command*>& registered() {
 }
 
 std::string flaw_of_a_name(const std::string& word) {
-    if (word.empty()) return "'' is no name";
-    if (word == "-") return "'-' is no file name; standard output is the default or --json";
+    if (word.empty()) return "'' is not a name";
+    if (word == "-") return "'-' is not a file name; standard output is the default or --json";
     return {};
 }
 

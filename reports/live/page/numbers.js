@@ -7,7 +7,7 @@ import {axesOf, drawHandles} from './view.js';
 
 export const rowsOf = new Map();  // path -> [row, ...]
 const isNumber = text => /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text.trim());
-// A text in the unit of the file as one in that of the page, and back; what is no number stays.
+// A text in the unit of the file as one in that of the page, and back; what is not a number stays.
 export const toPage = (path, text) => {
   const [, factor] = pageUnit(state.of.get(path).unit);
   return factor === 1 || !isNumber(text) ? text : written(+text * factor);

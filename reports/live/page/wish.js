@@ -81,7 +81,7 @@ export const addVaried = (path = '') => {
   $('varies').append(removableRow(row));
   wishLine();
 };
-// The wishes as entered, or null where an entry is no number.
+// The wishes as entered, or null where an entry is not a number.
 const wishes = () => {
   let sound = true;
   const number = input => {

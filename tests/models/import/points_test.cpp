@@ -152,11 +152,11 @@ TEST(PointsTable, SaysWhatIsWrongInAMap) {
     const std::string text = file_of_points("spreadsheet.csv");
     for (const auto& [columns, said] : std::vector<std::pair<const char*, const char*>>{
              {"name=Pnkt,x=C,y=D,z=E",
-              "p.csv:3: --columns: name: 'Pnkt' is no heading and no "
+              "p.csv:3: --columns: name: 'Pnkt' is neither a heading nor a "
               "number or letter of the 7 columns, did you mean 'Punkt'?"},
-             {"name=Punkt,x=C,y=D,z=Z", "z: 'Z' is no heading"},
-             {"name=Punkt,x=C,y=D,z=0", "z: '0' is no heading"},
-             {"name=Punkt,x=C,y=D,z=8", "z: '8' is no heading"},
+             {"name=Punkt,x=C,y=D,z=Z", "z: 'Z' is neither a heading"},
+             {"name=Punkt,x=C,y=D,z=0", "z: '0' is neither a heading"},
+             {"name=Punkt,x=C,y=D,z=8", "z: '8' is neither a heading"},
              {"name=Punkt,x=C,y=D", "--columns: no z in "},
              {"name=Punkt,x=C,y=D,z=E,nmae=A",
               "'nmae' is nothing that a point has, did you mean "
@@ -207,7 +207,7 @@ TEST(PointsTable, HasTheUnitThatIsSaid) {
              {"name,x [mm],y [mm],z [mm]", "m",
               "in mm by the heading 'x [mm]' in line 1; --unit "
               "says m"},
-             {"name,x,y,z", "ft", "'ft' is no unit of a coordinate"}})
+             {"name,x,y,z", "ft", "'ft' is not a unit of a coordinate"}})
         EXPECT_TRUE(says(x_of(head, unit), expected)) << head << " " << unit;
 }
 
@@ -229,7 +229,7 @@ TEST(PointsTable, HasBothSidesByColumnsOrByAColumn) {
                              " right_lower_ball: [500, -750, 250]", " rack: [250, 0, 125]"})
         EXPECT_TRUE(says(yaml, part));
     EXPECT_TRUE(says(refused_table("point,Seite,X,Y,Z\na,oben,1,2,3\n", columns, "m"),
-                     "p.csv:2: side: 'oben' is no side"));
+                     "p.csv:2: side: 'oben' is not a side"));
     // without the column the second point of a name gets a number, with a warning
     const auto twice = importer::import_text(rows, "p.csv", with_columns("", "m"));
     ASSERT_EQ(twice.notes.warnings.size(), 1u);
@@ -306,7 +306,7 @@ TEST(PointsTable, OfAWorkbookIsReadAsThatOfItsSheet) {
     EXPECT_EQ(read(saved_book, "Front & more"), yaml);
     EXPECT_TRUE(says(
         refused(with(4, "<x:v>3</x:v></x:c></x:row></x:s", "<x:v>#REF!</x:v></x:c></x:row></x:s")),
-        "p.xlsx:6: Rack: z is no number: '#REF!' in column E"));
+        "p.xlsx:6: Rack: z is not a number: '#REF!' in column E"));
     EXPECT_TRUE(says(refused(saved_book, "Frnt & more"), "did you mean 'Front & more'?"));
     EXPECT_TRUE(says(refused(saved_book, "Old"), "--sheet: there is no sheet 'Old'"));
     EXPECT_TRUE(says(refused(saved_book, "Notes"), "no column name"));
