@@ -14,6 +14,7 @@
 #include "compare/deviation/deviation.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
+#include "compare/outputs/slope.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -207,18 +208,6 @@ std::vector<std::string> causes_of(const Given& given, std::vector<Place> places
             causes.push_back(nearer);
     }
     return causes;
-}
-
-// Slope of the straight line through these points.
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
-    const double n = static_cast<double>(x.size());
-    double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) mean_x += x[k] / n, mean_y += y[k] / n;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        xx += (x[k] - mean_x) * (x[k] - mean_x);
-        xy += (x[k] - mean_x) * (y[k] - mean_y);
-    }
-    return xx > 0 ? xy / xx : nan;
 }
 
 // The row of a column and a branch, beside each leg.

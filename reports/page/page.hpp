@@ -91,7 +91,7 @@ struct FigureGroup {
 
 enum class Mark { none, pass, fail, open };  // verdict mark of a section
 
-enum class Part { first, behaviour, methods, change, evidence };  // of the page
+enum class Part { first, behaviour, change, evidence };  // of the page
 
 struct Section {
     std::string id;  // also the name of its text template

@@ -17,9 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// [px] of a figure, such that text stays readable on a phone
-constexpr int width = 440, height = 290;
-constexpr double letter = 11, line_pitch = 19, sample = 22;  // of the legend
+// [px] of a figure. Three beside each other on A4 have letters of 6 pt; on a phone one fills the width.
+constexpr int width = 340, height = 200;
+constexpr double letter = 12.2, exponent = 0.8 * letter;
+constexpr double line_pitch = 17, sample = 12;  // of the legend
 
 // ---- Axes
 
@@ -88,7 +89,7 @@ Axis ticked(bool logarithmic, Range data, double low, double high, double most) 
 double widest(const Axis& axis) {
     double most = 0;
     for (const auto& tick : axis.ticks)
-        most = std::max(most, text_width(tick.text, letter) + text_width(tick.exponent, 8.8));
+        most = std::max(most, text_width(tick.text, letter) + text_width(tick.exponent, exponent));
     return most;
 }
 
@@ -285,10 +286,10 @@ std::vector<Entry> legend(const Figure& figure, double lines_width) {
     double x = 0;
     int line = 0;
     for (auto& entry : entries) {
-        const double need = sample + 8 + text_width(entry.text, letter);
+        const double need = sample + 4 + text_width(entry.text, letter);
         if (x > 0 && x + need > lines_width) x = 0, ++line;
         entry.x = x, entry.line = line;
-        x += need + 14;
+        x += need + 6;
     }
     return entries;
 }
@@ -313,39 +314,40 @@ void draw_entry(Svg& svg, const Entry& entry, PaperPoint at) {
         }
         draw_series(svg, one, place, at.y - 10, at.y + 10);
     }
-    svg.text({at.x + sample + 8, at.y + 3.6}, entry.text, ink, "start");
+    svg.text({at.x + sample + 4, at.y + 3.9}, entry.text, ink, "start");
 }
 
 // ---- Figures
 
 Svg draw_plot(const Figure& figure) {
     Svg svg{width, static_cast<int>(std::lround(height * figure.height))};
-    const double right = width - 23, bottom = svg.height - 52.8;
+    svg.letter = letter;
+    const double right = width - 20, bottom = svg.height - (figure.log_x ? 47 : 43);
     const auto end = [&](double value) { return figure.log_y ? std::log10(value) : value; };
     const Range all = coordinates(figure, 1, figure.log_y);
     const bool free = !figure.log_y && std::isnan(figure.y_low) && std::isnan(figure.y_high);
     const Range shown = free ? bulk_of(figure, all) : all;
     const auto vertical = [&](double top) {
         Axis axis = ticked(figure.log_y, shown, end(figure.y_low), end(figure.y_high),
-                           figure.log_y ? 7 : (bottom - top) / 20);
+                           (bottom - top) / (figure.log_y ? 22 : 15));
         if (!figure.y_ticks.empty()) axis.ticks.clear();
         for (const auto& [at, text] : figure.y_ticks) axis.ticks.push_back({at, text, ""});
         axis.start = bottom, axis.stop = top;
         return axis;
     };
     const auto left_of = [&](const Axis& axis) {
-        return std::min(width / 2.0, (figure.y.empty() ? 8 : 28) + widest(axis) + 8);
+        return std::min(width / 2.0, (figure.y.empty() ? 6 : 20) + widest(axis) + 8);
     };
-    double left = left_of(vertical(35.5));
+    double left = left_of(vertical(32));
     const auto entries = legend(figure, right - left);
     const int lines = entries.empty() ? 0 : entries.back().line + 1;
-    const double top = 16.5 + line_pitch * lines;
+    const double top = 13 + line_pitch * lines;
     const Axis y = vertical(top);
     left = left_of(y);
     Axis x;
-    for (double most = figure.log_x ? 7 : (right - left) / 42;; --most) {
+    for (double most = figure.log_x ? 7 : (right - left) / 34;; --most) {
         x = ticked(figure.log_x, coordinates(figure, 0, figure.log_x), NAN, NAN, most);
-        if (most < 3 || widest(x) + 8 < (right - left) / static_cast<double>(x.ticks.size() - 1))
+        if (most < 3 || widest(x) + 4 < (right - left) / static_cast<double>(x.ticks.size() - 1))
             break;
     }
     x.start = left, x.stop = right;
@@ -366,15 +368,16 @@ Svg draw_plot(const Figure& figure) {
     for (const auto& tick : y.ticks)
         svg.text({left - 7.7, on(y, tick.at) + 3.6}, tick.text, slate, "end", "", tick.exponent);
     for (const auto& tick : x.ticks)
-        svg.text({on(x, tick.at), bottom + 20}, tick.text, slate, "middle", "", tick.exponent);
+        svg.text({on(x, tick.at), bottom + (figure.log_x ? 23 : 19)}, tick.text, slate, "middle",
+                 "", tick.exponent);
     if (!figure.y.empty())
         svg.text(
             {0, 0}, figure.y, slate, "middle",
-            fmt::format(" transform=\"translate(17.6,{}) rotate(270)\"", px((top + bottom) / 2)));
-    svg.text({(left + right) / 2, svg.height - 8.0}, figure.x, slate, "middle");
+            fmt::format(" transform=\"translate(12,{}) rotate(270)\"", px((top + bottom) / 2)));
+    svg.text({(left + right) / 2, svg.height - 7.0}, figure.x, slate, "middle");
     for (const auto& entry : entries) {
         if (entry.series != nullptr) svg.elements += fmt::format("<g data-e=\"{}\">", entry.key);
-        draw_entry(svg, entry, {left + entry.x, 17.7 + line_pitch * entry.line});
+        draw_entry(svg, entry, {left + entry.x, 13.5 + line_pitch * entry.line});
         if (entry.series != nullptr) svg.elements += "</g>";
     }
     for (std::size_t k = 0; k < figure.series.size(); ++k) {
@@ -393,7 +396,7 @@ Svg draw_plot(const Figure& figure) {
     if (shown.low != all.low || shown.high != all.high)
         svg.text({left + 6, top + 12},
                  fmt::format("axis cut: values from {} to {}", number(all.low), number(all.high)),
-                 slate, "start", " font-size=\"10\"");
+                 slate, "start");
     // for the script of the page: pixels and coordinates of the ends of the axes, and their names
     const auto add_axis = [&](char name, const Axis& axis, const std::string& words) {
         svg.of_image += fmt::format(" data-{0}=\"{1} {2} {3:.8g} {4:.8g} {5:d}\" data-{0}n=\"{6}\"",

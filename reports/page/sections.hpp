@@ -14,11 +14,15 @@ namespace elastocheck::reports {
 std::optional<Section> against_section(const SceneAnalyses& scene);
 std::optional<Section> candidate_section(const SceneAnalyses& scene);
 std::optional<Section> first_section(const SceneAnalyses& scene);
+std::optional<Section> conditions_section(const SceneAnalyses& scene);
 std::optional<Section> drawing_section(const SceneAnalyses& scene);
 std::optional<Section> kinematics_section(const SceneAnalyses& scene);
+std::optional<Section> roll_section(const SceneAnalyses& scene);
+std::optional<Section> springs_section(const SceneAnalyses& scene);
 std::optional<Section> steering_section(const SceneAnalyses& scene);
 std::optional<Section> compliance_section(const SceneAnalyses& scene);
 std::optional<Section> curves_section(const SceneAnalyses& scene);
+std::optional<Section> gradients_section(const SceneAnalyses& scene);
 std::optional<Section> rates_section(const SceneAnalyses& scene);
 std::optional<Section> forces_section(const SceneAnalyses& scene);
 std::optional<Section> measured_section(const SceneAnalyses& scene);
@@ -29,6 +33,7 @@ std::optional<Section> price_section(const SceneAnalyses& scene);
 std::optional<Section> convergence_section(const SceneAnalyses& scene);
 std::optional<Section> references_section(const SceneAnalyses& scene);
 std::optional<Section> formulations_section(const SceneAnalyses& scene);
+std::optional<Section> stations_section(const SceneAnalyses& scene);
 std::optional<Section> matrices_section(const SceneAnalyses& scene);
 std::optional<Section> model_section(const SceneAnalyses& scene);
 

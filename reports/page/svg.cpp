@@ -44,12 +44,13 @@ void Svg::area(const std::string& path, Colour colour, double opacity) {
 
 void Svg::text(PaperPoint at, std::string_view text, Colour colour, std::string_view anchor,
                std::string_view attributes, std::string_view exponent) {
-    fmt::format_to(std::back_inserter(elements),
-                   "<text class=\"e-f{}\" x=\"{}\" y=\"{}\" text-anchor=\"{}\"{}>{}{}</text>",
-                   static_cast<int>(colour), px(at.x), px(at.y), anchor, attributes, for_xml(text),
-                   exponent.empty() ? ""
-                                    : fmt::format("<tspan font-size=\"8.8\" dy=\"-5.5\">{}</tspan>",
-                                                  for_xml(exponent)));
+    fmt::format_to(
+        std::back_inserter(elements),
+        "<text class=\"e-f{}\" x=\"{}\" y=\"{}\" text-anchor=\"{}\"{}>{}{}</text>",
+        static_cast<int>(colour), px(at.x), px(at.y), anchor, attributes, for_xml(text),
+        exponent.empty()
+            ? ""
+            : fmt::format("<tspan font-size=\".8em\" dy=\"-.6em\">{}</tspan>", for_xml(exponent)));
 }
 
 Illustration illustrate(const Svg& svg, const std::string& id, const std::string& title,
@@ -57,10 +58,11 @@ Illustration illustrate(const Svg& svg, const std::string& id, const std::string
     const std::string head = fmt::format(
         "<svg width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
         "xmlns=\"http://www.w3.org/2000/svg\" fill=\"none\" stroke-linecap=\"round\" "
-        "stroke-linejoin=\"round\" font-size=\"11\" role=\"img\" "
+        "stroke-linejoin=\"round\" font-size=\"{6}\" role=\"img\" "
         "aria-labelledby=\"{2}-title {2}-desc\"{5}><title id=\"{2}-title\">{3}</title>"
         "<desc id=\"{2}-desc\">{4}</desc>",
-        svg.width, svg.height, id, for_xml(title), for_xml(description), svg.of_image);
+        svg.width, svg.height, id, for_xml(title), for_xml(description), svg.of_image,
+        px(svg.letter));
     const std::string paper = "<style>" +
                               render("figure.css", {{"tints", tints()}}, Escape::nothing) +
                               "</style><rect class=\"e-paper\" width=\"100%\" height=\"100%\"/>";

@@ -36,6 +36,7 @@ nlohmann::ordered_json tints();  // of the palette, for the style sheet of pages
 // e-s9 stroke, e-f0 ... e-f9 fill.
 struct Svg {
     int width = 0, height = 0;  // [px]
+    double letter = 11;         // [px] of texts without a size of their own
     std::string elements{};
     std::string of_image{};  // attributes of the image, with a leading space
 

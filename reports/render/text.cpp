@@ -18,11 +18,11 @@ bool empty(const Cell& cell) {
     return std::get<std::string>(cell).empty();
 }
 
-bool rounding(double value) { return std::abs(value) < 1e-9; }
+bool below_rounding(double value) { return std::abs(value) < 1e-9; }
 
 std::string share(double value) {
     const double percent = 100 * value;
-    if (rounding(value)) return "0";
+    if (below_rounding(value)) return "0";
     if (percent > 1000) return ">1000 %";
     if (std::abs(percent) < 0.001) return "<0.001 %";
     return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
@@ -36,13 +36,13 @@ std::string written(double value, Digits digits) {
         case Digits::size: return value == 0 ? "0" : fmt::format("{:.1e}", value);
         case Digits::three: return fmt::format("{:.3g}", value);
         case Digits::place: return fmt::format("{:.4g}", value);
-        case Digits::four: return rounding(value) ? "0" : fmt::format("{:.4g}", value);
-        case Digits::deviation: return rounding(value) ? "0" : fmt::format("{:+.3g}", value);
+        case Digits::four: return below_rounding(value) ? "0" : fmt::format("{:.4g}", value);
+        case Digits::deviation: return below_rounding(value) ? "0" : fmt::format("{:+.3g}", value);
         case Digits::rounded:
         case Digits::shaded:
-            return rounding(value) ? "0"
-                   : value < 10    ? fmt::format("{:.2g}", value)
-                                   : fmt::format("{:.0f}", value);
+            return below_rounding(value) ? "0"
+                   : value < 10          ? fmt::format("{:.2g}", value)
+                                         : fmt::format("{:.0f}", value);
         case Digits::percent: return share(value);
         case Digits::hidden:
         case Digits::note:

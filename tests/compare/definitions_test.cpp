@@ -150,6 +150,37 @@ TEST(Definitions, RollStiffnessFollowsFromWheelRatesAndRollCentreIsMirrored) {
     EXPECT_NEAR(value(0, "roll_centre_height"), value(last, "roll_centre_height"), 1e-5);
 }
 
+// The part of an element in a stiffness is its derivative by the logarithm of the element's rate; parts
+// add up but for preloads.
+TEST(Definitions, PartsOfTheRollStiffnessAreItsDerivativesByTheRates) {
+    Model model = compile(trim(support::scene("front_axle")).scene);
+    const auto channels = characteristics(model);
+    const auto bar = std::ranges::find(model.elastics, "anti_roll_bar", &Elastic::name);
+    ASSERT_NE(bar, model.elastics.end());
+    auto& law = std::get<LinearStiffness>(std::get<Bushing>(bar->kind).law);
+    const auto values = [&] {
+        const Curve curve = curve_of(model, model.branches.front(), channels);
+        return curve.values[curve.start];
+    };
+    const auto value = [&](const std::vector<double>& of, const char* name) {
+        return of[static_cast<std::size_t>(find_channel(channels, name))];
+    };
+    const auto as_drawn = values();
+    const double whole = value(as_drawn, "roll_stiffness"),
+                 of_bar = value(as_drawn, "roll_stiffness_of_bar"),
+                 others = value(as_drawn, "roll_stiffness_of_springs") +
+                          value(as_drawn, "roll_stiffness_of_rubber");
+    constexpr double step = 1e-3;
+    const auto K = law.K;
+    law.K = (1 + step) * K;
+    const double stiffer = value(values(), "roll_stiffness");
+    law.K = (1 - step) * K;
+    const double softer = value(values(), "roll_stiffness");
+    EXPECT_NEAR((stiffer - softer) / (2 * step), of_bar, 1e-5 * whole);
+    EXPECT_GT(of_bar, 0.3 * whole);
+    EXPECT_NEAR(of_bar + others, whole, 0.1 * whole);
+}
+
 TEST(Definitions, TurningCircleIsTwiceTheWheelbaseOverTheSineOfTheOuterAngle) {
     const Model model = compile(trim(support::scene("front_axle")).scene);
     const auto steering = std::ranges::find(model.branches, "steering", &Branch::name);

@@ -133,6 +133,23 @@ double compression(const Subject& x, const Point& i, const Point& j) {
     return length(x.drawn()) - length(x);
 }
 
+// Of an axle: the body against the wheels, about x, and the moment that rolls it so.
+double roll_angle(const Subject& x) {
+    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const Vector3d across = left.centre().at - right.centre().at;
+    return std::atan(-across.z() / across.y());
+}
+double roll_moment(const Subject& x) {
+    if (x.branch == nullptr) return nan;
+    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const auto load = [&](const Subject& of) {
+        return wheel_load(x.model, *x.branch, *x.state, of.k);
+    };
+    const double difference = load(right) - load(left);
+    return std::isfinite(difference) ? difference * (left.patch().at.y() - right.patch().at.y()) / 2
+                                     : undefined;
+}
+
 // ---- Positions: an entry an axis.
 
 void add_position(std::vector<Entry>& all, Owner owner, const std::string& stem,
@@ -154,6 +171,9 @@ Point patch_of(const Wheel& wheel) { return wheel.contact; }
 
 // ---- The entries.
 
+const Drawing compressed{Over::springs, 1, "Travel of springs and dampers",
+                         "shortening from the drawn length"};
+
 const Entry of_wheel[] = {
     Entry(
         Owner::wheel, std::string(figure::toe), Unit::deg,
@@ -171,7 +191,8 @@ const Entry of_wheel[] = {
          .block = {"toe"},
          .plausible = {-10, 10, "is a tie rod missing, or a rate in another unit?"},
          .drawn = {{Over::travel, 1, "Toe angle", "toe-in positive"},
-                   {Over::steering, 1, "Steer angle", "to the left positive", Shown::steer_angle},
+                   {Over::steering, 1, "Steer angle", "to the left positive", Shown::to_the_left},
+                   {Over::roll, 1, "Toe angle in roll", "toe-in positive"},
                    {Over::load, 1, "Toe change", "toe-in positive", Shown::change}}}),
     Entry(Owner::wheel, std::string(figure::camber), Unit::deg,
           "angle of the wheel plane to the vertical, positive where the top leans outwards", "",
@@ -186,6 +207,8 @@ const Entry of_wheel[] = {
            .plausible = {-15, 15, "is a link missing, or a rate in another unit?"},
            .drawn = {{Over::travel, 2, "Camber angle", "top outwards positive"},
                      {Over::steering, 2, "Camber angle", "top outwards positive"},
+                     {Over::roll, 2, "Camber angle in roll",
+                      "against the body, top outwards positive"},
                      {Over::load, 2, "Camber change", "top outwards positive", Shown::change}}}),
     Entry(Owner::wheel, std::string(figure::travel), Unit::mm,
           "vertical displacement of the wheel centre from its design position, positive in jounce "
@@ -205,10 +228,10 @@ const Entry of_patch[] = {
           {.elsewhere = "half-track change",
            .live = {.heave = 6, .roll = 6},
            .rig = "track change, half track change",
-           .drawn = {{Over::travel, 3, "Lateral position of the contact patch",
+           .drawn = {{Over::travel, 3, "Contact patch, lateral",
                       "from its drawn position, outwards positive"},
-                     {Over::load, 3, "Lateral displacement of the contact patch",
-                      "outwards positive", Shown::change}}}),
+                     {Over::load, 3, "Contact patch, lateral change", "outwards positive",
+                      Shown::change}}}),
     Entry(Owner::wheel_of_vehicle, "wheelbase_change", Unit::mm,
           "longitudinal displacement of this wheel's contact patch from its design position, "
           "positive where the wheelbase grows (forward in front, rearward at the rear)",
@@ -230,7 +253,7 @@ const Entry of_patch[] = {
            .rig = "caster, castor, caster angle, castor angle",
            .block = {"caster"},
            .drawn = {{Over::travel, 5, "Caster angle", "top backwards positive"},
-                     {Over::steering, 4, "Caster angle", "top backwards positive"}}}),
+                     {Over::steering, 5, "Caster angle", "top backwards positive"}}}),
     Entry(Owner::wheel_with_steering_axis, "kingpin_inclination", Unit::deg,
           "angle of the steering axis to the vertical seen from behind, positive where its top "
           "leans inwards; undefined where it lies flatter than 0.1 rad",
@@ -251,7 +274,7 @@ const Entry of_patch[] = {
         {.elsewhere = "-n·(p - c). Steering-axis offset at ground, kingpin offset; Reimpell's r_σ",
          .quotient = true,
          .at_rest = true,
-         .drawn = {{Over::steering, 5, "Scrub radius",
+         .drawn = {{Over::if_given, 3, "Scrub radius",
                     "steering axis inboard of the patch positive"}}}),
     Entry(Owner::wheel_with_steering_axis, std::string(figure::mechanical_trail), Unit::mm,
           "distance along the wheel from the contact patch to the intersection of the steering "
@@ -273,6 +296,10 @@ const Entry of_patch[] = {
               return x.of(left).patch().at.y() - x.of(1 - left).patch().at.y();
           },
           {.elsewhere = "in scenes with one left and one right wheel", .at_rest = true}),
+    Entry(Owner::axle, std::string(figure::roll_angle), Unit::deg,
+          "roll of the car body against the line through the wheel centres, positive to the right "
+          "(the right wheel in jounce)",
+          "", roll_angle, {.elsewhere = "suspension roll angle of ISO 8855"}),
     Entry(Owner::front_axle, "ackermann", Unit::percent,
           "(cot of the right wheel's angle less cot of the left one's) times the wheelbase over "
           "the lateral distance between the pivots on the road: positive where the inner wheel "
@@ -286,7 +313,10 @@ const Entry of_patch[] = {
                "tools give a ratio of the angles, which is a different number",
            .quotient = true,
            .live = {.steering = 1},
-           .drawn = {{Over::steering, 3, "Ackermann", "100 %: no tyre slips at low speed"}}}),
+           .drawn = {{Over::steering, 4, "Ackermann",
+                      "100 %: no tyre slips at low speed; without the middle, where it is a "
+                      "quotient of two small angles",
+                      Shown::off_centre}}}),
     Entry(
         Owner::front_axle, "turning_circle", Unit::mm,
         "diameter of the circle on which the patch of the wheel with the smaller steer angle runs "
@@ -303,14 +333,14 @@ const Entry of_patch[] = {
               const auto& spring = std::get<AxialSpring>(x.model.elastics[x.k].kind);
               return compression(x, spring.i, spring.j);
           },
-          {.elsewhere = "spring travel"}),
+          {.elsewhere = "spring travel", .drawn = {compressed}}),
     Entry(Owner::damper, "compression", Unit::mm,
           "design length less length of damper '{}', positive in compression", "",
           [](const Subject& x) {
               const Damper& damper = x.model.dampers[x.k];
               return compression(x, damper.i, damper.j);
           },
-          {.elsewhere = "damper travel"}),
+          {.elsewhere = "damper travel", .drawn = {compressed}}),
 };
 
 // Needs the branch, of which it counts the loads and drivers.
@@ -329,6 +359,18 @@ Entry wheel_load_entry() {
          .rig = "wheel load, vertical load, tyre load, tire load, wheel vertical force",
          .drawn = {{Over::travel, 6, "Wheel load",
                     "the force of the road; negative: the wheel would lift off"}}});
+    entry.kind = ChannelKind::element;
+    return entry;
+}
+
+Entry roll_moment_entry() {
+    Entry entry(
+        Owner::axle, "roll_moment", Unit::newton_metre,
+        "half the difference of the wheel loads times the distance of the patches, positive "
+        "where it rolls the car body to the right",
+        "", roll_moment,
+        {.elsewhere = "load transfer times the track; over the roll angle: roll stiffness",
+         .drawn = {{Over::roll, 3, "Roll moment", "to the right positive"}}});
     entry.kind = ChannelKind::element;
     return entry;
 }
@@ -492,10 +534,10 @@ void add_angles(std::vector<Entry>& all) {
         return Properties{.main = true, .rig = rig, .drawn = {drawn}};
     };
     Properties x = moves("wheel centre x, wheel center x",
-                         {Over::travel, 4, "Longitudinal movement of the wheel centre",
+                         {Over::travel, 4, "Wheel centre, longitudinal",
                           "since the start of the branch, forward positive", Shown::change});
-    x.drawn.push_back({Over::load, 4, "Longitudinal displacement of the wheel centre",
-                       "forward positive", Shown::change});
+    x.drawn.push_back(
+        {Over::load, 4, "Wheel centre, longitudinal change", "forward positive", Shown::change});
     add_position(all, Owner::wheel, "wheel_centre", "the wheel centre", centre_of,
                  {x,
                   moves("wheel centre y, wheel center y",
@@ -512,6 +554,7 @@ void add_angles(std::vector<Entry>& all) {
                  patch_of);
     std::ranges::copy(of_patch, std::back_inserter(all));
     all.push_back(wheel_load_entry());
+    all.push_back(roll_moment_entry());
 }
 
 void add_angles_otherwise(std::vector<Entry>& all) {

@@ -150,9 +150,13 @@ std::vector<DrawnFigure> drawn_over(Over over) {
     for (const Entry& entry : catalogue())
         for (const Drawing& drawing : entry.is.drawn)
             if (drawing.over == over)
-                placed.push_back(
-                    {drawing.place, {entry.name, drawing.title, drawing.sign, drawing.shown}});
-    return in_places(std::move(placed));
+                placed.push_back({drawing.place,
+                                  {entry.name, drawing.title, drawing.sign, drawing.shown,
+                                   entry.kind != ChannelKind::characteristic}});
+    auto list = in_places(std::move(placed));  // once, of several owners
+    const auto again = std::ranges::unique(list, {}, &DrawnFigure::name);
+    list.erase(again.begin(), again.end());
+    return list;
 }
 
 std::vector<std::string> usual_over(int Usual::*moved) {

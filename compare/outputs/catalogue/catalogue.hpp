@@ -51,13 +51,15 @@ std::vector<Named> owners(const Model& model, Owner owner);
 struct Entry;
 Channel channel_of(const Model& model, const Entry& entry, const Named& owner);
 
-// A curve of the report: over what, in which place among the figures there, and how.
-enum class Over { travel, steering, load, if_given };  // if_given: only where measured or computed
+// A curve of the report: over what, in which place among the figures there, and how. Springs and dampers
+// are drawn over wheel travel; `if_given`: only where measured or computed.
+enum class Over { travel, roll, springs, steering, load, if_given };
 enum class Shown {
     as_is,
     change,          // since the start of the branch, where the suspension is settled
     outward_change,  // likewise, of a y coordinate
-    steer_angle,     // toe, positive to the left
+    to_the_left,     // toe or its rate, positive to the left
+    off_centre,      // without the middle of the branch, where it has a pole
 };
 struct Drawing {
     Over over;
@@ -131,6 +133,7 @@ std::vector<const Entry*> definitions();
 struct DrawnFigure {
     std::string name, title, sign;
     Shown shown = Shown::as_is;
+    bool has_gradient = false;  // read from the state alone
 };
 std::vector<DrawnFigure> drawn_over(Over over);
 // Figures that a live page shows first over such a branch, in their places.
@@ -191,7 +194,7 @@ inline constexpr std::string_view toe = "toe", camber = "camber", travel = "trav
                                   track = "track", wheel_rate = "wheel_rate",
                                   wheel_rate_in_roll = "wheel_rate_in_roll",
                                   anti_dive = "anti_dive", anti_lift = "anti_lift",
-                                  wheel_load = "wheel_load";
+                                  wheel_load = "wheel_load", roll_angle = "roll_angle";
 }
 
 }  // namespace elastocheck::compare

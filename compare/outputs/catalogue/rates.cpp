@@ -197,6 +197,10 @@ double steer_with_trail(const Subject& x) {
 
 // ---- The entries.
 
+const Drawing steering_ratio{Over::steering, 3, "Steering ratio", "to the left positive",
+                             Shown::to_the_left},
+    installed{Over::springs, 2, "Motion ratio", "shortening over wheel travel"};
+
 const Entry over_travel[] = {
     Entry(Owner::wheel, "bump_steer", Unit::deg_per_m,
           "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
@@ -225,11 +229,17 @@ const Entry over_travel[] = {
           "lateral distance from the wheel centre to the instant centre of the carrier seen from "
           "the front, all wheels rising by the same amount; positive inboard",
           endless_in_front, front_view_arm,
-          {.elsewhere = "fvsa, virtual swing axle; d camber = −travel / arm", .swing_arm = true}),
+          {.elsewhere = "fvsa, virtual swing axle; d camber = −travel / arm",
+           .swing_arm = true,
+           .drawn = {{Over::travel, 10, "Swing arm seen from the front", "inboard positive"}}}),
     Entry(Owner::wheel, "side_view_swing_arm", Unit::mm,
           "longitudinal distance from the wheel centre to the instant centre of the carrier seen "
           "from the side, all wheels rising by the same amount; positive ahead of the wheel",
-          endless_from_side, side_view_arm, {.elsewhere = "svsa", .swing_arm = true}),
+          endless_from_side, side_view_arm,
+          {.elsewhere = "svsa",
+           .swing_arm = true,
+           .drawn = {{Over::travel, 11, "Swing arm seen from the side",
+                      "ahead of the wheel positive"}}}),
     Entry(
         Owner::wheel, std::string(figure::wheel_rate), Unit::newton_per_mm,
         "vertical force at the contact patch over vertical displacement of the wheel centre, all "
@@ -245,17 +255,21 @@ const Entry over_travel[] = {
 };
 
 const Entry of_response[] = {
-    Entry(Owner::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
-          "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
-          ride_rate, {.key = true}),
+    Entry(
+        Owner::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
+        "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
+        ride_rate,
+        {.key = true, .drawn = {{Over::travel, 8, "Ride rate", "wheel rate and tyre in series"}}}),
     Entry(Owner::wheel_on_rack, "steer_gradient", Unit::deg_per_mm,
           "change of toe over the displacement of the steering joint, wheel centres held at their "
           "height; positive towards toe-in",
-          not_steered, steer_gradient, {.key = true, .live = {.steering = 2}, .cause = "steering"}),
+          not_steered, steer_gradient,
+          {.key = true, .live = {.steering = 2}, .cause = "steering", .drawn = {steering_ratio}}),
     Entry(Owner::wheel_on_column, "steer_gradient", Unit::deg_per_deg,
           "change of toe over the angle of the steering joint, wheel centres held at their height; "
           "positive towards toe-in",
-          not_steered, steer_gradient, {.key = true, .live = {.steering = 2}, .cause = "steering"}),
+          not_steered, steer_gradient,
+          {.key = true, .live = {.steering = 2}, .cause = "steering", .drawn = {steering_ratio}}),
     Entry(
         Owner::steered_wheel, "caster_steered", Unit::deg,
         "angle to the vertical seen from the side of the axis about which the carrier turns when "
@@ -278,25 +292,34 @@ const Entry of_response[] = {
           "patch: share of the load transfer under braking that the links carry; positive where "
           "they resist dive",
           no_vertical, [](const Subject& x) { return anti(x, x.braked(), brake_share(x), 1); },
-          {.elsewhere = milliken, .key = true, .explained = true, .live = {.heave = 5}}),
+          {.elsewhere = milliken,
+           .key = true,
+           .explained = true,
+           .live = {.heave = 5},
+           .drawn = {{Over::travel, 12, "Anti-dive", "positive where the links resist"}}}),
     Entry(Owner::front_wheel, std::string(figure::anti_lift), Unit::percent,
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist lift of the front "
           "when the axle drives",
           no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), 1); },
-          {.elsewhere = milliken}),
+          {.elsewhere = milliken,
+           .drawn = {{Over::travel, 13, "Anti-lift", "positive where the links resist"}}}),
     Entry(Owner::rear_wheel, std::string(figure::anti_lift), Unit::percent,
           "brake_share · wheelbase / cg_height · rearward over vertical displacement of the "
           "contact patch: share of the load transfer under braking that the links carry; positive "
           "where they resist lift of the rear",
           no_vertical, [](const Subject& x) { return anti(x, x.braked(), brake_share(x), -1); },
-          {.elsewhere = milliken}),
+          {.elsewhere = milliken,
+           .drawn = {{Over::travel, 13, "Anti-lift", "positive where the links resist"}}}),
     Entry(Owner::rear_wheel, "anti_squat", Unit::percent,
           "drive_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist squat when the axle "
           "drives",
           no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), -1); },
-          {.elsewhere = milliken, .key = true, .live = {.heave = 5}}),
+          {.elsewhere = milliken,
+           .key = true,
+           .live = {.heave = 5},
+           .drawn = {{Over::travel, 12, "Anti-squat", "positive where the links resist"}}}),
 };
 
 const Entry of_springs[] = {
@@ -304,12 +327,14 @@ const Entry of_springs[] = {
         Owner::spring, "motion_ratio", Unit::none,
         "shortening of the spring over travel of the wheel centres, all rising by the same amount",
         never, spring_ratio,
-        {.elsewhere = "installation ratio; its inverse has the same name elsewhere"}),
+        {.elsewhere = "installation ratio; its inverse has the same name elsewhere",
+         .drawn = {installed}}),
     Entry(
         Owner::damper, "motion_ratio", Unit::none,
         "shortening of the damper over travel of the wheel centres, all rising by the same amount",
         never, damper_ratio,
-        {.elsewhere = "installation ratio; its inverse has the same name elsewhere"}),
+        {.elsewhere = "installation ratio; its inverse has the same name elsewhere",
+         .drawn = {installed}}),
 };
 
 const Entry otherwise[] = {

@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "compare/outputs/catalogue/motions.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -105,6 +107,57 @@ double roll_stiffness(const Subject& x) {
     return ratio(track * track, rise, rigid);
 }
 
+// The part of the elements of one kind in it: their part of the work of the unit forces, which is
+// their rise, is Σ Δs·Δe, with Δe their deformation and Δs their force by these. The rest of the work
+// is that of preloads, whose directions turn.
+enum class Carries { spring, bar, bushing };
+Carries carries(const Elastic& elastic) {
+    if (member<ScalarLaw>(elastic.kind) != nullptr) return Carries::spring;
+    const bool bends =
+        elastic.written_as == WrittenAs::beam || elastic.written_as == WrittenAs::torsion_spring;
+    return bends ? Carries::bar : Carries::bushing;
+}
+double roll_stiffness_by(const Subject& x, Carries kind) {
+    const double whole = roll_stiffness(x);
+    if (!std::isfinite(whole)) return whole;
+    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const Motions by = of_axle(x.response->free, left, at_patch + 2, -1);
+    const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
+    constexpr double step = 1e-5;  // [m] of the rise, to either side
+    const auto moved = [&](double sign) {
+        Equilibrium state = *x.state;
+        for (std::size_t b = 0; b < by.size(); ++b) {
+            const Vector3d turn = sign * step / rise * by[b].dpi;
+            state.poses[b].r += sign * step / rise * by[b].dr;
+            state.poses[b].p =
+                Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()) * state.poses[b].p;
+        }
+        return state;
+    };
+    const Equilibrium above = moved(1), below = moved(-1);
+    const Branch none;
+    double work = 0;  // of a rise of 2 step
+    for (std::size_t k = 0; k < x.model.elastics.size(); ++k) {
+        const Elastic& elastic = x.model.elastics[k];
+        if (carries(elastic) != kind || elastic.written_as == WrittenAs::tyre) continue;
+        const Branch& branch = x.branch == nullptr ? none : *x.branch;
+        const Vector6 high = deformation(elastic.kind, k, branch, above),
+                      low = deformation(elastic.kind, k, branch, below);
+        work += (high - low).dot(force(elastic.kind, high) - force(elastic.kind, low));
+    }
+    return whole * work * rise / (4 * step * step);
+}
+Entry roll_stiffness_by(Carries kind, const std::string& name, const std::string& of) {
+    return {Owner::axle,
+            "roll_stiffness_of_" + name,
+            Unit::newton_metre_per_deg,
+            "part of the roll stiffness: work of the " + of +
+                " over that of the roll moment; what is left of the sum are turning preloads",
+            no_rate,
+            [kind](const Subject& x) { return roll_stiffness_by(x, kind); },
+            {.elsewhere = "split of the roll stiffness", .reads_free = true, .cause = "roll"}};
+}
+
 const Entry of_roll[] = {
     Entry(
         Owner::wheels, "roll_centre_height", Unit::mm,
@@ -118,7 +171,8 @@ const Entry of_roll[] = {
          .explained = true,
          .live = {.heave = 3, .roll = 1},
          .cause = "roll",
-         .drawn = {{Over::travel, 8, "Roll centre height", "above the road"}}}),
+         .drawn = {{Over::travel, 9, "Roll centre height", "above the road"},
+                   {Over::roll, 5, "Roll centre height in roll", "above the road"}}}),
     Entry(Owner::axle, "roll_centre_lateral", Unit::mm,
           "lateral position of the same intersection, positive to the left of the middle plane",
           no_roll_centre,
@@ -128,7 +182,9 @@ const Entry of_roll[] = {
           },
           {.elsewhere = "migration of the roll centre in roll",
            .live = {.roll = 5},
-           .cause = "roll"}),
+           .cause = "roll",
+           .drawn = {{Over::roll, 6, "Lateral position of the roll centre",
+                      "left of the middle plane positive"}}}),
     Entry(Owner::axle, "roll_stiffness", Unit::newton_metre_per_deg,
           "moment of opposite vertical forces at the patches over the roll of the wheel centres, "
           "without the tyres",
@@ -137,7 +193,12 @@ const Entry of_roll[] = {
            .reads_free = true,
            .key = true,
            .live = {.roll = 2},
-           .cause = "roll"}),
+           .cause = "roll",
+           .drawn = {{Over::roll, 4, "Roll stiffness", "without the tyres"}}}),
+    roll_stiffness_by(Carries::spring, "springs", "springs and stops"),
+    roll_stiffness_by(Carries::bar, "bar",
+                      "torsion springs and beams (anti-roll bars, twist beams)"),
+    roll_stiffness_by(Carries::bushing, "rubber", "bushings"),
     Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "
           "positive towards toe-in",

@@ -97,7 +97,7 @@ struct Page {
         const json all = paragraphs(section);
         return {{"id", unique(fmt::format("{}-{}", part.id, section.id))},
                 {"title", section.title},
-                {"first", section.part == Part::first},
+                {"first", section.part == Part::first && section.id != "conditions"},
                 {"glance", section.id == "first"},
                 {"mark", section.mark == Mark::none   ? json(nullptr)
                          : section.mark == Mark::pass ? json{{"class", "pass"}, {"text", "pass"}}
@@ -124,9 +124,8 @@ struct Page {
         };
         constexpr Heading headings[] = {{Part::first, ""},
                                         {Part::behaviour, "Part 1: Kinematics and compliance"},
-                                        {Part::methods, ""},
                                         {Part::change, "What should I change?"},
-                                        {Part::evidence, "Part 2: Evidence"}};
+                                        {Part::evidence, "Part 2: Fast methods and evidence"}};
         json parts = json::array();
         std::size_t plot = 0;
         for (const auto& [which, title] : headings) {

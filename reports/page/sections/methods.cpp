@@ -13,7 +13,7 @@ std::optional<Section> methods_section(const SceneAnalyses& scene) {
     const std::string sentence = method_sentence(scene);
     if (sentence.empty()) return std::nullopt;
     Section section{
-        .id = "methods", .title = "Which fast method is good enough?", .part = Part::methods};
+        .id = "methods", .title = "Which fast method is good enough?", .part = Part::evidence};
     const auto rows = method_rows(scene);
     section.words = {{"sentence", sentence}, {"studied", scene.trade.has_value()}};
     if (rows.empty()) return section;

@@ -1,0 +1,100 @@
+#include "reports/page/sections/kinematics/cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/given/wheels.hpp"
+#include "reports/page/sections/inputs/candidate.hpp"
+#include "reports/page/sections/inputs/measured.hpp"
+
+namespace elastocheck::reports {
+
+std::vector<Case> cases_of(const SceneAnalyses& scene,
+                           const std::function<bool(const Sweep&)>& in) {
+    std::vector<Case> cases;
+    for (const auto& sweep : sweeps_of(scene))
+        if (in(sweep)) {
+            cases.push_back({sweep, SweepCurve(scene, sweep)});
+            if (cases.back().curve.a.size() < 2) cases.pop_back();
+        }
+    return cases;
+}
+
+bool pushes(const Sweep& sweep) {
+    return sweep.kind == "lateral force" || sweep.kind == "longitudinal force" ||
+           sweep.kind == "moment";
+}
+
+std::string Family::abscissa(const Wheel& wheel) const {
+    return by == By::travel ? output_of(wheel, compare::figure::travel)
+           : by == By::roll ? std::string(compare::figure::roll_angle)
+                            : "";
+}
+
+Scale scale_of(const Quantity& quantity, int side, const std::vector<double>& values,
+               std::size_t start) {
+    const double first = start < values.size() ? values[start] : 0;
+    switch (quantity.shown) {
+        case compare::Shown::as_is:
+        case compare::Shown::off_centre: return {};
+        case compare::Shown::change: return {1, first};
+        case compare::Shown::outward_change: return {1.0 * side, first};
+        case compare::Shown::to_the_left: return {-1.0 * side, 0};
+    }
+    return {};
+}
+
+std::string label_of(const Quantity& quantity) {
+    if (quantity.shown != compare::Shown::to_the_left) return as_words(quantity.name);
+    std::string title = quantity.title;
+    title[0] = static_cast<char>(std::tolower(title[0]));
+    return title;
+}
+
+double at_rest(double value) {
+    constexpr double rest = 1e-9;  // mm, deg, N: less is rounding
+    return std::abs(value) < rest ? 0 : value;
+}
+
+Push push_of(const SceneAnalyses& scene, const Case& c, const Wheel& wheel) {
+    const auto pushes = pushes_of(scene.model, *c.sweep.branches.front().requested);
+    if (!pushes) return {};
+    Push push{0, pushes->positive};
+    for (std::size_t w = 0; w < pushes->per_unit.size(); ++w)
+        if (const double factor = pushes->per_unit[w];
+            factor != 0 && (push.factor == 0 || scene.model.wheels[w].name == wheel.name))
+            push.factor = factor;
+    return push;
+}
+
+std::vector<double> abscissa_of(const SceneAnalyses& scene, const Family& family, const Case& c,
+                                const Wheel& wheel) {
+    const std::string by = family.abscissa(wheel);
+    auto x = by.empty() ? c.curve.a : c.curve.channel(by);
+    if (family.by == By::push)
+        for (double& value : x) value *= push_of(scene, c, wheel).factor;
+    return x;
+}
+
+std::vector<Series> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
+                             const FoundOutput& of, Scale scale) {
+    const std::string by = family.abscissa(of.wheel);
+    auto given = candidate_series(scene, c.sweep, by, of.channel);
+    if (auto points = measured_series(scene, c.sweep, by, of.channel))
+        given.insert(given.begin(), std::move(*points));
+    const double push = family.by == By::push ? push_of(scene, c, of.wheel).factor : 1;
+    for (auto& points : given)
+        for (auto& row : points.rows)
+            if (!row.empty()) row[0] *= push, row[1] = scale(row[1]);
+    return given;
+}
+
+std::string direction_of(const SceneAnalyses& scene, const Family& family, const Case& c) {
+    if (family.by != By::push) return "";
+    const Push push = push_of(scene, c, scene.model.wheels[0]);
+    return push.positive.empty() ? "" : ", " + push.positive;
+}
+
+}  // namespace elastocheck::reports
