@@ -1,10 +1,9 @@
 // Section: errors over the number of steps.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <ranges>
 
+#include "reports/page/chart.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/text/numbers.hpp"
@@ -15,83 +14,62 @@ namespace {
 using compare::StepRow;
 using compare::StudyRow;
 
-// Largest errors over the positions at the end of a branch, per step count.
-struct Levels {
-    std::vector<double> steps, phi, step, truth;
-};
-Levels levels_of(const std::vector<StepRow>& rows) {
-    Levels levels;
-    for (const auto& row : rows) {
-        if (row.unit != "mm") continue;
-        const auto at = static_cast<std::size_t>(std::ranges::find(levels.steps, row.steps) -
-                                                 levels.steps.begin());
-        if (at == levels.steps.size()) {
-            levels.steps.push_back(row.steps);
-            levels.phi.push_back(1e3 * row.constraint_error);
-            levels.step.push_back(0);
-            levels.truth.push_back(0);
-        }
-        levels.step[at] = compare::worse(levels.step[at], std::abs(row.end));
-        levels.truth[at] = compare::worse(levels.truth[at], std::abs(row.error));
-    }
-    return levels;
+const std::string against_reference = "error against the reference", step_error = "step error",
+                  violation = "|Φ|, eq. (31)";
+
+// Largest errors over the positions at the end of a branch by one reading, a row per step count.
+Table levels_of(const std::vector<StepRow>& rows) {
+    using enum Digits;
+    const auto worst = [&](double steps, double StepRow::*value, double factor) {
+        double most = 0;
+        for (const auto& row : rows)
+            if (row.unit == "mm" && row.steps == steps)
+                most = compare::worse(most, std::abs(factor * row.*value));
+        return most;
+    };
+    return compare::table<double>(
+        "",
+        {{"steps", whole, [](double steps) { return steps; }, "", "", "steps per branch"},
+         {against_reference, three, [=](double s) { return worst(s, &StepRow::error, 1); }},
+         {step_error, three, [=](double s) { return worst(s, &StepRow::end, 1); }},
+         {violation, three, [=](double s) { return worst(s, &StepRow::constraint_error, 1e3); }}},
+        distinct(where(rows, &StepRow::unit, "mm"), &StepRow::steps));
 }
 
-std::vector<std::vector<double>> rows(const std::vector<double>& steps,
-                                      const std::vector<double>& values) {
-    std::vector<std::vector<double>> result;
-    for (std::size_t l = 0; l < steps.size(); ++l)
-        if (values[l] > 1e-16) result.push_back({steps[l], values[l]});
-    return result;
-}
-
-// Step errors of one method over one branch.
-std::optional<FigureGroup> group(const std::string& branch, const std::vector<StepRow>& steps_of) {
+// Step errors of the published recursion over one branch, a figure a reading.
+std::optional<FigureGroup> step_errors(const std::string& branch,
+                                       const std::vector<StepRow>& steps_of) {
     FigureGroup group;
-    std::vector<std::pair<std::string, Levels>> readings;
     for (const auto& reading : distinct(steps_of, &StepRow::reading)) {
-        const Levels levels = levels_of(where(steps_of, &StepRow::reading, reading));
-        if (levels.steps.empty()) continue;
-        const auto& [steps, phi, step, truth] = levels;
+        const Table levels = levels_of(where(steps_of, &StepRow::reading, reading));
         const std::string name = as_words(reading);
-        Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
-                      .title = fmt::format("{}: {}", branch, name),
-                      .description = {},
-                      .x = "steps per branch",
-                      .y = "at the end of the branch [mm]",
-                      .log_x = true,
-                      .log_y = true};
-        figure.series = {{"error against the reference", Series::Style::line_points, vermilion, 6,
-                          rows(steps, truth)},
-                         {"step error", Series::Style::line_points, blue, 4, rows(steps, step)},
-                         {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
-        std::erase_if(figure.series, [](const Series& s) { return s.rows.empty(); });
+        Figure figure = figure_of({.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
+                                   .title = fmt::format("{}: {}", branch, name),
+                                   .x = "steps",
+                                   .y = {against_reference, step_error, violation},
+                                   .log_x = true,
+                                   .log_y = true},
+                                  levels, "at the end of the branch [mm]");
         if (figure.series.empty()) continue;
-        const auto ends = [](const std::vector<double>& values) {
-            return fmt::format("from {} to {} mm", number(values.front(), 2),
-                               number(values.back(), 2));
-        };
-        figure.description = fmt::format(
-            "Logarithmic plot, {}: from {} to {} steps the constraint error of eq. (31) goes {}, "
-            "the step error {}, the error against the reference {}.",
-            name, number(steps.front(), 4), number(steps.back(), 4), ends(phi), ends(step),
-            ends(truth));
+        figure.description = fmt::format("Logarithmic plot over the steps per branch, {}:", name);
+        for (const auto& series : figure.series)
+            figure.description +=
+                fmt::format(" the {} from {} to {} mm,", series.title,
+                            number(series.rows.front()[1], 2), number(series.rows.back()[1], 2));
+        figure.description.back() = '.';
         group.figures.push_back(std::move(figure));
-        readings.emplace_back(name, levels);
+        if (group.table.columns.empty()) {
+            group.table = levels;
+            continue;
+        }
+        for (std::size_t c = 1; c + 1 < levels.columns.size(); ++c) {
+            group.table.columns.push_back(levels.columns[c]);
+            group.table.columns.back().heading = levels.columns[c].name + ", " + name;
+            for (std::size_t r = 0; r < levels.rows.size(); ++r)
+                group.table.rows[r].push_back(levels.rows[r][c]);
+        }
     }
     if (group.figures.empty()) return std::nullopt;
-    using Level = std::size_t;
-    const Levels& first = readings.front().second;
-    std::vector<compare::ColumnOf<Level>> columns{
-        {"steps", Digits::whole, [&](Level l) { return first.steps[l]; }},
-        {"|Φ|, eq. (31)", Digits::three, [&](Level l) { return first.phi[l]; }}};
-    for (const auto& [name, levels] : readings) {
-        columns.push_back(
-            {"step error, " + name, Digits::three, [&levels](Level l) { return levels.step[l]; }});
-        columns.push_back({"error against the reference, " + name, Digits::three,
-                           [&levels](Level l) { return levels.truth[l]; }});
-    }
-    group.table = compare::table("", columns, std::views::iota(Level{0}, first.steps.size()));
     group.table.caption =
         fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);
     group.table.detail = true;
@@ -112,7 +90,7 @@ std::optional<Section> convergence_section(const SceneAnalyses& scene) {
     const auto steps = where(step_rows(*scene.study), &StepRow::method, "published");
     for (const auto& branch : distinct(outputs, &StudyRow::branch)) {
         if (!leads(scene, branch)) continue;
-        if (auto made = group(branch, where(steps, &StepRow::branch, branch)))
+        if (auto made = step_errors(branch, where(steps, &StepRow::branch, branch)))
             section.figures.push_back(std::move(*made));
         const auto found = where(outputs, &StudyRow::branch, branch);
         const std::string reading = found.front().reading;
