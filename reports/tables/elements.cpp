@@ -10,6 +10,8 @@
 #include <optional>
 #include <unordered_map>
 
+#include "compare/comparison/elements.hpp"
+#include "compare/outputs/catalogue/catalogue.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::reports {
@@ -231,6 +233,22 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
         lines.push_back({elastic.name, body(i) + " - " + body(j), words});
     }
     return lines;
+}
+
+std::vector<std::vector<double>> force_over_travel(const Model& model, const Branch& branch,
+                                                   const compare::BranchComparison& solved,
+                                                   const std::string& element, std::size_t wheel) {
+    const auto all = compare::element_channels(model);
+    const auto force = std::ranges::find(all, element + ".force", &compare::Channel::name),
+               deflection =
+                   std::ranges::find(all, element + ".deflection", &compare::Channel::name);
+    if (force == all.end() || deflection == all.end()) return {};
+    const std::vector<compare::Channel> channels{
+        compare::figure_channel(model, compare::figure::travel, wheel), *force, *deflection};
+    std::vector<std::vector<double>> rows;
+    for (const auto& state : solved.run(compare::Leg::equilibrium).stations)
+        rows.push_back(compare::evaluate(model, branch, channels, state));
+    return rows;
 }
 
 }  // namespace elastocheck::reports

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocheck/compare.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"
 
@@ -24,5 +25,11 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model);
 
 // Clearance [m] of a stop, of which the law has no force on one side; none of another law.
 std::optional<double> clearance_of(const ScalarLaw& law);
+
+// Travel of a wheel [mm], force [N] and deflection [mm] of a spring or stop at the stations of the
+// equilibrium leg on a branch; empty for an element that has no force along one axis.
+std::vector<std::vector<double>> force_over_travel(const Model& model, const Branch& branch,
+                                                   const compare::BranchComparison& solved,
+                                                   const std::string& element, std::size_t wheel);
 
 }  // namespace elastocheck::reports

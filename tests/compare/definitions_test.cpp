@@ -154,6 +154,8 @@ TEST(Definitions, RollStiffnessFollowsFromWheelRatesAndRollCentreIsMirrored) {
 // add up but for preloads.
 TEST(Definitions, PartsOfTheRollStiffnessAreItsDerivativesByTheRates) {
     Model model = compile(trim(support::scene("front_axle")).scene);
+    // The roll is that of the wheel centres: the moment does work on it where its forces act there.
+    for (Wheel& wheel : model.wheels) wheel.contact = {wheel.body, wheel.centre_local};
     const auto channels = characteristics(model);
     const auto bar = std::ranges::find(model.elastics, "anti_roll_bar", &Elastic::name);
     ASSERT_NE(bar, model.elastics.end());

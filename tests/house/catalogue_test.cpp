@@ -21,7 +21,8 @@ const std::map<std::string, std::set<std::string>> other_meanings{
      {"compare/tables/compare_result.cpp", "reports/command/import_command.cpp",
       "reports/command/options/load_cases.cpp", "reports/given/headings.cpp",
       "reports/given/wheels.cpp", "reports/page/common.cpp", "reports/page/common.hpp",
-      "reports/page/sections/inputs/suspension.cpp", "reports/page/sections/kinematics.cpp"}},
+      "reports/page/sections/inputs/suspension.cpp",
+      "reports/page/sections/kinematics/travel.cpp"}},
     {"compression", {"compare/comparison/trim.cpp"}},  // of a spring, in a message
     {"wheel_rate",                                     // a field of a judgement
      {"reports/page/report/report.cpp", "reports/tables/judgement.cpp"}}};

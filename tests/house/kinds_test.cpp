@@ -32,7 +32,7 @@ const std::set<std::string> implement_a_kind{
     "models/vanishing_length.cpp",              // lengths above zero
     "recursive/linear_response.cpp",            // a disturbance, not a driver
     "recursive/residuals.cpp",                  // lengths above zero
-    "recursive/series/term_coefficients.hpp",   // series of the laws
+    "recursive/series/term_values.hpp",         // series of the laws
     "reference/certificate/interval/laws.cpp",  // laws in intervals
     "reference/certificate/interval/laws.hpp",
     "reference/certificate/statement/system.cpp",           // isotropic bushings

@@ -15,13 +15,13 @@ using Rows = std::vector<std::vector<double>>;
 using compare::Shown;
 
 // Range of the curves of a figure, and the largest of one curve.
-struct Extent {
+struct CurveRange {
     double low = INFINITY, high = -INFINITY, moved = 0;
 };
 
 // The curve of a wheel in one case; a gap where the quantity is undefined or passes through infinity.
 Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Scale scale,
-             const Quantity& quantity, Extent& extent) {
+             const Quantity& quantity, CurveRange& extent) {
     Rows rows;
     double least = INFINITY, most = -INFINITY, farthest = 0;
     for (const double at : x) farthest = std::max(farthest, std::abs(at));
@@ -45,7 +45,7 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
 
 // A bundle a load case; with one case a bundle a spring.
 std::vector<Bundle> bundles_of(const SceneAnalyses& scene, const Family& family,
-                               const Quantity& quantity, Extent& extent) {
+                               const Quantity& quantity, CurveRange& extent) {
     std::vector<Bundle> bundles;
     for (const Case& c : family.cases) {
         const std::string legend = c.legend() + direction_of(scene, family, c);
@@ -76,7 +76,7 @@ void add_figures(Section& section, const SceneAnalyses& scene, const Family& fam
                           std::back_inserter(quantities));
     for (const auto& quantity : quantities) {
         const bool if_given = &quantity - quantities.data() >= std::ssize(family.quantities);
-        Extent extent;
+        CurveRange extent;
         auto bundles = bundles_of(scene, family, quantity, extent);
         const bool given =
             std::ranges::any_of(bundles, [](const Bundle& b) { return !b.others.empty(); });

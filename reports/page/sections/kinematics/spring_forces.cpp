@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
-#include "compare/comparison/elements.hpp"
 #include "models/kinds.hpp"
 #include "reports/page/sections/kinematics/cases.hpp"
 #include "reports/tables/elements.hpp"
@@ -13,30 +13,21 @@ namespace elastocheck::reports {
 std::vector<SpringForce> spring_forces(const SceneAnalyses& scene, const Sweep& sweep) {
     const Model& model = scene.model;
     std::vector<SpringForce> forces;
-    std::vector<compare::Channel> channels;  // travel, force and deformation of each
-    auto all = compare::element_channels(model);
     for (const Elastic& elastic : model.elastics) {
         const auto* law = member<ScalarLaw>(elastic.kind);
-        const auto of = wheel_of(elastic.name, model.wheels);
-        const auto deflection =
-            std::ranges::find(all, elastic.name + ".deflection", &compare::Channel::name);
-        if (law == nullptr || !of || deflection == all.end()) continue;
-        forces.push_back({of->first, of->second});
+        const auto owner = wheel_of(elastic.name, model.wheels);
+        if (law == nullptr || !owner) continue;
+        SpringForce force{owner->first, owner->second};
+        for (const auto& branch : sweep.branches)
+            std::ranges::move(force_over_travel(model, *branch.requested, *branch.result,
+                                                elastic.name, owner->second),
+                              std::back_inserter(force.stations));
+        if (force.stations.empty()) continue;
+        std::ranges::stable_sort(force.stations, {}, [](const auto& row) { return row[0]; });
         if (elastic.written_as == WrittenAs::stop)
-            forces.back().clearance = 1e3 * clearance_of(*law).value_or(compare::nan);
-        channels.push_back(compare::figure_channel(model, compare::figure::travel, of->second));
-        channels.push_back(
-            *std::ranges::find(all, elastic.name + ".force", &compare::Channel::name));
-        channels.push_back(*deflection);
+            force.clearance = 1e3 * clearance_of(*law).value_or(compare::nan);
+        forces.push_back(std::move(force));
     }
-    for (const auto& branch : sweep.branches)
-        for (const auto& state : branch.result->run(compare::Leg::equilibrium).stations) {
-            const auto values = compare::evaluate(model, *branch.requested, channels, state);
-            for (std::size_t k = 0; k < forces.size(); ++k)
-                forces[k].stations.push_back({values[3 * k], values[3 * k + 1], values[3 * k + 2]});
-        }
-    for (auto& force : forces)
-        std::ranges::stable_sort(force.stations, {}, [](const auto& at) { return at[0]; });
     return forces;
 }
 
@@ -48,9 +39,10 @@ std::vector<std::vector<double>> curve_of(const SpringForce& force, std::vector<
             const auto& before = force.stations[k - 1];
             const double from = std::abs(before[2]) - force.clearance,
                          to = std::abs(at[2]) - force.clearance;
-            if ((before[1] == 0) != (at[1] == 0) && from * to < 0)
-                touches.push_back(before[0] + (at[0] - before[0]) * from / (from - to)),
-                    rows.push_back({touches.back(), 0});
+            if ((before[1] == 0) != (at[1] == 0) && from * to < 0) {
+                touches.push_back(before[0] + (at[0] - before[0]) * from / (from - to));
+                rows.push_back({touches.back(), 0});
+            }
         }
         rows.push_back({at_rest(at[0]), at_rest(at[1])});
     }
