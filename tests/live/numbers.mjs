@@ -66,7 +66,9 @@ const compare = (name, settings) => {
         if (Number.isFinite(value)) scales.set(unit, Math.max(scales.get(unit) ?? 1, value));
       }
       for (let column = 0; column < size; ++column) {
-        const scale = scales.get(unitOf(column)) ?? 1;
+        // the moment of an axle is the difference of two wheel loads [N] at some metre from the middle
+        const isDifference = head.channels[column - 1] === 'roll_moment';
+        const scale = Math.max(scales.get(unitOf(column)) ?? 1, isDifference ? scales.get('N') ?? 1 : 1);
         for (let k = 0; k < part.points; ++k) {
           const a = there.numbers[part.at + k * size + column], x = a === 'nan' || a === '-nan' ? NaN : a === 'inf' ? Infinity : a === '-inf' ? -Infinity : +a;
           const y = solved.numbers[part.at + k * size + column];
