@@ -13,6 +13,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <regex>
 #include <set>
 
 #include "compare/candidate/candidate.hpp"
@@ -150,8 +151,7 @@ TEST(Definitions, RollStiffnessFollowsFromWheelRatesAndRollCentreIsMirrored) {
     EXPECT_NEAR(value(0, "roll_centre_height"), value(last, "roll_centre_height"), 1e-5);
 }
 
-// The part of an element in a stiffness is its derivative by the logarithm of the element's rate; parts
-// add up but for preloads.
+// The part of an element in a stiffness is its derivative by the logarithm of the element's rate.
 TEST(Definitions, PartsOfTheRollStiffnessAreItsDerivativesByTheRates) {
     Model model = compile(trim(support::scene("front_axle")).scene);
     // The roll is that of the wheel centres: the moment does work on it where its forces act there.
@@ -180,7 +180,25 @@ TEST(Definitions, PartsOfTheRollStiffnessAreItsDerivativesByTheRates) {
     const double softer = value(values(), "roll_stiffness");
     EXPECT_NEAR((stiffer - softer) / (2 * step), of_bar, 1e-5 * whole);
     EXPECT_GT(of_bar, 0.3 * whole);
-    EXPECT_NEAR(of_bar + others, whole, 0.1 * whole);
+    EXPECT_NEAR(of_bar + others, whole, 0.1 * whole);  // preloads turn
+}
+
+// Without preloads nothing turns that has a force: the parts add up.
+TEST(Definitions, PartsOfTheRollStiffnessAddUpWithoutPreloads) {
+    std::ifstream file(std::string(ELASTOCHECK_SCENES) + "/twist_beam.yaml");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    text = std::regex_replace(text, std::regex("    preload: 3700\n|trim:\n(  .*\n)+"), "");
+    const Model model = compile(parse_scene(text, "twist_beam.yaml"));
+    const auto channels = characteristics(model);
+    const Curve curve = curve_of(model, model.branches.front(), channels);
+    const auto value = [&](const std::string& name) {
+        return curve.values[curve.start][static_cast<std::size_t>(find_channel(channels, name))];
+    };
+    double sum = 0;
+    for (const char* part : {"springs", "bar", "rubber"})
+        sum += value(fmt::format("roll_stiffness_of_{}", part));
+    EXPECT_GT(sum, 500);  // N·m/deg
+    EXPECT_NEAR(sum, value("roll_stiffness"), 1e-9 * sum);
 }
 
 TEST(Definitions, TurningCircleIsTwiceTheWheelbaseOverTheSineOfTheOuterAngle) {

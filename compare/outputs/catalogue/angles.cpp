@@ -136,8 +136,8 @@ double compression(const Subject& x, const Point& i, const Point& j) {
 // Of an axle: the body against the wheels, about x, and the moment that rolls it so.
 double roll_angle(const Subject& x) {
     const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
-    const Vector3d across = left.centre().at - right.centre().at;
-    return std::atan(-across.z() / across.y());
+    const Vector3d from_left = right.centre().at - left.centre().at;
+    return std::atan(from_left.z() / -from_left.y());
 }
 double roll_moment(const Subject& x) {
     if (x.branch == nullptr) return nan;
