@@ -3,8 +3,8 @@
 
 #include "reports/command/delivery.hpp"
 #include "reports/command/program/command.hpp"
-#include "reports/document/document.hpp"
 #include "reports/document/inspection.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -18,16 +18,12 @@ int inspect(const InspectRequest& request, const Delivery& delivery) {
     const LoadedScene loaded =
         load_scene(request.scene, request.settings,
                    request.keep_all ? Detail::everything : Detail::required, &not_trimmed);
-    if (delivery.as_json) {
-        nlohmann::ordered_json part = document_of(loaded, request.scene);
-        add_inspection(part, loaded.scene, loaded.model);
-        deliver(delivery, std::move(part), {});
-    } else {
-        print(inspection({.scene = loaded.scene,
-                          .model = loaded.model,
-                          .trim = loaded.trim,
-                          .verbose = request.verbose}));
-    }
+    const compare::Result result =
+        inspection({.scene = loaded.scene, .model = loaded.model, .trim = loaded.trim});
+    if (!delivery.wants_document())
+        print(text(request.verbose ? verbose(result) : shortened(result)));
+    else
+        deliver_result(delivery, document_of(loaded, request.scene), result);
     if (not_trimmed) std::rethrow_exception(not_trimmed);
     return fine;
 }
@@ -42,8 +38,9 @@ const Command inspect_command{
         add_scene(command, *request);
         command.add_flag("--verbose", request->verbose,
                          "long lists whole, all numbers with their sides, and the size of the "
-                         "matrix, its order and its fill-in");
+                         "matrix and its fill-in");
         add_keep_all(command, request->keep_all);
+        add_output(command, request->folder, "folder for result.json and a CSV file of each table");
         return [request](const std::string& line) {
             return inspect(*request, request->delivery(line));
         };

@@ -9,14 +9,12 @@
 #include "compare/studies/converge.hpp"
 #include "compare/tables/compare_result.hpp"
 #include "compare/tables/rows.hpp"
-#include "compare/warnings/plausibility.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/given/wheels.hpp"
 #include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
-#include "reports/tables/elements.hpp"
 #include "reports/tables/judgement.hpp"
 
 namespace elastocheck::reports {
@@ -268,35 +266,6 @@ void add_curves(json& scene_document, const Model& model,
     }
     scene_document["channels"] = channels_json(channels);
     scene_document["branches"] = list;
-}
-
-void add_inspection(json& scene_document, const Scene& scene, const Model& model) {
-    const auto channels = compare::channels(model);
-    json bodies = json::array(), list = json::array(), branches = json::array();
-    for (const auto& body : model.bodies) {
-        const Eigen::Vector3d mm = 1e3 * body.design.r;
-        bodies.push_back({{"name", body.name}, {"origin_mm", {mm.x(), mm.y(), mm.z()}}});
-    }
-    for (const auto& [name, between, what] : elements(scene, model))
-        list.push_back({{"name", name}, {"between", between}, {"what", what}});
-    for (const auto& branch : model.branches) {
-        const compare::Settled settled = compare::settled(model, channels, branch);
-        json one = branch_json(model, branch), moves = json::object();
-        for (std::size_t c = 0; c < settled.displacement.size(); ++c)
-            if (!std::isnan(settled.displacement[c]))
-                moves[channels[c].name] = settled.displacement[c];
-        one["steps"] = branch.steps;
-        one["settles"] = {{"outcome", elastocheck::name(settled.outcome)},
-                          {"detail", settled.detail},
-                          {"displacement", moves}};
-        branches.push_back(std::move(one));
-    }
-    scene_document["channels"] = channels_json(channels);
-    scene_document["inspection"] = {{"bodies", bodies},
-                                    {"elements", list},
-                                    {"branches", branches},
-                                    {"misplaced", compare::misplaced_points(scene)},
-                                    {"numbers", numbers_json(scene)}};
 }
 
 void add_verdict(json& scene_document, int numbers_compared,

@@ -39,10 +39,6 @@ void add_curves(nlohmann::ordered_json& scene_document, const Model& model,
                 const std::vector<compare::Channel>& channels,
                 std::span<const compare::BranchComparison> branches);
 
-// "channels" and "inspection": bodies, elements, branches and their settled states, the numbers of
-// the file.
-void add_inspection(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model);
-
 // "verdict": whether everything computed could be judged, the count of compared numbers, and the
 // reasons if not.
 void add_verdict(nlohmann::ordered_json& scene_document, int numbers_compared,

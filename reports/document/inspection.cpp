@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iterator>
-#include <map>
-#include <span>
 
 #include "compare/comparison/legs.hpp"
 #include "compare/warnings/plausibility.hpp"
 #include "elastocheck/channels.hpp"
 #include "models/kinds.hpp"
-#include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/diagnosis/motion.hpp"
 #include "reports/document/document.hpp"
@@ -20,229 +16,290 @@
 namespace elastocheck::reports {
 namespace {
 
+using compare::Column;
+using compare::Digits;
+using compare::Result;
+using compare::Table;
+using Rows = std::vector<std::vector<compare::Cell>>;
+
+Column words(const char* name) { return {.name = name, .words = true, .digits = Digits::words}; }
+Column number(const char* name, const char* unit = "", Digits digits = Digits::whole) {
+    return {.name = name, .unit = unit, .digits = digits};
+}
+
+// Adds a table; one without rows says `none`, and is left out where that is empty.
+void add(Result& result, Table table, const std::string& none = {}) {
+    if (table.rows.empty() && none.empty()) return;
+    if (table.rows.empty()) table.notes.push_back(none);
+    result.tables.push_back(std::move(table));
+}
+
 std::string body_name(const Model& model, BodyId body) {
     return body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
 }
-
-std::string constraint_name(const ConstraintKind& kind) {
-    return std::visit([]<class C>(const C&) { return Kind<C>::name; }, kind);
+const std::string& joint_name(const Model& model, int joint) {
+    return model.joints[static_cast<std::size_t>(joint)].name;
 }
 
-// Constraints of each joint.
-std::vector<std::string> compositions(const Model& model) {
-    std::vector<std::string> made_of(model.joints.size());
-    for (const auto& c : model.constraints) {
-        std::string& text = made_of[static_cast<std::size_t>(c.joint)];
-        text += (text.empty() ? "" : " + ") + constraint_name(c.kind);
-    }
-    return made_of;
+void append(std::string& list, const std::string& word, const char* between = ", ") {
+    list += (list.empty() ? "" : between) + word;
 }
 
-// Limit of listed entries: hand-written scenes are shown completely, of generated ones the
-// beginning of every list.
-constexpr std::size_t most_shown = 40;
-
-// "body" for "body 'arm'".
-std::string kind_of(const Omission& omission) {
-    return omission.what.substr(0, omission.what.find(" '"));
+std::vector<compare::Cell> row_of(const char* what, const Size& size) {
+    const double coordinates = 6.0 * size.bodies, rows = size.rows;
+    return {what, 1.0 * size.bodies, 1.0 * size.joints, 1.0 * size.elastics, coordinates,
+            rows, coordinates + rows};
 }
 
-std::string words(const Size& size) {
-    return fmt::format(
-        "{} bodies, {} joints, {} elements: {} coordinates, {} constraints, {} unknowns",
-        size.bodies, size.joints, size.elastics, 6 * size.bodies, size.rows,
-        6 * size.bodies + size.rows);
-}
-
-std::string trim_words(const compare::TrimRecord& trim) {
-    std::string text = fmt::format(
-        "\ntrim, found by the equilibrium leg in {} step{}, confirmed by {}; bushings are {}\n",
-        trim.iterations, trim.iterations == 1 ? "" : "s",
-        trim.confirmed_by == compare::Leg::energy ? "the energy leg" : "the series",
-        trim.bushings == Trim::Bushings::balanced
-            ? "balanced: the drawn position is the equilibrium"
-            : "unloaded as drawn");
-    for (const auto& a : trim.adjusted)
-        text += fmt::format("  {:<30} {:+.6g} {}{}{}\n", a.name, a.by, symbol(a.unit),
-                            a.makes.empty() ? "" : ": ", a.makes);
-    for (const auto& c : trim.conditions)
-        text +=
-            fmt::format("  until {:<24} {:.6g} {}, met to {:.1e}; confirmed to {:.1e}\n", c.name,
-                        c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed));
-    return text;
-}
-
-// The numbers of the scene, and of which sides each is.
-std::string number_words(const std::vector<Number>& numbers) {
-    std::string text = "\nnumbers, as --set and --vary name them\n";
-    for (const Number& number : numbers) {
-        std::string sides;
-        for (const auto& [side, value] : number.sides)
-            sides += fmt::format("{}@{} {:.10g}", sides.empty() ? "both sides; alone: " : ", ",
-                                 side, value);
-        text += fmt::format("  {:<36} {:>12.10g} {:<8} {}\n", number.path, number.value,
-                            number.unit, sides);
-    }
-    return text;
+void add_size(Result& result, const Model& model, const recursive::Diagnosis& d) {
+    const recursive::Conditioning condition = recursive::conditioning(model, d);
+    result.about = {
+        model.name,
+        fmt::format(
+            "degrees of freedom: {}, {} of them idle; constraints: {} of rank {}; condition "
+            "of eq. (24): {:.2g} equilibrated, {:.2g} as it stands",
+            d.degrees_of_freedom(), d.idle.size(), d.rows, d.rank, condition.equilibrated,
+            condition.raw)};
+    add(result,
+        {.columns = {words("size"), number("bodies"), number("joints"), number("elements"),
+                     number("coordinates"), number("constraints"), number("unknowns")},
+         .rows = {row_of("as written", model.as_written), row_of("as solved", model.as_solved)},
+         .id = "size"});
 }
 
 // Cost of a step: the matrix with the border of idle modes and redundant rows, and its factors.
-std::string cost_words(const Model& model) {
+void add_cost(Result& result, const Model& model) {
     const recursive::SaddlePoint<double> system = recursive::analyse(model).system;
     const recursive::Elimination& order = system.lu.order;
-    const std::size_t entries = order.pattern.entries(), factors = order.nonzeros;
-    return fmt::format(
-        "  matrix            {:>6}   unknowns in eq. (24), {} with what is held; {} entries other "
-        "than zero\n"
-        "  factors           {:>6}   entries of L + U: {:.3g} times as many; order by least "
-        "fill-in "
-        "(Markowitz)\n",
-        system.n + system.m, system.lu.size(), entries, factors,
-        entries > 0 ? static_cast<double>(factors) / static_cast<double>(entries) : 1.0);
+    const auto entries = static_cast<double>(order.pattern.entries()),
+               factors = static_cast<double>(order.nonzeros);
+    add(result, {.columns = {number("unknowns"), number("with what is held"), number("entries"),
+                             number("entries of L + U"), number("fill-in", "", Digits::three)},
+                 .rows = {{1.0 * (system.n + system.m), 1.0 * system.lu.size(), entries, factors,
+                           entries > 0 ? factors / entries : 1.0}},
+                 .id = "matrix",
+                 .caption = "matrix of eq. (24), in the order of least fill-in (Markowitz)",
+                 .detail = true});
+}
+
+void add_parts(Result& result, const Scene& scene, const Model& model) {
+    Rows bodies, joints, rows;
+    for (const auto& body : model.bodies) {
+        const Eigen::Vector3d mm = 1e3 * body.design.r;
+        bodies.push_back({body.name, mm.x(), mm.y(), mm.z()});
+    }
+    const auto coordinate = [](const char* axis) { return number(axis, "mm", Digits::given); };
+    add(result, {.columns = {words("body"), coordinate("x"), coordinate("y"), coordinate("z")},
+                 .rows = bodies,
+                 .id = "bodies",
+                 .caption = "bodies, with their origins"});
+    std::vector<std::string> made_of(model.joints.size());
+    for (const auto& c : model.constraints)
+        append(made_of[static_cast<std::size_t>(c.joint)],
+               std::visit([]<class C>(const C&) { return Kind<C>::name; }, c.kind), " + ");
+    for (std::size_t k = 0; k < model.joints.size(); ++k) {
+        const auto& joint = model.joints[k];
+        joints.push_back(
+            {joint.name,
+             fmt::format("{} - {}", body_name(model, joint.i), body_name(model, joint.j)),
+             made_of[k]});
+    }
+    add(result, {.columns = {words("joint"), words("between"), words("constraints")},
+                 .rows = joints,
+                 .id = "joints",
+                 .caption = "joints"});
+    for (const auto& [name, between, what] : elements(scene, model))
+        rows.push_back({name, between, what});
+    add(result, {.columns = {words("element"), words("between"), words("law")},
+                 .rows = rows,
+                 .id = "elements",
+                 .caption = "elastic elements"});
+}
+
+void add_trim(Result& result, const compare::TrimRecord& trim) {
+    Rows adjusted, conditions;
+    for (const auto& a : trim.adjusted) adjusted.push_back({a.name, a.by, symbol(a.unit), a.makes});
+    for (const auto& c : trim.conditions)
+        conditions.push_back(
+            {c.name, c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed)});
+    add(result,
+        {.columns = {words("number"), number("by", "", Digits::given), words("unit"),
+                     words("makes")},
+         .rows = adjusted,
+         .id = "trim",
+         .caption = fmt::format(
+             "trim, found by the equilibrium leg in {} step{}, confirmed by {}; bushings are {}",
+             trim.iterations, trim.iterations == 1 ? "" : "s",
+             trim.confirmed_by == compare::Leg::energy ? "the energy leg" : "the series",
+             trim.bushings == Trim::Bushings::balanced
+                 ? "balanced: the drawn position is the equilibrium"
+                 : "unloaded as drawn")});
+    add(result,
+        {.columns = {words("until"), number("is", "", Digits::given), words("unit"),
+                     number("met to", "", Digits::size), number("confirmed to", "", Digits::size)},
+         .rows = conditions,
+         .id = "conditions"});
+}
+
+// The branches, and where each begins: the settled displacements of the main outputs.
+void add_branches(Result& result, const Model& model,
+                  const std::vector<compare::Channel>& channels) {
+    Rows branches;
+    Table begins{.columns = {words("output"), words("unit")},
+                 .id = "settled",
+                 .caption = "displacements where the branches begin, from the drawn position"};
+    std::vector<compare::Settled> all;
+    for (const auto& branch : model.branches) {
+        std::string moved, held;
+        for (const auto& driver : branch.drivers)
+            append(driver.rate != 0 ? moved : held, driven_name(model, driver.what), " + ");
+        const compare::Unit unit = compare::unit_of(branch.unit);
+        const compare::Settled& settled =
+            all.emplace_back(compare::settled(model, channels, branch));
+        branches.push_back({branch.name, moved, compare::in_unit(unit) * branch.from,
+                            compare::in_unit(unit) * branch.to, symbol(unit), 1.0 * branch.steps,
+                            held, name(settled.outcome)});
+        begins.columns.push_back(number(branch.name.c_str(), "", Digits::deviation));
+        if (settled.outcome != Outcome::converged)
+            result.notes.push_back(fmt::format("branch '{}' does not settle: {}: {}", branch.name,
+                                               name(settled.outcome), settled.detail));
+    }
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        std::vector<compare::Cell> row{channels[c].name, symbol(channels[c].unit)};
+        for (const auto& settled : all)
+            row.emplace_back(settled.outcome == Outcome::converged ? settled.displacement[c] : NAN);
+        const bool moves = std::any_of(row.begin() + 2, row.end(), [](const compare::Cell& cell) {
+            return std::abs(std::get<double>(cell)) >= 1e-6;
+        });
+        if (channels[c].main && channels[c].kinematic() && moves) begins.rows.push_back(row);
+    }
+    add(result, {.columns = {words("branch"), words("moves"), number("from", "", Digits::given),
+                             number("to", "", Digits::given), words("unit"), number("steps"),
+                             words("holds"), words("settles")},
+                 .rows = branches,
+                 .id = "branches",
+                 .caption = "branches"});
+    add(result, std::move(begins));
+}
+
+// Reactions are the same for every joint and axis: one row of each unit.
+void add_outputs(Result& result, const std::vector<compare::Channel>& channels) {
+    Rows rows;
+    bool force = false, moment = false;
+    for (const auto& channel : channels) {
+        std::string name = channel.name, such;
+        if (std::holds_alternative<compare::Reaction>(channel.reads)) {
+            const bool is_force = channel.unit == compare::Unit::newton;
+            if (std::exchange(is_force ? force : moment, true)) continue;
+            name = is_force ? "JOINT.force_x, _y, _z" : "JOINT.moment_x, _y, _z";
+            such = "such as: ";
+        }
+        rows.push_back({name, symbol(channel.unit), such + channel.definition});
+    }
+    add(result, {.columns = {words("output"), words("unit"), words("definition")},
+                 .rows = rows,
+                 .id = "outputs",
+                 .caption = "outputs"});
+}
+
+void add_redundant(Result& result, const Model& model, const recursive::Diagnosis& d) {
+    Rows rows;
+    for (const auto& r : d.redundant) {
+        std::string among;
+        for (const auto& [joint, share] : r.shares)
+            append(among, fmt::format("'{}' {:.0f} %", joint_name(model, joint), 100 * share));
+        rows.push_back({joint_name(model, r.joint), 1.0 * r.rows,
+                        r.contradicts ? "contradict what the joints before it hold"
+                        : r.undecided ? "repeat it or nearly: undecided"
+                                      : "repeat what the joints before it hold",
+                        among});
+    }
+    Table redundant{.columns = {words("joint"), number("rows"), words("which"), words("among")},
+                    .rows = rows,
+                    .id = "redundant",
+                    .caption = "redundant constraints",
+                    .notes = recursive::locked_bodies(model, d)};
+    add(result, std::move(redundant), "none");
+}
+
+// A table of one column of sentences.
+Table list(const char* id, const char* of, const char* caption,
+           const std::vector<std::string>& all) {
+    Table table{.columns = {words(of)}, .id = id, .caption = caption};
+    for (const auto& one : all) table.rows.push_back({one});
+    return table;
+}
+
+void add_numbers(Result& result, const Scene& scene) {
+    Rows rows;
+    for (const Number& n : scene.numbers) {
+        std::string sides;
+        for (const auto& [side, value] : n.sides)
+            append(sides, fmt::format("@{} {:.10g}", side, value));
+        rows.push_back({n.path, n.value, n.unit, sides});
+    }
+    add(result, {.columns = {words("number"), number("value", "", Digits::given), words("unit"),
+                             words("sides")},
+                 .rows = rows,
+                 .id = "numbers",
+                 .caption = "numbers, as --set and --vary name them",
+                 .detail = true});
 }
 
 }  // namespace
 
-std::string inspection(const Inspected& inspected) {
-    const Model& model = inspected.model;
+Result inspection(const Inspected& inspected) {
+    const auto& [scene, model, trim] = inspected;
     const recursive::Diagnosis d = recursive::diagnose(model);
-    std::string text;
-    const recursive::Conditioning condition = recursive::conditioning(model, d);
-    const auto line = [&](const char* format, const auto&... args) {
-        fmt::vformat_to(std::back_inserter(text), format, fmt::make_format_args(args...));
-        text += '\n';
-    };
-    // The beginning of a list, and the number of the other entries.
-    const auto shown = [&](std::size_t size) {
-        return inspected.verbose || size <= most_shown ? size : most_shown;
-    };
-    const auto rest = [&](std::size_t size, const std::string& what) {
-        if (shown(size) < size)
-            line("  ... and {} more {}; --verbose lists all", size - shown(size), what);
-    };
-    line("{}", model.name);
-    line("");
-    line("  coordinates         {:>4}   6 for each of {} bodies", d.coordinates,
-         model.bodies.size());
-    line("  constraints         {:>4}   of rank {}", d.rows, d.rank);
-    line("  unknowns            {:>4}", d.coordinates + d.rows);
-    line("  degrees of freedom  {:>4}   {} of them idle", d.degrees_of_freedom(), d.idle.size());
-    line("  condition        {:>7.2g}   of eq. (24), equilibrated; {:.2g} as it stands",
-         condition.equilibrated, condition.raw);
-    if (inspected.verbose) text += cost_words(model);
-    line("");
-    line("bodies");
-    for (const auto& body : std::span(model.bodies).first(shown(model.bodies.size())))
-        line("  {:<20} origin ({:.6g}, {:.6g}, {:.6g}) mm", body.name, 1e3 * body.design.r.x(),
-             1e3 * body.design.r.y(), 1e3 * body.design.r.z());
-    rest(model.bodies.size(), "bodies");
-    if (!model.joints.empty()) line("\njoints");
-    const auto made_of = compositions(model);
-    for (std::size_t k = 0; k < shown(model.joints.size()); ++k) {
-        const auto& joint = model.joints[k];
-        line("  {:<20} {} - {}: {}", joint.name, body_name(model, joint.i),
-             body_name(model, joint.j), made_of[k]);
-    }
-    rest(model.joints.size(), "joints");
-    if (!model.elastics.empty()) line("\nelastic elements");
-    const auto element_lines = elements(inspected.scene, model);
-    for (const auto& [name, between, what] :
-         std::span(element_lines).first(shown(element_lines.size())))
-        line("  {:<20} {}: {}", name, between, what);
-    rest(element_lines.size(), "elements");
-    if (inspected.trim) text += trim_words(*inspected.trim);
-    line("\nbranches");
-    for (const auto& branch : model.branches) {
-        std::string moved, held;
-        for (const auto& driver : branch.drivers)
-            (driver.rate != 0 ? moved : held) +=
-                ((driver.rate != 0 ? moved : held).empty() ? "" : " + ") +
-                driven_name(model, driver.what);
-        const compare::Unit unit = compare::unit_of(branch.unit);
-        const std::string range =
-            fmt::format("{:g} to {:g} {}", compare::in_unit(unit) * branch.from,
-                        compare::in_unit(unit) * branch.to, symbol(unit));
-        const std::string under = held.empty() ? "" : ", held: " + held;
-        line("  {:<20} {}, {} in {} steps{}", branch.name, moved, range, branch.steps, under);
-    }
-    line("\noutputs");
     const auto channels = compare::channels(model);
-    bool force = false, moment = false;
-    for (const auto& channel : channels) {
-        std::string name = channel.name;
-        if (const bool reaction = std::holds_alternative<compare::Reaction>(channel.reads);
-            reaction) {
-            bool& listed = channel.unit == compare::Unit::newton ? force : moment;
-            if (listed) continue;  // the same for every joint and axis
-            listed = true;
-            name = channel.unit == compare::Unit::newton ? "JOINT.force_x, _y, _z"
-                                                         : "JOINT.moment_x, _y, _z";
-        }
-        const std::string head = fmt::format("{} [{}]", name, symbol(channel.unit));
-        const bool example = name.starts_with("JOINT.");
-        const std::string meaning = (example ? "such as: " : "") + channel.definition;
-        line("  {:<30} {}", head, meaning);
+    Result result{.analysis = "inspect",
+                  .verdict = {.grade = compare::Grade::pass, .requested = false}};
+    add_size(result, model, d);
+    add_cost(result, model);
+    add_parts(result, scene, model);
+    if (trim) add_trim(result, *trim);
+    add_branches(result, model, channels);
+    add_outputs(result, channels);
+    add_redundant(result, model, d);
+    add(result,
+        list("idle", "motion",
+             "idle modes (as drawn no joint and no rate resists them; they are held, and reported "
+             "here)",
+             recursive::describe_idle_modes(d)),
+        "none");
+    add(result, list("misplaced", "point", "points that may belong to another body",
+                     compare::misplaced_points(scene)));
+    Table omitted{.columns = {words("part"), words("reason")},
+                  .id = "left_out",
+                  .caption = "left out or condensed, because no output depends on it"};
+    for (const auto& o : model.omitted) omitted.rows.push_back({o.what, o.why});
+    add(result, std::move(omitted), "nothing");
+    add_numbers(result, scene);
+    result.notes.insert(
+        result.notes.begin(),
+        d.imbalance <= 1e-6
+            ? "balance at the design position, parameter 0: in equilibrium"
+            : fmt::format(
+                  "balance at the design position, parameter 0: out of balance by {:.4g} N: "
+                  "every branch begins where the scene settles",
+                  d.imbalance));
+    return result;
+}
+
+Result shortened(Result result) {
+    constexpr std::size_t most_shown = 40;
+    for (Table& table : result.tables) {
+        if (table.rows.size() <= most_shown || table.id == "outputs") continue;
+        table.notes.push_back(
+            fmt::format("... and {} more; --verbose lists all", table.rows.size() - most_shown));
+        table.rows.resize(most_shown);
     }
-    line("\nredundant constraints");
-    for (const auto& r : std::span(d.redundant).first(shown(d.redundant.size()))) {
-        line("  joint '{}': {} of its rows repeat what the joints before it hold{}",
-             model.joints[static_cast<std::size_t>(r.joint)].name, r.rows,
-             r.contradicts ? ", and contradict it"
-             : r.undecided ? ", or nearly: undecided"
-                           : "");
-        std::string among;
-        for (const auto& [joint, share] : std::span(r.shares).first(shown(r.shares.size())))
-            among += fmt::format("{}'{}' {:.0f} %", among.empty() ? "" : ", ",
-                                 model.joints[static_cast<std::size_t>(joint)].name, 100 * share);
-        line("    among {}{}", among, shown(r.shares.size()) < r.shares.size() ? ", ..." : "");
-    }
-    rest(d.redundant.size(), "joints");
-    for (const auto& locked : recursive::locked_bodies(model, d)) line("  {}", locked);
-    if (d.redundant.empty()) line("  none");
-    line(
-        "\nidle modes (as drawn no joint and no rate resists them; they are held, and reported "
-        "here)");
-    const auto idle = recursive::describe_idle_modes(d);
-    for (const auto& mode : std::span(idle).first(shown(idle.size()))) line("  {}", mode);
-    rest(idle.size(), "modes");
-    if (d.idle.empty()) line("  none");
-    if (const auto notes = compare::misplaced_points(inspected.scene); !notes.empty()) {
-        line("\npoints that may belong to another body");
-        for (const auto& note : std::span(notes).first(shown(notes.size()))) line("  {}", note);
-        rest(notes.size(), "points");
-    }
-    line("\nleft out or condensed, because no output depends on it");
-    std::map<std::string, std::size_t> omitted;
-    for (const auto& o : model.omitted)
-        if (const auto place = omitted[kind_of(o)]++; inspected.verbose || place < most_shown)
-            line("  {}: {}", o.what, o.why);
-    for (const auto& [kind, count] : omitted) rest(count, "of kind '" + kind + "'");
-    if (model.omitted.empty()) line("  nothing");
-    line("  the scene  {}", words(model.as_written));
-    line("  as solved  {}", words(model.as_solved));
-    line("\nbalance at the design position, parameter 0");
-    if (d.imbalance <= 1e-6)
-        line("  in equilibrium");
-    else
-        line("  out of balance by {:.4g} N: every branch begins where the scene settles",
-             d.imbalance);
-    for (const auto& branch : model.branches) {
-        const compare::Settled settled = compare::settled(model, channels, branch);
-        if (settled.outcome != Outcome::converged) {
-            const char* outcome = name(settled.outcome);
-            line("  branch '{}' does not settle: {}: {}", branch.name, outcome, settled.detail);
-            continue;
-        }
-        std::string where;
-        for (std::size_t c = 0; c < channels.size(); ++c)
-            if (channels[c].main && channels[c].kinematic() &&
-                std::abs(settled.displacement[c]) >= 1e-6)
-                where += fmt::format("{}{} {:+.4g} {}", where.empty() ? "" : ", ", channels[c].name,
-                                     settled.displacement[c], symbol(channels[c].unit));
-        if (!where.empty()) line("  branch '{}' settles: {}", branch.name, where);
-    }
-    if (inspected.verbose) text += number_words(inspected.scene.numbers);
-    return text;
+    return result;
+}
+
+Result verbose(Result result) {
+    for (Table& table : result.tables) table.detail = false;
+    return result;
 }
 
 }  // namespace elastocheck::reports

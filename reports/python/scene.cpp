@@ -19,6 +19,7 @@
 #include "reports/document/inspection.hpp"
 #include "reports/page/report/picture.hpp"
 #include "reports/python/convert.hpp"
+#include "reports/render/render.hpp"
 #include "reports/tables/csv.hpp"
 
 namespace elastocheck::python {
@@ -308,8 +309,8 @@ void bind_scene(py::module_& module) {
                                })
         .def("inspect",
              [](const SceneOfFile& s) {
-                 return reports::inspection(
-                     {.scene = s.loaded.scene, .model = s.loaded.model, .trim = s.loaded.trim});
+                 return reports::text(reports::shortened(reports::inspection(
+                     {.scene = s.loaded.scene, .model = s.loaded.model, .trim = s.loaded.trim})));
              })
         .def(
             "vary",

@@ -93,15 +93,12 @@ TEST(Json, InspectDocumentHasTheNumbersOfTheText) {
                                "/mcpherson.yaml --set points.strut_top.z=0.58")["scenes"][0];
     EXPECT_EQ(part["model"]["unknowns"], 27);
     EXPECT_EQ(part["model"]["idle_modes"].size(), 1u);
-    const json& inspection = part["inspection"];
-    EXPECT_EQ(inspection["bodies"].size(), part["model"]["bodies"].size());
-    EXPECT_EQ(inspection["branches"][0]["settles"]["outcome"], "converged");
-    bool found = false;
-    for (const auto& number : inspection["numbers"])
-        found = found || (number["path"] == "points.strut_top.z" && number["value"] == 0.58 &&
-                          number["unit"] == "m");
-    EXPECT_TRUE(found);
-    for (const auto& channel : part["channels"]) EXPECT_NE(channel["definition"], "");
+    const json& tables = part["results"][0]["tables"];
+    EXPECT_EQ(tables["bodies"]["rows"].size(), part["model"]["bodies"].size());
+    EXPECT_EQ(tables["branches"]["rows"][0].back(), "converged");
+    const json expected = {"points.strut_top.z", 0.58, "m", ""};
+    EXPECT_EQ(std::ranges::count(tables["numbers"]["rows"], expected), 1);
+    for (const auto& output : tables["outputs"]["rows"]) EXPECT_NE(output[2], "");
 }
 
 TEST(Json, InconclusiveDocumentKeepsItsExitCode) {

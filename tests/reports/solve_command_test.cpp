@@ -376,8 +376,9 @@ TEST(SolveCommand, ParametersAreExactAtTheEndsOfABranch) {
                 EXPECT_LE(rows[r][2].size(), 17u) << rows[r][2];
                 reached.try_emplace(rows[r][0], rows[r][2], "").first->second.second = rows[r][2];
             }
-            for (const auto& branch : part["scenes"][0]["inspection"]["branches"]) {
-                const auto& [from, to] = reached.at(branch["name"]);
+            for (const auto& branch :
+                 part["scenes"][0]["results"][0]["tables"]["branches"]["rows"]) {
+                const auto& [from, to] = reached.at(branch[0]);
                 EXPECT_EQ(std::stod(from), std::round(std::stod(from))) << scene << method << from;
                 EXPECT_EQ(std::stod(to), std::round(std::stod(to))) << scene << method << to;
                 ++ends;
