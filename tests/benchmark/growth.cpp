@@ -314,7 +314,7 @@ int main(int argc, char** argv) {
             figures.push_back(std::move(picture));
     std::vector<reports::Plot> plots;
     for (const auto& picture : figures) plots.push_back({&picture, picture.id});
-    reports::draw(plots, folder, false);
+    reports::draw(plots, folder);
     const bool ran =
         std::ranges::all_of(all, [](const Growth& g) { return g.start.outcome.empty(); });
     return ran ? 0 : 3;
