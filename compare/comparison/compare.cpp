@@ -17,7 +17,7 @@
 #include "compare/outputs/not_a_number.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/soft_motion.hpp"
-#include "reference/certificate/certificate.hpp"
+#include "reference/certificate/proved_box.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -74,7 +74,8 @@ std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side
 
 // Proofs at the landmarks, each parameter once: all of them, or the ends only. Landmarks of a path
 // that ended early are proved too, since each is an equilibrium or not.
-Tally proved(const BranchSide& side, const LegRun& run, bool ends_only) {
+Tally proved(const BranchSide& side, const LegRun& run, bool ends_only,
+             std::vector<reference::certificate::ProvedBox>& known) {
     Tally tally;
     std::vector<double> done;
     const auto& [front, start, middle, back] = run.landmarks;
@@ -87,7 +88,7 @@ Tally proved(const BranchSide& side, const LegRun& run, bool ends_only) {
         if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
         done.push_back((*state)->load);
         add(tally, (*state)->load, run.curve.unit,
-            reference::certificate::certify(side.model, side.branch, **state));
+            reference::certificate::certify(side.model, side.branch, **state, {}, known));
     }
     return tally;
 }
@@ -494,11 +495,16 @@ Comparison compare(const Model& model, const Options& options, const std::vector
     std::ranges::move(sums(model), std::back_inserter(result.channels));
 
     const auto solve = [&](std::size_t k, const SolverSettings& solver) {
-        LegRun leg_run =
-            run(model, result.channels, model.branches[k], sides[k], solver, options.times);
-        if (options.prove && (!options.prove_ends_only || solver.leg == Leg::equilibrium))
-            leg_run.proved = proved(sides[k].front(), leg_run, options.prove_ends_only);
-        return leg_run;
+        return run(model, result.channels, model.branches[k], sides[k], solver, options.times);
+    };
+    // The references first: the others are near the boxes that are proved for them.
+    const auto prove = [&](std::size_t k, std::vector<LegRun>& runs) {
+        std::vector<reference::certificate::ProvedBox> known;
+        for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive})
+            for (LegRun& leg_run : runs)
+                if (leg_run.leg == leg && (!options.prove_ends_only || leg == Leg::equilibrium))
+                    leg_run.proved =
+                        proved(sides[k].front(), leg_run, options.prove_ends_only, known);
     };
     std::vector<std::vector<LegRun>> runs(model.branches.size(), std::vector<LegRun>(legs.size()));
     std::vector<std::optional<LegRun>> series(model.branches.size());
@@ -517,19 +523,20 @@ Comparison compare(const Model& model, const Options& options, const std::vector
                      if (leg == Leg::energy && is_not_applicable(leg_run.outcome))
                          series[k] = solve(k, {.leg = Leg::series, .every = options.every});
                  }});
-    run_jobs(jobs, options.threads, part(options.progress, 0, 0.9));
+    run_jobs(jobs, options.threads, part(options.progress, 0, 0.8));
 
     result.branches.resize(model.branches.size());
     jobs.clear();
     for (std::size_t k = 0; k < model.branches.size(); ++k)
         jobs.push_back({fmt::format("{}: deviations", model.branches[k].name), [&, k] {
                             if (series[k]) runs[k].push_back(std::move(*series[k]));
+                            if (options.prove) prove(k, runs[k]);
                             result.branches[k] =
                                 compare_runs(model, result.channels,
                                              {model.branches[k], sides[k], std::move(runs[k])},
                                              requested, options);
                         }});
-    run_jobs(jobs, options.threads, part(options.progress, 0.9, 1));
+    run_jobs(jobs, options.threads, part(options.progress, 0.8, 1));
     for (const BranchComparison& b : result.branches)
         for (const Pair* p : {&b.deviation, &b.cross_check, &b.uncertainty})
             result.compared +=

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "compare/jobs/jobs.hpp"
+#include "reference/certificate/proved_box.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -24,7 +25,8 @@ std::string solver_of(const SolverSettings& solver) {
 }
 
 CertifiedSide certify_side(const BranchSide& side, SolverSettings solver,
-                           const CertifyOptions& options) {
+                           const CertifyOptions& options,
+                           std::vector<certificate::ProvedBox>& known) {
     CertifiedSide result;
     result.branch = side.name;
     result.unit = unit_of(side.branch.unit);
@@ -36,7 +38,7 @@ CertifiedSide certify_side(const BranchSide& side, SolverSettings solver,
     result.detail = path.detail;
     for (const Equilibrium& state : path.points)
         add(result.tally, state.load, result.unit,
-            certificate::certify(side.model, side.branch, state, in_si(options.tolerance)));
+            certificate::certify(side.model, side.branch, state, in_si(options.tolerance), known));
     if (options.curves && solver.leg == Leg::equilibrium && path.points.size() > 1)
         result.curve = certificate::certify_branch(side.model, side.branch, path.points,
                                                    in_si(options.tolerance));
@@ -71,13 +73,12 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     study.sides.resize(sides.size() * solvers.size());
     std::vector<Job> jobs;
     for (std::size_t w = 0; w < sides.size(); ++w)
-        for (std::size_t s = 0; s < solvers.size(); ++s)
-            jobs.push_back(
-                {fmt::format("{}: proving what {} finds", sides[w].name, solver_of(solvers[s])),
-                 [&, w, s] {
-                     study.sides[w * solvers.size() + s] =
-                         certify_side(sides[w], solvers[s], options);
-                 }});
+        jobs.push_back({fmt::format("{}: proving what the solvers find", sides[w].name), [&, w] {
+                            std::vector<certificate::ProvedBox> known;
+                            for (std::size_t s = 0; s < solvers.size(); ++s)
+                                study.sides[w * solvers.size() + s] =
+                                    certify_side(sides[w], solvers[s], options, known);
+                        }});
     run_jobs(jobs, options.threads, options.progress);
     return study;
 }

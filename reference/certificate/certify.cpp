@@ -9,8 +9,11 @@
 //                                 there is no zero
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/krawczyk.hpp"
+#include "reference/certificate/proved_box.hpp"
 #include "reference/certificate/stability.hpp"
 #include "reference/certificate/state.hpp"
 
@@ -151,11 +154,11 @@ double alone(const Problem& problem, const Approximate& approximate, double a,
 }
 
 // The part of that box around the state.
-Extent unique_around(const StateAt& mapped, const Approximate& approximate, double t) {
+Extent unique_around(const StateAt& mapped, const VectorXd& y, double t) {
     const System& system = mapped.system;
     Extent unique;
     if (t == 0) return {0, 0, 0, 0};
-    const VectorXd off = (approximate.y.head(system.n()) - mapped.z).cwiseAbs();
+    const VectorXd off = (y.head(system.n()) - mapped.z).cwiseAbs();
     for (int b = 0; b < system.bodies; ++b) {
         const double length = t * system.length - off.segment<3>(system.pose(b)).maxCoeff(),
                      half = t - off.segment<4>(system.pose(b) + 3).maxCoeff();
@@ -255,7 +258,36 @@ void say(std::string& detail, const std::string& more) {
     detail += more;
 }
 
-Certificate certify(const System& system, const Equilibrium& state, const Tolerance& tolerance) {
+// ---- A state near a known box
+
+const ProvedBox* box_at(const std::vector<ProvedBox>& known, const System& system, double a) {
+    const auto at = std::ranges::find_if(known, [&](const ProvedBox& one) {
+        return one.a == a && one.separated == !system.separated.empty();
+    });
+    return at == known.end() ? nullptr : &*at;
+}
+
+// Nothing where the box decides nothing about the state.
+std::optional<Certificate> by_known_box(const ProvedBox& known, const StateAt& mapped,
+                                        const Tolerance& tolerance) {
+    const auto y = box(known.y, known.r);
+    Certificate certificate = known.certificate;
+    certificate.error = distance(mapped, {y.begin(), y.begin() + mapped.system.n()});
+    if (within(certificate.error, tolerance)) {
+        certificate.unique = unique_around(mapped, known.y, known.alone);
+        return certificate;
+    }
+    if (!none_within(mapped, tolerance)) return {};
+    return Certificate{.state = ProofState::excluded,
+                       .detail = fmt::format("the nearest equilibrium found is {} away",
+                                             as_text(certificate.error)),
+                       .error = certificate.error,
+                       .unique = {0, 0, 0, 0},
+                       .centre = certificate.centre};
+}
+
+Certificate certify(const System& system, const Equilibrium& state, const Tolerance& tolerance,
+                    std::vector<ProvedBox>& known) {
     const StateAt mapped = state_at(system, state);
     Certificate certificate;
     certificate.unique = {0, 0, 0, 0};
@@ -265,6 +297,8 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
     };
     if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
     if (const auto why = why_not_tried(system); !why.empty()) return open(why);
+    if (const ProvedBox* near = box_at(known, system, state.load))
+        if (auto decided = by_known_box(*near, mapped, tolerance)) return *std::move(decided);
 
     auto [problem, approximate, there] = equilibrium_near(system, mapped.z, state.load);
     const Interval a = state.load;
@@ -286,8 +320,8 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.state = ProofState::proved;
-                certificate.unique =
-                    unique_around(mapped, approximate, alone(problem, approximate, state.load, r));
+                const double t = alone(problem, approximate, state.load, r);
+                certificate.unique = unique_around(mapped, approximate.y, t);
                 certificate.stable = stable(problem, z, smallest_box.J);
                 certificate.detail = statement(system, problem.border, held, "state");
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
@@ -295,6 +329,9 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                         fmt::format(
                             "{} on a knot of its curve, whose pieces are assumed to meet there",
                             knots));
+                if (problem.border.count() == 0)
+                    known.push_back(
+                        {state.load, !system.separated.empty(), approximate.y, r, t, certificate});
                 return certificate;
             }
         }
@@ -336,12 +373,18 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
 
 Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
                     const Tolerance& tolerance) {
-    Certificate certificate = certify(make_system(model, branch), state, tolerance);
+    std::vector<ProvedBox> none;
+    return certify(model, branch, state, tolerance, none);
+}
+
+Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
+                    const Tolerance& tolerance, std::vector<ProvedBox>& known) {
+    Certificate certificate = certify(make_system(model, branch), state, tolerance, known);
     const bool shown = certificate.state == ProofState::excluded || certificate.stable;
     if (shown || !has_corners(model)) return certificate;
     // At the corner of a stiff stop the slopes inside the element vary too independently.
     Certificate separated =
-        certify(make_system(model, branch, Corners::separated), state, tolerance);
+        certify(make_system(model, branch, Corners::separated), state, tolerance, known);
     return separated.state == ProofState::open ? certificate : separated;
 }
 

@@ -1,6 +1,7 @@
 // Interval proofs of points of the built-in scenes, by every leg: correct points are proved, wrong
 // ones are not.
 #include "elastocheck/energy.hpp"
+#include "reference/certificate/proved_box.hpp"
 #include "tests/reference/certificate/sides.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -53,6 +54,37 @@ TEST(Certificate, CentreOfTheBoxSatisfiesTheEquationsOfTheOtherLegs) {
                 if (!support::has_potential(support::scene(scene))) continue;
                 expect_met(energy::residuals(walk.model, walk.branch, c.centre), 1e4, 1, where);
             }
+}
+
+// A box that is proved for one leg proves the states of the others, with the distance of each, and
+// excludes what is not near; where a motion is idle each state has equations of its own.
+TEST(Certificate, KnownBoxProvesTheStatesOfOtherLegsAndExcludesWrongOnes) {
+    const auto walks = walked("double_wishbone", 1, exact_legs);
+    for (std::size_t w = 0; w < walks.size(); w += exact_legs.size())
+        for (std::size_t k = 0; k < walks[w].points.size(); ++k) {
+            std::vector<ProvedBox> known;
+            for (std::size_t leg = 0; leg < exact_legs.size(); ++leg) {
+                const Walked& walk = walks[w + leg];
+                Equilibrium state = walk.points[k];
+                const Certificate alone = certify(walk.model, walk.branch, state),
+                                  c = certify(walk.model, walk.branch, state, {}, known);
+                const auto where = at("double_wishbone", walk, state, c);
+                EXPECT_EQ(known.size(), 1u) << where;
+                ASSERT_EQ(c.state, ProofState::proved) << where;
+                EXPECT_NEAR(c.error.length, alone.error.length, 1e-12) << where;
+                EXPECT_NEAR(c.unique.length, alone.unique.length, 1e-6) << where;
+                EXPECT_EQ(c.stable, alone.stable) << where;
+                state.poses[0].r.x() += 1e-6;
+                const Certificate wrong = certify(walk.model, walk.branch, state, {}, known);
+                EXPECT_EQ(wrong.state, ProofState::excluded) << where;
+                EXPECT_NEAR(wrong.error.length, 1e-6, 1e-9) << where;
+            }
+        }
+    const Side strut(compile(support::scene("mcpherson")));  // its spin is idle
+    std::vector<ProvedBox> none;
+    const Equilibrium state = strut.solved(0.4 * strut.branch.to);
+    EXPECT_EQ(certify(strut.model, strut.branch, state, {}, none).state, ProofState::proved);
+    EXPECT_TRUE(none.empty());
 }
 
 // ---- Wrong points

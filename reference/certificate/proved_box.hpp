@@ -1,0 +1,27 @@
+// Boxes that are proved once and serve the states of several legs.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "reference/certificate/certificate.hpp"
+
+namespace elastocheck::reference::certificate {
+
+// A box that contains one equilibrium, of equations that do not depend on the state: without idle
+// motion and redundant joint.
+struct ProvedBox {
+    double a = 0;
+    bool separated = false;   // of the equations with separated corners
+    Eigen::VectorXd y, r;     // ỹ and r
+    double alone = 0;         // t of the large box without another equilibrium
+    Certificate certificate;  // `error` and `unique` are of a state
+};
+
+// certify(), with known boxes of the same model and branch, to which a new one is added. Where a
+// known box is within the tolerance of the state, it proves the state as well; else it is the
+// equilibrium nearby when none can be within the tolerance.
+Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
+                    const Tolerance& tolerance, std::vector<ProvedBox>& known);
+
+}  // namespace elastocheck::reference::certificate
