@@ -420,9 +420,12 @@ CandidateJudgement outline_of(const Model& model, const Comparison& comparison,
 }
 
 // The candidate's points on one branch, in both readings.
-CandidateBranch read_branch(const Model& model, const Branch& branch, const BranchComparison& of,
-                            const std::vector<Channel>& channels, const Candidate& candidate,
-                            std::vector<std::size_t> points, CandidateJudgement& result) {
+CandidateBranch read_branch(const Model& model, const Comparison& comparison, std::size_t b,
+                            const Candidate& candidate, std::vector<std::size_t> points,
+                            CandidateJudgement& result) {
+    const Branch& branch = model.branches[b];
+    const BranchComparison& of = comparison.branches[b];
+    const std::vector<Channel>& channels = comparison.channels;
     CandidateBranch given{
         of.branch, of.unit, static_cast<int>(points.size()), nan, nan, of.abscissa, {}, {}};
     for (const std::size_t k : points) {
@@ -463,15 +466,14 @@ void read_branches(const Model& model, const Comparison& comparison, const Candi
         nowhere > 0)
         result.notes.push_back(fmt::format("{} of its points lie on no branch", nowhere));
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
-        const BranchComparison& of = comparison.branches[b];
         std::vector<std::size_t> points;
         for (std::size_t k = 0; k < branches.size(); ++k)
             if (branches[k] == static_cast<int>(b)) points.push_back(k);
         if (points.empty())
-            result.not_given.push_back(fmt::format("branch '{}'", of.branch));
+            result.not_given.push_back(fmt::format("branch '{}'", comparison.branches[b].branch));
         else
-            result.branches.push_back(read_branch(model, model.branches[b], of, comparison.channels,
-                                                  candidate, std::move(points), result));
+            result.branches.push_back(
+                read_branch(model, comparison, b, candidate, std::move(points), result));
     }
 }
 

@@ -381,9 +381,9 @@ Neighbouring on_side(const Compiled& compiled, const ReadSide& of) {
     return near;
 }
 
-Rates rates_at(const ReadSide& side, Leg leg, const Equilibrium& state,
-               std::span<const Changing> numbers, std::span<const Neighbouring> near,
-               bool judges_kinks, Analyses& analyses) {
+Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
+               std::span<const Neighbouring> near, bool judges_kinks, Analyses& analyses) {
+    const auto& [side, leg, state] = of;
     const auto at = corners(side.side.model, side.side.branch, state);
     if (!at.empty()) {
         const MatrixXd nothing =

@@ -82,11 +82,15 @@ struct Rates {
     std::vector<std::string> why;  // per number: why there is none
     OneSided one_sided = {};
 };
-// At a state of a leg. `near`: of each of `numbers`. With `judges_kinks` an entry whose slopes to
-// both sides differ has no derivative.
-Rates rates_at(const ReadSide& side, Leg leg, const Equilibrium& state,
-               std::span<const Changing> numbers, std::span<const Neighbouring> near,
-               bool judges_kinks, Analyses& analyses);
+struct StateOfLeg {
+    const ReadSide& side;
+    Leg leg;
+    const Equilibrium& state;
+};
+// `near`: of each of `numbers`. With `judges_kinks` an entry whose slopes to both sides differ has no
+// derivative.
+Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
+               std::span<const Neighbouring> near, bool judges_kinks, Analyses& analyses);
 
 // The smallest size of a row of such a matrix that counts, for its largest entries by the steps of
 // the numbers: a millionth of the largest of its kind, and 1e-5 of its unit; of a characteristic a

@@ -227,8 +227,8 @@ struct SideWork {
         for (std::size_t l = 0; l < states.size(); ++l) {
             rates[l].resize(states[l].size());
             for (std::size_t s = 0; s < states[l].size(); ++s)
-                append(rates[l][s], rates_at(read, result.legs[l].leg, states[l][s], numbers, near,
-                                             l == 0, analyses[l]));
+                append(rates[l][s], rates_at({read, result.legs[l].leg, states[l][s]}, numbers,
+                                             near, l == 0, analyses[l]));
         }
     }
 

@@ -208,10 +208,9 @@ std::shared_ptr<const std::vector<Channel>> VariantSolver::outputs(const Model& 
     return own;
 }
 
-void VariantSolver::read(const Model& model, const Branch& side,
-                         const std::vector<Channel>& outputs, const Way& way,
-                         const EquilibriumPath& path, Analyses analyses,
-                         VariantFigures& into) const {
+void VariantSolver::read(const Followed& followed, const std::vector<Channel>& outputs,
+                         Analyses analyses, VariantFigures& into) const {
+    const auto& [model, side, way, path] = followed;
     const Branch& branch = model.branches[way.branch];
     std::string ended;
     std::size_t reached = 0;
@@ -314,8 +313,9 @@ std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants
             group.design, group.analysis, models, {.points = points_, .wrenches = !only_motion_},
             [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
                 declined[v] = declined[v] || declines(path.outcome);
-                read(variants[which[v]], models[v].branches[w], *all_outputs[v], group.ways[w],
-                     path, as_design[v] ? group.ways[w].responses : Analyses{}, results[which[v]]);
+                read({variants[which[v]], models[v].branches[w], group.ways[w], path},
+                     *all_outputs[v], as_design[v] ? group.ways[w].responses : Analyses{},
+                     results[which[v]]);
             });
     }
     for (std::size_t k = 0; k < which.size(); ++k) {
@@ -344,7 +344,7 @@ VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
             side.steps = points_;
             const EquilibriumPath path =
                 solve_branch(BranchSide{side.name, on_branch(variant, side), side}, {.leg = leg});
-            read(variant, side, *own, way, path, {}, result);
+            read({variant, side, way, path}, *own, {}, result);
         }
     finish(result);
     return result;

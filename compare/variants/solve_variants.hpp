@@ -89,8 +89,13 @@ class VariantSolver {
     void place(const Model& design);
     Model followed(const Model& model, const std::vector<Way>& ways) const;
     std::shared_ptr<const std::vector<Channel>> outputs(const Model& model, bool same) const;
-    void read(const Model& model, const Branch& side, const std::vector<Channel>& outputs,
-              const Way& way, const EquilibriumPath& path, Analyses analyses,
+    struct Followed {  // a way of a variant
+        const Model& model;
+        const Branch& side;
+        const Way& way;
+        const EquilibriumPath& path;
+    };
+    void read(const Followed& followed, const std::vector<Channel>& outputs, Analyses analyses,
               VariantFigures& into) const;
     bool is_as_design(const Model& model) const;  // but for numbers
     void finish(VariantFigures& figures) const;

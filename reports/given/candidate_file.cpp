@@ -30,13 +30,13 @@ struct OutputTable {
     std::vector<std::vector<double>> values;  // per column
     std::vector<std::string> branch, unit;    // per point, where given by a column
     std::vector<int> lines;
+    std::vector<std::string> left_out;  // columns that are not compared
     std::set<std::string, std::less<>> legs;
 };
 
 // The columns named in the first line. An unknown one is an error unless it may be left out.
 void read_headings(const Cells& cells, int line, const std::string& file, const Names& names,
-                   const std::vector<compare::Channel>* also_known, OutputTable& table,
-                   std::vector<std::string>& left_out) {
+                   const std::vector<compare::Channel>* also_known, OutputTable& table) {
     for (const auto cell : cells) {
         const std::string name(cell);
         if (std::ranges::find(table.columns, name, &Meaning::name) != table.columns.end())
@@ -48,7 +48,7 @@ void read_headings(const Cells& cells, int line, const std::string& file, const 
             fail_at(file, line,
                     fmt::format("unknown column {}{}", reader::quote(name),
                                 reader::did_you_mean(name, known_headings(names), "allowed")));
-        left_out.push_back(left_out_heading(name, names));
+        table.left_out.push_back(left_out_heading(name, names));
     }
     for (const auto& entry : names.map.columns)
         if (std::ranges::find(table.columns, entry.theirs, &Meaning::name) == table.columns.end())
@@ -59,11 +59,10 @@ void read_headings(const Cells& cells, int line, const std::string& file, const 
 }
 
 OutputTable read_table(std::string_view csv, const std::string& file, const Names& names,
-                       const std::vector<compare::Channel>* also_known,
-                       std::vector<std::string>& left_out) {
+                       const std::vector<compare::Channel>* also_known) {
     OutputTable table;
     const auto head = [&](const Cells& cells, int line) {
-        read_headings(cells, line, file, names, also_known, table, left_out);
+        read_headings(cells, line, file, names, also_known, table);
     };
     read_sheet(csv, file, most_measured, head, [&](const Cells& cells, int line) {
         table.lines.push_back(line);
@@ -156,10 +155,11 @@ void keep_rows(PointTable& table, const std::function<std::string(std::size_t po
 PointTable read_points(std::string_view csv, const std::string& file, const Names& names,
                        const std::vector<compare::Channel>* also_known) {
     PointTable result;
-    const OutputTable table = read_table(csv, file, names, also_known, result.left_out);
+    const OutputTable table = read_table(csv, file, names, also_known);
     auto& points = result.points;
     points.branch = table.branch;
     result.lines = table.lines;
+    result.left_out = table.left_out;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
         const Meaning& meaning = table.columns[c];
         if (meaning.kind == MeaningKind::parameter) {
@@ -193,9 +193,10 @@ PointTable read_points(std::string_view csv, const std::string& file, const Name
     return result;
 }
 
-compare::Candidate read_candidate(std::string_view content, const std::string& file,
-                                  std::string name, const Scene& scene, const Model& model,
-                                  const compare::Comparison& comparison, const ColumnMap& map) {
+compare::Candidate read_candidate(const CandidateFile& given, const Scene& scene,
+                                  const Model& model, const compare::Comparison& comparison,
+                                  const ColumnMap& map) {
+    const auto& [name, file, content] = given;
     const Names names = names_of(model, comparison.channels, map);
     compare::Candidate candidate;
     if (holds_states(content)) {
@@ -213,7 +214,7 @@ compare::Candidate read_candidate(std::string_view content, const std::string& f
             candidate.notes.push_back("columns that are not compared: " +
                                       reader::listed(table.left_out));
     }
-    candidate.name = std::move(name);
+    candidate.name = name;
     return candidate;
 }
 

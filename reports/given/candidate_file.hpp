@@ -35,9 +35,14 @@ void keep_rows(PointTable& table, const std::function<std::string(std::size_t po
 // Whether a channel is the travel of a wheel, which gives the place of a point.
 bool is_travel(const compare::Channel& channel);
 
+struct CandidateFile {
+    std::string name;  // of the candidate
+    std::string file;  // for messages
+    std::string_view content;
+};
 // States are recognised by a JSON object, or a column `body`. Throws SheetError "file:line: ...".
-compare::Candidate read_candidate(std::string_view content, const std::string& file,
-                                  std::string name, const Scene& scene, const Model& model,
-                                  const compare::Comparison& comparison, const ColumnMap& map = {});
+compare::Candidate read_candidate(const CandidateFile& given, const Scene& scene,
+                                  const Model& model, const compare::Comparison& comparison,
+                                  const ColumnMap& map = {});
 
 }  // namespace elastocheck::reports

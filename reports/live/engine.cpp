@@ -80,13 +80,16 @@ struct Solver {
     std::vector<Point> points;  // of the drawing
     std::size_t rates = 0;      // position of the first characteristic in `channels`
 
-    // Adds the rows of all sides. With `full` the characteristics too; with `geometry` the drawing.
+    struct Wanted {
+        bool characteristics = false, geometry = false;  // of the drawing
+    };
+    // Adds the rows of all sides.
     EquilibriumPath solve_branch(const Branch& branch,
                                  const std::vector<compare::BranchSide>& sides,
-                                 const compare::SolverSettings& solver, bool full, bool geometry,
+                                 const compare::SolverSettings& solver, const Wanted& wanted,
                                  compare::Analyses& analyses, Rows& rows) const {
         const std::span<const Channel> read =
-            std::span(channels).first(full ? channels.size() : rates);
+            std::span(channels).first(wanted.characteristics ? channels.size() : rates);
         const compare::Unit unit = compare::unit_of(branch.unit);
         return compare::solve_branch(
             sides, solver,
@@ -95,7 +98,7 @@ struct Solver {
                 compare::Row row =
                     row_of(model, read, sides.front(), solver, state, analyses, response);
                 row.values.resize(channels.size(), not_computed);
-                if (!geometry) return row;
+                if (!wanted.geometry) return row;
                 for (const Point& point : points)
                     for (const double x : compare::position(state.poses, point))
                         row.values.push_back(1e3 * x);
@@ -136,7 +139,7 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
     for (auto& side : sides) side.analysis = known->analysis;
     Rows rows;
     const EquilibriumPath path = solver.solve_branch(branch, sides, {.leg = compare::Leg::series},
-                                                     full, true, known->responses, rows);
+                                                     {full, true}, known->responses, rows);
     json result = {{"name", branch.name}, {"unit", symbol(compare::unit_of(branch.unit))}};
     result.update(outcome_json(path));
     result["idle"] = recursive::describe_idle_modes(known->analysis->diagnosis);
@@ -150,8 +153,8 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
     const int refine = std::max(1, (branch.steps + request.points / 2) / request.points);
     Rows fast;
     const EquilibriumPath published =
-        solver.solve_branch(branch, sides, {.leg = compare::Leg::recursive, .refine = refine},
-                            false, false, known->responses, fast);
+        solver.solve_branch(branch, sides, {.leg = compare::Leg::recursive, .refine = refine}, {},
+                            known->responses, fast);
     json& part = result["published"] = outcome_json(published);
     part["steps"] = refine * request.points;
     part["points"] = fast.rows.size();

@@ -174,8 +174,8 @@ std::vector<std::string> errors_at_ends(const BranchCurves& curves) {
     return all;
 }
 
-SolveRequest request_of(std::string method, int steps, int every, std::string tolerance, int order,
-                        int expansions, bool arc_length) {
+SolveRequest request_of(std::string method, int every, reports::RecursionRequest recursion) {
+    const auto& [_, steps, order, expansions, tolerance, arc_length] = recursion;
     const auto known = reports::solvers();
     if (std::ranges::find(known, method) == known.end())
         throw std::invalid_argument(fmt::format("method {}{}", reader::quote(method),
@@ -190,11 +190,7 @@ SolveRequest request_of(std::string method, int steps, int every, std::string to
         throw std::invalid_argument(fmt::format("expansions {}; allowed: 1 or more", expansions));
     SolveRequest request;
     request.solver.method = std::move(method);
-    request.solver.recursion.steps = steps;
-    request.solver.recursion.tolerance = std::move(tolerance);
-    request.solver.recursion.order = order;
-    request.solver.recursion.expansions = expansions;
-    request.solver.recursion.arc_length = arc_length;
+    request.solver.recursion = std::move(recursion);
     request.solver.every = every;
     return request;
 }
@@ -327,9 +323,12 @@ void bind_scene(py::module_& module) {
                std::vector<std::string> channels, int steps, int every, std::string tolerance,
                int order, int expansions, bool arc_length, bool states, bool characteristics,
                std::vector<std::string> branches) {
-                SolveRequest request =
-                    request_of(std::move(method), steps, every, std::move(tolerance), order,
-                               expansions, arc_length);
+                SolveRequest request = request_of(std::move(method), every,
+                                                  {.steps = steps,
+                                                   .order = order,
+                                                   .expansions = expansions,
+                                                   .tolerance = std::move(tolerance),
+                                                   .arc_length = arc_length});
                 request.channels = std::move(channels);
                 request.branches = std::move(branches);
                 request.states = states;

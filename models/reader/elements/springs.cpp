@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <utility>
+
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/tables/curves.hpp"
 #include "models/reader/tables/table.hpp"
@@ -40,11 +43,12 @@ double free_length(const Cursor& spring, double length, const ScalarLaw& law,
     return l0;
 }
 
+using StopFields = std::array<std::pair<const char*, Stop>, 2>;
+
 // Appends the stops given in these fields, with the names "NAME.FIELD".
 void add_stops(const std::string& name, const Cursor& spring, const AxialSpring& ends,
-               const char* bump, const char* rebound, const Definitions& defs,
-               std::vector<Elastic>& list) {
-    for (const auto& [field, kind] : {std::pair{bump, Stop::bump}, {rebound, Stop::rebound}})
+               const StopFields& fields, const Definitions& defs, std::vector<Elastic>& list) {
+    for (const auto& [field, kind] : fields)
         if (const auto stop = spring.optional(field)) {
             AxialSpring element = ends;
             element.law = read_stop(*stop, kind, defs);
@@ -67,7 +71,8 @@ std::vector<Elastic> read_spring(const std::string& name, const Cursor& field,
         seats && seats->one_of("a kind of seats", {"fixed", "free"}) == 1)
         spring.law = pushing_only(*seats, spring.law, defs.units.force);
     std::vector<Elastic> result{{name, spring}};
-    add_stops(name, field, ends, "bump_stop", "rebound_stop", defs, result);
+    add_stops(name, field, ends, {{{"bump_stop", Stop::bump}, {"rebound_stop", Stop::rebound}}},
+              defs, result);
     return result;
 }
 
@@ -75,7 +80,8 @@ std::vector<Elastic> read_stops(const std::string& name, const Cursor& field,
                                 const Definitions& defs) {
     field.only_keys({"bodies", "from", "to", "bump", "rebound"});
     std::vector<Elastic> result;
-    add_stops(name, field, read_ends(field, defs), "bump", "rebound", defs, result);
+    add_stops(name, field, read_ends(field, defs),
+              {{{"bump", Stop::bump}, {"rebound", Stop::rebound}}}, defs, result);
     if (result.empty()) field.fail("no stop; required: bump or rebound");
     return result;
 }

@@ -28,6 +28,7 @@ std::size_t wheel_of(const Cursor& tyre, const Scene& scene) {
 }
 
 struct Tyre {
+    std::size_t wheel = 0;
     double k = 0;  // [N/m] > 0
     double P = 0;  // force that pushes the wheel up at the design position [N]
 };
@@ -43,9 +44,9 @@ Bushing bushing(const Tyre& tyre, const Wheel& wheel, const Definitions& defs) {
             .undeformed = tyre.P / tyre.k * Vector6::Unit(2)};
 }
 
-void add_tyre(const Cursor& field, const std::string& name, const Tyre& tyre, std::size_t wheel,
+void add_tyre(const Cursor& field, const std::string& name, const Tyre& tyre,
               const Definitions& defs, Drivables& drivables, Scene& scene) {
-    Wheel& above = scene.wheels[wheel];
+    Wheel& above = scene.wheels[tyre.wheel];
     if (above.tyre_rate != 0)
         field.fail(fmt::format("wheel {} has a tyre already; allowed: one", quote(above.name)));
     above.tyre_rate = tyre.k;
@@ -62,17 +63,16 @@ void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivabl
     if (!section) return;
     for (const auto& [name, field] : section->entries()) {
         field.only_keys({"wheel", "rate", "preload"});
-        const std::size_t wheel = wheel_of(field, result);
         const Cursor rate_field = field.require("rate");
         const auto preload = field.optional("preload");
-        const Tyre tyre{
-            .k = rate(rate_field, defs.units.rate),
-            .P = preload ? defs.units.force.si(preload->number(defs.units.force.name)) : 0};
+        Tyre tyre{.wheel = wheel_of(field, result),
+                  .k = rate(rate_field, defs.units.rate),
+                  .P = preload ? defs.units.force.si(preload->number(defs.units.force.name)) : 0};
         if (tyre.k == 0) rate_field.fail("zero; a tyre needs a rate");
-        add_tyre(field, name, tyre, wheel, defs, drivables, result);
+        add_tyre(field, name, tyre, defs, drivables, result);
         if (!defs.mirror) continue;
         const auto other = twin_name(*defs.mirror, name, *section);
-        const auto other_wheel = turned(*defs.mirror, result.wheels[wheel].name);
+        const auto other_wheel = turned(*defs.mirror, result.wheels[tyre.wheel].name);
         if (other.has_value() != other_wheel.has_value())
             field.fail(
                 fmt::format("the mirror generates a twin of {} but not of {}; both or neither must "
@@ -81,8 +81,8 @@ void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivabl
                             quote(defs.mirror->from)));
         if (!other) continue;
         const auto there = std::ranges::find(result.wheels, *other_wheel, &Wheel::name);
-        add_tyre(field, *other, tyre, static_cast<std::size_t>(there - result.wheels.begin()), defs,
-                 drivables, result);
+        tyre.wheel = static_cast<std::size_t>(there - result.wheels.begin());
+        add_tyre(field, *other, tyre, defs, drivables, result);
     }
 }
 

@@ -52,7 +52,7 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
         try {
             if (output.failed.empty())
                 levels.push_back(
-                    {output.steps, read_candidate(output.content, output.file, output.name,
+                    {output.steps, read_candidate({output.name, output.file, output.content},
                                                   loaded.scene, loaded.model, outline, map)
                                        .points});
             else

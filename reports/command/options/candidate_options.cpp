@@ -137,7 +137,7 @@ compare::CandidateJudgement judged(const CandidateOutput& output, const Candidat
     }
     const ColumnMap map = map_of(request);
     try {
-        auto candidate = read_candidate(output.content, output.file, output.name, loaded.scene,
+        auto candidate = read_candidate({output.name, output.file, output.content}, loaded.scene,
                                         loaded.model, comparison, map);
         candidate.complete = !request.partial;
         return compare::judge_candidate(loaded.model, comparison, candidate, tolerance, given);

@@ -14,9 +14,14 @@ namespace {
 
 using compare::TradeRow;
 
-// The error of every method over this column, those that are not ranked left out.
-Figure precision(const compare::Trade& trade, std::vector<TradeRow> points, const char* id,
-                 const char* column, double TradeRow::*price, const char* axis, const char* title) {
+struct Price {
+    const char *id, *column;
+    double TradeRow::*price;
+    const char *axis, *title;
+};
+// The error of every method over this price, those that are not ranked left out.
+Figure precision(const compare::Trade& trade, std::vector<TradeRow> points, const Price& of) {
+    const auto& [id, column, price, axis, title] = of;
     std::erase_if(points, [](const TradeRow& point) { return !point.not_ranked.empty(); });
     Figure figure = figure_of({.id = id,
                                .title = title,
@@ -54,14 +59,16 @@ std::optional<Section> price_section(const SceneAnalyses& scene) {
     const bool times = std::ranges::any_of(
         points, [](const TradeRow& point) { return std::isfinite(point.time_ratio); });
     FigureGroup group;
-    group.figures.push_back(precision(*trade, points, "price-solves", "solves", &TradeRow::solves,
-                                      "linear solves, all branches",
-                                      "Error against linear solves"));
+    group.figures.push_back(
+        precision(*trade, points,
+                  {"price-solves", "solves", &TradeRow::solves, "linear solves, all branches",
+                   "Error against linear solves"}));
     if (times) {
         section.words["times"] = {{"rounds", trade->rounds}, {"noise", percent(trade->noise)}};
         group.figures.push_back(
-            precision(*trade, points, "price-time", "time ratio", &TradeRow::time_ratio,
-                      "time, as a ratio to the full solution", "Error against time"));
+            precision(*trade, points,
+                      {"price-time", "time ratio", &TradeRow::time_ratio,
+                       "time, as a ratio to the full solution", "Error against time"}));
     }
     std::erase_if(group.figures, [](const Figure& f) { return f.series.empty(); });
     group.caption =
