@@ -2,8 +2,25 @@
 
 namespace elastocheck {
 
+Eigen::MatrixXd times_matrix(const Reflections& Q, Eigen::MatrixXd B) {
+    B.applyOnTheLeft(Q);
+    return B;
+}
+Eigen::VectorXd times_vector(const Reflections& Q, Eigen::VectorXd b) {
+    b.applyOnTheLeft(Q);
+    return b;
+}
+Eigen::VectorXd transposed_times_vector(const Reflections& Q, Eigen::VectorXd b) {
+    b.applyOnTheLeft(Q.transpose());
+    return b;
+}
+
 Eigen::MatrixXd matrix_Q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
     return qr.householderQ();
+}
+
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A) {
+    return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(A).pseudoInverse();
 }
 
 }  // namespace elastocheck
@@ -15,6 +32,10 @@ template class ColPivHouseholderQR<MatrixXd>;
 template class CompleteOrthogonalDecomposition<MatrixXd>;
 template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,
                                                                      VectorXd&) const;
+template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl_transposed<false>(
+    const VectorXd&, VectorXd&) const;
+template void PartialPivLU<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+template void ColPivHouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 template class PartialPivLU<MatrixXd>;
 template class JacobiSVD<MatrixXd>;
 template LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);

@@ -10,9 +10,16 @@
 
 namespace elastocheck {
 
-// Q of A P = Q R as a square matrix. (The members of Eigen's Householder sequence are inline, so
-// that no declaration keeps them from being instantiated.)
+// Q of A = Q R, as of qr.householderQ(). (The members of Eigen's Householder sequence are inline, so
+// that no declaration keeps them from being instantiated; so are solutions with an expression on the
+// right, for which callers pass a vector.)
+using Reflections = Eigen::HouseholderSequence<Eigen::MatrixXd, Eigen::VectorXd>;
+Eigen::MatrixXd times_matrix(const Reflections& Q, Eigen::MatrixXd B);             // Q B
+Eigen::VectorXd times_vector(const Reflections& Q, Eigen::VectorXd b);             // Q b
+Eigen::VectorXd transposed_times_vector(const Reflections& Q, Eigen::VectorXd b);  // Qᵀ b
+// As a square matrix.
 Eigen::MatrixXd matrix_Q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 
 }  // namespace elastocheck
 
@@ -23,6 +30,10 @@ extern template class ColPivHouseholderQR<MatrixXd>;
 extern template class CompleteOrthogonalDecomposition<MatrixXd>;
 extern template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,
                                                                             VectorXd&) const;
+extern template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl_transposed<false>(
+    const VectorXd&, VectorXd&) const;
+extern template void PartialPivLU<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+extern template void ColPivHouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 extern template class PartialPivLU<MatrixXd>;
 extern template class JacobiSVD<MatrixXd>;
 extern template LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);

@@ -1,4 +1,5 @@
 #include "reference/certificate/state.hpp"
+#include "models/eigen/dense.hpp"
 
 #include <fmt/format.h>
 
@@ -92,8 +93,7 @@ StateAt state_at(const System& system, const Equilibrium& state) {
         const MatrixXd C = columns_at(system, joint, mapped.z, state.load);
         const auto rows = rows_of_joint(system, joint);
         MatrixXd P(C.cols(), 6);
-        if (C.cols() > 0 && C.allFinite())
-            P = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(C).pseudoInverse();
+        if (C.cols() > 0 && C.allFinite()) P = pseudo_inverse(C);
         const Wrench& wrench = state.reactions[static_cast<std::size_t>(joint)];
         Vector6 w;
         w << wrench.force, wrench.moment / system.length;

@@ -90,7 +90,8 @@ TangentSolution solve_tangent(const StateTangent& tangent, const VectorXd& b_SI,
     const double size = largest(b) + largest(left - b);
     const auto correct = [&] {
         if (tangent.Z.cols() == 0) return;
-        t -= tangent.Z * tangent.W.solve(tangent.Z.transpose() * left);
+        const VectorXd along = tangent.Z.transpose() * left;
+        t -= tangent.Z * VectorXd(tangent.W.solve(along));
         left = b + tangent.K * t;
     };
     correct();
@@ -108,7 +109,7 @@ TangentSolution solve_tangent(const StateTangent& tangent, const VectorXd& b_SI,
 VectorXd multiplier_rates(const StateTangent& tangent, const TangentSolution& solution) {
     if (tangent.lambda.size() == 0 || solution.left.size() == 0)
         return VectorXd::Zero(tangent.lambda.size());
-    const VectorXd dlambda = tangent.state.at.qr.solve(-solution.left);
+    const VectorXd minus_left = -solution.left, dlambda = tangent.state.at.qr.solve(minus_left);
     return tangent.scales.energy() * tangent.D.cwiseProduct(dlambda);
 }
 

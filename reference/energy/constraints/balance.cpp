@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 #include "reference/energy/potential/rotation.hpp"
 
@@ -42,19 +43,18 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     qr.setThreshold(rank_threshold);
     qr.compute(result.J_t);
     const int rank = static_cast<int>(qr.rank());
-    result.lambda = qr.solve(-g);
+    const VectorXd minus_g = -g;
+    result.lambda = qr.solve(minus_g);
     result.left = g + result.J_t * result.lambda;
-    result.along = MatrixXd::Identity(n, n).rightCols(n - rank);
-    result.along.applyOnTheLeft(qr.householderQ());
+    result.along = times_matrix(qr.householderQ(), MatrixXd::Identity(n, n).rightCols(n - rank));
     for (int i = 0; i < rank; ++i) result.independent.push_back(qr.colsPermutation().indices()[i]);
     return result;
 }
 
 MatrixXd row_space(const Balance& conditions) {
-    MatrixXd basis =
+    const MatrixXd first =
         MatrixXd::Identity(conditions.along.rows(), std::ssize(conditions.independent));
-    if (basis.cols() > 0) basis.applyOnTheLeft(conditions.qr.householderQ());
-    return basis;
+    return first.cols() > 0 ? times_matrix(conditions.qr.householderQ(), first) : first;
 }
 
 VectorXd shortest(const Balance& conditions, const VectorXd& Phi) {

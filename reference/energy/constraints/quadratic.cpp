@@ -1,4 +1,5 @@
 #include "reference/energy/constraints/quadratic.hpp"
+#include "models/eigen/dense.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -29,7 +30,7 @@ VectorXd any_direction(Eigen::Index n, Eigen::Index which) {
 
 MatrixXd orthonormal(const MatrixXd& X) {
     const Eigen::HouseholderQR<MatrixXd> qr(X);
-    return qr.householderQ() * MatrixXd::Identity(X.rows(), X.cols());
+    return times_matrix(qr.householderQ(), MatrixXd::Identity(X.rows(), X.cols()));
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ Quadratic::Least Quadratic::least(const VectorXd& b, const VectorXd& Phi,
     double last = std::numeric_limits<double>::infinity();
     for (int i = 0; i < refinements; ++i) {
         take_out(r);
-        VectorXd dx = factor_.solve(r + rho_ * (J_.transpose() * c));
+        VectorXd dx = factor_.solve(VectorXd(r + rho_ * (J_.transpose() * c)));
         take_out(dx);
         const double size = largest(dx);
         if (!(size < last)) break;  // rounding, or a motion that nothing resists
@@ -75,7 +76,8 @@ Quadratic::Least Quadratic::least(const VectorXd& b, const VectorXd& Phi,
 // With eigenvectors X of S the motions are not exactly along the constraints, which a mode without
 // stiffness would feel: X ← X - S⁻¹ ρ JᵀJ X moves them there at the least cost of energy.
 MatrixXd Quadratic::along(MatrixXd X) const {
-    for (int i = 0; i < closings; ++i) X -= factor_.solve(rho_ * (J_.transpose() * (J_ * X)));
+    for (int i = 0; i < closings; ++i)
+        X -= factor_.solve(MatrixXd(rho_ * (J_.transpose() * (J_ * X))));
     return orthonormal(X);
 }
 

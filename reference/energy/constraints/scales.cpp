@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 #include "reference/energy/constraints/constraints.hpp"
 #include "reference/energy/constraints/quadratic.hpp"
@@ -82,16 +83,17 @@ double dense_drive_size(const Model& model, const Prescribed& prescribed, const 
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
     qr.setThreshold(rank_threshold);
     qr.compute(J_t);
-    const VectorXd p = qr.transpose().solve(-D.cwiseProduct(values.Phi));
-    MatrixXd Z = MatrixXd::Identity(K.rows(), K.rows()).rightCols(K.rows() - qr.rank());
-    Z.applyOnTheLeft(qr.householderQ());
+    const VectorXd closing = -D.cwiseProduct(values.Phi), p = qr.transpose().solve(closing);
+    const MatrixXd Z = times_matrix(
+        qr.householderQ(), MatrixXd::Identity(K.rows(), K.rows()).rightCols(K.rows() - qr.rank()));
     VectorXd dxi = p;
     if (Z.cols() > 0) {
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> compliance;
         compliance.setThreshold(rank_threshold);
-        const MatrixXd K_Z = K * Z;
-        compliance.compute(Z.transpose() * K_Z);
-        dxi -= Z * compliance.solve(K_Z.transpose() * p);
+        const MatrixXd K_Z = K * Z, reduced = Z.transpose() * K_Z;
+        const VectorXd force = K_Z.transpose() * p;
+        compliance.compute(reduced);
+        dxi -= Z * VectorXd(compliance.solve(force));
     }
     const double way = dxi.norm();
     if (!(way > scales.roundoff)) return 0;

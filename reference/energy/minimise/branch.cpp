@@ -105,7 +105,8 @@ VectorXd newton_increment(const State& state, const std::optional<MatrixXd>& A, 
     const MatrixXd Z = state.modes.Z(Eigen::all, resisting);
     const VectorXd g = Z.transpose() * b;
     if (!A) return -Z * g.cwiseQuotient(state.modes.stiffness(resisting));
-    return -Z * (Z.transpose() * (state.H + *A) * Z).partialPivLu().solve(g);
+    const MatrixXd K = state.H + *A, Z_K = Z.transpose() * K, reduced = Z_K * Z;
+    return -Z * VectorXd(reduced.partialPivLu().solve(g));
 }
 
 bool is_near(const VectorXd& actual, const VectorXd& expected) {

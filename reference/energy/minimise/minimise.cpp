@@ -26,6 +26,7 @@
 // 5. Dependent rows of Φ are withheld from SLSQP, whose least-squares subproblem fails on them.
 //    They stay in the acceptance measure.
 #include "reference/energy/minimise/minimise.hpp"
+#include "models/eigen/dense.hpp"
 
 #include <nlopt.h>
 
@@ -100,9 +101,9 @@ double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorX
     VectorXd left = g;
     if (J_t.cols() > 0) {
         const Eigen::HouseholderQR<MatrixXd> qr(J_t);
-        left.applyOnTheLeft(qr.householderQ().adjoint());
+        left = transposed_times_vector(qr.householderQ(), left);
         left.head(J_t.cols()).setZero();
-        left.applyOnTheLeft(qr.householderQ());
+        left = times_vector(qr.householderQ(), left);
     }
     return excess(left, Phi, p.modes, p.scales, p.tolerance);
 }

@@ -1,4 +1,5 @@
 #include "reference/equilibrium/continuation/stability.hpp"
+#include "models/eigen/dense.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
@@ -67,7 +68,7 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
     MatrixXd Z = MatrixXd::Identity(n, n).rightCols(d);
     if (m > 0) {
         const MatrixXd Phi_q_t = dense.bottomLeftCorner(m, n).transpose();
-        Z.applyOnTheLeft(Eigen::ColPivHouseholderQR<MatrixXd>(Phi_q_t).householderQ());
+        Z = times_matrix(Eigen::ColPivHouseholderQR<MatrixXd>(Phi_q_t).householderQ(), Z);
     }
     const MatrixXd M = -Z.transpose() * (dense.topLeftCorner(n, n) * Z),
                    S = (M + M.transpose()) / 2;

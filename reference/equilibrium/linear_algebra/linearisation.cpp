@@ -1,4 +1,5 @@
 #include "reference/equilibrium/linear_algebra/linearisation.hpp"
+#include "models/eigen/dense.hpp"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -100,8 +101,8 @@ Sparse without_angles(const Sparse& A, const Sparse& columns) {
     for (Index k = 0; k < columns.cols() && all_null; ++k)
         all_null = images.col(k).norm() <= zero_tolerance * columns.col(k).norm();
     if (all_null) return columns;
-    MatrixXd V = Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ() *
-                 MatrixXd::Identity(columns.rows(), columns.cols());
+    MatrixXd V = times_matrix(Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ(),
+                              MatrixXd::Identity(columns.rows(), columns.cols()));
     const Eigen::JacobiSVD<MatrixXd> svd(V.topRows(of_bodies(A)), Eigen::ComputeThinV);
     V *= svd.matrixV();
     std::vector<Index> kept;
