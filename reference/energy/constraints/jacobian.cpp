@@ -91,7 +91,7 @@ LeftOver left_over(const Jacobian& Phi_q, const VectorXd& g) {
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> dense;
         dense.setThreshold(rank_threshold);
         dense.compute(J_t.toDense());
-        const VectorXd lambda = dense.solve(-g);
+        const VectorXd minus_g = -g, lambda = dense.solve(minus_g);
         return {g + J_t * lambda, lambda};
     }
     Eigen::SPQR<Long> qr;
