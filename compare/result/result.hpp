@@ -19,15 +19,27 @@ struct Verdict {
     bool requested = true;               // else only the deviations were asked for
 };
 
-// Curves over columns of a table.
+// What is drawn of columns of a table.
 struct Chart {
+    enum class Kind {
+        curves,
+        points,  // y over x
+        bars,    // y[1] over the interval from x to y[0]
+        ranked   // of words x the values y[0], largest first, with the interval from y[1] to y[2]
+    };
     std::string id{}, title{};
     std::string table{};            // its id
     std::string x{};                // name of the column of the abscissa
     std::vector<std::string> y{};   // of the ordinates, in one unit
     std::vector<std::string> by{};  // a curve for each combination of values of these columns
     bool log_x = false, log_y = false;
+    Kind kind = Kind::curves;
+    std::string only{};           // of rows that begin with a word those with this one; empty: all
+    std::string axis{};           // heading of the values' axis, instead of the column's
+    std::vector<double> marks{};  // limits on that axis; not finite: none
 };
+
+inline constexpr const char* chart_kinds[] = {"curves", "points", "bars", "ranked"};
 
 struct Result {
     std::string analysis{};  // "certify", as the command

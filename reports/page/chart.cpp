@@ -1,5 +1,7 @@
 #include "reports/page/chart.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -22,9 +24,105 @@ std::string heading_of(const compare::Column& column) {
     return with_unit(column.heading.empty() ? column.name : column.heading, column.unit);
 }
 
+bool has_row(const compare::Chart& chart, const std::vector<compare::Cell>& row) {
+    const auto* word = std::get_if<std::string>(&row.front());
+    return chart.only.empty() || word == nullptr || *word == chart.only;
+}
+
+// The rows of the chart in its columns: the abscissa, then the ordinates. A text is NaN.
+std::vector<std::vector<double>> numbers_of(const compare::Chart& chart, const Table& table) {
+    std::vector<std::size_t> places{place_of(table, chart.x)};
+    for (const auto& name : chart.y) places.push_back(place_of(table, name));
+    std::vector<std::vector<double>> rows;
+    for (const auto& row : table.rows) {
+        if (!has_row(chart, row)) continue;
+        auto& numbers = rows.emplace_back();
+        for (const std::size_t place : places) {
+            const auto* value = std::get_if<double>(&row[place]);
+            numbers.push_back(value != nullptr ? *value : NAN);
+        }
+    }
+    return rows;
+}
+
+Figure scatter_of(const compare::Chart& chart, const Table& table) {
+    Figure figure{.description = fmt::format("{} over {}.", chart.y.front(), chart.x),
+                  .x = heading_of(table.columns[place_of(table, chart.x)]),
+                  .y = heading_of(table.columns[place_of(table, chart.y.front())])};
+    Series points{.style = Series::Style::points, .colour = blue};
+    for (const auto& row : numbers_of(chart, table))
+        if (std::isfinite(row[0]) && std::isfinite(row[1])) points.rows.push_back(row);
+    figure.series.push_back(std::move(points));
+    return figure;
+}
+
+Figure bars_of(const compare::Chart& chart, const Table& table) {
+    Figure figure{.description = fmt::format("{} of {}.", chart.title, chart.only),
+                  .x = chart.axis,
+                  .y = chart.y.back(),
+                  .y_low = 0};
+    Series bars{.style = Series::Style::bars, .colour = blue},
+        limits{.title = "limit", .style = Series::Style::dashed, .colour = vermilion};
+    double highest = 0;
+    for (const auto& row : numbers_of(chart, table)) {
+        bars.rows.push_back({(row[0] + row[1]) / 2, row[2], row[0], row[1], 0, row[2]});
+        highest = std::max(highest, row[2]);
+    }
+    for (const double mark : chart.marks)
+        if (std::isfinite(mark))
+            limits.rows.insert(limits.rows.end(), {{mark, 0}, {mark, highest}, {}});
+    figure.series.push_back(std::move(bars));
+    if (!limits.rows.empty()) figure.series.push_back(std::move(limits));
+    return figure;
+}
+
+Figure ranking_of(const compare::Chart& chart, const Table& table) {
+    constexpr std::size_t most = 8;
+    struct Ranked {
+        std::string name;
+        std::vector<double> values;
+    };
+    std::vector<Ranked> all;
+    const auto numbers = numbers_of(chart, table);
+    for (const auto& row : table.rows)
+        if (has_row(chart, row))
+            all.push_back(
+                {std::get<std::string>(row[place_of(table, chart.x)]), numbers[all.size()]});
+    std::ranges::stable_sort(
+        all, [](const Ranked& a, const Ranked& b) { return a.values[1] > b.values[1]; });
+    all.resize(std::min(all.size(), most));
+    Figure figure{.description = fmt::format("{} of {}:", chart.axis, chart.only), .x = chart.axis};
+    Series bars{.style = Series::Style::bars, .colour = blue},
+        intervals{.title = "interval of 95 %"};
+    for (const auto& [name, values] : all) {
+        const double value = values[1], place = -1. - static_cast<double>(figure.y_ticks.size());
+        figure.description += fmt::format("{} {} {:.2g}", place < -1 ? ";" : "", name, value);
+        figure.y_ticks.emplace_back(place, name);
+        bars.rows.push_back(
+            {value / 2, place, std::min(value, 0.), std::max(value, 0.), place - 0.3, place + 0.3});
+        if (values.size() > 2)
+            intervals.rows.insert(intervals.rows.end(),
+                                  {{values[2], place}, {values[3], place}, {}});
+    }
+    figure.description += ".";
+    figure.y_low = -0.6 - static_cast<double>(all.size()), figure.y_high = -0.4;
+    figure.height = 0.45 + 0.08 * static_cast<double>(all.size());
+    figure.series.push_back(std::move(bars));
+    if (!intervals.rows.empty()) figure.series.push_back(std::move(intervals));
+    return figure;
+}
+
 }  // namespace
 
 Figure figure_of(const compare::Chart& chart, const Table& table, const std::string& y) {
+    using enum compare::Chart::Kind;
+    if (chart.kind != curves) {
+        Figure figure = chart.kind == points ? scatter_of(chart, table)
+                        : chart.kind == bars ? bars_of(chart, table)
+                                             : ranking_of(chart, table);
+        figure.id = chart.id, figure.title = chart.title;
+        return figure;
+    }
     const std::size_t x = place_of(table, chart.x);
     Figure figure{.id = chart.id,
                   .title = chart.title,

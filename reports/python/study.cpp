@@ -1,4 +1,5 @@
-// What the study in Python takes from the program: its reader of YAML, its pages, its files.
+// What the study in Python takes from the program: its reader of YAML, its results, its files.
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <nlohmann/json.hpp>
@@ -8,18 +9,19 @@
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/provenance.hpp"
-#include "reports/files/templates.hpp"
-#include "reports/page/plot.hpp"
-#include "reports/page/svg.hpp"
+#include "reports/page/result_page.hpp"
 #include "reports/python/analyses.hpp"
+#include "reports/render/render.hpp"
 
 namespace elastocheck::python {
 
 namespace py = pybind11;
 using json = nlohmann::ordered_json;
+using compare::Cell;
+using compare::Chart;
+using compare::Table;
 using reader::Cursor;
-using reports::Figure;
-using reports::Series;
+using Columns = std::vector<std::tuple<std::string, std::string, std::string>>;
 
 namespace {
 
@@ -35,36 +37,52 @@ struct Field {
     Field with(const Cursor& other) const { return {whole, other}; }
 };
 
-std::string svg_of(const json& from, const std::string& id) {
-    using enum Series::Style;
-    static const std::map<std::string, Series::Style> styles{
-        {"bars", bars}, {"dashed", dashed}, {"line", line}, {"points", points}};
-    Figure figure{.title = from.at("title"),
-                  .description = from.at("description"),
-                  .x = from.at("x"),
-                  .y = from.value("y", "")};
-    figure.y_low = from.value("y_low", figure.y_low);
-    figure.y_high = from.value("y_high", figure.y_high);
-    figure.height = from.value("height", 1.);
-    for (const json& tick : from.value("y_ticks", json::array()))
-        figure.y_ticks.emplace_back(tick.at(0), tick.at(1));
-    for (const json& one : from.at("series"))
-        figure.series.push_back({.title = one.value("title", ""),
-                                 .style = styles.at(one.at("style")),
-                                 .colour = one.value("colour", reports::ink),
-                                 .rows = one.at("rows")});
-    return illustrate(draw(figure), id, figure.title, figure.description).inlined;
+// Columns: name, heading, digits.
+Table table_of(const std::string& id, const std::string& caption, const Columns& columns,
+               std::vector<std::vector<Cell>> rows) {
+    using enum compare::Digits;
+    static const std::map<std::string, compare::Digits> digits{
+        {"hidden", hidden}, {"words", words}, {"whole", whole},     {"given", given},
+        {"size", size},     {"three", three}, {"percent", percent},
+    };
+    Table table{.rows = std::move(rows), .id = id, .caption = caption};
+    for (const auto& [name, heading, shown] : columns)
+        table.columns.push_back({.name = name,
+                                 .words = shown == "words",
+                                 .digits = digits.at(shown),
+                                 .heading = heading});
+    return table;
 }
 
-// The page of a study (page/templates/html/study.mustache) from its JSON, with plots as data.
-std::string study_page(const std::string& text) {
-    json data = json::parse(text);
-    std::size_t drawn = 0;
-    for (json& figure : data.at("figures"))
-        for (json& plot : figure.at("plots"))
-            plot["svg"] = svg_of(plot, "f" + std::to_string(++drawn));
-    data["tints"] = reports::tints();
-    return reports::render("html/study", data, reports::Escape::html);
+Chart chart_of(const std::string& kind, const std::string& title, const std::string& table,
+               const std::string& only, const std::string& axis, const std::string& x,
+               std::vector<std::string> y, std::vector<double> marks) {
+    const auto of = std::ranges::find(compare::chart_kinds, kind);
+    return {.title = title,
+            .table = table,
+            .x = x,
+            .y = std::move(y),
+            .kind = static_cast<Chart::Kind>(of - compare::chart_kinds),
+            .only = only,
+            .axis = axis,
+            .marks = std::move(marks)};
+}
+
+compare::Result findings_of(bool fine, const std::string& sentence,
+                            std::vector<std::string> reasons, int compared,
+                            std::vector<Table> tables, std::vector<Chart> charts,
+                            std::vector<std::string> notes) {
+    int number = 0;
+    for (Chart& chart : charts) chart.id = fmt::format("f{}", ++number);
+    return {.analysis = "study",
+            .verdict = {.grade = fine ? compare::Grade::pass : compare::Grade::not_judged,
+                        .sentence = sentence,
+                        .reasons = std::move(reasons),
+                        .compared = compared,
+                        .requested = compared > 0},
+            .tables = std::move(tables),
+            .charts = std::move(charts),
+            .notes = std::move(notes)};
 }
 
 }  // namespace
@@ -114,7 +132,22 @@ void bind_study(py::module_& module) {
         [](const std::string& wrong, const std::vector<std::string>& right,
            const std::string& label) { return reader::did_you_mean(wrong, right, label.c_str()); },
         py::arg("wrong"), py::arg("right"), py::arg("label"));
-    module.def("study_page", &study_page, py::arg("data"));
+    py::class_<Table>(module, "Table")
+        .def(py::init(&table_of), py::arg("id"), py::arg("caption"), py::arg("columns"),
+             py::arg("rows"));
+    py::class_<Chart>(module, "Chart")
+        .def(py::init(&chart_of), py::arg("kind"), py::arg("title"), py::arg("table"),
+             py::arg("only"), py::arg("axis"), py::arg("x"), py::arg("y"),
+             py::arg("marks") = std::vector<double>());
+    py::class_<compare::Result>(module, "Findings")
+        .def(py::init(&findings_of), py::arg("fine"), py::arg("sentence"), py::arg("reasons"),
+             py::arg("compared"), py::arg("tables"), py::arg("charts"), py::arg("notes"))
+        .def_property_readonly("text",
+                               [](const compare::Result& found) { return reports::text(found); })
+        .def_property_readonly("document",
+                               [](const compare::Result& r) { return reports::json_of(r).dump(); })
+        .def("page", &reports::result_page, py::arg("title"), py::arg("words"),
+             py::arg("reproduce"), py::arg("made"));
     module.def(
         "check_may_write",
         [](const std::string& file, const std::string& kind, const std::string& beginning) {

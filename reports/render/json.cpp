@@ -27,7 +27,7 @@ json json_of(const compare::Result& result) {
         tables[id] = table_json(whole);
         if (!whole.notes.empty()) tables[id]["notes"] = whole.notes;
     }
-    for (const auto& chart : result.charts)
+    for (const auto& chart : result.charts) {
         charts.push_back({{"id", chart.id},
                           {"title", chart.title},
                           {"table", chart.table},
@@ -36,6 +36,12 @@ json json_of(const compare::Result& result) {
                           {"by", chart.by},
                           {"log_x", chart.log_x},
                           {"log_y", chart.log_y}});
+        if (chart.kind != compare::Chart::Kind::curves)
+            charts.back().update({{"kind", compare::chart_kinds[static_cast<int>(chart.kind)]},
+                                  {"only", chart.only},
+                                  {"axis", chart.axis},
+                                  {"marks", chart.marks}});
+    }
     return {{"analysis", result.analysis},
             {"verdict",
              {{"grade", verdict.requested || verdict.grade == compare::Grade::not_judged

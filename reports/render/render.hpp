@@ -46,7 +46,8 @@ std::string markdown(const compare::Table& table, std::size_t longest);
 std::string text(const compare::Result& result);
 
 // {"analysis", "verdict": {"grade", "sentence", "reasons", "compared"}, "about", "tables": {id: table},
-// "charts": [{"id", "title", "table", "x", "y", "by", "log_x", "log_y"}], "notes"}
+// "charts": [{"id", "title", "table", "x", "y", "by", "log_x", "log_y"}], "notes"}; a chart of another kind than curves
+// also has "kind", "only", "axis", "marks".
 nlohmann::ordered_json json_of(const compare::Result& result);
 
 // For a terminal: a line of headings and the rows, each column as wide as needed, words

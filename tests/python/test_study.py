@@ -84,8 +84,12 @@ def command(*arguments, **how):
                           check=False, **how)
 
 
-def figure(report, name=0):
-    return report.tables["figures"][name]
+def rows(report, table):
+    return report.frame(table).to_dict("records")
+
+
+def figure(report):
+    return rows(report, "figures")[0]
 
 
 # ---- Bad input, each before the first variant, with file and line.
@@ -197,11 +201,11 @@ def test_a_variant_is_a_function_of_its_number_alone(kind, indices):
 
 
 def test_sobol_points_and_a_latin_hypercube_fill_every_stratum():
-    points = drawn("sobol", [("uniform", (0, 1))] * 40, 256)[1].points(0, 256)
+    points = drawn("sobol", [("uniform", (0, 1))] * 40, 256)[1].points(np.arange(256))
     for a in range(9):  # a net: every elementary interval of the first two dimensions has one point
         cells = {(int(x * 2**a), int(y * 2**(8 - a))) for x, y in points[:, :2]}
         assert len(cells) == 256
-    cube = drawn("latin_hypercube", [("uniform", (0, 1))] * 3, 97)[1].points(0, 97)
+    cube = drawn("latin_hypercube", [("uniform", (0, 1))] * 3, 97)[1].points(np.arange(97))
     assert all(len(set((97 * column).astype(int))) == 97 for column in cube.T)
     assert all(len(set((256 * column).astype(int))) == 256 for column in points.T)
 
@@ -275,7 +279,7 @@ def test_the_variance_of_a_linear_suspension_is_found(here):
     assert row["95 % low"] < 420 + 1.6448536 * sd < row["95 % high"] and row["95 %"] == pytest.approx(420 + 1.6448536 * sd, abs=0.01 * sd)
     above = 0.5 * math.erfc(0.8 / sd / math.sqrt(2))
     assert row["outside from"] < above < row["outside to"] and row["outside"] == pytest.approx(above, abs=0.004)
-    assert report.tables["witnesses"][0]["witnesses"] == 4 and report.tables["witnesses"][0]["difference"] < 1e-9
+    assert rows(report, "witnesses")[0]["witnesses"] == 4 and rows(report, "witnesses")[0]["difference"] < 1e-9
 
 
 def test_the_variance_of_correlated_numbers_is_found(here):
@@ -286,7 +290,7 @@ def test_the_variance_of_correlated_numbers_is_found(here):
 
 def test_the_shares_of_a_linear_suspension_are_found(here):
     report = run(LINEAR.replace("seed: 3", "seed: 3, indices: true"))
-    for row, share in zip(report.tables["sobol"], [400 / 1300, 900 / 1300]):
+    for row, share in zip(rows(report, "sobol"), [400 / 1300, 900 / 1300]):
         for order in ("first", "total"):
             assert row[f"{order} from"] < share < row[f"{order} to"] and row[order] == pytest.approx(share, abs=0.02)
     frame = report.frame().iloc[:, 3:5].to_numpy().reshape(-1, 4, 2)
@@ -298,12 +302,12 @@ def test_rare_failures_of_a_linear_suspension_are_found(here):
     """Normal numbers and a linear figure: the reliability index is exact."""
     sd = math.hypot(20, 30) / 75
     report = run(LINEAR.replace("max: 420.8", f"max: {420 + 4.5 * sd}, min: {420 - 3 * sd}"), count=256, rare=True)
-    for row, beta in zip(report.tables["rare"], [3, 4.5]):
+    for row, beta in zip(rows(report, "rare"), [3, 4.5]):
         exact = 0.5 * math.erfc(beta / math.sqrt(2))
         assert row["beta"] == pytest.approx(beta, abs=1e-4) and row["FORM"] == pytest.approx(exact, rel=1e-3)
         assert row["sampled from"] < 1.02 * exact and row["sampled to"] > 0.98 * exact and row["sampled to"] < 1.3 * exact
     assert report.text.count("Rare failures") == 1
-    assert run(count=256, rare=True, threads=2, folder="again").tables["rare"] == report.tables["rare"]
+    assert rows(run(count=256, rare=True, threads=2, folder="again"), "rare") == rows(report, "rare")
 
 
 # ---- Variants that fail are rows.
@@ -313,7 +317,7 @@ def test_a_variant_without_a_scene_is_a_row_with_its_reason(here):
                  "design: {kind: sobol, count: 64, seed: 1}\nfigures: {height: centre_z@up:3000}\nwitness: 1\n")
     failed = report.outcomes["no scene"]
     assert 10 < failed < 22 and report.outcomes["solved"] == 64 - failed and figure(report)["missing"] == failed
-    assert len(report.frame()) == 64 and "parallel_springs.yaml:" in report.tables["failed"][0]["reason"]
+    assert len(report.frame()) == 64 and "parallel_springs.yaml:" in rows(report, "failed")[0]["reason"]
     write("springs.first.rate\n-1\n", "list.csv")
     assert run(LIST.replace(", springs.second.rate: {}", ""), folder="none").exit_code == 3
 
@@ -385,8 +389,8 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_content(here):
     whole = run(LINEAR, folder="whole", count=100_000 // 8).content
     moments, part, killed = random.Random(1), 0, 0
     for turn in range(21):  # twenty times by kill -9, once by Ctrl-C
-        process = subprocess.Popen([sys.executable, "-m", "elastocheck.study", "study.yaml", "-o", "out", "--count", str(100_000 // 8), "--jobs",
-                                    str(1 + turn % 2)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen([os.environ["ELASTOCHECK"], "study", "study.yaml", "-o", "out", "--count", str(100_000 // 8), "--jobs",
+                                    str(1 + turn % 2)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         before = os.path.exists("out/ledger.sqlite") and os.path.getsize("out/ledger.sqlite")
         for _ in range(12_000):  # two minutes, of a loaded machine
             if process.poll() is not None or os.path.exists("out/ledger.sqlite") and os.path.getsize("out/ledger.sqlite") > before + 8192:
@@ -394,7 +398,9 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_content(here):
             time.sleep(0.01)
         time.sleep(moments.uniform(0, 0.1))
         process.send_signal(signal.SIGKILL if turn < 20 else signal.SIGINT)
-        killed += process.wait() != 0
+        said = process.communicate()[1]
+        killed += process.returncode != 0
+        assert "Traceback" not in said and process.returncode in (0, -signal.SIGKILL, 130), said
         part += 0 < sqlite3.connect("out/ledger.sqlite").execute("SELECT count(*) FROM variants").fetchone()[0] < 100_000 // 8
     assert killed > 1 and part > 0, "never killed in the middle"
     assert run(count=100_000 // 8).content == whole
@@ -577,6 +583,11 @@ def test_the_command_has_exit_codes_json_and_names_what_is_missing(here, tmp_pat
                           (["-o", "x", "--show", "--merge", "out"], "elastocheck: --show computes nothing")]:
         said = command(*options)
         assert said.returncode == 2 and says in said.stderr and not os.path.exists("x")
+    # What is not complete is not judged: it is printed, with 3.
+    write(LINEAR.replace("witness: 1024", "witness: 100"), "study.yaml")
+    assert command("-o", "part", "--shard", "1/2", "--count", "600").returncode == 0
+    said = command("-o", "part", "--merge", "part", "--count", "600")
+    assert said.returncode == 3 and "inconclusive: 256 variants are missing\n344 of 600 variants: 344 solved.\n" in said.stdout
     # Where neither the program's folder nor Python has the package.
     shutil.copy(os.environ["ELASTOCHECK"], tmp_path / "elastocheck")
     alone = subprocess.run([tmp_path / "elastocheck", "study", "study.yaml", "-o", "y"], capture_output=True, text=True, check=False,

@@ -5,23 +5,23 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "reports/command/program/command.hpp"
 #include "reports/files/files.hpp"
-#include "reports/files/subprocess.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* program = R"(import sys
+constexpr const char* program = R"(import json, sys
 try:
     from elastocheck.study.__main__ import main
 except ImportError as error:
     print(f"elastocheck: study: {error}; `./dev study` builds and installs what it needs", file=sys.stderr)
     sys.exit(2)
-sys.exit(main())
+sys.exit(main(**json.loads(sys.argv[1])))
 )";
 
 // The folder with the package, of the build tree or of an installed program; empty where Python has
@@ -37,25 +37,25 @@ std::string package_folder() {
     return {};
 }
 
-// Becomes the Python program, which reads the options of this command line again.
-int study(const std::string& line, const Running& running) {
+// Becomes the Python program, with the options of elastocheck.study.run().
+int study(const nlohmann::json& options) {
     const std::string python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
     if (std::string path = package_folder(); !path.empty()) {
         if (const char* const before = std::getenv("PYTHONPATH"); before != nullptr)
             path += ":" + std::string(before);
         ::setenv("PYTHONPATH", path.c_str(), 1);
     }
-    std::vector<std::string> words = words_of(line);  // elastocheck study ...
-    words.front() = "-c", words[1] = program;
-    words.insert(words.begin(), python);
-    words.insert(words.end(), {"--reproduce", line, "--jobs", std::to_string(running.jobs)});
-    if (running.quiet) words.emplace_back("--quiet");
-    std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
-    pointers.push_back(nullptr);
-    ::execvp(pointers.front(), pointers.data());
+    ::execlp(python.c_str(), python.c_str(), "-c", program, options.dump().c_str(), nullptr);
     throw FileError("study: there is no python3; `./dev study` installs it");
 }
+
+struct Study {
+    std::string file, folder, shard, scheduler, csv, hdf5;
+    std::vector<std::string> merge;
+    int count = 0;
+    bool show = false, rare = false, as_json = false;
+    Running running;
+};
 
 }  // namespace
 
@@ -64,41 +64,57 @@ const Command study_command{
     "Many variants of a scene, each with a row in a ledger, and the statistics of their "
     "figures; the same command goes on where it was interrupted",
     [](CLI::App& command) -> Run {
-        const auto running = std::make_shared<Running>();
-        as_file(command.add_option("STUDY", "file with variables, design and figures"))->required();
+        const auto s = std::make_shared<Study>();
+        as_file(command.add_option("STUDY", s->file, "file with variables, design and figures"))
+            ->required();
         as_folder(command.add_option(
-                      "-o,--output",
+                      "-o,--output", s->folder,
                       "folder of the ledger (ledger.sqlite), statistics.json and study.html"))
             ->required();
         command
-            .add_option("--count",
+            .add_option("--count", s->count,
                         "number of variants, instead of that in the file; more than before "
                         "extends the study")
             ->check(CLI::Range(1, 1'000'000'000));
         command
-            .add_option("--shard",
+            .add_option("--shard", s->shard,
                         "compute part K of N, into ledger-K-of-N.sqlite: a job of an array, as "
                         "models/studies/study.sbatch submits it to Slurm")
             ->type_name("K/N");
         as_folder(
-            command.add_option("--merge",
+            command.add_option("--merge", s->merge,
                                "add the rows of all shards in these folders, and compute nothing"))
             ->expected(1, -1);
         command
-            .add_option("--scheduler",
+            .add_option("--scheduler", s->scheduler,
                         "compute on the workers of a dask cluster (`./dev study` installs "
                         "python3-distributed)")
             ->type_name("tcp://HOST:8786");
-        command.add_flag("--show")->description(
-            "compute nothing, write nothing: show what there is");
-        command.add_flag("--rare")->description(
+        command.add_flag("--show", s->show, "compute nothing, write nothing: show what there is");
+        command.add_flag(
+            "--rare", s->rare,
             "probabilities that figures leave their limits, by FORM and importance sampling");
-        as_file(command.add_option("--csv", "write variables and figures of all variants as CSV"));
-        as_file(command.add_option("--hdf5", "write the same as HDF5"));
-        command.add_flag("--json")->description(
-            "print the document, and nothing else, to standard output");
-        add_running(command, *running);
-        return [running](const std::string& line) { return study(line, *running); };
+        as_file(command.add_option("--csv", s->csv,
+                                   "write variables and figures of all variants as CSV"));
+        as_file(command.add_option("--hdf5", s->hdf5, "write the same as HDF5"));
+        add_json(command, s->as_json);
+        add_running(command, s->running);
+        return [s](const std::string& line) {
+            return study({{"file", s->file},
+                          {"folder", s->folder},
+                          {"count", s->count},
+                          {"threads", s->running.jobs},
+                          {"scheduler", s->scheduler},
+                          {"shard", s->shard},
+                          {"merge", s->merge},
+                          {"show", s->show},
+                          {"rare", s->rare},
+                          {"csv", s->csv},
+                          {"hdf5", s->hdf5},
+                          {"quiet", s->running.quiet},
+                          {"as_json", s->as_json},
+                          {"reproduce", line}});
+        };
     }};
 
 }  // namespace elastocheck::reports

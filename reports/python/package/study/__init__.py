@@ -13,9 +13,13 @@ import time
 
 import numpy as np
 
+from elastocheck import _core, read
 from elastocheck._errors import ArgumentError, FileError
+from elastocheck.study import output, statistics
+from elastocheck.study.design import Design
 from elastocheck.study.file import Study, scene_hash
-from elastocheck.study.ledger import OUTCOMES, Ledger, locked
+from elastocheck.study.ledger import Ledger, locked, naming
+from elastocheck.study.output import Report
 
 BATCH = 256  # variants that are solved and recorded together; the unit that shards divide
 
@@ -34,7 +38,6 @@ def _solved(solver, ks, numbers, witnesses):
 @functools.lru_cache(maxsize=1)
 def _prepared(file, name, identity, paths, words):
     """The solver of a study in a worker of a cluster; it stays there for the next batch."""
-    from elastocheck import _core, read
     scene = read(file, name=name)
     if (scene_hash(file, scene), _core.build) != identity:
         raise FileError(f"{file}: the scene, or the version of the program, is another one on this worker")
@@ -52,7 +55,10 @@ def _solvers(study, threads, scheduler):
     if not scheduler:
         threads = threads or len(os.sched_getaffinity(0))
         with concurrent.futures.ThreadPoolExecutor(threads) as pool:
-            yield functools.partial(pool.submit, _solved, study.solver), 2 * threads
+            try:
+                yield functools.partial(pool.submit, _solved, study.solver), 2 * threads
+            finally:
+                pool.shutdown(wait=False, cancel_futures=True)
         return
     import distributed
     try:
@@ -73,79 +79,28 @@ def _missing(ledger, count, shard):
     return [ks for ks in batches if len(ks)]
 
 
-def _compute(study, ledger, batches, submit, most, progress):
+def _compute(study, ledger, batches, solvers, progress, say):
     """Solves and records batch after batch; each is one transaction, and its rows do not depend on the others."""
-    from elastocheck.study.design import Design
     design, running, done, begin, total = Design(study), set(), 0, time.monotonic(), sum(map(len, batches))
     waiting = iter(batches)
-    while done < total:
-        for ks in itertools.islice(waiting, most - len(running)):
-            values = design.values(ks[0], ks[-1] + 1)[ks - ks[0]]
-            witnesses = np.flatnonzero(ks % study.witness == 0) if study.witness else []
-            running.add(submit(ks.tolist(), study.numbers(values), witnesses))
-        finished, running = concurrent.futures.wait(running, return_when="FIRST_COMPLETED")
-        for future in finished:
-            ledger.add(*future.result())
-            done += len(future.result()[0])
-        if progress:
-            progress(f"{done} of {total} variants, {done / (time.monotonic() - begin):.0f} per second", done / total)
-
-
-class Report:
-    """What a study reports: `text` as on the terminal, `document` as in statistics.json, frame() with all rows.
-
-    `exit_code` 0: every variant has a row; 3: some have none, none is solved, or witnesses disagree: then it is false.
-    """
-
-    def __init__(self, study, ledger, reproduce="", rare=(), open_variants=0):
-        from elastocheck.study import output
-        from elastocheck.study.statistics import figure_row, sobol_rows, witness_row
-        self.study, self.ledger, self.reproduce, count = study, ledger, reproduce, study.count
-        per_outcome = {name: (rows, other) for name, rows, other in ledger.rows(
-            "SELECT outcome, count(*), sum(method != 'series') FROM variants WHERE k < ? GROUP BY outcome", count)}
-        self.outcomes = {name: per_outcome.get(name, (0, 0))[0] for name in OUTCOMES}
-        self.rows, others = sum(self.outcomes.values()), sum(other for _, other in per_outcome.values())
-        parts = [f"{rows} {name}" for name, rows in self.outcomes.items() if rows]
-        parts += [f"{others} of all by the equilibrium leg, where series declines"] if others else []
-        self.answer = f"{self.rows} of {count} variants: {', '.join(parts)}"
-        self.tables = {"variables": [{"variable": v.name, "unit": v.unit, "design": v.nominal, "distribution": str(v),
-                                      "scales": len(v.scaled)} for v in study.variables],
-                       "figures": [], "sobol": [], "witnesses": [], "rare": list(rare)}
-        self.disagreements = []
-        nominal = study.numbers(np.array([[v.nominal for v in study.variables]]))
-        for j, (figure, design) in enumerate(zip(study.figures, study.solver.solve(nominal, "series", 1)[0][0])):
-            values = ledger.values(j, count)
-            row = figure_row(study, figure, values, design)
-            self.tables["figures"].append(row)
-            self.tables["sobol"] += sobol_rows(study, figure, values)
-            if study.witness:
-                found, wrong = witness_row(study, row, *(of[::study.witness] for of in (values, ledger.values(j, count, "witnesses"))))
-                self.tables["witnesses"].append(found)
-                self.disagreements += wrong
-        self.tables["failed"] = [{"variant": row[0], "outcome": row[1], "reason": row[3]} for row in ledger.rows(
-            "SELECT * FROM variants WHERE outcome != 'solved' AND k < ? ORDER BY k LIMIT 10", count)]
-        self.content = ledger.content_hash(count)
-        self.exit_code = 0 if self.outcomes["solved"] and not open_variants and not self.disagreements else 3
-        self.text, self.document = output.text(self), output.document(self)
-
-    @property
-    def verdict(self):
-        return "fine" if self else "could not judge"
-
-    def __bool__(self):
-        return self.exit_code == 0
-
-    def __repr__(self):
-        return self.text
-
-    def frame(self):
-        """A pandas.DataFrame with a row for each variant: its number, outcome, reason, variables, figures."""
-        from elastocheck.study.output import frames
-        return next(frames(self, at_once=self.study.count))
+    with solvers as (submit, most):
+        while done < total:
+            for ks in itertools.islice(waiting, most - len(running)):
+                values = design.values(ks[0], ks[-1] + 1)[ks - ks[0]]
+                witnesses = np.flatnonzero(ks % study.witness == 0) if study.witness else []
+                running.add(submit(ks.tolist(), study.numbers(values), witnesses))
+            finished, running = concurrent.futures.wait(running, return_when="FIRST_COMPLETED")
+            for future in finished:
+                ledger.add(*future.result())
+                done += len(future.result()[0])
+            speed = f"{done / (time.monotonic() - begin):.0f} per second"
+            if progress:
+                progress(f"{done} of {total} variants, {speed}", done / total)
+    say(f"{total} variants computed in {time.monotonic() - begin:.1f} s, {speed}")
 
 
 def _shard(words):
-    match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", words) if words else re.fullmatch("(1)/(1)", "1/1")
+    match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", words or "1/1")
     if not match or not 1 <= int(match[1]) <= int(match[2]):
         raise ArgumentError(f"--shard '{words}': allowed: K/N, such as 2/8, K from 1 to N")
     return int(match[1]), int(match[2])
@@ -161,7 +116,6 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
     importance sampling for every limit. `progress(what, done)`; `say` is told what the command prints to standard
     error. Returns a Report. Throws SceneError, SheetError, FileError, ArgumentError.
     """
-    from elastocheck.study import output, statistics
     part, folder = _shard(shard), os.fspath(folder)
     if show and (merge or shard):
         raise ArgumentError("--show computes nothing: not with --merge or --shard")
@@ -171,11 +125,15 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
     if rare and not all(v.continuous for v in study.variables):
         raise ArgumentError("--rare needs continuous distributions")
     name = os.path.join(folder, "ledger-{}-of-{}.sqlite".format(*part) if shard else "ledger.sqlite")
+    exports = [(kind, os.fspath(to)) for kind, to in [("csv", csv), ("hdf5", hdf5)] if to and not shard]
+    for kind, to in exports:
+        _core.check_may_write(to, *output.KINDS[kind])
+        os.makedirs(os.path.dirname(to) or ".", exist_ok=True)
     if not show:
         os.makedirs(folder, exist_ok=True)
         for kind in ("statistics.json", "study.html") if not shard else ():
-            output._core.check_may_write(os.path.join(folder, kind), *output.KINDS[kind])
-    with locked(name) if not show else contextlib.nullcontext():
+            _core.check_may_write(os.path.join(folder, kind), *output.KINDS[kind])
+    with naming(name), locked(name) if not show else contextlib.nullcontext():
         ledger = Ledger(name, study, write=not show, same_version=not show)
         for table, k in ledger.damaged:
             say(f"{name}: row {k} of {table}: its content is not that of its checksum; it is computed again")
@@ -187,11 +145,7 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
                 ledger.merge(Ledger(other, study, write=False))
         left = _missing(ledger, study.count, part)
         if left and not show and not merge:
-            begin, computed = time.monotonic(), sum(map(len, left))
-            with _solvers(study, threads, scheduler) as (submit, most):
-                _compute(study, ledger, left, submit, most, progress)
-            seconds = time.monotonic() - begin
-            say(f"{computed} variants computed in {seconds:.1f} s, {computed / seconds:.0f} per second")
+            _compute(study, ledger, left, _solvers(study, threads, scheduler), progress, say)
             left = _missing(ledger, study.count, part)
         if left:
             ranges = [f"{len(ks)} of {ks[0] - ks[0] % BATCH} to {min(ks[0] - ks[0] % BATCH + BATCH, study.count) - 1}" for ks in left[:10]]
@@ -199,14 +153,11 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
         if shard:
             say(f"Shard {shard}: {int(ledger.present(study.count).sum())} variants in {name}")
             return None
-        report = Report(study, ledger, reproduce, statistics.rare_rows(study, threads) if rare else (), len(left))
-        for kind, to in [("csv", csv), ("hdf5", hdf5)]:
-            if to:
-                output.write_rows(report, os.fspath(to), kind)
-                say(f"Written: {to}")
+        report = Report(study, ledger, reproduce, statistics.rare_rows(study, threads) if rare else (), sum(map(len, left)))
+        for kind, to in exports:
+            output.write_rows(report, to, kind)
+            say(f"Written: {to}")
         if not show:
-            output.write(report, folder)
+            report.write(folder)
             say("Written: " + ", ".join(os.path.join(folder, kind) for kind in ("statistics.json", "study.html")))
-        for sentence in report.disagreements:
-            say(sentence)
         return report

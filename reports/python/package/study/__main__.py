@@ -1,49 +1,44 @@
 """`elastocheck study`: exit codes 0, 2 for bad input, 3 where not all could be judged, 4 for a bug."""
-import argparse
-import shlex
+import json
 import sys
+import traceback
 import warnings
+
+
+def _say(words):
+    print(words, file=sys.stderr)
 
 
 def _progress(what, done):
     print(f"\r{what}\033[K", end="" if done < 1 else "\r\033[K", file=sys.stderr, flush=True)
 
 
-def main():
-    parser = argparse.ArgumentParser("elastocheck.study", description="Many variants of a scene; elastocheck study --help")
-    parser.add_argument("file", metavar="STUDY")
-    for option in ("--shard", "--scheduler", "--csv", "--hdf5", "--reproduce"):
-        parser.add_argument(option)
-    parser.add_argument("-o", "--output", required=True)
-    parser.add_argument("--count", type=int)
-    parser.add_argument("-j", "--jobs", type=int, default=0)
-    parser.add_argument("--merge", nargs="*", action="extend", default=[])
-    for option in ("--show", "--rare", "--quiet", "--json"):
-        parser.add_argument(option, action="store_true")
-    given = parser.parse_args()
-
-    def say(words):
-        print(words, file=sys.stderr)
-
+def main(quiet=False, as_json=False, **options):
+    """Options as those of elastocheck.study.run()."""
+    warnings.showwarning = lambda message, *_: _say(f"{message} (warning)")
     try:
         from elastocheck import Error, study
-        from elastocheck.study import output
-        warnings.showwarning = lambda message, *_: say(f"{message} (warning)")
-        report = study.run(
-            given.file, given.output, given.count, threads=given.jobs, scheduler=given.scheduler, shard=given.shard,
-            merge=given.merge, show=given.show, rare=given.rare, csv=given.csv, hdf5=given.hdf5,
-            reproduce=given.reproduce or shlex.join(["elastocheck", "study", *sys.argv[1:]]), say=say,
-            progress=_progress if sys.stderr.isatty() and not given.quiet else None)
+        report = study.run(**options, say=_say, progress=_progress if sys.stderr.isatty() and not quiet else None)
     except ImportError as error:
-        say(f"elastocheck: study: {error}; `./dev study` installs what it needs")
+        _say(f"elastocheck: study: {error}; `./dev study` installs what it needs")
         return 2
-    except (Error, OSError) as error:
-        say(f"elastocheck: {error}")
+    except Error as error:
+        _say(f"elastocheck: {error}")
         return 2
-    if report:
-        print(output.to_json(report.document) if given.json else report.text, end="")
-    return report.exit_code if report else 0
+    except OSError as error:
+        _say(f"elastocheck: {error.filename}: {error.strerror}" if error.filename else f"elastocheck: {error}")
+        return 2
+    except KeyboardInterrupt:
+        _say("\nelastocheck: interrupted; the same command goes on")
+        return 130
+    except Exception:  # a bug
+        traceback.print_exc()
+        return 4
+    if report is None:  # of a shard
+        return 0
+    print(report.printed if as_json else report.text, end="")
+    return report.exit_code
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(**json.loads(sys.argv[1])))

@@ -2,63 +2,46 @@
 import warnings
 
 import numpy as np
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
 
-_BITS = 53
-
-
-def _marginal(variable):
-    from scipy import stats
-    return {"normal": stats.norm,
-            "uniform": lambda low, high: stats.uniform(low, high - low),
-            "triangular": lambda low, mode, high: stats.triang((mode - low) / (high - low), low, high - low),
-            "truncated_normal": lambda mean, sd, low, high: stats.truncnorm((low - mean) / sd, (high - mean) / sd, mean, sd),
-            }[variable.kind](*variable.numbers)
+_LEAST, _MOST = 2.0**-54, 1 - 2.0**-53  # of the open unit interval
 
 
 class Design:
     """Variant k, from 0, is a function of the study and k alone."""
 
     def __init__(self, study):
-        from scipy.stats import qmc
         self.study = study
         self.dimension = len(study.variables) * (2 if study.indices else 1)
         if study.kind == "latin_hypercube":
             self.cube = qmc.LatinHypercube(self.dimension, seed=study.seed).random(study.count)
         elif study.kind == "sobol":
             # Scrambled by Owen's method with random linear matrices, which the seed fixes.
-            self.sobol = qmc.Sobol(self.dimension, scramble=True, bits=_BITS, seed=study.seed)
-        self.marginals = [(j, _marginal(v)) for j, v in enumerate(study.variables) if v.continuous]
+            self.sobol = qmc.Sobol(self.dimension, scramble=True, bits=53, seed=study.seed)
         self.factor = None if study.correlation is None else np.linalg.cholesky(study.correlation)
 
     def values(self, first, end):
         """Of the variants from `first` to before `end` [variants x variables], in the units of the scene file."""
-        from scipy.special import ndtr, ndtri
-        study, first, end = self.study, int(first), int(end)
+        study, k = self.study, np.arange(first, end)
         if study.kind == "list":
             return study.table[first:end]
         if study.kind == "grid":
-            at = np.unravel_index(np.arange(first, end), [len(v.numbers) for v in study.variables])
+            at = np.unravel_index(k, [len(v.numbers) for v in study.variables])
             return np.column_stack([np.array(v.numbers)[i] for v, i in zip(study.variables, at)])
-        x = u = self.points(first, end)
+        u = x = self.points(k)
         if self.factor is not None:  # a normal copula
-            x = np.clip(ndtr(ndtri(u) @ self.factor.T), 2.0 ** -(_BITS + 1), 1 - 2.0 ** -_BITS)
-        for j, marginal in self.marginals:
-            x[:, j] = marginal.ppf(x[:, j])
-        for j, v in enumerate(study.variables):
-            if not v.continuous:
-                x[:, j] = np.array(v.numbers)[(u[:, j] * len(v.numbers)).astype(int)]
-        return x
+            x = np.clip(ndtr(ndtri(u) @ self.factor.T), _LEAST, _MOST)
+        return np.column_stack([v.distribution().ppf(x[:, j]) if v.continuous
+                                else np.array(v.numbers)[(u[:, j] * len(v.numbers)).astype(int)]
+                                for j, v in enumerate(study.variables)])
 
-    def points(self, first, end):
-        """Points of the unit cube, before the distributions."""
-        block, d = self.study.block, len(self.study.variables)
-        base = first // block
-        both = self._bases(base, (end - 1) // block + 1)[np.arange(first, end) // block - base]
-        place = np.arange(first, end) % block  # a, b, a with one from b
-        u = np.where((place == 1)[:, None], both[:, -d:], both[:, :d])
-        exchanged = np.flatnonzero(place > 1)
-        u[exchanged, place[exchanged] - 2] = both[exchanged, d + place[exchanged] - 2]
-        return np.clip(u, 2.0 ** -(_BITS + 1), 1 - 2.0 ** -_BITS)
+    def points(self, k):
+        """Of the unit cube, before the distributions: in each block a, b, then a with one coordinate after the other from b."""
+        block, place = np.divmod(k, self.study.block)
+        both, d = self._bases(int(block[0]), int(block[-1]) + 1)[block - block[0]], len(self.study.variables)
+        from_b = (place == 1)[:, None] | (place[:, None] == np.arange(d) + 2)
+        return np.clip(np.take_along_axis(both, np.arange(d) + np.where(from_b, self.dimension - d, 0), axis=1), _LEAST, _MOST)
 
     def _bases(self, first, end):
         if self.study.kind == "latin_hypercube":

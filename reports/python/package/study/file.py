@@ -1,24 +1,30 @@
 """Reads the file of a study: reports/README.md, "Studies"."""
 import fnmatch
+import functools
 import hashlib
 import math
 import os
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy import stats
 
-from elastocheck import _core
+from elastocheck import _core, read
 from elastocheck._errors import ArgumentError, FileError, SheetError
 
 MOST = 1_000_000_000  # variants
-# Of a distribution: the fields besides low and high, and how it is described by its numbers.
-DISTRIBUTIONS = {"normal": (["mean", "sd"], "normal, {:g}, sd {:g}"),
-                 "uniform": ([], "uniform, {:g} to {:g}"),
-                 "triangular": (["mode"], "triangular, {0:g} to {2:g}, mode {1:g}"),
-                 "truncated_normal": (["mean", "sd"], "normal, {:g}, sd {:g}, between {:g} and {:g}"),
-                 "list": ([], "list of {count}, {low:g} to {high:g}"),
-                 "": ([], "as listed")}
-DESIGNS = ["grid", "list", "monte_carlo", "latin_hypercube", "sobol"]
+# Of a distribution: the fields besides low and high, how it is described by its numbers, SciPy's.
+DISTRIBUTIONS = {
+    "normal": (["mean", "sd"], "normal, {:g}, sd {:g}", stats.norm),
+    "uniform": ([], "uniform, {:g} to {:g}", lambda low, high: stats.uniform(low, high - low)),
+    "triangular": (["mode"], "triangular, {0:g} to {2:g}, mode {1:g}",
+                   lambda low, mode, high: stats.triang((mode - low) / (high - low), low, high - low)),
+    "truncated_normal": (["mean", "sd"], "normal, {:g}, sd {:g}, between {:g} and {:g}",
+                         lambda mean, sd, low, high: stats.truncnorm((low - mean) / sd, (high - mean) / sd, mean, sd)),
+    "list": ([], "list of {count}, {low:g} to {high:g}", None),
+    "": ([], "as listed", None)}
+DRAWN = ["monte_carlo", "latin_hypercube", "sobol"]
+_SIZED = "not of a grid or a list, which say how many variants there are"
 
 
 @dataclass
@@ -34,6 +40,9 @@ class Variable:
     @property
     def continuous(self):
         return self.kind not in ("", "list")
+
+    def distribution(self):
+        return DISTRIBUTIONS[self.kind][2](*self.numbers)
 
     @property
     def ends(self):
@@ -86,12 +95,11 @@ def _distribution(kind, at, nominal):
         low, high = nominal - _positive(half), nominal + _positive(half)
     else:
         low, high = _number(at, "low"), _number(at, "high")
-        if not low < high:
-            at.fail(f"low {low:g} is not below high {high:g}")
+    if not low < high:
+        at.fail(f"low {low:g} is not below high {high:g}")
     if kind == "triangular":
-        if not low <= first[0] <= high:
-            at.fail(f"mode {first[0]:g} is not between low {low:g} and high {high:g}")
-        return low, first[0], high
+        return (low, *first, high) if low <= first[0] <= high else at.fail(
+            f"mode {first[0]:g} is not between low {low:g} and high {high:g}")
     if first and not (low < first[0] + 8 * first[1] and high > first[0] - 8 * first[1]):
         at.fail("the ends lie more than eight standard deviations beside the mean")
     return (*first, low, high)
@@ -114,7 +122,6 @@ class Study:
     """
 
     def __init__(self, file, count=None):
-        from elastocheck import read
         self.file = os.fspath(file)
         try:
             with open(self.file, "rb") as text:
@@ -123,37 +130,39 @@ class Study:
             raise FileError(f"{self.file}: {error.strerror}") from error
         whole.only(["elastocheck_study", "scene", "variables", "groups", "design", "figures", "limits", "witness"])
         whole.need("elastocheck_study").whole(1, 1)
-        at = whole.need("scene")
+        at, variables, figures = whole.need("scene"), whole.need("variables"), whole.need("figures")
         self.scene_name = at.text("the file of a scene")
         self.scene_file = os.path.join(os.path.dirname(self.file), self.scene_name)
         if not os.path.isfile(self.scene_file):
             at.fail(f"{self.scene_file}: there is no such file")
         # In reasons of failed variants the scene has the name that it has here, wherever they are computed.
-        self.scene = read(self.scene_file, name=self.scene_name)
-        self.variables, self.varied_by = [], {}
-        for name, at in whole.need("variables").entries():
-            self.variables.append(self._variable(name, at))
+        self.scene, self.varied_by = read(self.scene_file, name=self.scene_name), {}
+        self.variables = [self._variable(name, at) for name, at in variables.entries()]
         if not 1 <= len(self.variables) <= 500:
-            whole.need("variables").fail(f"{len(self.variables)} variables; allowed: 1 to 500, NUMBER: {{normal: {{sd: 0.5}}}}")
+            variables.fail(f"{len(self.variables)} variables; allowed: 1 to 500, NUMBER: {{normal: {{sd: 0.5}}}}")
         self.names = [v.name for v in self.variables]
-        self.correlation = self._correlation(whole.get("groups")) if whole.get("groups") else None
-        self._read_figures(whole.need("figures"), whole.get("limits"))
+        groups, witness = whole.get("groups"), whole.get("witness")
+        self.correlation = self._correlation(groups) if groups else None
+        self._read_figures(figures, whole.get("limits"))
         self._read_design(whole, whole.need("design"), count)
-        self.witness = whole.get("witness").whole(0, MOST) if whole.get("witness") else 0
+        self.witness = witness.whole(0, MOST) if witness else 0
         # What solves the variants, here and on other machines.
         self.paths = [path for v in self.variables for path in (v.scaled or [v.name])]
         self.words = [(figure.name, figure.words) for figure in self.figures]
         try:
             self.solver = _core.Variants(self.scene, self.paths, self.words)
         except ArgumentError as error:
-            whole.need("figures").fail(str(error))
-        self._check_ends(whole.need("variables"))
-        self.identity = self._identity()
+            figures.fail(str(error))
+        self._check_ends(variables)
 
     def numbers(self, values):
         """The numbers of the scene [n x paths] by values of the variables [n x variables]."""
         return np.column_stack([values[:, j] * nominal for j, v in enumerate(self.variables)
                                 for nominal in (v.scaled.values() if v.scaled else [1.0])])
+
+    @property
+    def nominal(self):
+        return np.array([[v.nominal for v in self.variables]])
 
     @property
     def block(self):
@@ -170,18 +179,15 @@ class Study:
         self.varied_by[path] = variable
 
     def _variable(self, name, at):
-        known = self.scene.numbers
-        at.only([*DISTRIBUTIONS, "scale"])
-        variable = Variable(name)
-        if scale := at.get("scale"):
-            for one in scale.items("patterns") if scale.is_list else [scale]:
-                pattern = one.text("a number of the scene or a pattern with *")
-                found = fnmatch.filter(known, pattern)
-                for path in found or one.fail(f"the scene has no number '{pattern}'"
-                                              + _core.did_you_mean(pattern, list(known), "numbers")):
-                    self._claim(one, path, name)
-                    variable.scaled[path] = known[path]
-        else:
+        known, variable, scale = self.scene.numbers, Variable(name), at.get("scale")
+        at.only([*filter(None, DISTRIBUTIONS), "scale"])
+        for one in (scale.items("patterns") if scale.is_list else [scale]) if scale else ():
+            pattern = one.text("a number of the scene or a pattern with *")
+            for path in fnmatch.filter(known, pattern) or one.fail(
+                    f"the scene has no number '{pattern}'" + _core.did_you_mean(pattern, list(known), "numbers")):
+                self._claim(one, path, name)
+                variable.scaled[path] = known[path]
+        if not scale:
             variable.nominal, variable.unit = self.scene.number(name) or at.fail(
                 "the scene has no such number" + _core.did_you_mean(name, list(known), "numbers")
                 + "; a factor of numbers needs `scale: NUMBERS`")
@@ -194,78 +200,72 @@ class Study:
         return variable
 
     def _correlation(self, section):
-        correlation, grouped = np.eye(len(self.variables)), set()
+        correlation, grouped = np.eye(len(self.variables)), []
         for group in section.items("groups"):
             group.only(["variables", "correlation"])
-            names, rows, members = group.need("variables"), group.need("correlation"), []
+            names, rows = group.need("variables"), group.need("correlation")
             for name in names.items("variables"):
-                k = self.names.index(name.one_of("a variable", self.names))
-                if not self.variables[k].continuous:
+                grouped.append(self.names.index(name.one_of("a variable", self.names)))
+                if not self.variables[grouped[-1]].continuous:
                     name.fail("has no continuous distribution, so that it cannot be correlated")
-                if k in grouped:
+                if grouped[-1] in grouped[:-1]:
                     name.fail("is in a group already")
-                grouped.add(k)
-                members.append(k)
-            if len(members) < 2:
+            size = len(names.items("variables"))
+            if size < 2:
                 names.fail("a group needs two variables")
-            cells = [row.items("correlations") for row in rows.items("rows")]
-            if [len(row) for row in cells] != [len(members)] * len(members):
-                rows.fail(f"expected {len(members)} rows of {len(members)} correlations, one for each variable")
-            R = np.array([[cell.number() for cell in row] for row in cells])
+            cells = [[cell.number() for cell in row.items("correlations")] for row in rows.items("rows")]
+            if [len(row) for row in cells] != [size] * size:
+                rows.fail(f"expected {size} rows of {size} correlations, one for each variable")
+            R = np.array(cells)
             if (np.abs(R) > 1).any() or (np.diag(R) != 1).any() or (R != R.T).any():
                 rows.fail("is not symmetric, or has other numbers than -1 to 1, and 1 on the diagonal")
             if not np.linalg.eigvalsh(R)[0] > 1e-12:
                 rows.fail("is not positive definite: these correlations contradict each other, "
                           "or a variable is a function of others")
-            correlation[np.ix_(members, members)] = R
+            correlation[np.ix_(grouped[-size:], grouped[-size:])] = R
         return correlation
 
     def _read_design(self, whole, at, count):
         at.only(["kind", "count", "seed", "indices", "file"])
-        kind, self.seed, self.indices, self.table = at.need("kind"), 0, False, None
-        self.kind = kind.one_of("a design", DESIGNS)
-        if self.kind != "list" and at.get("file"):
-            at.get("file").fail("only of a list")
-        if self.kind in ("grid", "list"):
-            self._read_given(whole, at, kind, count)
+        self.kind = at.need("kind").one_of("a design", ["grid", "list", *DRAWN])
+        for key, kinds, why in [("file", ["list"], "only of a list"), ("count", DRAWN, _SIZED), ("seed", DRAWN, _SIZED),
+                                ("indices", ["monte_carlo", "sobol"], "only of a sobol or monte_carlo design")]:
+            if at.get(key) and self.kind not in kinds:
+                at.get(key).fail(why)
+        self.seed, self.indices, self.table = 0, False, None
+        if self.kind not in DRAWN:
+            size = self._given(whole, at)
+            if count and count > size:
+                at.need("kind").fail(f"{count} variants are requested, and there are {size}")
+            self.count = count or size
             return
         for variable in self.variables:
             if not variable.kind:
                 whole.need("variables").need(variable.name).fail(
                     "no distribution; allowed: normal, uniform, triangular, truncated_normal, list")
-        size = at.need("count").whole(1, MOST)
-        self.count, self.seed = count or size, at.need("seed").whole(0, MOST)
-        if self.kind == "latin_hypercube" and self.count != size:
-            at.need("count").fail("a Latin hypercube cannot be extended: all its variants depend on their number; "
-                                  "allowed: a sobol or monte_carlo design")
+        size, self.seed = at.need("count"), at.need("seed").whole(0, MOST)
+        self.count = count or size.whole(1, MOST)
+        if self.kind == "latin_hypercube" and self.count != size.whole(1, MOST):
+            size.fail("a Latin hypercube cannot be extended: all its variants depend on their number; "
+                      "allowed: a sobol or monte_carlo design")
         self.indices = bool(at.get("indices")) and at.get("indices").one_of("yes or no", ["true", "false"]) == "true"
-        if self.indices and self.kind == "latin_hypercube":
-            at.need("indices").fail("not of a Latin hypercube; allowed: sobol, monte_carlo")
         if self.indices and self.correlation is not None:
             at.need("indices").fail("Sobol indices need independent variables, and there are groups")
         if self.count < self.block:
-            at.need("count").fail(f"{self.count} variants are less than one block of {self.block} for Sobol indices")
+            size.fail(f"{self.count} variants are less than one block of {self.block} for Sobol indices")
 
-    def _read_given(self, whole, at, kind, count):
-        """Of a grid or a list."""
-        for key in ("count", "seed", "indices"):
-            if at.get(key):
-                at.get(key).fail("not of a grid or a list, which say how many variants there are")
+    def _given(self, whole, at):
+        """How many variants a grid or a list has."""
         if self.correlation is not None:
             whole.need("groups").fail("not of a grid or a list, which draw nothing")
         if self.kind == "list":
             self.table = self._read_table(at.need("file"))
-            size = len(self.table)
-        else:
-            for variable in self.variables:
-                if variable.kind != "list":
-                    kind.fail(f"a grid needs a list of values for each variable, and '{variable.name}' has none")
-            size = math.prod(len(v.numbers) for v in self.variables)
-            if size > MOST:
-                kind.fail(f"a grid of more than {MOST} combinations")
-        if count and count > size:
-            kind.fail(f"{count} variants are requested, and there are {size}")
-        self.count = count or size
+            return len(self.table)
+        for variable in self.variables:
+            if variable.kind != "list":
+                at.need("kind").fail(f"a grid needs a list of values for each variable, and '{variable.name}' has none")
+        size = math.prod(len(v.numbers) for v in self.variables)
+        return size if size <= MOST else at.need("kind").fail(f"a grid of more than {MOST} combinations")
 
     def _read_table(self, at):
         """Values by a CSV file, columns by the names of the variables [variants x variables]."""
@@ -294,12 +294,12 @@ class Study:
         self.figures = [Figure(name, at.text("an output, such as toe@jounce:3000")) for name, at in section.entries()]
         if not 1 <= len(self.figures) <= 1000:
             section.fail(f"{len(self.figures)} figures; allowed: 1 to 1000, NAME: toe@jounce:3000")
+        by_name = {figure.name: figure for figure in self.figures}
         for figure in self.figures:
             try:
                 figure.unit = _core.unit_of_figure(self.scene, figure.words)
             except ArgumentError as error:
                 section.need(figure.name).fail(str(error))
-        by_name = {figure.name: figure for figure in self.figures}
         for name, at in limits.entries() if limits else ():
             figure = by_name.get(name) or at.fail(
                 "the study has no such figure" + _core.did_you_mean(name, list(by_name), "figures"))
@@ -314,12 +314,13 @@ class Study:
         """With each variable at its ends, the others as written; tails and combinations are rows."""
         for j, variable in enumerate(self.variables):
             for end in variable.ends:
-                values = np.array([[v.nominal for v in self.variables]])
+                values = self.nominal
                 values[0, j] = end
                 if wrong := self.solver.invalid(self.numbers(values)[0]):
                     section.need(variable.name).fail(f"{end:g} can be drawn, and with it the scene is invalid: {wrong}")
 
-    def _identity(self):
+    @functools.cached_property
+    def identity(self):
         """Of all that a row depends on: not of the number of variants, but of a Latin hypercube's, nor of the limits."""
         from elastocheck.study.design import Design
         parts = [[(v.name, v.kind, v.numbers, list(v.scaled)) for v in self.variables],

@@ -31,19 +31,26 @@ def _is_intact(row):
 
 
 @contextlib.contextmanager
+def naming(file):
+    """Errors of SQLite name the ledger."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise FileError(f"{file}: {error}") from error
+
+
+@contextlib.contextmanager
 def locked(ledger):
     """Excludes other processes that would write the same ledger."""
-    lock = -1
+    # Beside the ledger: SQLite loses its own locks where the file itself is opened once more.
+    lock = os.open(ledger + ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
     try:
-        # Beside the ledger: SQLite loses its own locks where the file itself is opened once more.
-        lock = os.open(ledger + ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield
     except BlockingIOError as error:
         raise FileError(f"{ledger}: another process is computing this study here") from error
     finally:
-        if lock >= 0:
-            os.close(lock)
+        os.close(lock)
 
 
 class Ledger:
@@ -59,60 +66,36 @@ class Ledger:
             raise FileError(f"{file}: is a symbolic link; a ledger is a regular file")
         if not write and not os.path.exists(file):
             raise FileError(f"{file}: no such ledger; nothing has been computed")
-        with self.failing():
-            self.base = sqlite3.connect(file, timeout=10, isolation_level=None)
+        with naming(file):
+            self.base = sqlite3.connect(file, timeout=10)
             # Damaged text is found by its checksum.
             self.base.text_factory = lambda text: text.decode(errors="replace")
             if write and not self.rows("SELECT 1 FROM sqlite_master"):
                 self._create(study)
             self._check_identity(study.identity, same_version)
-            self.damaged = [(table, row[0]) for table in TABLES for row in self.each(table) if not _is_intact(row)]
+            self.damaged = [(table, row[0]) for table in TABLES
+                            for row in self.base.execute(f"SELECT * FROM {table} ORDER BY k") if not _is_intact(row)]
             if self.damaged or self.rows("PRAGMA quick_check(1)") != [("ok",)]:
                 if not write:
                     rows = "; ".join(f"row {k} of {table}: its content is not that of its checksum" for table, k in self.damaged[:3])
                     raise FileError(f"{file}: is damaged: {rows}; the study without --show computes again what is")
-                self._repair()
+                for table in TABLES:  # written anew: in a damaged table rows are not found by their numbers
+                    rows = [row for row in self.base.execute(f"SELECT * FROM {table}") if _is_intact(row)]
+                    with self.base:
+                        self.base.execute(f"DELETE FROM {table}")
+                        self._insert(table, rows)
             if write and study.witness:  # a variant is computed together with its witness
-                self.base.execute("DELETE FROM variants WHERE k % ? = 0 AND k NOT IN (SELECT k FROM witnesses)", (study.witness,))
-
-    def _repair(self):
-        """Writes the intact rows anew: in a damaged table they are not found by their numbers."""
-        for table in TABLES:
-            rows = [row for row in self.base.execute(f"SELECT * FROM {table}") if _is_intact(row)]
-            with self.transaction():
-                self.base.execute(f"DELETE FROM {table}")
-                self._insert(table, rows)
-
-    @contextlib.contextmanager
-    def failing(self):
-        try:
-            yield
-        except sqlite3.Error as error:
-            raise FileError(f"{self.file}: {error}") from error
-
-    @contextlib.contextmanager
-    def transaction(self):
-        with self.failing():
-            self.base.execute("BEGIN IMMEDIATE")
-            try:
-                yield
-                self.base.execute("COMMIT")
-            finally:
-                if self.base.in_transaction:
-                    self.base.execute("ROLLBACK")
+                with self.base:
+                    self.base.execute("DELETE FROM variants WHERE k % ? = 0 AND k NOT IN (SELECT k FROM witnesses)", (study.witness,))
 
     def rows(self, sql, *values):
-        with self.failing():
-            return self.base.execute(sql, values).fetchall()
-
-    def each(self, table, first=0, end=2**62):
-        """The rows of variants from `first` to before `end`, in their order; one at a time."""
-        return self.base.execute(f"SELECT * FROM {table} WHERE k >= ? AND k < ? ORDER BY k", (first, end))
+        return self.base.execute(sql, values).fetchall()
 
     def _create(self, study):
         figures = "".join(f"f{j + 1} REAL, " for j in range(self.figures))
         named = "".join(', f{} AS "{}"'.format(j + 1, f.name.replace('"', '""')) for j, f in enumerate(study.figures))
-        with self.transaction():
+        with self.base:
+            self.base.execute("BEGIN")
             self.base.execute("CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT)")
             self.base.executemany("INSERT INTO meta VALUES (?, ?)", [*study.identity.items(), ("format", FORMAT)])
             for table in TABLES:
@@ -131,24 +114,23 @@ class Ledger:
                 raise FileError(f"{self.file}: is of another {what}: {there.get(key)} there, {identity[key]} here; "
                                 f"another {what} needs another folder")
 
-    def add(self, variants, witnesses):
-        """Rows without checksums, in one transaction."""
-        with self.transaction():
-            self._insert("variants", [(*row, checksum(row)) for row in variants])
-            self._insert("witnesses", [(*row, checksum(row)) for row in witnesses])
+    def add(self, *of_tables):
+        """Rows of variants and of witnesses, without checksums, in one transaction."""
+        with self.base:
+            for table, rows in zip(TABLES, of_tables):
+                self._insert(table, [(*row, checksum(row)) for row in rows])
 
     def _insert(self, table, rows):
         self.base.executemany(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * (self.figures + 5))})", rows)
 
     def merge(self, other):
         """Rows of another ledger of this study that are not here yet; one with other values is an error."""
-        with self.failing():
-            self.base.execute("ATTACH ? AS other", (other.file,))
+        self.base.execute("ATTACH ? AS other", (other.file,))
         for table in TABLES:
             if other_values := self.rows(f"SELECT k FROM other.{table} o JOIN main.{table} m USING (k) "
                                          "WHERE o.checksum != m.checksum LIMIT 1"):
                 raise FileError(f"{other.file}: variant {other_values[0][0]} has other values than in {self.file}")
-        with self.transaction():
+        with self.base:
             for table in TABLES:
                 self.base.execute(f"INSERT OR IGNORE INTO main.{table} SELECT * FROM other.{table}")
         self.base.execute("DETACH other")
@@ -175,5 +157,4 @@ class Ledger:
 
     def _columns(self, sql, types, *values):
         """Of numbers, f0, f1, ... of a structured array."""
-        with self.failing():
-            return np.fromiter(self.base.execute(sql, values), np.dtype([(f"f{j}", t) for j, t in enumerate(types.split(","))]))
+        return np.fromiter(self.base.execute(sql, values), np.dtype([(f"f{j}", t) for j, t in enumerate(types.split(","))]))

@@ -5,6 +5,7 @@ Intervals are those of independent draws; designs that fill the space more evenl
 import math
 
 import numpy as np
+from scipy.stats import binom, binomtest
 
 LEVEL = 0.95
 PERCENTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
@@ -14,16 +15,12 @@ _AGREE_OF_SPREAD, _AGREE_OF_SIZE = 1e-6, 1e-9  # of witnesses with the variants 
 
 def clopper_pearson(hits, count):
     """Interval of a share of which `hits` of `count` independent draws were seen."""
-    from scipy.stats import beta
-    tail = (1 - LEVEL) / 2
-    return (beta.ppf(tail, hits, count - hits + 1) if hits else 0.0,
-            beta.ppf(1 - tail, hits + 1, count - hits) if hits < count else 1.0)
+    return tuple(binomtest(hits, count).proportion_ci(LEVEL, "exact"))
 
 
 def percentile_ranks(count, share):
     """Positions from 0 of the ordered values between which the percentile of the distribution lies with this
     confidence at least; -1 and `count` where there are too few draws for a lower or an upper bound."""
-    from scipy.stats import binom
     # With B draws below the percentile, the value of rank r (from 1) is above it where B < r.
     low, high = binom.interval(LEVEL, count, share)
     return int(low) - 1, int(high)
@@ -38,18 +35,16 @@ def figure_row(study, figure, values, design):
     """Of one figure: `values` in the order of the variants from 0, nan where there is none; `design` of the scene."""
     drawn = independent(study, values)
     x = np.sort(drawn[np.isfinite(drawn)])
-    n = len(x)
-    row = {"figure": figure.name, "unit": figure.unit, "read as": figure.words, "design": design}
-    about = x[n // 2] if n else math.nan  # so that no digits cancel
-    sd = np.std(x - about, ddof=1) if n > 1 else math.nan
-    row |= {"mean": about + np.mean(x - about) if n else math.nan, "+-": 1.959963984540054 * sd / math.sqrt(max(n, 1)), "sd": sd,
-            "least": x[0] if n else math.nan, "largest": x[-1] if n else math.nan}
-    for share in PERCENTILES:
+    n, outside = len(x), int(np.sum((x < figure.low) | (x > figure.high)))
+    row = dict.fromkeys(["figure", "unit", "read as", "design", "mean", "+-", "sd", "least", "largest"], math.nan)
+    row |= {"figure": figure.name, "unit": figure.unit, "read as": figure.words, "design": design}
+    if n:
+        sd = np.std(x, ddof=1) if n > 1 else math.nan
+        row |= {"mean": np.mean(x), "+-": 1.959963984540054 * sd / math.sqrt(n), "sd": sd, "least": x[0], "largest": x[-1]}
+    ends = np.concatenate([x, [math.nan]])  # a bound beyond the draws is none
+    for share, value in zip(PERCENTILES, np.quantile(x, PERCENTILES, method="inverted_cdf") if n else [math.nan] * 5):
         low, high = percentile_ranks(n, share) if n else (-1, 0)
-        row |= {f"{100 * share:g} %": x[max(math.ceil(share * n) - 1, 0)] if n else math.nan,
-                f"{100 * share:g} % low": x[low] if low >= 0 else math.nan,
-                f"{100 * share:g} % high": x[high] if high < n else math.nan}
-    outside = int(np.sum((x < figure.low) | (x > figure.high)))
+        row |= {f"{100 * share:g} %": value, f"{100 * share:g} % low": ends[low], f"{100 * share:g} % high": ends[high]}
     low, high = clopper_pearson(outside, n) if n and figure.limited else (math.nan, math.nan)
     return row | {"values": n, "missing": int(np.isnan(drawn).sum()), "undefined": int(np.isinf(drawn).sum()),
                   "min": figure.low, "max": figure.high, "outside": outside / n if n and figure.limited else math.nan,
@@ -105,36 +100,33 @@ def rare_rows(study, threads=0, samples=4096):
     rows = []
     for j, figure in enumerate(study.figures):
         def values(x, j=j):
-            return study.solver.solve(study.numbers(np.array(x)), "series", threads)[0][:, j]
+            return study.solver.solve(study.numbers(np.array(x)), "series", threads)[0][:, j:j + 1]
 
         def rates(x, of=values):
-            y = of(np.concatenate([np.array(x) + np.diag(steps), np.array(x) - np.diag(steps)]))
-            return [[rate] for rate in (y[:len(steps)] - y[len(steps):]) / (2 * steps)]
+            return (of(np.array(x) + np.diag(steps)) - of(np.array(x) - np.diag(steps))) / (2 * steps[:, None])
 
-        function = ot.PythonFunction(len(steps), 1, func=lambda x, of=values: [of([x])[0]],
-                                     func_sample=lambda x, of=values: of(x)[:, None], gradient=rates)
+        function = ot.PythonFunction(len(steps), 1, func=lambda x, of=values: of([x])[0], func_sample=values, gradient=rates)
         for limit, beyond, holds in [(figure.low, "below", ot.Less()), (figure.high, "above", ot.Greater())]:
             if not math.isfinite(limit):
                 continue
-            row = {"figure": figure.name, "limit": f"{beyond} {limit:g} {figure.unit}"}
-            rows.append(row)
             event = ot.ThresholdEvent(ot.CompositeRandomVector(function, ot.RandomVector(joint)), holds, limit)
+            row = dict.fromkeys(["figure", "limit", "FORM", "beta", "sampled", "sampled from", "sampled to"], math.nan)
+            rows.append(row | {"figure": figure.name, "limit": f"{beyond} {limit:g} {figure.unit}"})
             try:
                 form = ot.FORM(ot.AbdoRackwitz(), event, joint.getMean())
                 form.run()
-                result = form.getResult()
+                found = form.getResult()
                 ot.RandomGenerator.SetSeed(study.seed)
-                sampling = ot.PostAnalyticalImportanceSampling(result)
+                sampling = ot.PostAnalyticalImportanceSampling(found)
                 sampling.setBlockSize(256)
                 sampling.setMaximumOuterSampling(samples // 256)
                 sampling.setMaximumCoefficientOfVariation(0.01)
                 sampling.run()
                 drawn = sampling.getResult()
                 p, half = drawn.getProbabilityEstimate(), drawn.getConfidenceLength(LEVEL) / 2
-                row |= {"FORM": result.getEventProbability(), "beta": result.getGeneralisedReliabilityIndex(),
-                        "sampled": p, "sampled from": max(p - half, 0.0), "sampled to": p + half,
-                        "design point": ", ".join(f"{x:.6g}" for x in result.getPhysicalSpaceDesignPoint())}
+                rows[-1] |= {"FORM": found.getEventProbability(), "beta": found.getGeneralisedReliabilityIndex(),
+                             "sampled": p, "sampled from": max(p - half, 0.0), "sampled to": p + half,
+                             "design point": ", ".join(f"{x:.6g}" for x in found.getPhysicalSpaceDesignPoint())}
             except (RuntimeError, TypeError) as error:
-                row |= dict.fromkeys(["FORM", "beta", "sampled", "sampled from", "sampled to"], math.nan)
-                row["design point"] = "none: " + str(error).splitlines()[0]
+                rows[-1]["design point"] = "none: " + str(error).splitlines()[0]
     return rows
