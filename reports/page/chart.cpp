@@ -30,7 +30,7 @@ bool has_row(const compare::Chart& chart, const std::vector<compare::Cell>& row)
 }
 
 // The rows of the chart in its columns: the abscissa, then the ordinates. A text is NaN.
-std::vector<std::vector<double>> numbers_of(const compare::Chart& chart, const Table& table) {
+std::vector<std::vector<double>> chart_rows(const compare::Chart& chart, const Table& table) {
     std::vector<std::size_t> places{place_of(table, chart.x)};
     for (const auto& name : chart.y) places.push_back(place_of(table, name));
     std::vector<std::vector<double>> rows;
@@ -50,7 +50,7 @@ Figure scatter_of(const compare::Chart& chart, const Table& table) {
                   .x = heading_of(table.columns[place_of(table, chart.x)]),
                   .y = heading_of(table.columns[place_of(table, chart.y.front())])};
     Series points{.style = Series::Style::points, .colour = blue};
-    for (const auto& row : numbers_of(chart, table))
+    for (const auto& row : chart_rows(chart, table))
         if (std::isfinite(row[0]) && std::isfinite(row[1])) points.rows.push_back(row);
     figure.series.push_back(std::move(points));
     return figure;
@@ -64,7 +64,7 @@ Figure bars_of(const compare::Chart& chart, const Table& table) {
     Series bars{.style = Series::Style::bars, .colour = blue},
         limits{.title = "limit", .style = Series::Style::dashed, .colour = vermilion};
     double highest = 0;
-    for (const auto& row : numbers_of(chart, table)) {
+    for (const auto& row : chart_rows(chart, table)) {
         bars.rows.push_back({(row[0] + row[1]) / 2, row[2], row[0], row[1], 0, row[2]});
         highest = std::max(highest, row[2]);
     }
@@ -83,7 +83,7 @@ Figure ranking_of(const compare::Chart& chart, const Table& table) {
         std::vector<double> values;
     };
     std::vector<Ranked> all;
-    const auto numbers = numbers_of(chart, table);
+    const auto numbers = chart_rows(chart, table);
     for (const auto& row : table.rows)
         if (has_row(chart, row))
             all.push_back(
