@@ -34,7 +34,9 @@ struct Elements {
 
 using compare::LargestForceRow;
 
-double size_of(const LargestForceRow* row) { return row == nullptr ? 0 : std::abs(row->value); }
+double size_of_force(const LargestForceRow* row) {
+    return row == nullptr ? 0 : std::abs(row->value);
+}
 
 // The largest force and the largest moment of an element; null where it has none.
 struct Largest {
@@ -53,10 +55,10 @@ std::vector<Largest> largest_of(const std::vector<LargestForceRow>& forces,
         auto known = std::ranges::find(largest, name, &Largest::element);
         if (known == largest.end()) known = largest.insert(largest.end(), Largest{name});
         auto& row = r.unit == "N" ? known->force : known->moment;
-        if (size_of(&r) > size_of(row)) row = &r;
+        if (size_of_force(&r) > size_of_force(row)) row = &r;
     }
     std::ranges::stable_sort(largest, std::ranges::greater{},
-                             [&](const Largest& l) { return size_of(l.force); });
+                             [&](const Largest& l) { return size_of_force(l.force); });
     return largest;
 }
 
