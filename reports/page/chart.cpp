@@ -59,8 +59,8 @@ Figure scatter_of(const compare::Chart& chart, const Table& table) {
 Figure bars_of(const compare::Chart& chart, const Table& table) {
     Figure figure{.description = fmt::format("{} of {}.", chart.title, chart.only),
                   .x = chart.axis,
-                  .y = chart.y.back(),
-                  .y_low = 0};
+                  .y = chart.y.back()};
+    figure.y_low = 0;
     Series bars{.style = Series::Style::bars, .colour = blue},
         limits{.title = "limit", .style = Series::Style::dashed, .colour = vermilion};
     double highest = 0;
