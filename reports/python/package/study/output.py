@@ -117,7 +117,7 @@ class Report(Result):
                 rank = (varied.corrwith(sample[heading(figure)].where(np.isfinite)) ** 2).fillna(0)
                 rows["correlations"] += [{"figure": figure.name, "variable": name, "squared": x} for name, x in rank.items()]
                 charts.append(_core.Chart("ranked", "Squared correlation", "correlations", figure.name,
-                                          "squared correlation with the variable", "variable", ["squared"]))
+                                          "squared correlation", "variable", ["squared"]))
             for name in sorted(names, key=lambda name, rank=rank: -rank[name])[:3]:
                 charts.append(_core.Chart("points", "Over " + name, "sample", figure.name, "",
                                           sample.columns[names.index(name)], [heading(figure)]))
