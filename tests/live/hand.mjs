@@ -60,6 +60,23 @@ const tests = {
     check(branches === 1 && await run('state.now.branches.length') === 7, `${branches} branches during a drag`);
     await click('reset');
   },
+  // What is written is laid out and painted, while the worker solves.
+  async aMoveWritesWhatItMoves() {
+    await viewFrom('Front');
+    const [x, y] = await handleOf('tie_rod_inner');
+    await press(x, y);
+    await to(x, y - 3);
+    await run(`{ window.live.draws.length = 0; window.touched = new Set();
+      window.watcher = new MutationObserver(list => list.forEach(m => touched.add(m.target.dataset.name ?? m.attributeName)));
+      watcher.observe(document.getElementById('handles'), {attributes: true, subtree: true});
+      watcher.observe(document.body, {attributes: true, attributeFilter: ['data-status']}); }`);
+    for (let k = 4; k < 9; ++k) await to(x, y - k);
+    const [written, slowest] = await run('watcher.disconnect(), [[...touched], Math.max(...window.live.draws.map(d => d.all))]');
+    const expected = written.filter(name => name !== 'data-status' || slowest < .2);
+    check(String(expected) === 'tie_rod_inner', `a move writes ${written}, the slowest ${slowest} s`);
+    await letGo(x, y - 8);
+    await click('reset');
+  },
   async arrowsOfWhatTheTrimHolds() {
     await set('effect', 'toe', 'change');
     await browser.until(`!document.getElementById('effects').hidden`, 'an answer to the arrows');

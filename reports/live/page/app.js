@@ -1,5 +1,5 @@
 // ---- The page: what is drawn when, its tools, and its start
-import {$, make, shown, trouble, write} from './base.js';
+import {$, make, shown, trouble, write, writeAttributes} from './base.js';
 import {
   begin, openScene, settle, showBranch, showStation, state, stationOf, stepBack
 } from './state.js';
@@ -47,7 +47,7 @@ const drawMotion = () => {
   slider.value = k;
   write($('motion-name'), branch.name);
   write($('motion-at'), `${shown(state.now.a(branch, k))} ${branch.unit}`);
-  slider.setAttribute('aria-valuetext', $('motion-at').textContent);
+  writeAttributes(slider, {'aria-valuetext': $('motion-at').textContent});
 };
 export const moveTo = (branchName, a) => {
   if (state.branch !== '' || branchName === stationOf(state.now)[0].name)

@@ -63,9 +63,14 @@ export const pageUnit = unit => {
   return !parts.every(Boolean) || parts.length > 2 ? [unit, 1]
     : [parts.map(p => p[0]).join('/'), parts[0][1] / (parts[1]?.[1] ?? 1)];
 };
-// Text is written only where it differs: the browser lays out anew what is written.
+// Text and attributes are written only where they differ: the browser lays out and paints anew
+// what is written.
 export const write = (element, text) => {
   if (element.textContent !== text) element.textContent = text;
+};
+export const writeAttributes = (element, attributes) => {
+  for (const [name, value] of Object.entries(attributes))
+    if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 };
 // Words beside the pointer.
 export const readAt = ({clientX, clientY}, words) => {

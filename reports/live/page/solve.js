@@ -1,6 +1,6 @@
 // ---- Solving: the newest numbers of the shown branch at once; the other branches, the scene as
 // opened, effects and proofs when nothing is moved.
-import {$, write} from './base.js';
+import {$, write, writeAttributes} from './base.js';
 import {Run, keyOf} from './run.js';
 import {
   demandSolve, isSolved, keptRuns, reference, showFailure,
@@ -36,11 +36,12 @@ export const solveInto = async (run, solver, only) => {
 const has = (run, only) => only === '' ? run.branches.length === state.info.branches.length
   : run.branch(only) !== undefined;
 
+// The worker begins before the page draws what is moved.
 export const changed = () => {
   demandSolve();
+  pump();
   if (!isSolved()) dropProofs();
   drawChange();
-  pump();
 };
 // A hidden page gets no frames.
 const nextFrame = () =>
@@ -48,10 +49,7 @@ const nextFrame = () =>
 export const pump = async () => {
   if (state.busy) return;
   state.busy = true;
-  while (state.due) {
-    await solveNewest();
-    await nextFrame();
-  }
+  while (state.due) await solveNewest();
   state.busy = false;
   rest();
 };
@@ -65,7 +63,8 @@ const solveNewest = async (again = true) => {
   showWaiting();
   try {
     const old = run === base || has(base, branch) ? null : solveInto(base, solvers.back, branch);
-    if (!has(run, branch)) await solveInto(run, solvers.front, branch);
+    // The page is painted while the worker solves, or now.
+    await (has(run, branch) ? nextFrame() : solveInto(run, solvers.front, branch));
     await old;
     if (info !== state.info) return;
     showRun(run);
@@ -84,7 +83,10 @@ const solveNewest = async (again = true) => {
     }
     showFailure(error);
     draw();
-  } finally { clearTimeout(waiting); drawStatus(); }
+  } finally {
+    endWaiting();
+    drawStatus();
+  }
 };
 
 // ---- At rest: nothing is moved and nothing is to be solved for it
@@ -147,18 +149,27 @@ export const statusOf = () => {
   const {now, failure} = state, old = now ? `; what is shown is solve ${now.id}` : '';
   if (failure) return ['failed', `not solved: ${failure.message.split('\n')[0]}${old}`];
   if (!now) return ['solving', state.info ? 'solving…' : 'starting the solver…'];
-  if (isSolved()) return ['solved', solvedWords(now)];
-  return ['solving', `solving…${old}`];
+  return isSolved() || !late ? ['solved', solvedWords(now)] : ['solving', `solving…${old}`];
 };
-let waiting = 0;
+// A solve is waited for after a moment, so that a drag neither flickers nor paints the page twice
+// for each move; later it can be cancelled.
+let late = false, waiting = [];
 const showWaiting = () => {
-  clearTimeout(waiting);
-  waiting = setTimeout(() => { $('cancel').hidden = false; }, 1000);
+  endWaiting();
+  waiting = [
+    setTimeout(() => { late = true; drawStatus(); }, 250),
+    setTimeout(() => { $('cancel').hidden = false; }, 1000)
+  ];
+};
+const endWaiting = () => {
+  waiting.forEach(clearTimeout);
+  late &&= state.due;
 };
 export const drawStatus = () => {
   const [kind, text] = statusOf();
-  if (document.body.dataset.status !== kind) document.body.dataset.status = kind;
-  write($('state'), $('state').title = text);
+  writeAttributes(document.body, {'data-status': kind});
+  write($('state'), text);
+  writeAttributes($('state'), {title: text});
   if (!state.busy) $('cancel').hidden = true;
 };
 $('cancel').onclick = () => solvers.front.restart('cancelled', 'cancelled');

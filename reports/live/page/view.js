@@ -1,6 +1,6 @@
 // ---- The drawing: orthographic, of the shown station, with the suspension as opened in pale
 // lines
-import {$, make, minus, show, shown, sketch} from './base.js';
+import {$, make, minus, show, shown, sketch, writeAttributes} from './base.js';
 import {isChanged, reference, stationInReference, stationOf, state} from './state.js';
 import {coordinatesOf, findImages, isMoved, movable} from './points.js';
 import {guides} from './guides.js';
@@ -106,13 +106,12 @@ export const drawHandles = axes => {
   for (const [name, handle] of handles) {
     const place = placeOf(name), [x, y] = flat(place, axes),
           [label] = handle.querySelector('text').childNodes;
-    handle.setAttribute('transform', `translate(${px(x)} ${px(y)})`);
-    handle.setAttribute(
-        'class',
-        'handle' + (state.point === name ? ' chosen' : '') + (isMoved(name) ? ' moved' : '') +
-            (state.group.includes(name) ? ' grouped' : ''));
-    handle.setAttribute(
-        'aria-label', `${name}: ${place.map(v => minus(v.toFixed(1))).join(', ')} mm`);
+    writeAttributes(handle, {
+      transform: `translate(${px(x)} ${px(y)})`,
+      class: 'handle' + (state.point === name ? ' chosen' : '') +
+          (isMoved(name) ? ' moved' : '') + (state.group.includes(name) ? ' grouped' : ''),
+      'aria-label': `${name}: ${place.map(v => minus(v.toFixed(1))).join(', ')} mm`
+    });
     const text = name + movedWords(name);
     if (label.data !== text) label.data = text;
     if (handle.parentNode !== layer) layer.append(handle);
@@ -143,7 +142,7 @@ const drawArrows = axes => {
 export const draw3d = () => {
   const svg = $('drawing'), {now} = state;
   if (!now) return;
-  svg.setAttribute('viewBox', `0 0 ${view.wide} ${view.high}`);
+  writeAttributes(svg, {viewBox: `0 0 ${view.wide} ${view.high}`});
   svg.dataset.solve = now.id;
   const axes = axesOf(), [branch, k] = stationOf(now), layers = [];
   if (isChanged() && branch) {
@@ -158,7 +157,7 @@ export const draw3d = () => {
   $('scenery').innerHTML = layers.join('');
   drawHandles(axes);
   for (const button of $('views').children)
-    button.setAttribute('aria-pressed', String(button.textContent === view.name));
+    writeAttributes(button, {'aria-pressed': String(button.textContent === view.name)});
 };
 export const makeHandles = () => {
   handles.clear();
