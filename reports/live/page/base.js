@@ -42,7 +42,6 @@ const change = (parent, before, after) => {
     node = next;
   }
 };
-export const minus = text => String(text).replaceAll('-', '−');
 // Four significant digits.
 export const shown = value => Number.isNaN(value) ? '–' :
     !Number.isFinite(value)                       ? 'undefined' :
@@ -71,16 +70,6 @@ export const write = (element, text) => {
 export const writeAttributes = (element, attributes) => {
   for (const [name, value] of Object.entries(attributes))
     if (element.getAttribute(name) !== value) element.setAttribute(name, value);
-};
-// Words beside the pointer.
-export const readAt = ({clientX, clientY}, words) => {
-  const box = $('readout');
-  box.hidden = !words;
-  if (!words) return;
-  box.textContent = words;
-  const {clientWidth: wide} = document.documentElement;
-  box.style.left = `${Math.max(4, Math.min(clientX + 14, wide - box.offsetWidth - 8))}px`;
-  box.style.top = `${clientY + 16}px`;
 };
 // A message over the page, which moves nothing.
 export const trouble = text => {

@@ -1,5 +1,5 @@
 // ---- Curves: one chart for each chosen output of the shown branch, or of every branch
-import {$, make, readAt, show, shown, sketch} from './base.js';
+import {$, make, show, shown, sketch} from './base.js';
 import {
   isChanged, reference, referenceName, shownBranches, state, stationIn
 } from './state.js';
@@ -304,7 +304,7 @@ const nearest = (curve, a) => curve.reduce(
 const readOut = event => {
   const there = pointed(event), line = $('cursor');
   line.hidden = !there?.series[0].curve.length;
-  if (line.hidden) { readAt(event, ''); return; }
+  if (line.hidden) { readAt($('readout'), event, ''); return; }
   const {box, at, y0} = there, size = box.width / W;
   const {series, channel, now} = there, [a] = nearest(series[0].curve, there.a);
   const [b] = nearest(series[0].before, a),
@@ -312,7 +312,7 @@ const readOut = event => {
   line.style.left = `${box.left + size * at([a, y0])[0]}px`;
   line.style.top = `${box.top + size * headroom}px`;
   line.style.height = `${size * (H - headroom - footroom)}px`;
-  readAt(event, `${shown(a)} ${now.unit}: ` +
+  readAt($('readout'), event, `${shown(a)} ${now.unit}: ` +
       `${valuesIn(series, s => nearest(s.curve, a)[1])} ${channel.unit}` +
       (same ? `, ${referenceName()} ${valuesIn(series, s => nearest(s.before, a)[1])}` : ''));
 };
@@ -320,7 +320,7 @@ export const makeCharts = () => {
   $('charts').addEventListener('pointermove', readOut);
   $('charts').addEventListener('pointerleave', event => {
     $('cursor').hidden = true;
-    readAt(event, '');
+    readAt($('readout'), event, '');
   });
   addEventListener('scroll', () => { $('cursor').hidden = true; }, {passive: true});
   $('charts').addEventListener('click', event => {

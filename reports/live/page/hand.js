@@ -1,7 +1,7 @@
 // ---- The hand on the drawing: hardpoints are dragged, the background turns (with Shift, or the
 // right button: is shifted), the wheel and two fingers zoom. The page scrolls over the drawing
 // until it is pressed.
-import {$, readAt} from './base.js';
+import {$} from './base.js';
 import {abandon, begin, settle, state} from './state.js';
 import {axesOf, draw3d, drawHandles, linkAt, view, zoomView, panView} from './view.js';
 import {coordinatesOf, groupOf, movePoints, toggleInGroup} from './points.js';
@@ -75,14 +75,13 @@ const press = event => {
 };
 const turn3d = (held, dx, dy) => {
   view.yaw = held.yaw - dx * .4;
-  view.pitch = Math.max(-90, Math.min(90, held.pitch + dy * .4));
+  view.pitch = turned(held.pitch, dy * .4);
   view.name = '';
 };
 const pinch = (event, before) => {
   const other = [...pointers].find(([id]) => id !== event.pointerId)[1],
         to = [event.clientX, event.clientY];
-  const apart = p => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
-  zoomView(apart(to) / apart(before), ...inDrawing(other));
+  zoomView((apart(to, other) || 1) / (apart(before, other) || 1), ...inDrawing(other));
 };
 const moveGroup = (group, by) => {
   movePoints(group.map(([name, from]) => [name, add(from, 1, by)]));
@@ -136,9 +135,9 @@ export const makeHand = () => {
     });
   svg.addEventListener('pointermove', event => {
     const words = event.buttons ? '' : linkAt(...inDrawing([event.clientX, event.clientY]));
-    readAt(event, words);
+    readAt($('readout'), event, words);
   });
-  svg.addEventListener('pointerleave', event => readAt(event, ''));
+  svg.addEventListener('pointerleave', event => readAt($('readout'), event, ''));
   svg.addEventListener('contextmenu', event => event.preventDefault());
   svg.addEventListener('wheel', event => {
     if (!svg.classList.contains('active')) return;

@@ -1,6 +1,6 @@
 // ---- Notes on the shown branches: early ends, stops that close, motions that nothing resists,
 // the state of the proof
-import {$, minus, show, shown, sketch, write} from './base.js';
+import {$, show, shown, sketch, write} from './base.js';
 import {isChanged, reference, referenceName, shownBranches, state} from './state.js';
 import {proofOf, proofWords} from './proof.js';
 

@@ -41,7 +41,6 @@ export const toggleInGroup = name => {
 };
 
 // ---- Links between hardpoints, and lengths that stay
-const apart = (a, b) => Math.hypot(...add(a, -1, b));
 export const linksAt = name => {
   const {links = [], points = []} = state.now?.drawing ?? {}, seen = new Set();
   return links.flatMap(({name: link, points: ends}) => {

@@ -1,7 +1,7 @@
 // ---- Proofs: while nothing is moved, the points of the shown branches are proved one after the
 // other by interval arithmetic (reports/live/proof.hpp). A change of a number ends it; what is
 // proved belongs to one run.
-import {minus, shown, sketch} from './base.js';
+import {shown, sketch} from './base.js';
 import {isSolved, shownBranches, state} from './state.js';
 import {solvers} from './solver.js';
 import {allPoints, requestOf} from './solve.js';

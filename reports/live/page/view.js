@@ -1,16 +1,10 @@
 // ---- The drawing: orthographic, of the shown station, with the suspension as opened in pale
 // lines
-import {$, make, minus, show, shown, sketch, writeAttributes} from './base.js';
+import {$, make, show, shown, sketch, writeAttributes} from './base.js';
 import {isChanged, reference, stationInReference, stationOf, state} from './state.js';
 import {coordinatesOf, findImages, isMoved, movable} from './points.js';
 import {guides} from './guides.js';
 
-export const views = {
-  Oblique: [38, 24],
-  Front: [0, 0],
-  Side: [90, 0],
-  Top: [180, 90]
-};  // about z, above [deg]
 export const view = {
   yaw: 38,
   pitch: 24,
@@ -21,16 +15,12 @@ export const view = {
   high: 460,
   name: 'Oblique'
 };
-export const axesOf = () => {
-  const a = view.yaw * Math.PI / 180, b = view.pitch * Math.PI / 180;
-  return {right: [-Math.sin(a), Math.cos(a), 0],
-    up: [-Math.cos(a) * Math.sin(b), -Math.sin(a) * Math.sin(b), Math.cos(b)],
-    scale: view.zoom * .8 * Math.min(view.wide, view.high) / view.size};
-};
-const flat = (p, {right, up, scale}) => {
-  const d = add(p, -1, view.centre);
-  return [view.wide / 2 + scale * dot(d, right), view.high / 2 - scale * dot(d, up)];
-};
+export const axesOf = () => ({
+  ...sheetOf(view.yaw, view.pitch),
+  scale: view.zoom * .8 * Math.min(view.wide, view.high) / view.size
+});
+const flat = (p, axes) =>
+  add([view.wide / 2, view.high / 2], axes.scale, onSheet(add(p, -1, view.centre), axes));
 // ---- Hardpoints where they are drawn
 // With its body at the shown station.
 const placeOf = name => {
@@ -41,19 +31,16 @@ const placeOf = name => {
   return add(add(design, 1, now.point(branch, k, i)), -1, now.point(branch, branch.start, i));
 };
 // ---- What is in sight
-const tyresOf = (run, branch, k) => run.drawing.wheels.map(
-    (wheel, index) => tyre(
-        run.point(branch, k, wheel.centre), run.point(branch, k, wheel.patch),
-        run.spin(branch, k, index)));
+const tyresIn = (run, branch, k) =>
+  tyresOf(run.drawing, i => run.point(branch, k, i), w => run.spin(branch, k, w));
 export const fitView = run => {
   const branch = run.branches[0], all = [];
   if (!branch || !branch.points) return;
   for (let i = 0; i < run.drawing.points.length; ++i) all.push(run.point(branch, branch.start, i));
-  all.push(...tyresOf(run, branch, branch.start).flat(2));
-  const low = [0, 1, 2].map(k => Math.min(...all.map(p => p[k])));
-  const high = [0, 1, 2].map(k => Math.max(...all.map(p => p[k])));
-  view.centre = low.map((v, k) => (v + high[k]) / 2);
-  view.size = Math.hypot(...low.map((v, k) => high[k] - v)) * .8 || 1;
+  all.push(...tyresIn(run, branch, branch.start).flat(2));
+  const ends = extents(all);
+  view.centre = ends.map(([low, high]) => (low + high) / 2);
+  view.size = Math.hypot(...ends.map(([low, high]) => high - low)) * .8 || 1;
   view.zoom = 1;
 };
 // By pixels of the drawing.
@@ -77,16 +64,7 @@ export const measureView = () => {
 const scenery = (run, branch, k, axes, was) => {
   const at = run.drawing.points.map((_, i) => flat(run.point(branch, k, i), axes));
   return was ? pale(run.drawing, at) : suspension(run.drawing, at,
-    tyresOf(run, branch, k).map(edges => edges.map(edge => edge.map(p => flat(p, axes)))));
-};
-const triad = axes => {
-  const from = [30, view.high - 30];
-  return ['x', 'y', 'z'].map((name, k) => {
-    const to = [from[0] + 22 * axes.right[k], from[1] - 22 * axes.up[k]];
-    if (Math.hypot(to[0] - from[0], to[1] - from[1]) < 4) return '';
-    const place = `x="${px(to[0] + 3)}" y="${px(to[1] - 2)}"`;
-    return `<g class="axes">${line(path([from, to]), 6, 1.2)}<text ${place}>${name}</text></g>`;
-  }).join('');
+    tyresIn(run, branch, k).map(edges => edges.map(edge => edge.map(p => flat(p, axes)))));
 };
 // The movable hardpoints, each an element that keeps its place in the document, so that it keeps
 // the focus.
@@ -153,7 +131,8 @@ export const draw3d = () => {
     layers.push(
         guides(now, branch, k, {flat: p => flat(p, axes), axes, wide: view.wide}),
         scenery(now, branch, k, axes, false));
-  layers.push(triad(axes));
+  const axisName = (x, y, name) => `<text x="${px(x)}" y="${px(y)}">${name}</text>`;
+  layers.push(`<g class="axes">${triad(axes, [30, view.high - 30], axisName)}</g>`);
   $('scenery').innerHTML = layers.join('');
   drawHandles(axes);
   for (const button of $('views').children)
