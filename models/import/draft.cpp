@@ -101,6 +101,22 @@ const reader::Value* entry(const reader::Value& map, std::string_view name) {
                                    : &map.items[static_cast<std::size_t>(found - map.keys.begin())];
 }
 
+std::string with(std::string text, std::string_view word, std::string_view by) {
+    for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; at += by.size())
+        text.replace(at, word.size(), by);
+    return text;
+}
+
+std::vector<std::string> split(std::string_view text, std::string_view separator) {
+    std::vector<std::string> parts;
+    for (;;) {
+        const auto end = std::min(text.find(separator), text.size());
+        parts.emplace_back(reader::trimmed(text.substr(0, end)));
+        if (end == text.size()) return parts;
+        text.remove_prefix(end + separator.size());
+    }
+}
+
 std::string number(double x) { return fmt::format("{}", x == 0 ? 0.0 : x); }
 
 std::string computed(double x, double scale) {
@@ -124,11 +140,13 @@ std::string direction(const Vector3d& u) {
     return triple(u);
 }
 
-std::string table(const std::vector<std::pair<double, double>>& rows) {
+std::string curve_of_rows(const std::vector<std::pair<double, double>>& rows, bool known_outside,
+                          bool linear) {
     std::string text;
     for (const auto& [x, f] : rows)
         text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", number(x), number(f));
-    return "[" + text + "]";
+    return fmt::format("{{table: [{}]{}{}}}", text, linear ? ", interpolation: linear" : "",
+                       known_outside ? "" : ", outside: unknown");
 }
 
 Fields& Fields::add(std::string_view key, std::string_view value) {
@@ -216,11 +234,22 @@ std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
 
 }  // namespace
 
+namespace {
+
+// "1 point", "2 points", "3 bodies"; words of the file in capitals stay: "2 MARKER".
+std::string counted_kind(int n, const std::string& kind) {
+    if (n == 1 || reader::small_letters(kind) != kind) return fmt::format("{} {}", n, kind);
+    return kind.ends_with('y') ? fmt::format("{} {}ies", n, kind.substr(0, kind.size() - 1))
+                               : fmt::format("{} {}s", n, kind);
+}
+
+}  // namespace
+
 std::vector<std::string> described(const Notes& notes) {
     std::vector<std::string> lines;
     std::string understood;
     for (const auto& [kind, n] : notes.understood)
-        understood += fmt::format("{}{} {}", understood.empty() ? "" : ", ", n, kind);
+        understood += (understood.empty() ? "" : ", ") + counted_kind(n, kind);
     lines.push_back("Understood: " + (understood.empty() ? "nothing" : understood) + ".");
     for (const auto& [role, point] : notes.roles)
         lines.push_back(fmt::format("Point {}: {}.", role, described(point)));
@@ -259,7 +288,22 @@ std::string commented(std::string_view what) {
     return text.yaml;
 }
 
-Text write(const Draft& draft) {
+std::vector<std::pair<const char*, std::vector<Entry>*>> Draft::sections() {
+    return {{"bodies", &bodies},
+            {"joints", &joints},
+            {"bushings", &bushings},
+            {"springs", &springs},
+            {"stops", &stops},
+            {"torsion_springs", &torsion_springs},
+            {"static_loads", &static_loads},
+            {"loads", &loads},
+            {"branches", &branches},
+            {"wheels", &wheels},
+            {"probes", &probes},
+            {"dampers", &dampers}};
+}
+
+Text write(Draft& draft) {
     Text text;
     comment(fmt::format("Imported from {} ({}).", printable(draft.source), draft.format), text);
     for (const std::string& remark : draft.remarks)  // may have text of the file
@@ -276,25 +320,17 @@ Text write(const Draft& draft) {
     if (draft.mirror) put("mirror: " + *draft.mirror);
     if (draft.gravity) put("gravity: " + triple(*draft.gravity));
     write_section("points", draft.points.entries(), text);
-    write_section("bodies", draft.bodies, text);
-    write_section("joints", draft.joints, text);
-    write_section("bushings", draft.bushings, text);
-    write_section("springs", draft.springs, text);
-    write_section("stops", draft.stops, text);
-    write_section("torsion_springs", draft.torsion_springs, text);
-    write_section("static_loads", draft.static_loads, text);
-    write_section("loads", draft.loads, text);
-    write_section("branches", draft.branches, text);
-    if (draft.wheels.size() == 1 && draft.wheels[0].name == "wheel") {  // the short form for one
-        const Entry& wheel = draft.wheels[0];
+    for (const auto& [name, entries] : draft.sections()) {
+        if (entries != &draft.wheels || draft.wheels.size() != 1 ||
+            draft.wheels[0].name != "wheel") {
+            write_section(name, *entries, text);
+            continue;
+        }
+        const Entry& wheel = draft.wheels[0];  // the short form for one
         put("");
         put(fmt::format("wheel: {}{}", wheel.fields,
                         wheel.from.what.empty() ? "" : "  # " + described(wheel.from)));
-    } else {
-        write_section("wheels", draft.wheels, text);
     }
-    write_section("probes", draft.probes, text);
-    write_section("dampers", draft.dampers, text);
     return text;
 }
 

@@ -23,6 +23,13 @@ struct SourceLocation {
     std::string file = {};  // if it is not the draft's source
 };
 
+// ---- Words.
+
+// Each occurrence of the word replaced.
+std::string with(std::string text, std::string_view word, std::string_view by);
+// What stands between the separators, trimmed.
+std::vector<std::string> split(std::string_view text, std::string_view separator);
+
 // ---- Numbers and fields in the format of a scene.
 
 std::string number(double x);  // the shortest text that reads back as x
@@ -31,7 +38,9 @@ std::string computed(double x,
                      double scale = 1);
 std::string triple(const Eigen::Vector3d& v, double scale = 1);  // "[1, 2, 3]", computed
 std::string direction(const Eigen::Vector3d& u);                 // "x", "-y", "[0.6, 0, 0.8]"
-std::string table(const std::vector<std::pair<double, double>>& rows);
+// "{table: [[x, f], ...]}"; `linear`: with straight lines between the rows.
+std::string curve_of_rows(const std::vector<std::pair<double, double>>& rows, bool known_outside,
+                          bool linear = false);
 
 // The fields of an entry, "type: revolute, at: hinge".
 class Fields {
@@ -121,6 +130,9 @@ struct Draft {
     std::vector<Entry> bodies, joints, bushings, springs, stops, torsion_springs, static_loads,
         loads, branches, wheels, probes, dampers;
     Notes notes;
+
+    // Its sections behind the points, in the order of a scene.
+    std::vector<std::pair<const char*, std::vector<Entry>*>> sections();
 };
 
 // The text of the scene for the ordinary reader. `line_of[n]` is the source of the scene's line
@@ -129,7 +141,7 @@ struct Text {
     std::string yaml;
     std::vector<SourceLocation> line_of;
 };
-Text write(const Draft& draft);
+Text write(Draft& draft);
 
 // A line of the head, wrapped, each with its mark and its end.
 std::string commented(std::string_view what);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,9 +35,9 @@ struct Options {
     // of points: the mechanism to make of them, "double_wishbone"; empty: points alone
     std::string as = {};
     std::string pushrod = {}, damper = {};  // on which of its parts: "upright", "lower", "upper"
-    std::vector<std::string> roles = {};    // "tie_rod_inner=NAME"
-    bool both_wheels = false;               // the other one as the mirror image
-    std::string rates = {};                 // file of a table of rates by role; empty: rigid
+    std::vector<std::string> roles = {};  // "tie_rod_inner=NAME"
+    bool both_wheels = false;             // the other one as the mirror image
+    std::string rates = {};               // file of a table of rates by role; empty: rigid
 };
 
 // Allowed values of `axes`. Without z it is up, where that is right-handed; elsewhere z must be given.
@@ -61,8 +62,8 @@ struct Imported {
 // ..." for errors in the file and parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 
-// The same from text, of a workbook the CSV of its sheet. `file` names it in messages and in the head of the scene, and gives the
-// format.
+// The same from text, of a workbook the CSV of its sheet. `file` names it in messages and in the head of
+// the scene, and gives the format.
 Imported import_text(std::string_view text, const std::string& file, const Options& options);
 
 // ---- Importers, one per format.
@@ -74,23 +75,34 @@ Draft import_points(std::string_view text, const std::string& file, const Option
 // the only visible one with numbers. Formulas have the values that were saved with them.
 // Throws SceneError for files that are no workbook, and where several sheets have numbers.
 std::string csv_of_workbook(const std::filesystem::path& file, const std::string& sheet);
+// The same of its parts, "xl/workbook.xml", by their names; a part that is not there is empty.
+using WorkbookParts = std::function<std::string(const std::string& name)>;
+std::string csv_of_workbook(const WorkbookParts& parts, const std::string& file,
+                            const std::string& sheet);
 // Chooses the mechanism and its roles in `options`, and drops the axle that it has read.
 Draft import_assetto(std::string_view text, const std::string& file, Options& options);
 
 // ---- Mechanisms made of named points by templates of roles (mechanism/mechanisms.yaml).
 
-// Gives the points of a draft, whose sources have their names in the file (those of line 0 stay as they are), the roles of the template
-// options.as, and adds its bodies, joints, wheels and branches: rigid, or with options.rates. Notes the point of
-// each role and those without one. Throws SceneError for roles without a point, or with several.
+// Gives the points of a draft, whose sources have their names in the file (those of line 0 stay as they
+// are), the roles of the template options.as, and adds its bodies, joints, wheels and branches: rigid, or
+// with options.rates. Notes the point of each role and those without one. Throws SceneError for roles
+// without a point, or with several.
 void make_mechanism(const std::string& file, const Options& options, Draft& draft);
 
 // Replaces joints at roles by bushings with the rates of a table, and adds springs beside dampers.
 void add_rates(const std::string& file, Draft& draft);
 
+// A section of mechanisms.yaml.
+const reader::Value& mechanism_table(std::string_view name);
+
 // Names of the templates; and the one that words such as those of a file ("Double Wishbone, damper to
 // lower wishbone") mean, empty if none.
 const std::vector<std::string>& mechanisms();
 std::string mechanism_called(std::string_view words);
+
+// A draft without points, in mm, deg and N.
+Draft draft_of_points(const std::string& file, const char* format);
 
 // Signs of x, y and z of a table of hardpoints in the axes of a scene. Throws SceneError for axes that
 // are not among axes_of_tables.

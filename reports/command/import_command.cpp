@@ -8,8 +8,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <regex>
-#include <sstream>
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
@@ -191,26 +189,22 @@ struct Rows {
     std::vector<double> values;
 };
 Rows rows_of(const std::string& text) {
-    static const std::regex form("([^=,]+(?:,[^=,]+)*)=([^:]+):([^:]+):([^:]+)");
-    std::smatch found;
-    double numbers[3] = {NAN, NAN, NAN};
-    if (std::regex_match(text, found, form))
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::string digits = found[k + 2];
-            const auto [end, error] =
-                std::from_chars(digits.data(), digits.data() + digits.size(), numbers[k]);
-            if (error != std::errc{} || end != digits.data() + digits.size()) numbers[k] = NAN;
-        }
-    const auto [from, to, count] = numbers;
+    const auto sides = importer::split(text, "=");
+    const auto numbers = importer::split(sides.back(), ":");
+    double values[3] = {NAN, NAN, NAN};
+    for (std::size_t k = 0; sides.size() == 2 && numbers.size() == 3 && k < 3; ++k) {
+        const char* const end = numbers[k].data() + numbers[k].size();
+        if (std::from_chars(numbers[k].data(), end, values[k]).ptr != end) values[k] = NAN;
+    }
+    const auto [from, to, count] = values;
+    Rows rows{importer::split(sides.front(), ","), {}};
     if (!std::isfinite(from) || !std::isfinite(to) || !(from < to) || !(count >= 3) ||
-        !(count <= 1001) || std::fmod(count, 2) != 1)
+        !(count <= 1001) || std::fmod(count, 2) != 1 ||
+        std::ranges::count(rows.held, std::string()) > 0)
         throw std::invalid_argument(fmt::format(
             "--rows {}: expected HELD=FROM:TO:COUNT, what the branch holds (names with commas are "
             "held alike), FROM below TO, an odd count from 3 to 1001",
             text));
-    Rows rows;
-    std::istringstream names(found[1]);
-    for (std::string name; std::getline(names, name, ',');) rows.held.push_back(name);
     for (double k = 0; k < count; ++k)
         rows.values.push_back((from * (count - 1 - k) + to * k) / (count - 1));
     return rows;
@@ -218,17 +212,11 @@ Rows rows_of(const std::string& text) {
 
 // Unit in SI of what a driver moves.
 const char* si_of(const Scene& scene, const Driver& driver) {
-    return std::visit(
-        [&]<class D>(const D& driven) -> const char* {
-            if constexpr (std::is_same_v<D, Motion>)
-                return is_angle(scene.joints[static_cast<std::size_t>(driven.joint)].kind) ? "rad"
-                                                                                           : "m";
-            else if constexpr (std::is_same_v<D, FreeLength>)
-                return "m";
-            else
-                return "1";
-        },
-        driver.what);
+    const int joint = driven_joint(driver.what);
+    if (joint >= 0)
+        return is_angle(scene.joints[static_cast<std::size_t>(joint)].kind) ? "rad" : "m";
+    const bool is_length = driven_element(driver.what) >= 0 && preload(driver.what) == nullptr;
+    return is_length ? "m" : "1";
 }
 
 // Values of what the rows hold, of the scenes with the first value and with the last one.
@@ -259,14 +247,9 @@ Breakpoints branch_breakpoints(const Scene& scene, const Branch& branch,
     Breakpoints points{branch.name, "1", std::move(values), true};
     for (const Driver& driver : branch.drivers) {
         if (driver.rate == 0) continue;
-        const std::string joint = std::visit(
-            [&]<class D>(const D& driven) -> std::string {
-                if constexpr (std::is_same_v<D, Motion>)
-                    return scene.joints[static_cast<std::size_t>(driven.joint)].name;
-                else
-                    return "";
-            },
-            driver.what);
+        const int driven = driven_joint(driver.what);
+        const std::string joint =
+            driven < 0 ? "" : scene.joints[static_cast<std::size_t>(driven)].name;
         points.is_travel &= driver.rate == 1 && (joint == "jack" || joint.ends_with(".jack"));
     }
     points.unit = branch.unit == ParameterUnit::metre          ? "m"

@@ -18,10 +18,6 @@ namespace elastocheck::importer::adm {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
-std::string curve_text(const Rows& rows, bool goes_on) {
-    return fmt::format("{{table: {}{}}}", table(rows), goes_on ? "" : ", outside: unknown");
-}
-
 namespace {
 
 constexpr double turned = 1e-9;  // larger: two frames are not parallel [rad]
@@ -62,7 +58,7 @@ void put_bushing(Conversion& c, const Statement& s, const Marker& I, int part_j,
         if (!laws.curves[k].empty())
             curves += fmt::format("{}{}: {}", curves.empty() ? "" : ", ",
                                   std::array{"x", "y", "z", "rx", "ry", "rz"}[k],
-                                  curve_text(laws.curves[k], laws.goes_on[k]));
+                                  curve_of_rows(laws.curves[k], laws.goes_on[k]));
     if (!curves.empty()) fields.add("curves", "{" + curves + "}");
     const auto add = [&](const char* name, const Vector3d& v, double least, double scale) {
         if (v.norm() > least) fields.add(name, triple(v, scale));

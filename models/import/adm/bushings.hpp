@@ -22,8 +22,6 @@ struct SixLaws {
     bool is_coupled() const { return !(K - Matrix6(K.diagonal().asDiagonal())).isZero(0); }
 };
 
-std::string curve_text(const Rows& rows, bool goes_on);
-
 // δ is measured from the origin of J, in its axes.
 void put_bushing(Conversion& c, const Statement& s, const Marker& I, int part_j, const Frame& J,
                  const SixLaws& laws);

@@ -62,6 +62,16 @@ Value product(const Value& a, const Value& b) {
     return result;
 }
 
+Value quotient(const Value& a, const Value& by) {
+    if (!by.is_known()) return by;
+    if (!by.is_constant()) return unknown("a division by a displacement");
+    if (by.constant == 0) return unknown("a division by zero");
+    Value result = scaled(a, 1 / by.constant);
+    if (by.of_time) result.per_time = NAN;
+    inherit(result, by);
+    return result;
+}
+
 // STEP(x, x0, h0, x1, h1): a cubic from h0 to h1.
 double step(const std::vector<double>& p) {
     const double x = p[0], x0 = p[1], h0 = p[2], x1 = p[3], h1 = p[4];
@@ -92,6 +102,8 @@ constexpr Function functions[] = {
     {"SIGN", 2, 2, [](const Numbers& p) { return p[1] < 0 ? -std::abs(p[0]) : std::abs(p[0]); }},
     {"STEP", 5, 5, step}};
 
+constexpr std::pair<std::string_view, double> constants[] = {
+    {"PI", std::numbers::pi}, {"RTOD", 180 / std::numbers::pi}, {"DTOR", std::numbers::pi / 180}};
 constexpr std::string_view measures[] = {"DM", "DX", "DY", "DZ", "AX", "AY", "AZ"};
 constexpr std::string_view at_rest =
     "VR VM VX VY VZ WM WX WY WZ ACCM ACCX ACCY ACCZ WDTM WDTX WDTY WDTZ";
@@ -126,50 +138,33 @@ class Parser {
 
     Value expression() {
         if (++depth_ > deepest) return give_up("brackets nested too deep");
-        Value value = term();
-        for (;;) {
-            if (take('+'))
-                value = sum(std::move(value), term());
-            else if (take('-'))
-                value = sum(std::move(value), scaled(term(), -1));
-            else
-                break;
-        }
+        Value value = operations("+-");
         --depth_;
         return value;
     }
 
-    Value term() {
-        Value value = power();
-        for (;;) {
-            if (take('*'))
-                value = product(value, power());
-            else if (take('/')) {
-                const Value by = power();
-                if (!by.is_known())
-                    value = by;
-                else if (!by.is_constant())
-                    value = unknown("a division by a displacement");
-                else if (by.constant == 0)
-                    value = unknown("a division by zero");
-                else {
-                    value = scaled(std::move(value), 1 / by.constant);
-                    if (by.of_time) value.per_time = NAN;
-                    inherit(value, by);
-                }
-            } else
-                return value;
+    // Sums of products of powers, from left to right.
+    Value operations(std::string_view operators) {
+        const bool sums = operators == "+-";
+        const auto operand = [&] { return sums ? operations("*/") : power(); };
+        Value value = operand();
+        for (skip(); !text_.empty() && operators.find(text_.front()) != operators.npos; skip()) {
+            const char c = text_.front();
+            text_.remove_prefix(1);
+            const Value by = operand();
+            value = c == '+'   ? sum(value, by)
+                    : c == '-' ? sum(value, scaled(by, -1))
+                    : c == '*' ? product(value, by)
+                               : quotient(value, by);
         }
+        return value;
     }
 
     // -x**2 is -(x**2).
     Value power() {
         int sign = 1;
-        for (;;)
-            if (take('-'))
-                sign = -sign;
-            else if (!take('+'))
-                break;
+        for (bool minus; (minus = take('-')) || take('+');)
+            if (minus) sign = -sign;
         Value base = primary();
         skip();
         if (text_.starts_with("**")) {
@@ -211,9 +206,8 @@ class Parser {
         const std::string name = capitals(text_.substr(0, n));
         text_.remove_prefix(n);
         if (take('(')) return call(name);
-        if (name == "PI") return constant(std::numbers::pi);
-        if (name == "RTOD") return constant(180 / std::numbers::pi);
-        if (name == "DTOR") return constant(std::numbers::pi / 180);
+        for (const auto& [known, size] : constants)
+            if (name == known) return constant(size);
         if (name == "TIME") return {.constant = context_.time, .of_time = true, .per_time = 1};
         return unknown(fmt::format("{} is not a known constant", reader::quote(name)));
     }
@@ -352,16 +346,12 @@ class Parser {
         const auto number = id(p[2]);
         if (!number) return unknown(name + " of something other than a spline");
         CurveTerm term;
-        if (is_penetration(p[0])) {
+        if (is_penetration(p[0]))
             term = p[0].curves.front();
-            term.is_akima = name == "AKISPL";
-            term.spline = *number;
-            return only(term, p[0]);
-        }
-        term.kind = name == "AKISPL" ? CurveTerm::Kind::akima : CurveTerm::Kind::cubic;
-        term.spline = *number;
-        if (const std::string why = only_measure(p[0], term); !why.empty())
+        else if (const std::string why = only_measure(p[0], term); !why.empty())
             return unknown(p[0].is_constant() ? name + " without a displacement" : why);
+        term.is_akima = name == "AKISPL";
+        term.spline = *number;
         return only(term, p[0]);
     }
 

@@ -26,13 +26,13 @@ struct Measure {
 
 // A curve of scale · x + offset.
 struct CurveTerm {
-    enum class Kind { akima, cubic, impact } kind = Kind::akima;
+    enum class Kind { spline, impact } kind = Kind::spline;
     double factor = 1;  // of the curve
     Measure of;
     double scale = 1, offset = 0;
     // Its id. For an impact: replaces the power, over the penetration; 0 if there is none.
     int spline = 0;
-    bool is_akima = true;  // spline of an impact: Akima's interpolant, else a cubic spline
+    bool is_akima = true;  // its interpolant is Akima's, else a cubic spline
     double contact = 0, rate = 0,
            exponent = 1;  // of an impact: rate · (contact - x)^exponent below contact, else 0
     bool operator==(const CurveTerm&) const = default;

@@ -51,16 +51,13 @@ struct LawConversion {
 
     // Warns if the scene's interpolant of a SPLINE deviates from that of ADAMS.
     void warn_of_spline(const CurveTerm& term, const Rows& rows) const {
-        const bool is_akima = term.kind == CurveTerm::Kind::impact
-                                  ? term.is_akima
-                                  : term.kind == CurveTerm::Kind::akima;
-        const Apart apart = is_akima ? off_akima(rows) : off_natural(rows);
+        const Apart apart = term.is_akima ? off_akima(rows) : off_natural(rows);
         if (apart.force > 1e-6 * apart.of)
             c.warn(s,
                    "differs by up to {:.3g} {} (of {:.4g}), at {:.4g} {}: between the points of "
                    "SPLINE/{} the file has {}, the scene the monotone interpolant",
                    apart.force, unit_of_force, apart.of, apart.at, unit_of_x, term.spline,
-                   is_akima ? "Akima's curve" : "a cubic spline");
+                   term.is_akima ? "Akima's curve" : "a cubic spline");
     }
 
     const Table* points_of(const CurveTerm& term, std::string& why) const {
@@ -156,7 +153,7 @@ void add_stops(Fields& fields, const OneLaw& law, double drawn, const std::strin
         if (stop.curve.empty())
             its.add("rate", stop.rate);
         else
-            its.add("curve", curve_text(stop.curve, stop.goes_on));
+            its.add("curve", curve_of_rows(stop.curve, stop.goes_on));
         fields.add((stop.is_bump ? "bump" : "rebound") + ending, its.braced());
     }
 }
@@ -185,12 +182,12 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
     Fields fields = ends(c.pair(I.part, J.part));
     const auto add_line = [&](double f, double slope) {  // a straight line over the drawn length
         const double h = 0.5 * drawn;
-        fields.add("curve", curve_text({{-h, f - slope * h}, {h, f + slope * h}}, true));
+        fields.add("curve", curve_of_rows({{-h, f - slope * h}, {h, f + slope * h}}, true));
     };
     const double free = -law.at_zero / law.rate;  // where a straight law is zero
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", curve_text(law.curve, law.goes_on));
+        fields.add("curve", curve_of_rows(law.curve, law.goes_on));
     } else if (law.rate > 0 && free > 0) {
         fields.add("rate", law.rate).add("free_length", computed(free));
         if (free < drawn * (1 - 1e-9))
@@ -225,7 +222,7 @@ void put_torsion(Conversion& c, const Statement& s, const Marker& I, const Marke
     fields.add("bodies", c.pair(J.part, I.part)).add("at", c.point(I)).add("axis", direction(z));
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", curve_text(law.curve, law.goes_on));
+        fields.add("curve", curve_of_rows(law.curve, law.goes_on));
     } else {
         fields.add("rate", law.rate);
         const double moment = law.at_zero + law.rate * drawn;

@@ -34,12 +34,8 @@ double unit(const Statement& s, std::string_view argument, const reader::Value* 
     if (!s.has(argument)) return system && argument != "TIME" ? size_of(*system, argument) : 1;
     const std::string word = s.word(argument);
     const reader::Value& table = *entry(dataset_table("units"), argument);
-    std::vector<std::string> found;
-    for (const std::string& name : table.keys) {
-        if (name == word) return size_of(table, name);
-        if (name.starts_with(word) && !word.empty()) found.push_back(name);
-    }
-    if (found.size() == 1) return size_of(table, found[0]);
+    if (const auto found = meant(word, table.keys); found.size() == 1)
+        return size_of(table, found[0]);
     s.fail("{}: {} is not a known unit{}", argument, reader::quote(word),
            reader::did_you_mean(word, table.keys, "known"));
 }

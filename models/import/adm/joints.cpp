@@ -9,47 +9,21 @@
 #include <optional>
 
 #include "models/import/adm/conversion.hpp"
+#include "models/import/adm/joint_kinds.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
 
 using Eigen::Vector3d;
+using enum Position;
 
 constexpr double round_off = 1e-6;  // of the model's size, or radians: not reported
 constexpr std::size_t most_motions = 10'000;
 constexpr double assembled = 1e-2;  // larger misalignment: rejected
 
-enum class Position { any, meet, on_line, on_plane };       // of I in J
-enum class Parallel { none, z, z_and_x, z_and_x_one_way };  // axes of I and J
-
-// A joint or primitive of ADAMS, by its flag, and what a scene has for it.
-struct JointOfAdams {
-    std::string_view flag;
-    const char* type;  // in a scene
-    Position position = Position::any;
-    Parallel parallel = Parallel::none;
-    const char* along = nullptr;   // its field for the axis z of J
-    int axis_i = -1, axis_j = -1;  // of the markers, which the joint keeps perpendicular
-};
-using enum Position;
-constexpr JointOfAdams joints_of_adams[] = {
-    {"REVOLUTE", "revolute", meet, Parallel::z, "axis"},
-    {"CYLINDRICAL", "cylindrical", on_line, Parallel::z, "axis"},
-    {"TRANSLATIONAL", "translational", on_line, Parallel::z_and_x, "axis"},
-    {"SPHERICAL", "spherical", meet},
-    {"FIXED", "fixed", meet, Parallel::z_and_x_one_way},
-    {"PLANAR", "planar", on_plane, Parallel::z, "normal"},
-    {"HOOKE", "universal", meet, Parallel::none, nullptr, 0, 1},
-    {"UNIVERSAL", "universal", meet, Parallel::none, nullptr, 2, 2},
-    {"ATPOINT", "spherical", meet},
-    {"INLINE", "in_line", on_line, Parallel::none, "axis"},
-    {"INPLANE", "in_plane", on_plane, Parallel::none, "normal"},
-    {"PARALLEL_AXES", "parallel", any, Parallel::z, "axis"},
-    {"PERPENDICULAR", "perpendicular", any, Parallel::none, nullptr, 2, 2},
-    {"ORIENTATION", "parallel", any, Parallel::z_and_x_one_way, "axis"},
-};
 // Keeps ORIENTATION from turning about z.
-constexpr JointOfAdams about_z{"ORIENTATION", "perpendicular", any, Parallel::none, nullptr, 0, 1};
+constexpr JointOfAdams about_z{
+    "JPRIM", "ORIENTATION", "perpendicular", any, Parallel::none, nullptr, 0, 1};
 
 struct JointConversion {
     Conversion& c;
@@ -100,7 +74,7 @@ struct JointConversion {
         c.draft.joints.push_back({name, fields.braced(), s.place()});
         return c.draft.joints.size() - 1;
     }
-    Fields fields(const char* type) const {
+    Fields fields(std::string_view type) const {
         return Fields{}.add("type", type).add("bodies", c.pair(I.part, J.part));
     }
     // A plane of J with this normal, in which I stays.

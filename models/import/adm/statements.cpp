@@ -34,17 +34,6 @@ const std::vector<std::string>& keywords() {
     return all;
 }
 
-// What an abbreviation can mean: the exact match alone, else all that begin with it.
-std::vector<std::string_view> meant(std::string_view beginning,
-                                    const std::vector<std::string>& words) {
-    std::vector<std::string_view> found;
-    for (const std::string& word : words) {
-        if (word == beginning) return {word};
-        if (word.starts_with(beginning)) found.push_back(word);
-    }
-    return found;
-}
-
 // The one word that an abbreviation means. `kind` and `label` complete the message.
 std::string_view resolved(std::string_view word, const std::vector<std::string>& words,
                           std::string_view kind, const char* label, const auto& fail) {
@@ -129,6 +118,16 @@ struct Reading {
 };
 
 }  // namespace
+
+std::vector<std::string_view> meant(std::string_view beginning,
+                                    const std::vector<std::string>& words) {
+    std::vector<std::string_view> found;
+    for (const std::string& word : words) {
+        if (word == beginning) return {word};
+        if (word.starts_with(beginning)) found.push_back(word);
+    }
+    return found;
+}
 
 bool has_word(std::string_view list, std::string_view word) {
     while (!list.empty())

@@ -33,6 +33,10 @@ inline constexpr std::size_t most_statements = 200'000;
 // Whether a list "A B= C=f" has the word.
 bool has_word(std::string_view list, std::string_view word);
 
+// What an abbreviation can mean: the exact match alone, else all words that begin with it.
+std::vector<std::string_view> meant(std::string_view beginning,
+                                    const std::vector<std::string>& words);
+
 struct Argument {
     std::string name;  // in full, in capitals
     enum class Kind { flag, values, expression } kind = Kind::flag;

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
+#include <numbers>
 #include <span>
 
 #include "chrono_embedded.hpp"  // generated: text of templates.yaml
@@ -24,38 +25,6 @@ const Value& templates_section(std::string_view name) {
 namespace {
 
 const Matrix3d no_turn = Matrix3d::Identity();
-using OuterEnd = Suspension::OuterEnd;
-
-// ---- Steps of more than one part.
-
-// An arm on an axis through two points: chassis to arm at their middle.
-void arm(Suspension& s, const std::string& name, const std::string& part,
-         const std::string& front = "Location Chassis Front",
-         const std::string& back = "Location Chassis Back") {
-    s.body(name + "*", part);
-    const FilePoint f = s.point(part + "/" + front), b = s.point(part + "/" + back);
-    s.joint_or_bushing(Kind::revolute, name + ".axis*", "ground", name + "*",
-                       s.midpoint(name + ".axis", "front", f, "rear", b),
-                       frame_along(f - b, Vector3d::UnitZ()), s.optional(part + "/Bushing Data"));
-}
-
-// The same with a ball joint on the upright.
-void wishbone(Suspension& s, const std::string& name, const std::string& part) {
-    arm(s, name, part);
-    s.spherical(name + ".ball_joint*", name + "*", "upright*", part + "/Location Upright");
-}
-
-// Spring and damper, where given.
-void springs(Suspension& s, const std::string& end, const std::string& on,
-             const std::string& spring) {
-    for (const auto& [name, part] :
-         {std::pair<const char*, std::string>{spring == "Spring" ? "spring*" : "auxiliary_spring*",
-                                              spring},
-          {"damper*", "Shock"}})
-        if (const auto data = s.optional(part))
-            s.tsda(s.on_side(name), "ground", s.point(part + "/Location Chassis"), s.on_side(on),
-                   s.point(part + "/" + end), *data);
-}
 
 void both(Suspension& s, const std::function<void()>& make) {
     for (const int side : {+1, -1}) {
@@ -65,128 +34,13 @@ void both(Suspension& s, const std::function<void()>& make) {
     s.side = +1;
 }
 
-// A knuckle on the axle's king pin.
-void knuckle(Suspension& s, const std::string& lower, const std::string& upper) {
-    s.body("knuckle*", "Knuckle");
-    const FilePoint low = s.point(lower), high = s.point(upper);
-    s.revolute("king_pin*", "axle", "knuckle*", s.midpoint("king_pin", "lower", low, "upper", high),
-               low - high);
-}
-
-// The track rod between both knuckles.
-void track_rod(Suspension& s) {
-    const FilePoint end = s.point("Tierod/Location Knuckle"),
-                    other{Vector3d(end.x(), -end.y(), end.z()), end.path};
-    s.body("tierod", 0.5 * (end + other), "Tierod");
-    s.spherical("tierod.left", "tierod", "knuckle_left", end);
-    s.universal("tierod.right", "tierod", "knuckle_right", other, Vector3d::UnitX(),
-                Vector3d::UnitZ());
-}
-
-// The drag link from ground to one of the knuckles, as the sign of y says.
-void draglink(Suspension& s, OuterEnd outer) {
-    const FilePoint end = s.point("Knuckle/Location Draglink");
-    s.link("draglink", "Draglink", s.steering(), s.point("Draglink/Location Chassis"),
-           end.y() > 0 ? "knuckle_left" : "knuckle_right", end, outer);
-}
-
-void bell_crank(Suspension& s) {
-    // Drag link, bell crank, and the pin of the bell crank in the track rod's plane.
-    const FilePoint d = s.point("Draglink/Location Bell Crank"),
-                    pivot = s.point("Bell Crank/Location Axle"),
-                    pin = s.point("Bell Crank/Location Tierod");
-    s.body("bell_crank", (d + pivot + pin) / 3, "Bell Crank");
-    s.link("draglink", "Draglink", s.steering(), s.point("Draglink/Location Chassis"), "bell_crank",
-           d, OuterEnd::universal);
-    const Vector3d axis = (d - pivot).cross(pin - pivot);
-    if (!(axis.norm() > 1e-12))
-        s.at(pivot.path).fail("on one line with the other points of the bell crank");
-    s.revolute("bell_crank.pivot", "bell_crank", "axle", pivot, axis);
-    s.in_plane("bell_crank.pin", "bell_crank", "tierod", pin, Vector3d::UnitY());
-}
-
-// The triangle of the three-link axles, in the middle of both sides.
-void triangle(Suspension& s) {
-    FilePoint c = s.point("Triangular Link/Location Chassis"),
-              a = s.point("Triangular Link/Location Axle");
-    c.y() = a.y() = 0;
-    s.draft().points.at(c, "triangle.axis", {0, c.path + ", at y = 0"});
-    s.draft().points.at(a, "triangle.ball_joint", {0, a.path + ", at y = 0"});
-    s.body("triangle", 0.5 * (c + a), "Triangular Link");
-    s.revolute("triangle.axis", "triangle", "ground", c, Vector3d::UnitY());
-    s.spherical("triangle.ball_joint", "triangle", "axle", a);
-}
-
-// Lateral guidance of the De Dion axle.
-void watt_linkage(Suspension& s) {
-    const std::string watt = "Watt Mechanism/Location ";
-    const Vector3d middle =
-        0.5 * (s.point(watt + "Left Link to Center") + s.point(watt + "Right Link to Center"));
-    s.draft().points.at(
-        middle, "watt_centre.pivot",
-        {0, "midpoint of Watt Mechanism/Location Left Link to Center and Right Link to Center"});
-    s.body("watt_centre", middle, "Watt Mechanism", "Center Link Mass");
-    s.revolute("watt_centre.pivot", "watt_centre", "axle", {middle, "Watt Mechanism"},
-               Vector3d::UnitX());
-    for (const std::string side : {"Left", "Right"}) {
-        const std::string name = side == "Left" ? "watt_link_left" : "watt_link_right";
-        const FilePoint centre = s.point(watt + side + " Link to Center"),
-                        chassis = s.point(watt + side + " Link to Chassis");
-        s.body(name, 0.5 * (centre + chassis), "Watt Mechanism", "Side Link Mass");
-        s.spherical(name + ".inner", name, "watt_centre", centre);
-        s.spherical(name + ".outer", name, "ground", chassis);
-    }
-}
-
-// Allows only heave along z and roll about x.
-void heave_and_roll(Suspension& s) {
-    const FilePoint p{s.point("Axle Tube/COM"), "Axle Tube"};
-    s.in_plane("axle.fore_aft", "axle", "ground", p, Vector3d::UnitX());
-    s.in_plane("axle.lateral", "axle", "ground", p, Vector3d::UnitY());
-    s.joint("axle.roll_axis", "parallel", "axle", "ground", Fields{}.add("axis", "x"),
-            s.place("Axle Tube"));
-}
-
-void guide_across_x(Suspension& s) {
-    s.joint(
-        "axle.guide", "planar", "ground", "axle",
-        Fields{}.add("at", s.hardpoint("axle.guide", s.point("Axle Tube/COM"))).add("normal", "x"),
-        s.place("Axle Tube"));
-}
-
-void no_portal(Suspension& s) {
-    if (const auto offset = s.optional("Axle Tube/Portal Offset"); offset && offset->number() != 0)
-        s.draft().notes.miss(s.place("Axle Tube/Portal Offset"),
-                             "a portal axle, whose gears are not supported");
-}
-
-void roll_bar_in_halves(Suspension& s) {
-    // An anti-roll bar in two halves: the left one rotates in the chassis, the right one relative
-    // to it.
-    const FilePoint chassis = s.point("Anti Roll Bar/Location Chassis"),
-                    middle{Vector3d(chassis.x(), 0, chassis.z()), chassis.path};
-    s.draft().points.at(middle, "antiroll_bar.bearing", {0, chassis.path + ", at y = 0"});
-    both(s, [&] {
-        s.body("antiroll_bar*", 0.5 * (s.point("Anti Roll Bar/Location Chassis") + middle),
-               "Anti Roll Bar");
-    });
-    s.revolute("antiroll_bar.bearing", "ground", "antiroll_bar_left", middle, Vector3d::UnitY());
-    s.revolute("antiroll_bar.middle", "antiroll_bar_left", "antiroll_bar_right", middle,
-               Vector3d::UnitY());
-    const char* const rate = "Anti Roll Bar/Rotational Stiffness";
-    s.torsion("antiroll_bar.twist", "antiroll_bar_left", "antiroll_bar_right", {middle, rate},
-              Vector3d::UnitY(), s.real(rate));
-    both(s, [&] {
-        s.in_plane("antiroll_bar.slide*", "antiroll_bar*", "axle",
-                   s.point("Anti Roll Bar/Location Axle"), Vector3d::UnitZ());
-    });
-}
+using Words = std::vector<std::string>;
 
 // Half of a leaf spring (SAE), from its clamp to its end: a spring about z and one about y at the clamp.
 // Both halves have an equal part of the preload.
-void half_leaf(Suspension& s, const std::string& name, const std::string& half,
-               const std::string& clamp, const std::string& end) {
-    const std::string in = "Leafspring/";
+void half_leaf(Suspension& s, const Words& words) {
+    const std::string &name = words.at(0), &half = words.at(1), &clamp = words.at(2),
+                      &end = words.at(3), in = "Leafspring/";
     const FilePoint p = s.point(in + clamp);
     const Vector3d arm = p - s.point(in + end);
     const double bias = s.real(in + "Stiffness Bias"), share = half == "front_leaf*" ? 1 : bias,
@@ -194,11 +48,11 @@ void half_leaf(Suspension& s, const std::string& name, const std::string& half,
                  vertical = s.real(in + "Vertical Stiffness") / (1 + bias),
                  lateral = s.real(in + "Lateral Stiffness") / (1 + bias),
                  square = arm.squaredNorm();
-    s.joint_or_bushing(Kind::revolute, name + ".yaw*", name + "*", "axle", p, no_turn,
+    s.joint_or_bushing("revolute", name + ".yaw*", name + "*", "axle", p, no_turn,
                        s.optional(in + "Clamp Bushing Data"));
     s.torsion(name + ".lateral*", name + "*", "axle", p, Vector3d::UnitZ(),
               share * lateral * square);
-    s.joint_or_bushing(Kind::revolute, name + ".pitch*", name + "*", half, p,
+    s.joint_or_bushing("revolute", name + ".pitch*", name + "*", half, p,
                        frame_along(-Vector3d::UnitY(), Vector3d::UnitZ()),
                        s.optional(in + "Leafspring Bushing Data"));
     // Moment about y on the leaf whose far end then pushes the chassis up with half the preload: arm ×
@@ -224,14 +78,34 @@ Matrix3d rotation_on_side(const Suspension& s, const Cursor& at) {
 }
 
 std::string scene_name(const std::string& name) {
-    std::string result;
-    for (const char c : name) result += c == ' ' || c == '/' ? '_' : c;
+    std::string result = name;
+    for (char& c : result)
+        if (std::string_view(" /*").find(c) != std::string::npos) c = '_';
     return result;
 }
 
+// Joints of Chrono: one that a bushing may replace, another of a scene with the axis of the joint's
+// frame that is its direction, or one that Chrono's reader treats as a lock.
+struct ChronoJoint {
+    std::string_view name, capitals;
+    const char* type = nullptr;
+    bool may_be_bushing = false;
+    int axis = -1;
+};
+constexpr ChronoJoint chrono_joints[] = {
+    {"Revolute", "REVOLUTE", "revolute", true},
+    {"Spherical", "SPHERICAL", "spherical", true},
+    {"Universal", "UNIVERSAL", "universal", true},
+    {"Lock", "LOCK", "fixed"},
+    {"Point Line", "POINTLINE", "in_line", false, 0},
+    {"Point Plane", "POINTPLANE", "in_plane", false, 2},
+    {"Prismatic", "PRISMATIC"},
+    {"Cylindrical", "CYLINDRICAL"},
+};
+
 struct Generic {
     Suspension& s;
-    std::set<std::string> sided, shared;
+    std::set<std::string> sided = {}, shared = {};
 
     std::string body(const Cursor& at) const {
         std::string name;
@@ -243,7 +117,7 @@ struct Generic {
         } else {
             name = at.text("a body");
         }
-        if (name == "Steering") return s.steering();
+        if (name == "Steering") return "steering link";
         if (name == "Chassis" || name == "Subchassis") return "ground";
         if (sided.contains(name)) return scene_name(name) + (side > 0 ? "_left" : "_right");
         if (shared.contains(name)) return scene_name(name);
@@ -259,257 +133,245 @@ struct Generic {
         return field && field->yes_or_no();
     }
 
+    // An entry of a section, on one side.
+    struct Part {
+        const Generic& all;
+        const Cursor& entry;
+        std::string name;
+        SourceLocation from;
+
+        Vector3d vector_at(const char* key) const {
+            return all.s.mirrored(vector(entry.require(key)));
+        }
+        FilePoint at(const char* key) const { return {vector_at(key), from}; }
+        std::string body1() const { return all.body(entry.require("Body1")); }
+        std::string body2() const { return all.body(entry.require("Body2")); }
+    };
     // Calls `make` for each entry of a section and for each of its sides.
-    void each(const char* section,
-              const std::function<void(const Cursor&, const std::string&)>& make) {
+    void each(const char* section, const std::function<void(const Part&)>& make) const {
         if (!s.has(section)) return;
         for (const Cursor& entry : s.at(section).items()) {
             const std::string name = scene_name(entry.require("Name").text("a name"));
+            const auto one = [&](const std::string& called) {
+                make({*this,
+                      entry,
+                      called,
+                      {entry.value->line, fmt::format("{}/{}", section, called)}});
+            };
             if (is_mirrored(entry))
-                both(s, [&] { make(entry, s.sided(name)); });
+                both(s, [&] { one(name + s.on_side("*")); });
             else
-                make(entry, name);
+                one(name);
         }
     }
 
-    Vector3d at(const Cursor& entry, const char* key) const {
-        return s.mirrored(vector(entry.require(key)));
-    }
-};
-
-// Joints of Chrono: one that a bushing may replace, or the type in a scene with the name of its
-// direction and the axis of the joint's frame; neither: one that Chrono's reader treats as a lock.
-struct ChronoJoint {
-    std::string_view name, capitals;
-    std::optional<Kind> bushing_in_place = {};
-    const char *type = nullptr, *direction = nullptr;
-    int axis = 0;
-};
-constexpr ChronoJoint chrono_joints[] = {
-    {"Revolute", "REVOLUTE", Kind::revolute},
-    {"Spherical", "SPHERICAL", Kind::spherical},
-    {"Universal", "UNIVERSAL", Kind::universal},
-    {"Lock", "LOCK", {}, "fixed"},
-    {"Point Line", "POINTLINE", {}, "in_line", "axis", 0},
-    {"Point Plane", "POINTPLANE", {}, "in_plane", "normal", 2},
-    {"Prismatic", "PRISMATIC"},
-    {"Cylindrical", "CYLINDRICAL"},
-};
-
-void generic(Suspension& s) {
-    Generic g{s, {}, {}};
-    if (s.has("Bodies"))
-        for (const Cursor& entry : s.at("Bodies").items())
-            (Generic::is_mirrored(entry) ? g.sided : g.shared)
-                .insert(entry.require("Name").text("a name"));
-    auto& draft = s.draft();
-    g.each("Bodies", [&](const Cursor& entry, const std::string& name) {
-        const SourceLocation from{entry.value->line, "Bodies/" + name};
+    void add_body(const Part& part) const {
         Fields fields;
-        fields.add("origin", draft.points.at(g.at(entry, "Position"), name + ".cm", from));
-        if (const auto mass = entry.optional("Mass")) fields.add("mass", mass->number());
-        if (const auto turned = entry.optional("Rotation"))
+        fields.add("origin", s.hardpoint(part.name + ".cm", part.at("Position")));
+        if (const auto mass = part.entry.optional("Mass")) fields.add("mass", mass->number());
+        if (const auto turned = part.entry.optional("Rotation"))
             s.leave_out(*turned, "axes of the inertia, without effect at rest");
-        draft.bodies.push_back({name, fields.braced(), from});
-        draft.notes.count("bodies");
-    });
-    g.each("Joints", [&](const Cursor& entry, const std::string& name) {
-        const std::string type = entry.require("Type").text("a type of joint");
-        const std::string i = g.body(entry.require("Body1")), j = g.body(entry.require("Body2"));
-        const Vector3d p = g.at(entry, "Position");
-        const Matrix3d A =
-            entry.optional("Rotation") ? rotation_on_side(s, entry.require("Rotation")) : no_turn;
-        const SourceLocation from{entry.value->line, "Joints/" + name};
-        const auto data = entry.optional("Bushing Data");
-        const std::string at = draft.points.at(p, name, from);
+        s.draft().bodies.push_back({part.name, fields.braced(), part.from});
+        s.draft().notes.count("body");
+    }
+
+    void add_joint(const Part& part) const {
+        const Cursor type = part.entry.require("Type");
+        const std::string name = type.text("a type of joint"), i = part.body1(), j = part.body2();
+        const FilePoint at = part.at("Position");
+        const auto rotated = part.entry.optional("Rotation"),
+                   data = part.entry.optional("Bushing Data");
+        const Matrix3d A = rotated ? rotation_on_side(s, *rotated) : no_turn;
         const auto found = std::ranges::find_if(chrono_joints, [&](const ChronoJoint& joint) {
-            return type == joint.name || type == joint.capitals;
+            return name == joint.name || name == joint.capitals;
         });
         if (found == std::end(chrono_joints))
-            entry.require("Type").fail(fmt::format("{} is not a supported joint of Chrono",
-                                                   entry.require("Type").found()));
-        if (found->bushing_in_place)
-            return s.joint_or_bushing(*found->bushing_in_place, name, i, j, {p, "Joints"}, A, data);
+            type.fail(fmt::format("{} is not a supported joint of Chrono", type.found()));
         if (!found->type)
-            entry.require("Type").fail(
+            type.fail(
                 "Chrono reads this as a lock, probably not intended; write Lock, or change the "
                 "joint");
-        const bool is_lock = std::string_view(found->type) == "fixed";
+        if (found->may_be_bushing)
+            return s.joint_or_bushing(found->type, part.name, i, j, at, A, data);
+        const bool is_lock = found->name == "Lock";
         if (data) {
             s.ignore(*data, is_lock ? "a bushing instead of a lock"
                                     : "Chrono ignores the bushing of this joint; the scene has the "
                                       "joint");
-            if (is_lock) draft.notes.miss(from, "a bushing instead of a lock");
+            if (is_lock) s.draft().notes.miss(part.from, "a bushing instead of a lock");
         }
-        Fields fields;
-        fields.add("at", at);
-        if (found->direction) fields.add(found->direction, direction(A.col(found->axis)));
-        s.joint(name, found->type, i, j, fields, from);
+        std::vector<Vector3d> along;
+        if (found->axis >= 0) along = {A.col(found->axis)};
+        s.joint(found->type, part.name, i, j, at, along);
+    }
+};
+
+void generic(Suspension& s) {
+    Generic g{s};
+    if (s.has("Bodies"))
+        for (const Cursor& entry : s.at("Bodies").items())
+            (Generic::is_mirrored(entry) ? g.sided : g.shared)
+                .insert(entry.require("Name").text("a name"));
+    g.each("Bodies", [&](const auto& part) { g.add_body(part); });
+    g.each("Joints", [&](const auto& part) { g.add_joint(part); });
+    g.each("Distance Constraints", [&](const auto& part) {
+        s.distance(part.name, part.body1(), part.at("Point1"), part.body2(), part.at("Point2"));
     });
-    g.each("Distance Constraints", [&](const Cursor& entry, const std::string& name) {
-        const SourceLocation from{entry.value->line, "Distance Constraints/" + name};
-        s.joint(name, "distance", g.body(entry.require("Body1")), g.body(entry.require("Body2")),
-                Fields{}
-                    .add("from", draft.points.at(g.at(entry, "Point1"), name + ".1", from))
-                    .add("to", draft.points.at(g.at(entry, "Point2"), name + ".2", from)),
-                from);
+    g.each("TSDAs", [&](const auto& part) {
+        s.tsda(part.name, part.body1(), part.at("Point1"), part.body2(), part.at("Point2"),
+               part.entry);
     });
-    g.each("TSDAs", [&](const Cursor& entry, const std::string& name) {
-        s.tsda(name, g.body(entry.require("Body1")), g.at(entry, "Point1"),
-               g.body(entry.require("Body2")), g.at(entry, "Point2"), entry);
-    });
-    g.each("RSDAs", [&](const Cursor& entry, const std::string& name) {
-        s.rsda(name, g.body(entry.require("Body1")), g.body(entry.require("Body2")),
-               g.at(entry, "Position"), g.at(entry, "Axis").normalized(), entry);
+    g.each("RSDAs", [&](const auto& part) {
+        s.rsda(part.name, part.body1(), part.body2(), part.vector_at("Position"),
+               part.vector_at("Axis").normalized(), part.entry);
     });
     both(s, [&] { s.spindle(g.body(s.at("Spindle/Attachment Body"))); });
 }
 
 // ---- Steps of a template, by their names in templates.yaml.
 
-using Words = std::vector<std::string>;
-
-// "y", "-y"; a point of the file; or the difference of two.
-Vector3d vector_of(const Suspension& s, const std::string& word) {
-    for (const int axis : {0, 1, 2})
-        if (word.back() == "xyz"[axis] && word.size() <= 2)
-            return word.front() == '-' ? Vector3d(-Vector3d::Unit(axis)) : Vector3d::Unit(axis);
-    const auto minus = word.find(" - ");
-    if (minus == word.npos) return s.point(word);
-    const Vector3d to = s.point(word.substr(0, minus));
-    return to - s.point(word.substr(minus + 3));
-}
-
-template <Kind kind>
-void joint_or_bushing(Suspension& s, const Words& w) {
+// A joint with the directions and perhaps "held" behind its point; "along": with the axes x and y of a
+// frame; "or bushing": of the last field where it is given.
+void joint_step(Suspension& s, const std::string& verb, const Words& w) {
+    const std::string type = verb.substr(0, verb.find(' '));
     const FilePoint at = s.point(w.at(3));
-    s.joint_or_bushing(kind, w.at(0), w.at(1), w.at(2), at,
-                       kind != Kind::spherical
-                           ? frame_along(vector_of(s, w.at(4)), vector_of(s, w.at(5)))
-                           : no_turn,
-                       s.optional(w.back()));
+    std::vector<Vector3d> along;
+    const bool may_be_bushing = verb.ends_with(" or bushing"), held = w.back() == "held",
+               has_frame = verb.ends_with(" along");
+    for (std::size_t k = 4; k + (may_be_bushing || held ? 1 : 0) < w.size(); ++k)
+        along.push_back(s.vector_of(w[k]));
+    const Matrix3d frame = along.size() == 2 && (has_frame || may_be_bushing)
+                               ? frame_along(along[0], along[1])
+                               : no_turn;
+    if (has_frame) along = {frame.col(0), frame.col(1)};
+    if (may_be_bushing)
+        s.joint_or_bushing(type, w[0], w[1], w[2], at, frame, s.optional(w.back()));
+    else
+        s.joint(type, w[0], w[1], w[2], at, along, held);
 }
 
-template <OuterEnd outer>
-void link(Suspension& s, const Words& w) {
-    s.link(w.at(0), w.at(1), w.at(2) == "steering" ? s.steering() : w.at(2), s.point(w.at(3)),
-           w.at(4), s.point(w.at(5)), outer);
+// A warning if two vectors are not perpendicular.
+void expect_across(Suspension& s, const Words& w) {
+    const Vector3d a = s.vector_of(w.at(1)), b = s.vector_of(w.at(2));
+    if (!(std::abs(a.normalized().dot(b)) <= 1e-6 * b.norm()))
+        s.draft().notes.warn(s.place(w[0]), w.at(3));
 }
 
 using Step = void (*)(Suspension&, const Words&);
 const std::map<std::string_view, Step> steps{
-    {"body", [](Suspension& s, const Words& w) { s.body(w.at(0), w.at(1)); }},
-    {"body between",
+    {"body",
      [](Suspension& s, const Words& w) {
-         const double share = w.size() > 4 ? 0.25 : 0.5;
-         s.body(w.at(0), (1 - share) * s.point(w.at(2)) + share * s.point(w.at(3)), w.at(1));
+         s.body(w.at(0), w.at(1), s.point(w.size() > 2 ? w[2] : w[1] + "/COM"),
+                w.size() > 3 ? w[3] : "Mass");
      }},
-    {"spherical",
-     [](Suspension& s, const Words& w) { s.spherical(w.at(0), w.at(1), w.at(2), w.at(3)); }},
-    {"revolute",
-     [](Suspension& s, const Words& w) {
-         s.revolute(w.at(0), w.at(1), w.at(2), s.point(w.at(3)), vector_of(s, w.at(4)));
-     }},
-    {"cylindrical",
-     [](Suspension& s, const Words& w) {
-         const Vector3d axis = vector_of(s, w.at(4)).normalized();
-         s.joint(w.at(0), "cylindrical", w.at(1), w.at(2), s.point(w.at(3)),
-                 Fields{}.add("axis", direction(axis)));
-     }},
-    {"universal",
-     [](Suspension& s, const Words& w) {
-         s.universal(w.at(0), w.at(1), w.at(2), s.point(w.at(3)), vector_of(s, w.at(4)),
-                     vector_of(s, w.at(5)));
-     }},
-    {"universal along",
-     [](Suspension& s, const Words& w) {
-         s.universal(w.at(0), w.at(1), w.at(2), s.point(w.at(3)),
-                     frame_along(vector_of(s, w.at(4)), vector_of(s, w.at(5))));
-     }},
-    {"spherical or bushing", joint_or_bushing<Kind::spherical>},
-    {"revolute or bushing", joint_or_bushing<Kind::revolute>},
-    {"universal or bushing", joint_or_bushing<Kind::universal>},
+    {"point", [](Suspension& s, const Words& w) { s.hardpoint(w.at(0), s.point(w.at(1))); }},
     {"distance",
      [](Suspension& s, const Words& w) {
          s.distance(w.at(0), w.at(1), s.point(w.at(2)), w.at(3), s.point(w.at(4)));
      }},
-    {"link", link<OuterEnd::spherical>},
-    {"link universal", link<OuterEnd::universal>},
-    {"arm", [](Suspension& s, const Words& w) { arm(s, w.at(0), w.at(1), w.at(2), w.at(3)); }},
-    {"wishbone", [](Suspension& s, const Words& w) { wishbone(s, w.at(0), w.at(1)); }},
-    {"tierod",
-     [](Suspension& s, const Words& w) { s.tierod("Location Chassis", w.at(0), w.at(1)); }},
-    {"springs", [](Suspension& s, const Words& w) { springs(s, w.at(0), w.at(1), w.at(2)); }},
-    {"shock",
+    {"spring",
      [](Suspension& s, const Words& w) {
-         s.tsda(s.on_side(w.at(0)), "ground", s.point(w.at(1) + "/Location Chassis"), "axle",
-                s.point(w.at(1) + "/" + w.at(2)), s.at(w.at(1)));
+         s.tsda(w.at(0), "ground", s.point(w.at(1) + "/Location Chassis"), w.at(3),
+                s.point(w[1] + "/" + w.at(2)), s.at(w[1]));
      }},
-    {"wheel", [](Suspension& s, const Words& w) { s.spindle(s.on_side(w.at(0))); }},
+    {"torsion spring",
+     [](Suspension& s, const Words& w) {
+         FilePoint at = s.point(w.at(3));
+         at.from = s.place(w.at(5));
+         s.torsion(w.at(0), w.at(1), w.at(2), at, s.vector_of(w.at(4)), s.real(w.at(5)));
+     }},
+    {"wheel", [](Suspension& s, const Words& w) { s.spindle(w.at(0)); }},
     {"one freedom",
      [](Suspension& s, const Words& w) {
          s.one_freedom = true;
          s.draft().notes.warn(s.place(w.at(0)), w.at(1));
      }},
+    {"bar on", [](Suspension& s, const Words& w) { s.antiroll_body = w.at(0); }},
+    {"steers",
+     [](Suspension& s, const Words& w) {
+         s.steering_joint = w.at(0);
+         s.steering_range = s.positive(w.at(1)) * std::numbers::pi / 180;
+         if (w.size() > 2) s.steering_range *= s.positive(w[2]);
+     }},
     {"read", [](Suspension& s, const Words& w) { s.point(w.at(0)); }},
-    {"knuckle", [](Suspension& s, const Words& w) { knuckle(s, w.at(0), w.at(1)); }},
-    {"track rod", [](Suspension& s, const Words&) { track_rod(s); }},
-    {"draglink", [](Suspension& s, const Words&) { draglink(s, OuterEnd::spherical); }},
-    {"draglink universal", [](Suspension& s, const Words&) { draglink(s, OuterEnd::universal); }},
-    {"bell crank", [](Suspension& s, const Words&) { bell_crank(s); }},
-    {"triangle", [](Suspension& s, const Words&) { triangle(s); }},
-    {"watt linkage", [](Suspension& s, const Words&) { watt_linkage(s); }},
-    {"heave and roll", [](Suspension& s, const Words&) { heave_and_roll(s); }},
-    {"guide across x", [](Suspension& s, const Words&) { guide_across_x(s); }},
-    {"no portal", [](Suspension& s, const Words&) { no_portal(s); }},
-    {"roll bar in halves", [](Suspension& s, const Words&) { roll_bar_in_halves(s); }},
-    {"half leaf",
-     [](Suspension& s, const Words& w) { half_leaf(s, w.at(0), w.at(1), w.at(2), w.at(3)); }},
+    {"above zero", [](Suspension& s, const Words& w) { (void)s.positive(w.at(0)); }},
+    {"not zero",
+     [](Suspension& s, const Words& w) {
+         if (s.real(w.at(0)) == 0) s.at(w[0]).fail(w.at(1));
+     }},
+    {"expect zero",
+     [](Suspension& s, const Words& w) {
+         if (const auto x = s.optional(w.at(0)); x && x->number() != 0)
+             s.draft().notes.miss(s.place(w[0]), w.at(1));
+     }},
+    {"expect across", expect_across},
+    {"leave out",
+     [](Suspension& s, const Words& w) {
+         if (const auto field = s.optional(w.at(0))) s.leave_out(*field, w.at(1));
+     }},
+    {"not used", [](Suspension& s, const Words& w) { s.ignore(s.optional(w.at(0)), w.at(1)); }},
+    {"half leaf", half_leaf},
     {"generic", [](Suspension& s, const Words&) { generic(s); }}};
 
-void run(Suspension& s, std::span<const Value> list) {
+// `given`: what stands for $1, $2, ... of a group.
+void run(Suspension& s, std::span<const Value> list, const Words& given) {
     for (const Value& step : list) {
         const std::string& verb = step.items[0].text;
         const auto rest = std::span(step.items).subspan(1);
-        if (verb == "mirrors") continue;
+        Words words;
+        for (const Value& word : rest) {
+            words.push_back(word.text);
+            for (std::size_t k = 0; k < given.size(); ++k)
+                words.back() = with(words.back(), fmt::format("${}", k + 1), given[k]);
+        }
         if (verb == "both") {
-            both(s, [&] { run(s, rest); });
+            both(s, [&] { run(s, rest, given); });
         } else if (verb == "like") {
-            run(s, entry(templates_section("groups"), rest[0].text)->items);
-        } else if (verb == "if given") {
-            if (s.has(rest[0].text)) run(s, rest.subspan(1));
+            run(s, entry(templates_section("groups"), words[0])->items,
+                {words.begin() + 1, words.end()});
+        } else if (verb == "if given" || verb == "unless given") {
+            const bool has_all = std::ranges::all_of(
+                split(words[0], "; "), [&](const std::string& field) { return s.has(field); });
+            if (has_all == (verb == "if given")) run(s, rest.subspan(1), given);
+        } else if (const auto found = steps.find(verb); found != steps.end()) {
+            found->second(s, words);
         } else {
-            Words words;
-            for (const Value& word : rest) words.push_back(word.text);
-            steps.at(verb)(s, words);
+            joint_step(s, verb, words);
         }
     }
 }
 
 }  // namespace
 
-Made make(Suspension& s) {
-    const Cursor& root = s.file();
-    const auto named = root.require("Template");
+bool run_template(Suspension& s, std::string_view section) {
+    const Value* found =
+        entry(templates_section(section), s.file().require("Template").text("a template"));
+    if (!found) return false;
+    run(s, found->items, {});
+    s.report_unread();
+    return true;
+}
+
+bool make(Suspension& s) {
+    const auto named = s.file().require("Template");
     const std::string name = named.text("a template");
-    if (name == "RigidPinnedAxle" || name == "RigidSuspension")
-        named.fail(
-            fmt::format("{}: the template has no spring, so the wheel is not supported", name));
-    const Value* found = entry(templates_section("templates"), name);
-    if (found == nullptr)
-        named.fail(
-            fmt::format("{} is not a supported template{}", reader::quote(name),
-                        reader::did_you_mean(name, templates_section("templates").keys, "known")));
+    const bool mirrors = entry(templates_section("mirrored"), name);
     Draft& draft = s.draft();
-    draft.title = root.optional("Name") ? root.require("Name").text("a name") : name;
+    draft.title = s.file().optional("Name") ? s.file().require("Name").text("a name") : name;
     draft.format = "Chrono::Vehicle " + name;
     draft.units = "{length: m, angle: rad, force: N}";
-    const auto& first = found->items[0].items;
-    const bool mirrors = first[0].text == "mirrors";
     if (mirrors) draft.mirror = "left -> right";
-    run(s, found->items);
-    s.report_unread();
-    return {mirrors, mirrors && first.size() > 1 ? first[1].text : ""};
+    if (mirrors || entry(templates_section("templates"), name)) {
+        run_template(s, mirrors ? "mirrored" : "templates");
+        return mirrors;
+    }
+    if (const Value* why = entry(templates_section("refused"), name))
+        named.fail(fmt::format("{}: {}", name, why->text));
+    std::vector<std::string> known = templates_section("mirrored").keys;
+    const auto& others = templates_section("templates").keys;
+    known.insert(known.end(), others.begin(), others.end());
+    named.fail(fmt::format("{} is not a supported template{}", reader::quote(name),
+                           reader::did_you_mean(name, known, "known")));
 }
 
 void add_travel(const Suspension& s, bool roll, Draft& draft) {
@@ -549,8 +411,8 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
         "are ground.",
         "The file has no gravity and no tyre: the branches move the wheels on jacks."};
     Suspension suspension(json.root, options, draft);
-    const Made made = make(suspension);
-    add_travel(suspension, !made.mirrors, draft);
+    const bool mirrors = make(suspension);
+    add_travel(suspension, !mirrors, draft);
     return draft;
 }
 

@@ -72,8 +72,68 @@ std::optional<Cursor> Suspension::find(const std::string& path, bool required) c
     }
 }
 
-FilePoint Suspension::point(const std::string& path) const {
-    return placed(vector(at(path)), path);
+double Suspension::positive(const std::string& path) const {
+    const double x = real(path);
+    if (!(x > 0)) at(path).fail("not above zero");
+    return x;
+}
+
+std::string Suspension::on_side(const std::string& name) {
+    constexpr std::string_view beside = " beside ";
+    if (name == "steering link") {
+        is_steered = true;
+        return steering_link;
+    }
+    if (name == "bar body") return on_side(antiroll_body);
+    if (const auto at = name.find(beside); at != name.npos)
+        return name.substr(0, at) +
+               (point(name.substr(at + beside.size())).y() > 0 ? "_left" : "_right");
+    return with(name, "*", side > 0 ? "_left" : "_right");
+}
+
+FilePoint Suspension::point(const std::string& words) const {
+    if (words.starts_with("mean of ")) {
+        const auto places = split(words.substr(8), " and ");
+        Vector3d sum = Vector3d::Zero();
+        for (const std::string& each : places) sum += point(each);
+        const std::string first = point(places[0]).from.what;
+        return {sum / static_cast<double>(places.size()),
+                first.empty() ? SourceLocation{} : place(first.substr(0, first.find('/'))),
+                fmt::format("midpoint of {}", fmt::join(places, " and "))};
+    }
+    if (words.starts_with('(')) {
+        Vector3d p = Vector3d::Zero();
+        std::string last;
+        const auto cells = split(words.substr(1, words.size() - 2), ";");
+        for (std::size_t k = 0; k < 3; ++k)
+            if (cells[k] != "0") p[static_cast<Eigen::Index>(k)] = real(last = cells[k]);
+        return {mirrored(origin + turn * p), last.empty() ? SourceLocation{} : place(last)};
+    }
+    for (const auto& [ending, factor] : {std::pair{" at y = 0", 0.0}, {" mirrored", -1.0}})
+        if (words.ends_with(ending)) {
+            FilePoint p = point(words.substr(0, words.rfind(ending)));
+            p.y() *= factor;
+            if (factor == 0) p.calculated = p.from.what + ", at y = 0";
+            return p;
+        }
+    return {mirrored(origin + turn * vector(at(words))), place(words)};
+}
+
+Vector3d Suspension::vector_of(const std::string& words) const {
+    for (const int axis : {0, 1, 2})
+        if (words.back() == "xyz"[axis] && words.size() <= 2)
+            return (words.front() == '-' ? -1.0 : 1.0) * turn.col(axis);
+    if (const auto product = split(words, " cross "); product.size() == 2) {
+        const Vector3d v = vector_of(product[0]).cross(vector_of(product[1]));
+        if (!(v.norm() > 1e-12))
+            at(split(product[0], " - ")[1]).fail("on one line with the other points of its part");
+        return v;
+    }
+    if (const auto ends = split(words, " - "); ends.size() == 2)
+        return point(ends[0]) - point(ends[1]);
+    const Vector3d v = turn * vector(at(words));
+    if (!(v.norm() > 1e-9)) at(words).fail("not a direction: all components are zero");
+    return mirrored(v);
 }
 
 namespace {
@@ -162,86 +222,82 @@ void Suspension::report_unread() {
 
 // ---- Writing
 
-FilePoint Suspension::midpoint(const std::string& name, const std::string& first,
-                               const FilePoint& a, const std::string& second, const FilePoint& b) {
-    const Vector3d middle = 0.5 * (a + b);
-    hardpoint(sided(name + "." + first), a);
-    hardpoint(sided(name + "." + second), b);
-    draft_.points.at(middle, sided(name),
-                     {0, fmt::format("midpoint of {} and {}", a.path, b.path)});
-    return {middle, a.path.substr(0, a.path.find('/'))};
+std::string Suspension::hardpoint(const std::string& name, const FilePoint& p) {
+    const SourceLocation from = p.calculated.empty() ? p.from : SourceLocation{0, p.calculated};
+    return draft_.points.at(p, on_side(name), from);
 }
 
-std::string Suspension::hardpoint(const std::string& name, const Vector3d& p,
-                                  const std::string& path) {
-    return draft_.points.at(p, on_side(name), path.empty() ? SourceLocation{} : place(path));
-}
-
-void Suspension::body(const std::string& name, const Vector3d& com, const std::string& part,
-                      const char* mass) {
+void Suspension::body(const std::string& name, const std::string& part, const Vector3d& com,
+                      const std::string& mass) {
     const std::string called = on_side(name);
     Fields fields;
-    fields.add("origin", hardpoint(called + ".cm", com, ""));
+    fields.add("origin", draft_.points.at(com, called + ".cm", {}));
     if (const auto given = optional(part + "/" + mass)) {
         const double m = given->number();
         if (!options_.drop_dynamics && m > 0) fields.add("mass", m);
     }
     draft_.bodies.push_back({body_names_.take(called), fields.braced(), place(part)});
-    draft_.notes.count("bodies");
+    draft_.notes.count("body");
 }
 
-void Suspension::joint(const std::string& name, const char* type, const std::string& i,
-                       const std::string& j, const Fields& fields, const SourceLocation& from) {
-    Fields all;
-    all.add("type", type).add("bodies", "[" + on_side(i) + ", " + on_side(j) + "]").add(fields);
-    draft_.joints.push_back({joint_names_.take(on_side(name)), all.braced(), from});
-    draft_.notes.count("joints");
-}
+namespace {
 
-void Suspension::joint(const std::string& name, const char* type, const std::string& i,
-                       const std::string& j, const FilePoint& at, const Fields& fields) {
-    joint(name, type, i, j, Fields{}.add("at", hardpoint(name, at)).add(fields), place(at.path));
-}
+// The names of the directions of each joint of a scene.
+const std::map<std::string_view, std::vector<const char*>> directions_of{
+    {"revolute", {"axis"}}, {"cylindrical", {"axis"}}, {"translational", {"axis"}},
+    {"in_line", {"axis"}},  {"parallel", {"axis"}},    {"universal", {"axis_i", "axis_j"}},
+    {"planar", {"normal"}}, {"in_plane", {"normal"}},  {"spherical", {}},
+    {"fixed", {}}};
 
-void Suspension::universal(const std::string& name, const std::string& i, const std::string& j,
-                           const FilePoint& at, const Vector3d& x, const Vector3d& y) {
-    const Vector3d u = x.normalized(), v = (y - u.dot(y) * u).normalized();
-    if (const double off = std::abs(u.dot(y.normalized())); off > 1e-9)
-        draft_.notes.warn(place(at.path),
-                          fmt::format("the axes of the universal joint deviate from the right "
-                                      "angle by {:.2g} deg; the scene has a corrected second axis",
-                                      std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
-    joint(name, "universal", i, j, at,
-          Fields{}.add("axis_i", direction(u)).add("axis_j", direction(v)));
+}  // namespace
+
+void Suspension::joint(const std::string& type, const std::string& name, const std::string& i,
+                       const std::string& j, const FilePoint& at,
+                       const std::vector<Vector3d>& along, bool held) {
+    Fields fields;
+    fields.add("type", type).add("bodies", pair(i, j));
+    if (type != "parallel") fields.add("at", hardpoint(name, at));
+    std::vector<Vector3d> units;
+    for (const Vector3d& v : along) units.push_back(v.normalized());
+    if (units.size() == 2) {  // the second is made exactly perpendicular
+        const double cosine = units[0].dot(units[1]);
+        if (std::abs(cosine) > 1e-9)
+            draft_.notes.warn(
+                at.from,
+                fmt::format("the axes of the universal joint deviate from the right angle by "
+                            "{:.2g} deg; the scene has a corrected second axis",
+                            std::asin(std::min(std::abs(cosine), 1.0)) * 180 / std::numbers::pi));
+        units[1] = (along[1] - units[0].dot(along[1]) * units[0]).normalized();
+    }
+    for (std::size_t k = 0; k < units.size(); ++k)
+        fields.add(directions_of.at(type).at(k), direction(units[k]));
+    if (held) fields.add("held", "true");
+    draft_.joints.push_back({joint_names_.take(on_side(name)), fields.braced(), at.from});
+    draft_.notes.count("joint");
 }
 
 void Suspension::distance(const std::string& name, const std::string& i, const FilePoint& from,
                           const std::string& j, const FilePoint& to) {
-    const std::string called = on_side(name);
-    joint(called, "distance", i, j,
-          Fields{}
-              .add("from", hardpoint(called + ".inner", from))
-              .add("to", hardpoint(called + ".outer", to)),
-          place(to.path));
-}
-
-void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j,
-                          const FilePoint& p, const Vector3d& normal) {
-    joint(name, "in_plane", i, j,
-          Fields{}.add("at", hardpoint(name, p, "")).add("normal", direction(normal.normalized())),
-          place(p.path));
+    Fields fields;
+    fields.add("type", "distance").add("bodies", pair(i, j));
+    fields.add("from", hardpoint(name + ".inner", from)).add("to", hardpoint(name + ".outer", to));
+    draft_.joints.push_back({joint_names_.take(on_side(name)), fields.braced(), to.from});
+    draft_.notes.count("joint");
 }
 
 // A bushing with its frame fixed in body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both
 // along its axes. F is isotropic, so it acts along the line of both points. T has an energy if
 // K_rot is isotropic. Otherwise, as in place of a revolute, it is not conjugate, as in Chrono.
-void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std::string& body1,
-                                  const std::string& body2, const FilePoint& at,
-                                  const Matrix3d& frame, const std::optional<Cursor>& data) {
+void Suspension::joint_or_bushing(const std::string& type, const std::string& name,
+                                  const std::string& body1, const std::string& body2,
+                                  const FilePoint& at, const Matrix3d& frame,
+                                  const std::optional<Cursor>& data) {
+    const bool revolves = type == "revolute", is_universal = type == "universal";
     if (!data) {
-        if (kind == Kind::revolute) return revolute(name, body1, body2, at, frame.col(2));
-        if (kind == Kind::universal) return universal(name, body1, body2, at, frame);
-        return spherical(name, body1, body2, at);
+        std::vector<Vector3d> along;
+        if (revolves) along = {frame.col(2)};
+        if (is_universal) along = {frame.col(0), frame.col(1)};
+        return joint(type, name, body1, body2, at, along);
     }
     const double linear = data->require("Stiffness Linear").number(),
                  rotational = data->require("Stiffness Rotational").number();
@@ -252,13 +308,11 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
             leave_out(*unused, "since Chrono reads it but does not use it");
     }
     const auto rate = [&](int axis) {
-        const bool is_free =
-            kind == Kind::spherical || (kind == Kind::revolute ? axis == 2 : axis != 2);
-        return is_free ? free : rotational;
+        const bool is_fixed = revolves ? axis != 2 : is_universal && axis == 2;
+        return is_fixed ? rotational : free;
     };
     Fields fields;
-    fields.add("bodies", "[" + on_side(body2) + ", " + on_side(body1) + "]")
-        .add("at", hardpoint(name, at));
+    fields.add("bodies", pair(body2, body1)).add("at", hardpoint(name, at));
     const bool is_round = rate(0) == rate(1) && rate(1) == rate(2);
     if (!is_round)
         fields.add("frame", fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)),
@@ -267,9 +321,8 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
         .add("rotational_rates",
              fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
     if (!is_round) fields.add("formulation", "{conjugate: false}");
-    draft_.bushings.push_back(
-        {element_names_.take(on_side(name)), fields.braced(), place(at.path)});
-    draft_.notes.count("bushings");
+    draft_.bushings.push_back({element_names_.take(on_side(name)), fields.braced(), at.from});
+    draft_.notes.count("bushing");
 }
 
 // Selects the law of a translational or rotational spring-damper from its fields, in Chrono's
@@ -353,8 +406,7 @@ Rows map_at_rest(const Cursor& data, double offset, double preload) {
 
 // A table as in Chrono, with straight lines between the rows.
 std::string linear(const Rows& rows, bool known_outside) {
-    return "{table: " + table(rows) + ", interpolation: linear" +
-           (known_outside ? "}" : ", outside: unknown}");
+    return curve_of_rows(rows, known_outside, true);
 }
 
 }  // namespace
@@ -386,11 +438,11 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     const SourceLocation here{data.value->line, data.path};
     const double drawn = (to - from).norm();
     Fields ends, law_fields;
-    ends.add("bodies", "[" + i + ", " + j + "]")
-        .add("from", draft_.points.at(from, name + ".top", here))
-        .add("to", draft_.points.at(to, name + ".seat", here));
+    ends.add("bodies", pair(i, j))
+        .add("from", hardpoint(name + ".top", {from, here}))
+        .add("to", hardpoint(name + ".seat", {to, here}));
     const auto put = [&](std::vector<Entry>& list) {
-        list.push_back({element_names_.take(name), ends.braced(), here});
+        list.push_back({element_names_.take(on_side(name)), ends.braced(), here});
     };
     const auto put_damper = [&] {
         if (options_.drop_dynamics)
@@ -450,7 +502,7 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     if (!is_nothing) ends.add(law_fields);
     if (has_stops) add_stops(data, drawn, is_nothing, ends);
     put(is_nothing ? draft_.stops : draft_.springs);
-    draft_.notes.count("springs");
+    draft_.notes.count("spring");
 }
 
 // Rotational spring of body 2 relative to body 1 about the axis: at rest the torque on body 2 is
@@ -480,7 +532,19 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
         law_fields.add("curve",
                        linear(rows_of(data.require("Spring Curve Data"), free, preload), false));
     }
-    torsion(name, i, j, p, axis, law_fields, here);
+    torsion(name, i, j, {p, here}, axis, law_fields);
+}
+
+void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
+                         const FilePoint& at, const Vector3d& axis, const Fields& law) {
+    Fields fields;
+    fields.add("bodies", pair(i, j))
+        .add("at", hardpoint(name, at))
+        .add("axis", direction(axis))
+        .add(law);
+    draft_.torsion_springs.push_back(
+        {element_names_.take(on_side(name)), fields.braced(), at.from});
+    draft_.notes.count("torsion spring");
 }
 
 void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
@@ -488,29 +552,17 @@ void Suspension::torsion(const std::string& name, const std::string& i, const st
     Fields law;
     law.add("rate", rate);
     if (moment != 0) law.add("preload_moment", computed(moment));
-    torsion(name, i, j, at, axis, law, place(at.path));
-}
-
-void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
-                         const Vector3d& p, const Vector3d& axis, const Fields& law,
-                         const SourceLocation& from) {
-    Fields fields;
-    fields.add("bodies", "[" + on_side(i) + ", " + on_side(j) + "]")
-        .add("at", hardpoint(name, p, ""))
-        .add("axis", direction(axis))
-        .add(law);
-    draft_.torsion_springs.push_back({element_names_.take(on_side(name)), fields.braced(), from});
-    draft_.notes.count("torsion springs");
+    torsion(name, i, j, at, axis, law);
 }
 
 // Rz(∓toe) Rx(∓camber) of the chassis, - on the left. The spin is fixed, since nothing at rest
 // resists it.
 void Suspension::spindle(const std::string& carrier) {
-    const std::string name = sided("spindle");
+    const std::string name = on_side("spindle*");
     const FilePoint centre = point("Spindle/COM");
-    body(name, centre, "Spindle");
-    hardpoint(name, centre);
-    joint(sided("wheel_bearing"), "fixed", name, carrier, centre);
+    body(name, "Spindle", centre);
+    const std::string at = hardpoint(name, centre);
+    joint("fixed", "wheel_bearing*", name, carrier, centre);
     const double toe = number_or_zero(file_, "Toe Angle (deg)") * std::numbers::pi / 180,
                  camber = number_or_zero(file_, "Camber Angle (deg)") * std::numbers::pi / 180;
     const Vector3d axis =
@@ -520,40 +572,11 @@ void Suspension::spindle(const std::string& carrier) {
     draft_.wheels.push_back({called,
                              Fields{}
                                  .add("body", name)
-                                 .add("centre", hardpoint(name, centre))
+                                 .add("centre", at)
                                  .add("spin_axis", direction(axis * static_cast<double>(side)))
                                  .add("side", called)
                                  .braced(),
                              place("Spindle")});
-}
-
-void Suspension::link(const std::string& name, const std::string& part, const std::string& i,
-                      const FilePoint& at_i, const std::string& j, const FilePoint& at_j,
-                      OuterEnd outer) {
-    const std::string called = on_side(name);
-    body(called, 0.5 * (at_i + at_j), part);
-    spherical(called + ".inner", i, called, at_i);
-    if (outer == OuterEnd::spherical) return spherical(called + ".outer", called, j, at_j);
-    universal(called + ".outer", called, j, at_j, frame_along(at_j - at_i, Vector3d::UnitX()));
-}
-
-void Suspension::tierod(const std::string& chassis_end, const std::string& outer_end,
-                        const std::string& on_outer) {
-    const std::string name = sided("tierod");
-    const FilePoint inner = point("Tierod/" + chassis_end), outer = point("Tierod/" + outer_end);
-    const auto bushing = optional("Tierod/Bushing Data");
-    if (!has("Tierod/Mass") || !has("Tierod/Inertia") || !has("Tierod/Radius")) {
-        for (const auto& field : {optional("Tierod/Mass"), bushing})
-            ignore(field,
-                   "a tie rod without Mass, Inertia and Radius is a rigid massless distance in "
-                   "Chrono");
-        return distance(name, steering(), inner, on_outer, outer);
-    }
-    body(name, 0.5 * (inner + outer), "Tierod");
-    joint_or_bushing(Kind::spherical, name + ".outer", on_outer, name, outer, Matrix3d::Identity(),
-                     bushing);
-    joint_or_bushing(Kind::universal, name + ".inner", steering(), name, inner,
-                     frame_along(outer - inner, Vector3d::UnitX()), bushing);
 }
 
 }  // namespace elastocheck::importer::chrono

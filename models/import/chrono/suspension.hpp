@@ -35,13 +35,12 @@ struct JsonFile {
 // constant beyond the last row.
 extern const Rows stop_table;
 
-// Joints of Chrono that a template may replace by a bushing.
-enum class Kind { revolute, spherical, universal };
-
-// A position, and the field of the file that it is from.
+// A position in the axes of the scene and the entry that its joint has in the file.
 struct FilePoint : Vector3d {
-    FilePoint(const Vector3d& p, std::string field) : Vector3d(p), path(std::move(field)) {}
-    std::string path;
+    FilePoint(const Vector3d& p, SourceLocation place, std::string how = {})
+        : Vector3d(p), from(std::move(place)), calculated(std::move(how)) {}
+    SourceLocation from;
+    std::string calculated;  // "midpoint of A and B"; empty: it is a field of the file
 };
 
 class Suspension {
@@ -56,29 +55,25 @@ class Suspension {
     bool one_freedom = false;  // the wheels share one freedom: one is driven, the other follows
 
     // ---- The rest of the vehicle.
-    std::string steering_link = "ground";
+    std::string steering_link = "ground", antiroll_body = {};
     bool is_steered = false;  // something is attached to the steering link
-    const std::string& steering() {
-        is_steered = true;
-        return steering_link;
-    }
+    // of a steering: what moves its link, and how far to each side [m] or [rad]
+    std::string steering_joint = {};
+    double steering_range = 0;
     // The frame of the file in that of the scene.
     Vector3d origin = Vector3d::Zero();
     Matrix3d turn = Matrix3d::Identity();
 
     // ---- The side. Mirrored scenes are written with left entries only.
     int side = +1;
-    std::string sided(const std::string& name) const {
-        return name + (side > 0 ? "_left" : "_right");
-    }
-    // The names of bodies, joints and hardpoints below may end in *, which stands for the side.
-    std::string on_side(const std::string& name) const {
-        return name.ends_with('*') ? sided(name.substr(0, name.size() - 1)) : name;
-    }
     Vector3d mirrored(Vector3d v) const {
         if (side < 0) v.y() = -v.y();
         return v;
     }
+    // The body, joint or hardpoint that a template names: * stands for the side, steering link for the
+    // steering link, bar body for the body to which a bar is attached; "knuckle beside FIELD" is the one on
+    // the side of that point.
+    std::string on_side(const std::string& name);
 
     // ---- Reading. Fields are named "Part/Field".
     reader::Cursor at(const std::string& path) const { return *find(path, true); }
@@ -86,61 +81,28 @@ class Suspension {
         return find(path, false);
     }
     bool has(const std::string& path) const { return optional(path).has_value(); }
-    FilePoint point(const std::string& path) const;
-    FilePoint placed(const Vector3d& p, const std::string& path) const {
-        return {mirrored(origin + turn * p), path};
-    }
     double real(const std::string& path) const { return at(path).number(); }
+    double positive(const std::string& path) const;
     SourceLocation place(const std::string& path) const { return {at(path).value->line, path}; }
+    // Points and vectors as templates.yaml describes them.
+    FilePoint point(const std::string& words) const;
+    Vector3d vector_of(const std::string& words) const;
 
     // ---- Writing.
-    // The midpoint of two points of the file. Both stay hardpoints, "name.first" and "name.second".
-    FilePoint midpoint(const std::string& name, const std::string& first, const FilePoint& a,
-                       const std::string& second, const FilePoint& b);
-    // At a position, in the field `path`; without a field it is calculated.
-    std::string hardpoint(const std::string& name, const Vector3d& p, const std::string& path);
-    std::string hardpoint(const std::string& name, const FilePoint& p) {
-        return hardpoint(name, p, p.path);
-    }
-    void body(const std::string& name, const Vector3d& com, const std::string& part,
-              const char* mass = "Mass");
-    void body(const std::string& name, const std::string& part) {
-        body(name, point(part + "/COM"), part);
-    }
-    void joint(const std::string& name, const char* type, const std::string& i,
-               const std::string& j, const Fields& fields, const SourceLocation& from);
-    // At a point of the file; `fields` follow it.
-    void joint(const std::string& name, const char* type, const std::string& i,
-               const std::string& j, const FilePoint& at, const Fields& fields = {});
-    void spherical(const std::string& name, const std::string& i, const std::string& j,
-                   const FilePoint& at) {
-        joint(name, "spherical", i, j, at);
-    }
-    void spherical(const std::string& name, const std::string& i, const std::string& j,
-                   const std::string& path) {
-        joint(name, "spherical", i, j, point(path));
-    }
-    // x is fixed to body i and y to body j.
-    void universal(const std::string& name, const std::string& i, const std::string& j,
-                   const FilePoint& at, const Vector3d& x, const Vector3d& y);
-    void universal(const std::string& name, const std::string& i, const std::string& j,
-                   const FilePoint& at, const Matrix3d& frame) {
-        universal(name, i, j, at, frame.col(0), frame.col(1));
-    }
-    void revolute(const std::string& name, const std::string& i, const std::string& j,
-                  const FilePoint& at, const Vector3d& axis) {
-        joint(name, "revolute", i, j, at, Fields{}.add("axis", direction(axis.normalized())));
-    }
+    std::string hardpoint(const std::string& name, const FilePoint& p);
+    void body(const std::string& name, const std::string& part, const Vector3d& com,
+              const std::string& mass = "Mass");
+    // `along`: the directions that a joint of the type has.
+    void joint(const std::string& type, const std::string& name, const std::string& i,
+               const std::string& j, const FilePoint& at, const std::vector<Vector3d>& along = {},
+               bool held = false);
     void distance(const std::string& name, const std::string& i, const FilePoint& from,
                   const std::string& j, const FilePoint& to);
-    void in_plane(const std::string& name, const std::string& i, const std::string& j,
-                  const FilePoint& p, const Vector3d& normal);
-
-    // A joint of Chrono: with `data`, its "Bushing Data", a bushing at its frame, else a joint of
-    // the given kind.
-    void joint_or_bushing(Kind kind, const std::string& name, const std::string& body1,
-                          const std::string& body2, const FilePoint& at, const Matrix3d& frame,
-                          const std::optional<reader::Cursor>& data);
+    // A spherical, revolute or universal joint of Chrono: with `data`, its "Bushing Data", a bushing
+    // at its frame.
+    void joint_or_bushing(const std::string& type, const std::string& name,
+                          const std::string& body1, const std::string& body2, const FilePoint& at,
+                          const Matrix3d& frame, const std::optional<reader::Cursor>& data);
     // A translational spring and damper from `i` (on the chassis) to `j`.
     void tsda(const std::string& name, const std::string& i, const Vector3d& from,
               const std::string& j, const Vector3d& to, const reader::Cursor& data);
@@ -148,18 +110,12 @@ class Suspension {
     void rsda(const std::string& name, const std::string& i, const std::string& j,
               const Vector3d& p, const Vector3d& axis, const reader::Cursor& data);
     void torsion(const std::string& name, const std::string& i, const std::string& j,
+                 const FilePoint& at, const Vector3d& axis, const Fields& law);
+    void torsion(const std::string& name, const std::string& i, const std::string& j,
                  const FilePoint& at, const Vector3d& axis, double rate, double moment = 0);
 
     // The spindle, held on `carrier`, and the wheel on it.
     void spindle(const std::string& carrier);
-    // A link between a spherical and a universal joint, or a distance if it has no mass.
-    void tierod(const std::string& chassis_end, const std::string& outer_end,
-                const std::string& on_outer);
-    // A body from a spherical joint on `i` to one on `j`, or to a universal joint.
-    enum class OuterEnd { spherical, universal };
-    void link(const std::string& name, const std::string& part, const std::string& i,
-              const FilePoint& at_i, const std::string& j, const FilePoint& at_j,
-              OuterEnd outer = OuterEnd::spherical);
 
     // Notes a field without influence, with the reason. ignore() warns, for a field that a user may
     // expect to have an influence.
@@ -171,12 +127,13 @@ class Suspension {
 
   private:
     std::optional<reader::Cursor> find(const std::string& path, bool required) const;
+    std::string pair(const std::string& i, const std::string& j) {
+        const std::string first = on_side(i);
+        return "[" + first + ", " + on_side(j) + "]";
+    }
     enum class Law { none, damper, linear, curve, map };
     Law law_of(const reader::Cursor& data);
     void add_stops(const reader::Cursor& data, double drawn, bool alone, Fields& fields);
-    void torsion(const std::string& name, const std::string& i, const std::string& j,
-                 const Vector3d& p, const Vector3d& axis, const Fields& law,
-                 const SourceLocation& from);
 
     const reader::Cursor& file_;
     const Options& options_;
@@ -197,12 +154,12 @@ double number_or_zero(const reader::Cursor& object, const std::string& key);
 // Right-handed frame with the third axis along w and the second closest to w × towards.
 Matrix3d frame_along(const Vector3d& w, const Vector3d& towards);
 
-// Adds a suspension of any template to the draft of `s`.
-struct Made {
-    bool mirrors;               // the left side is written, the scene mirrors it
-    std::string antiroll_body;  // "lower_arm*", of one that mirrors; empty: unknown
-};
-Made make(Suspension& s);
+// Runs the steps of a template, of `section` of templates.yaml, and reports what they do not read.
+// False for a template that the section does not have.
+bool run_template(Suspension& s, std::string_view section);
+
+// Adds a suspension of any template to the draft of `s`. Returns whether the scene mirrors it.
+bool make(Suspension& s);
 
 // Adds the branch of travel, and that of roll.
 void add_travel(const Suspension& s, bool roll, Draft& draft);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "elastocheck/read_scene.hpp"
+#include "models/import/adm/joint_kinds.hpp"
 #include "models/import/curves.hpp"
 #include "models/kinds.hpp"
 #include "models/laws.hpp"
@@ -48,23 +49,6 @@ Matrix3d with_x(const Vector3d& u, const Vector3d& v) {
     A << x, y, x.cross(y);
     return A;
 }
-
-// The statement of each kind of joint of a scene.
-struct JointStatement {
-    std::string_view kind;
-    const char *keyword, *type;
-};
-constexpr JointStatement joint_statements[] = {{"spherical", "JOINT", "SPHERICAL"},
-                                               {"revolute", "JOINT", "REVOLUTE"},
-                                               {"universal", "JOINT", "UNIVERSAL"},
-                                               {"cylindrical", "JOINT", "CYLINDRICAL"},
-                                               {"translational", "JOINT", "TRANSLATIONAL"},
-                                               {"planar", "JOINT", "PLANAR"},
-                                               {"fixed", "JOINT", "FIXED"},
-                                               {"in_plane", "JPRIM", "INPLANE"},
-                                               {"in_line", "JPRIM", "INLINE"},
-                                               {"perpendicular", "JPRIM", "PERPENDICULAR"},
-                                               {"parallel", "JPRIM", "PARALLEL_AXES"}};
 
 // The weight of a body; null if it has none.
 const DeadForce* weight_of(const Scene& scene, const std::string& body) {
@@ -115,10 +99,7 @@ class AdmWriter {
                       fmt::format("wheel {} (import --wheel {}, the marker at its centre)",
                                   wheel.name, axis));
         }
-        for (const Branch& branch : scene_.branches)
-            leave_out("without a statement", "branch '" + branch.name + "'");
-        for (const Damper& damper : scene_.dampers)
-            leave_out("exerting nothing", "damper '" + damper.name + "'");
+        leave_out_branches(scene_, "without a statement", result_.notes);
         for (const auto& line : described(result_.notes)) put("! {}\n", line);
         put("END\n");
     }
@@ -178,11 +159,11 @@ class AdmWriter {
         return id;
     }
 
-    void statement(const char* keyword, int id, const std::string& name, const char* type, int i,
-                   int j) {
+    void statement(std::string_view keyword, int id, const std::string& name, std::string_view type,
+                   int i, int j) {
         called(name);
         put("{}/{}\n", keyword, id);
-        if (*type) put(", {}\n", type);
+        if (!type.empty()) put(", {}\n", type);
         put(", I = {}\n, J = {}\n", i, j);
     }
     // Springs and bushings are counted together.
@@ -217,11 +198,11 @@ class AdmWriter {
             ids[end] = marker(points[end].body, points[end].s_local, A);
         }
         using Its = elastocheck::Kind<K>;
-        const auto& [name, keyword, type] =
-            *std::ranges::find(joint_statements, Its::name, &JointStatement::kind);
-        const int id = next_id(keyword);
+        const auto& known =
+            *std::ranges::find(adm::joints_of_adams, Its::name, &adm::JointOfAdams::type);
+        const int id = next_id(std::string(known.keyword));
         if (Its::drive != JointDrive::none) joints_[joint.name] = id;
-        statement(keyword, id, joint.name, type, ids[0], ids[1]);
+        statement(known.keyword, id, joint.name, known.flag, ids[0], ids[1]);
     }
 
     // Rate of a joint's drive: the first branch that drives it takes one second; 0 if it is held.
@@ -443,33 +424,20 @@ class AdmWriter {
 
     // ---- Loads; their reactions act on ground and are not used.
 
-    void load(const std::string& name, BodyId body, const Vector3d& s, const Vector3d& force,
-              const Vector3d& moment, bool follows) {
-        const int I = marker(body, s), J = floating(ground),
-                  RM = follows ? I : marker(ground, Vector3d::Zero());
-        called(name);
+    void write(const Load& load) {
+        if (std::holds_alternative<BrakeForce>(load.kind))
+            return miss("load '" + load.name + "'", "acts through a point of another body");
+        Vector3d at = Vector3d::Zero(), force = Vector3d::Zero(), moment = Vector3d::Zero();
+        each_member(load.kind, [&](const Point& point) { at = point.s_local; });
+        (is_moment(load.kind) ? moment : force) = load_vector(load.kind);
+        const int I = marker(body_of(load.kind), at), J = floating(ground),
+                  RM = is_follower(load.kind) ? I : marker(ground, Vector3d::Zero());
+        called(load.name);
         put("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n", next_id("GFORCE"), I, J, RM);
         put(", FX = {}\\\n, FY = {}\\\n, FZ = {}\\\n", real(force.x()), real(force.y()),
             real(force.z()));
         put(", TX = {}\\\n, TY = {}\\\n, TZ = {}\n", real(moment.x()), real(moment.y()),
             real(moment.z()));
-    }
-    void write(const Load& l) {
-        const Vector3d none = Vector3d::Zero();
-        std::visit(
-            overloaded{
-                [&](const DeadForce& f) {
-                    load(l.name, f.at.body, f.at.s_local, f.f, none, false);
-                },
-                [&](const DeadMoment& m) { load(l.name, m.body, none, none, m.m, false); },
-                [&](const FollowerForce& f) {
-                    load(l.name, f.at.body, f.at.s_local, f.f_local, none, true);
-                },
-                [&](const FollowerMoment& m) { load(l.name, m.body, none, none, m.m_local, true); },
-                [&](const BrakeForce&) {
-                    miss("load '" + l.name + "'", "acts through a point of another body");
-                }},
-            l.kind);
     }
 
     const Scene& scene_;
@@ -493,6 +461,13 @@ Contact contact_of(const Curve& law) {
     for (const double x : knots)
         contact.rows.emplace_back(inward * (x - contact.touches), inward * force(law, x));
     return contact;
+}
+
+void leave_out_branches(const Scene& scene, const char* why, Notes& notes) {
+    for (const Branch& branch : scene.branches)
+        notes.leave_out(why, {0, "branch '" + branch.name + "'"});
+    for (const Damper& damper : scene.dampers)
+        notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
 }
 
 void require_whole(const Exported& exported, const Scene& scene, bool allow_missing) {

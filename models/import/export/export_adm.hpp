@@ -30,6 +30,9 @@ struct Contact {
 };
 Contact contact_of(const Curve& law);
 
+// Notes the branches, and the dampers, of which no file that is exported has an entry.
+void leave_out_branches(const Scene& scene, const char* why, Notes& notes);
+
 // Throws SceneError with all that is missing, unless that is allowed.
 void require_whole(const Exported& exported, const Scene& scene, bool allow_missing);
 

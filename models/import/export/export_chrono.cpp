@@ -79,10 +79,7 @@ class ChronoWriter {
                 if ((elastic.written_as == WrittenAs::stop) == stops) write(root, elastic);
         for (const Load& load : scene_.static_loads)
             miss("load '" + load.name + "'", "a suspension file has no loads");
-        for (const Branch& branch : scene_.branches)
-            result_.notes.leave_out("without an entry", {0, "branch '" + branch.name + "'"});
-        for (const Damper& damper : scene_.dampers)
-            result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
+        leave_out_branches(scene_, "without an entry", result_.notes);
         result_.notes.leave_out("without effect at rest", {0, "masses (all written as 1)"});
         result_.text = "// Exported by elastocheck\n";
         for (const auto& line : described(result_.notes))

@@ -1,4 +1,5 @@
 // Makes a mechanism of named points: recognises the role of each by the words of its name.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <set>
@@ -14,11 +15,6 @@ namespace {
 using Eigen::Vector3d;
 using reader::Value;
 using Words = std::set<std::string>;
-
-const Value& mechanism_table(std::string_view name) {
-    static const Value file = reader::parse_yaml(embedded_mechanism[0].text, "mechanisms.yaml");
-    return *entry(file, name);
-}
 
 Words words_between_blanks(std::string_view text) {
     Words words;
@@ -97,10 +93,6 @@ struct Role {
 std::vector<std::string> sides_of(const std::string& name) {
     return name.find("SIDE") == name.npos ? std::vector<std::string>{""}
                                           : std::vector<std::string>{"left", "right"};
-}
-std::string with(std::string text, std::string_view word, const std::string& by) {
-    for (std::size_t at; (at = text.find(word)) != text.npos;) text.replace(at, word.size(), by);
-    return text;
 }
 
 // Size of the longest phrase of the role that the point's name has; 0 if it has none.
@@ -299,11 +291,9 @@ struct Maker {
     }
 
     void write(const Value& of, const std::string& stands_on) {
-        for (const auto& [section, list] : {std::pair{"bodies", &draft.bodies},
-                                            {"joints", &draft.joints},
-                                            {"dampers", &draft.dampers},
-                                            {"branches", &draft.branches}}) {
-            const Value* entries = entry(of, section);
+        for (const auto& [section, list] : draft.sections()) {
+            const Value* entries =
+                std::string_view(section) == "wheels" ? nullptr : entry(of, section);
             for (std::size_t k = 0; entries && k < entries->keys.size(); ++k)
                 for (const std::string& side : sides_of(entries->keys[k]))
                     list->push_back(
@@ -359,11 +349,12 @@ struct Maker {
         const bool has_rod = !options.pushrod.empty(),
                    may_damp = standard || !options.damper.empty();
         if (has_rod && !options.damper.empty())
-            fail("--damper", "with --pushrod the damper stands on the rocker");
+            fail("--damper", "with a rocker the damper stands on it");
+        const std::string& wanted = has_rod ? options.pushrod : options.damper;
         const std::string stands_on =
-            has_rod    ? part("--pushrod", options.pushrod)
-            : may_damp ? part("--damper", options.damper.empty() ? standard->text : options.damper)
-                       : "";
+            has_rod || may_damp ? part(has_rod ? "--pushrod" : "--damper",
+                                       wanted.empty() && standard ? standard->text : wanted)
+                                : "";
         if (!has_rod && may_damp) optional.push_back(entry(groups, "damper"));
         add_roles(made);
         if (has_rod) add_roles(*entry(groups, "pushrod"));
@@ -398,9 +389,9 @@ struct Maker {
         const bool left = wheel.fields.ends_with("side: left}");
         const std::string side = left ? "left" : "right", of_side = side + "_";
         std::set<std::string> names;
-        const std::vector<std::vector<Entry>*> lists{&draft.points.entries(), &draft.bodies,
-                                                     &draft.joints,           &draft.bushings,
-                                                     &draft.springs,          &draft.dampers};
+        std::vector<std::vector<Entry>*> lists{&draft.points.entries()};
+        for (const auto& [section, list] : draft.sections())
+            if (list != &draft.branches && list != &draft.wheels) lists.push_back(list);
         for (const auto* list : lists)
             for (const Entry& one : *list)
                 if (one.name != "rack" && one.name != "antiroll_bar") names.insert(one.name);
@@ -463,6 +454,11 @@ struct Maker {
 };
 
 }  // namespace
+
+const Value& mechanism_table(std::string_view name) {
+    static const Value file = reader::parse_yaml(embedded_mechanism[0].text, "mechanisms.yaml");
+    return *entry(file, name);
+}
 
 const std::vector<std::string>& mechanisms() { return mechanism_table("templates").keys; }
 

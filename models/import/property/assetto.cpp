@@ -11,22 +11,29 @@
 #include <map>
 
 #include "models/import/import.hpp"
-#include "models/import/property/columns.hpp"
 #include "models/reader/document/characters.hpp"
+#include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer {
 namespace {
 
-struct IniValue {
-    int line = 0;
-    std::string text;
-};
-using IniSection = std::map<std::string, IniValue>;
-using IniFile = std::map<std::string, IniSection>;
+using reader::Cursor, reader::Value;
 
-IniFile read_ini(std::string_view text, const std::string& file) {
-    IniFile sections;
+// The value of the key of a map, which it gets.
+Value& added(Value& map, const std::string& key, int line) {
+    map.kind = Value::Kind::map;
+    const auto found = std::ranges::find(map.keys, key);
+    if (found != map.keys.end())
+        return map.items[static_cast<std::size_t>(found - map.keys.begin())];
+    map.keys.push_back(key);
+    map.items.emplace_back().line = line;
+    return map.items.back();
+}
+
+// Sections, of keys and values; a value with commas is a list.
+Value read_ini(std::string_view text, const std::string& file) {
+    Value sections;
     std::string section;
     for (reader::Lines lines(text); lines.next();) {
         std::string_view line = lines.line();
@@ -35,256 +42,201 @@ IniFile read_ini(std::string_view text, const std::string& file) {
         const auto equals = line.find('=');
         if (line.starts_with('[') && line.ends_with(']')) {
             section = reader::capitals(reader::trimmed(line.substr(1, line.size() - 2)));
-        } else if (equals == line.npos || section.empty()) {
+            continue;
+        }
+        if (equals == line.npos || section.empty())
             fail(file, lines.number(), "", "expected [SECTION] or KEY=VALUE, found {}",
                  reader::quote(line));
-        } else {
-            const std::string key = reader::capitals(reader::trimmed(line.substr(0, equals)));
-            const IniValue value{lines.number(),
-                                 std::string(reader::trimmed(line.substr(equals + 1)))};
-            const auto [first, is_new] = sections[section].emplace(key, value);
-            if (!is_new)
-                fail(file, lines.number(), key, "given twice, first in line {}",
-                     first->second.line);
-        }
+        const std::string key = reader::capitals(reader::trimmed(line.substr(0, equals)));
+        Value& value = added(added(sections, section, lines.number()), key, lines.number());
+        if (value.kind != Value::Kind::empty)
+            fail(file, lines.number(), key, "given twice, first in line {}", value.line);
+        const auto cells = split(line.substr(equals + 1), ",");
+        value.kind = cells.size() > 1 ? Value::Kind::list : Value::Kind::scalar;
+        if (cells.size() == 1)
+            value.text = cells[0];
+        else
+            for (const std::string& cell : cells)
+                value.items.push_back(
+                    {.kind = Value::Kind::scalar, .text = cell, .line = value.line});
     }
     return sections;
 }
 
-struct AssettoAxle {
-    const std::string& file;
-    const std::string& name;  // of its section
-    const IniSection& section;
-
-    const IniValue& value(const std::string& key) const {
-        const auto found = section.find(key);
-        if (found == section.end()) fail(file, 0, key, "missing in [{}]", name);
-        return found->second;
-    }
-    std::vector<double> numbers(const std::string& key, std::size_t count) const {
-        const IniValue& given = value(key);
-        std::vector<double> result;
-        for (std::size_t begin = 0; begin <= given.text.size();) {
-            const std::size_t comma = std::min(given.text.find(',', begin), given.text.size());
-            const auto cell =
-                reader::trimmed(std::string_view(given.text).substr(begin, comma - begin));
-            const auto number = coordinate(cell, false);
-            if (!number) fail(file, given.line, key, "{} is not a number", reader::quote(cell));
-            result.push_back(*number);
-            begin = comma + 1;
-        }
-        if (result.size() != count)
-            fail(file, given.line, key, "{} numbers, expected {}", result.size(), count);
-        return result;
-    }
-    double number(const std::string& key) const { return numbers(key, 1)[0]; }
-    double number_or(const std::string& key, double missing) const {
-        return section.contains(key) ? number(key) : missing;
-    }
-};
-
-// The mechanism of each type, and its points.
-struct AssettoType {
-    std::string_view type;
-    const char* mechanism;
-    std::vector<std::string> keys;
-};
-const std::vector<AssettoType>& assetto_types() {
-    static const std::vector<AssettoType> all{
-        {"DWB",
-         "double_wishbone",
-         {"WBCAR_TOP_FRONT", "WBCAR_TOP_REAR", "WBCAR_BOTTOM_FRONT", "WBCAR_BOTTOM_REAR",
-          "WBTYRE_TOP", "WBTYRE_BOTTOM", "WBCAR_STEER", "WBTYRE_STEER"}},
-        {"STRUT",
-         "strut",
-         {"STRUT_CAR", "STRUT_TYRE", "WBCAR_BOTTOM_FRONT", "WBCAR_BOTTOM_REAR", "WBTYRE_BOTTOM",
-          "WBCAR_STEER", "WBTYRE_STEER"}},
-        {"ML",
-         "five_link",
-         {"JOINT0_CAR", "JOINT0_TYRE", "JOINT1_CAR", "JOINT1_TYRE", "JOINT2_CAR", "JOINT2_TYRE",
-          "JOINT3_CAR", "JOINT3_TYRE", "JOINT4_CAR", "JOINT4_TYRE"}},
-        {"AXLE",
-         "live_axle",
-         {"J0_CAR", "J0_AXLE", "J1_CAR", "J1_AXLE", "J2_CAR", "J2_AXLE", "J3_CAR", "J3_AXLE",
-          "J4_CAR", "J4_AXLE"}}};
-    return all;
+double number_or(const std::optional<Cursor>& section, const std::string& key, double missing) {
+    const auto field = section ? section->optional(key) : std::nullopt;
+    return field ? field->number() : missing;
 }
 
-// The links of a multi-link are numbered, and any of the first four can have any place.
-constexpr std::array links{"upper_front", "upper_rear", "lower_front", "lower_rear", "tie_rod"};
-
 struct AssettoReader {
-    const IniFile& ini;
+    const Cursor& ini;
     const std::string& file;
-    const AssettoAxle axle;
-    const AssettoType& type;
+    const std::string name;  // of the section of the axle
+    const Cursor axle;
     Options& options;
+    double version = number_or(ini.optional("HEADER"), "VERSION", 1);
+    double half_track = 0.5 * axle.require("TRACK").number();  // [m]
     Draft draft = {};
-    double version = 1;
-    double half_track = 0;  // [m]
 
     void warn(const std::string& section, const std::string& key, const char* what) {
-        const auto found = ini.find(section);
-        if (found == ini.end() || !found->second.contains(key)) return;
-        const AssettoAxle of{file, section, found->second};
-        if (const double x = of.number(key); x != 0)
-            draft.notes.warn({of.value(key).line, key}, fmt::format("{:g}{}", x, what));
+        const auto of = ini.optional(section);
+        if (const double x = number_or(of, key, 0); x != 0)
+            draft.notes.warn(source_of(*of, key), fmt::format("{:g}{}", x, what));
+    }
+    static SourceLocation source_of(const Cursor& section, const std::string& key) {
+        return {section.require(key).value->line, key};
     }
 
     // Line 0: of no role.
     void add_point(const std::string& key, int line, double forward, double left, double up) {
         draft.points.add(1000 * Eigen::Vector3d(forward, left, up), key, {line, key});
     }
+    // x, y, z of the file become left, up, forward: x counts in a direction from a middle.
+    void add_point(const Cursor& section, const std::string& key, double middle, double direction) {
+        const Cursor field = section.require(key);
+        const auto p = field.list(3, "numbers");
+        add_point(key, field.value->line, p[2].number(), middle + direction * p[0].number(),
+                  p[1].number());
+        draft.notes.count("point");
+    }
 
-    void read_corner() {
-        double offset = 0;
-        if (version >= 2 && type.type != "ML") offset = axle.number_or("RIM_OFFSET", 0);
+    void read_corner(const Value& type) {
+        const Value* roles = entry(type, "roles");
+        const double offset = version >= 2 && !roles ? number_or(axle, "RIM_OFFSET", 0) : 0;
         draft.remarks = {fmt::format(
             "The left wheel of [{}], x forward, y left, z up; the origin is in the middle of the "
             "car at the height of the wheel centres. RIM_OFFSET {:g} m is subtracted from the "
             "points.",
-            axle.name, offset)};
-        for (std::size_t k = 0; k < type.keys.size(); ++k) {
-            const std::string& key = type.keys[k];
-            const auto p = axle.numbers(key, 3);
-            add_point(key, axle.value(key).line, p[2], half_track - (p[0] - offset), p[1]);
-            draft.notes.count("point");
-            if (type.type == "ML")
-                options.roles.push_back(
-                    fmt::format("{}_{}={}", links[k / 2], k % 2 ? "outer" : "inner", key));
+            name, offset)};
+        const auto& keys = entry(type, "points")->items;
+        for (std::size_t k = 0; k < keys.size(); ++k) {
+            add_point(axle, keys[k].text, half_track + offset, -1);
+            if (roles)
+                options.roles.push_back(fmt::format("{}={}", roles->items[k].text, keys[k].text));
         }
-        add_point("WHEEL_CENTRE", axle.value("TRACK").line, 0, half_track, 0);
-        add_spring("spring", type.type == "STRUT"
-                                 ? "bodies: [wheel, strut], from: strut_lower, to: strut_top"
-                                 : "at_wheel: true");
+        add_point("WHEEL_CENTRE", source_of(axle, "TRACK").line, 0, half_track, 0);
+        add_spring("spring", entry(type, "spring")->text);
         if (options.both_wheels)
             add_bar();
         else
-            warn("ARB", axle.name,
+            warn("ARB", name,
                  " N/m between both wheels is not in the scene, which has one (--both-wheels)");
     }
 
-    void add_spring(const std::string& name, const std::string& place) {
-        const double k = axle.number_or("SPRING_RATE", 0);
+    void add_spring(const std::string& called, const std::string& place) {
+        const double k = number_or(axle, "SPRING_RATE", 0);
         if (k == 0) return;
-        const std::string preload = computed(k * axle.number_or("ROD_LENGTH", 0));
+        const std::string preload = computed(k * number_or(axle, "ROD_LENGTH", 0));
         draft.springs.push_back(
-            {name,
+            {called,
              fmt::format("{{{}, rate: {}, preload: {}}}", place, computed(k / 1000), preload),
-             {axle.value("SPRING_RATE").line, "SPRING_RATE"}});
+             source_of(axle, "SPRING_RATE")});
         draft.notes.count("spring");
     }
 
     // The two lowest links are the lower ones; the fifth is a bar across.
-    void read_live_axle() {
-        const auto section = ini.find("AXLE");
-        if (section == ini.end()) fail(file, 0, "[AXLE]", "missing; it has the links of the axle");
-        const AssettoAxle of{file, section->first, section->second};
-        const double count = of.number("LINK_COUNT");
+    void read_live_axle(const Value& type) {
+        const auto of = ini.optional("AXLE");
+        if (!of) fail(file, 0, "[AXLE]", "missing; it has the links of the axle");
+        const Cursor given = of->require("LINK_COUNT");
+        const double count = given.number();
         if (count != 4 && count != 5)
-            fail(file, of.value("LINK_COUNT").line, "LINK_COUNT", "{:g}; known: 4, 5", count);
+            fail(file, given.value->line, "LINK_COUNT", "{:g}; known: 4, 5", count);
         draft.remarks = {fmt::format(
-            "The live axle of [{}], x forward, y left, z up; the origin is in its middle.",
-            axle.name)};
-        std::vector<std::pair<double, std::string>> by_height;
-        std::map<std::string, double> left;
+            "The live axle of [{}], x forward, y left, z up; the origin is in its middle.", name)};
+        struct Link {
+            std::string key;
+            Eigen::Vector3d outer;
+        };
+        std::vector<Link> links;
         for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(count); ++k) {
-            const std::string& key = type.keys[k];
-            const auto p = of.numbers(key, 3);
-            add_point(key, of.value(key).line, p[2], p[0], p[1]);
-            draft.notes.count("point");
-            const std::string link = key.substr(0, 2);
-            if (k % 2 && k < 8) by_height.emplace_back(p[1], link), left[link] = p[0];
+            const std::string& key = entry(type, "points")->items[k].text;
+            add_point(*of, key, 0, 1);
+            if (k % 2 && k < 8)
+                links.push_back({key.substr(0, 2), draft.points.positions().back()});
             if (k >= 8)
                 options.roles.push_back(
                     fmt::format("panhard_{}={}", k % 2 ? "outer" : "inner", key));
         }
-        std::ranges::stable_sort(by_height, {}, &std::pair<double, std::string>::first);
+        std::ranges::stable_sort(links, {}, [](const Link& link) { return link.outer.z(); });
         for (std::size_t k = 0; k < 4; ++k) {
-            const std::string &link = by_height[k].second, &twin = by_height[k ^ 1].second;
-            const bool is_left = left[link] != left[twin] ? left[link] > left[twin] : k % 2;
+            const double y = links[k].outer.y(), of_twin = links[k ^ 1].outer.y();
+            const bool is_left = y != of_twin ? y > of_twin : k % 2;
             for (const auto& [end, part] : {std::pair{"inner", "CAR"}, {"outer", "AXLE"}})
                 options.roles.push_back(fmt::format("{}_{}_{}={}_{}", is_left ? "left" : "right",
-                                                    k < 2 ? "lower" : "upper", end, link, part));
+                                                    k < 2 ? "lower" : "upper", end, links[k].key,
+                                                    part));
         }
-        const double seat = half_track * (version >= 4 ? of.number_or("ATTACH_REL_POS", 1) : 1),
-                     leaf = version >= 3 ? of.number_or("LEAF_SPRING_LAT_K", 0) : 0;
+        const double seat = half_track * (version >= 4 ? number_or(of, "ATTACH_REL_POS", 1) : 1),
+                     leaf = version >= 3 ? number_or(of, "LEAF_SPRING_LAT_K", 0) : 0;
         for (const auto& [side, sign] : {std::pair{"left", 1.0}, {"right", -1.0}}) {
-            const std::string name = side;
-            const int line = axle.value("TRACK").line;
-            add_point(name + "_wheel_centre", line, 0, sign * half_track, 0);
-            add_point(name + "_seat", 0, 0, sign * seat, 0);
-            add_point(name + "_top", 0, 0, sign * seat, 0.2);
-            add_spring(name + "_spring", fmt::format("bodies: [axle, ground], from: {0}_seat, to: "
-                                                     "{0}_top",
-                                                     name));
+            const std::string of_side = side;
+            add_point(of_side + "_wheel_centre", source_of(axle, "TRACK").line, 0,
+                      sign * half_track, 0);
+            add_point(of_side + "_seat", 0, 0, sign * seat, 0);
+            add_point(of_side + "_top", 0, 0, sign * seat, 0.2);
+            add_spring(of_side + "_spring", with(entry(type, "spring")->text, "SIDE", side));
             if (leaf != 0)
                 draft.bushings.push_back(
-                    {name + "_leaf",
+                    {of_side + "_leaf",
                      fmt::format("{{bodies: [ground, axle], at: {}_seat, rates: [0, {}, 0], "
                                  "rotational_rates: [0, 0, 0]}}",
-                                 name, computed(leaf / 1000)),
-                     {of.value("LEAF_SPRING_LAT_K").line, "LEAF_SPRING_LAT_K"}});
+                                 side, computed(leaf / 1000)),
+                     source_of(*of, "LEAF_SPRING_LAT_K")});
         }
         add_bar();
     }
 
     void add_bar() {
-        const auto bars = ini.find("ARB");
-        if (bars == ini.end()) return;
-        const AssettoAxle bar{file, bars->first, bars->second};
-        if (const double k = bar.number_or(axle.name, 0); k != 0)
+        const auto bars = ini.optional("ARB");
+        if (const double k = number_or(bars, name, 0); k != 0)
             draft.springs.push_back(
                 {"antiroll_bar",
                  fmt::format("{{at_wheel: [left, right], rate: {}}}", computed(k / 1000)),
-                 {bar.value(axle.name).line, axle.name}});
+                 source_of(*bars, name)});
     }
 
     void warn_of_the_rest() {
         for (const char* rate : {"PROGRESSIVE_SPRING_RATE", "BUMP_STOP_RATE"})
-            warn(axle.name, rate, ", at the wheel, is not in the scene");
-        warn("HEAVE_" + axle.name, "SPRING_RATE", " N/m of both wheels is not in the scene");
+            warn(name, rate, ", at the wheel, is not in the scene");
+        warn("HEAVE_" + name, "SPRING_RATE", " N/m of both wheels is not in the scene");
         for (const char* angle : {"STATIC_CAMBER", "TOE_OUT"})
-            warn(axle.name, angle,
-                 " is not in the scene: its wheel stands upright, straight ahead");
+            warn(name, angle, " is not in the scene: its wheel stands upright, straight ahead");
     }
 };
 
 }  // namespace
 
 Draft import_assetto(std::string_view text, const std::string& file, Options& options) {
-    const IniFile ini = read_ini(text, file);
+    const Value sections = read_ini(text, file);
+    std::vector<Number> numbers;
+    const Cursor ini{&sections, "", &file, &numbers};
     std::vector<std::string> axles;
-    for (const char* name : {"FRONT", "REAR"})
-        if (ini.contains(name)) axles.push_back(reader::small_letters(name));
+    for (const char* name : {"front", "rear"})
+        if (ini.optional(reader::capitals(name))) axles.emplace_back(name);
     if (axles.empty())
         fail(file, 0, "", "no section [FRONT] or [REAR]: this is not a suspensions.ini");
     if (options.axle.empty() ? axles.size() > 1
                              : std::ranges::find(axles, options.axle) == axles.end())
         fail(file, 0, "--axle", "choose an axle of the file: {}", fmt::join(axles, ", "));
-    const std::string name = reader::capitals(options.axle.empty() ? axles[0] : options.axle);
-    const AssettoAxle axle{file, name, ini.at(name)};
-    const IniValue& type = axle.value("TYPE");
-    const auto known =
-        std::ranges::find(assetto_types(), reader::capitals(type.text), &AssettoType::type);
-    if (known == assetto_types().end())
-        fail(file, type.line, "TYPE", "{} is not read; known: DWB, STRUT, ML, AXLE",
-             reader::quote(type.text));
-    AssettoReader reading{ini, file, axle, *known, options};
-    if (const auto head = ini.find("HEADER"); head != ini.end())
-        reading.version = AssettoAxle{file, head->first, head->second}.number_or("VERSION", 1);
-    reading.half_track = 0.5 * axle.number("TRACK");
-    reading.draft.title =
-        std::filesystem::path(file).stem().string() + ", " + reader::small_letters(name);
-    reading.draft.source = file;
-    reading.draft.format = "suspensions.ini of Assetto Corsa";
-    reading.draft.units = "{length: mm, angle: deg, force: N}";
-    if (known->type == "AXLE")
-        reading.read_live_axle();
+    const std::string name = options.axle.empty() ? axles[0] : options.axle;
+    const Cursor axle = ini.require(reader::capitals(name));
+    const Value& given = *axle.require("TYPE").value;
+    const Value& types = mechanism_table("assetto");
+    const Value* type = entry(types, reader::capitals(given.text));
+    if (!type)
+        fail(file, given.line, "TYPE", "{} is not read; known: {}", reader::quote(given.text),
+             fmt::join(types.keys, ", "));
+    AssettoReader reading{ini, file, reader::capitals(name), axle, options};
+    reading.draft = draft_of_points(file, "suspensions.ini of Assetto Corsa");
+    reading.draft.title += ", " + name;
+    const std::string& mechanism = entry(*type, "mechanism")->text;
+    if (mechanism == "live_axle")
+        reading.read_live_axle(*type);
     else
-        reading.read_corner();
+        reading.read_corner(*type);
     reading.warn_of_the_rest();
-    if (options.as.empty()) options.as = known->mechanism;
+    if (options.as.empty()) options.as = mechanism;
     options.axle.clear();
     return std::move(reading.draft);
 }

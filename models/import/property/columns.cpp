@@ -37,27 +37,20 @@ bool has(const Map& map, const std::string& key) {
     return std::ranges::find(map, key, &Chosen::key) != map.end();
 }
 
-Chosen chosen_by(std::string_view piece, const std::string& file) {
-    const auto equals = piece.find('=');
-    if (equals == piece.npos)
-        fail(file, 0, "--columns", "{} has no '='; {}", reader::quote(piece), form_of_map);
-    Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
-                  std::string(reader::trimmed(piece.substr(equals + 1)))};
-    if (std::ranges::find(keys, chosen.key) == keys.end())
-        fail(file, 0, "--columns", "{} is nothing that a point has{}", reader::quote(chosen.key),
-             reader::did_you_mean(chosen.key, keys, "allowed"));
-    return chosen;
-}
-
 Map map_of(const std::string& text, const std::string& file) {
     Map map;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t comma = std::min(text.find(',', begin), text.size());
-        Chosen chosen = chosen_by(std::string_view(text).substr(begin, comma - begin), file);
+    for (const std::string& piece : split(text, ",")) {
+        const auto equals = piece.find('=');
+        if (equals == piece.npos)
+            fail(file, 0, "--columns", "{} has no '='; {}", reader::quote(piece), form_of_map);
+        const Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
+                            std::string(reader::trimmed(piece.substr(equals + 1)))};
+        if (std::ranges::find(keys, chosen.key) == keys.end())
+            fail(file, 0, "--columns", "{} is nothing that a point has{}",
+                 reader::quote(chosen.key), reader::did_you_mean(chosen.key, keys, "allowed"));
         if (has(map, chosen.key)) fail(file, 0, "--columns", "{} is given twice", chosen.key);
         if (chosen.column.empty()) fail(file, 0, "--columns", "no column for {}", chosen.key);
-        map.push_back(std::move(chosen));
-        begin = comma + 1;
+        map.push_back(chosen);
     }
     const bool sides =
         std::ranges::any_of(map, [](const Chosen& c) { return c.key.find('.') != c.key.npos; });

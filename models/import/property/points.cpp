@@ -200,14 +200,9 @@ Draft import_points(std::string_view text, const std::string& name, const Option
         fail(name, 0, "--unit", "{} is not a unit of a coordinate; allowed: {}",
              reader::quote(options.unit), fmt::join(length_units, ", "));
     const auto along = directions(options.axes, name);
-    Draft draft;
-    draft.title = std::filesystem::path(name).stem().string();
-    draft.source = name;
     const bool shark = reader::small_letters(name).ends_with(".shk");
-    draft.format = shark ? "points of Lotus SHARK" : "table of points";
-    draft.units = "{length: mm, angle: deg, force: N}";
+    Draft draft = draft_of_points(name, shark ? "points of Lotus SHARK" : "table of points");
     draft.remarks = {remark_on_axes(options.axes, along)};
-    draft.points = Hardpoints(1);
     const auto points = shark ? points_of_shark(text, name, options.unit, draft)
                               : points_of_table(text, name, options, draft);
     remark_on_points(

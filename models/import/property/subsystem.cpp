@@ -10,6 +10,16 @@
 #include "models/reader/tables/property_file.hpp"
 
 namespace elastocheck::importer {
+
+Draft draft_of_points(const std::string& file, const char* format) {
+    Draft draft;
+    draft.title = std::filesystem::path(file).stem().string();
+    draft.source = file;
+    draft.format = format;
+    draft.units = "{length: mm, angle: deg, force: N}";
+    return draft;
+}
+
 std::array<double, 3> directions(const std::string& axes, const std::string& file) {
     if (axes == "x-forward,y-right" || axes == "x-rearward,y-left")
         fail(file, 0, "--axes",
@@ -40,17 +50,12 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
     const std::string axes = options.axes.empty() ? "x-rearward,y-right" : options.axes;
     const auto along = directions(axes, name);
     const reader::PropertyFile file = reader::parse_property_file(text, name);
-    Draft draft;
-    draft.title = std::filesystem::path(name).stem().string();
-    draft.source = name;
-    draft.format = "hardpoints of an Adams/Car subsystem";
-    draft.units = "{length: mm, angle: deg, force: N}";
+    Draft draft = draft_of_points(name, "hardpoints of an Adams/Car subsystem");
     draft.remarks = {remark_on_axes(axes, along)};
     remark_on_points(options,
                      "Hardpoints only: joints and bodies are in the subsystem's template, which is "
                      "another file. Add yours below.",
                      draft);
-    draft.points = Hardpoints(1);
     bool any_pair = false;
     for (const auto& block : file.blocks) {
         if (block.name != "HARDPOINT") {

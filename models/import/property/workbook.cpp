@@ -19,27 +19,27 @@ namespace {
 constexpr std::size_t largest_part = 64 << 20;  // [bytes], unpacked
 constexpr std::size_t most_rows = 100'000;
 
+// The text of a part of a zip file; empty if there is none.
+std::string unpacked(void* zip, const std::string& name, const std::string& file) {
+    if (unzLocateFile(zip, name.c_str(), 2) != UNZ_OK) return "";  // 2: in any case
+    const auto broken = [&](const char* what) {
+        fail(file, 0, "", "the part {} of the workbook {}", reader::quote(name), what);
+    };
+    if (unzOpenCurrentFile(zip) != UNZ_OK) broken("cannot be opened");
+    std::string text;
+    std::vector<char> block(1 << 16);
+    int count = 0;
+    while ((count = unzReadCurrentFile(zip, block.data(), 1 << 16)) > 0) {
+        text.append(block.data(), static_cast<std::size_t>(count));
+        if (text.size() > largest_part) broken("is larger than 64 MiB");
+    }
+    if (unzCloseCurrentFile(zip) != UNZ_OK || count < 0) broken("is damaged");
+    return text;
+}
+
 struct Workbook {
     const std::string& file;
-    std::unique_ptr<void, int (*)(void*)> zip;
-
-    // The text of a part; empty if there is none.
-    std::string part(const std::string& name) const {
-        if (unzLocateFile(zip.get(), name.c_str(), 2) != UNZ_OK) return "";  // 2: in any case
-        const auto broken = [&](const char* what) {
-            fail(file, 0, "", "the part {} of the workbook {}", reader::quote(name), what);
-        };
-        if (unzOpenCurrentFile(zip.get()) != UNZ_OK) broken("cannot be opened");
-        std::string text;
-        std::vector<char> block(1 << 16);
-        int count = 0;
-        while ((count = unzReadCurrentFile(zip.get(), block.data(), 1 << 16)) > 0) {
-            text.append(block.data(), static_cast<std::size_t>(count));
-            if (text.size() > largest_part) broken("is larger than 64 MiB");
-        }
-        if (unzCloseCurrentFile(zip.get()) != UNZ_OK || count < 0) broken("is damaged");
-        return text;
-    }
+    const WorkbookParts& part;
 
     pugi::xml_document xml(const std::string& name) const {
         pugi::xml_document document;
@@ -164,8 +164,15 @@ std::vector<SheetText> sheets_of(const Workbook& book) {
 
 std::string csv_of_workbook(const std::filesystem::path& path, const std::string& wanted) {
     const std::string file = path.string();
-    const Workbook book{file, {unzOpen64(file.c_str()), unzClose}};
-    if (!book.zip) fail(file, 0, "", "not a workbook (.xlsx)");
+    const std::unique_ptr<void, int (*)(void*)> zip{unzOpen64(file.c_str()), unzClose};
+    if (!zip) fail(file, 0, "", "not a workbook (.xlsx)");
+    return csv_of_workbook([&](const std::string& name) { return unpacked(zip.get(), name, file); },
+                           file, wanted);
+}
+
+std::string csv_of_workbook(const WorkbookParts& parts, const std::string& file,
+                            const std::string& wanted) {
+    const Workbook book{file, parts};
     std::vector<SheetText> sheets = sheets_of(book);
     if (sheets.empty()) fail(file, 0, "", "a workbook without a visible sheet");
     std::vector<std::string> names;

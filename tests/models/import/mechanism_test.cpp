@@ -190,10 +190,11 @@ TEST(Mechanism, OfAssettoCorsaIsThatOfItsPoints) {
         return refusal_of(replaced(text, what, by), "s.ini", options);
     };
     EXPECT_TRUE(says(refused("TYPE=ML", "TYPE=SOLID"), "s.ini:25: TYPE: 'SOLID' is not read"));
-    EXPECT_TRUE(says(refused("JOINT3_TYRE", "JOINT9"), "JOINT3_TYRE: missing in [REAR]"));
-    EXPECT_TRUE(says(refused("0.086,-0.156,0.0", "0.086,-0.156"), "JOINT3_TYRE: 2 numbers"));
-    EXPECT_TRUE(
-        says(refused("0.086,-0.156,0.0", "0.086,x,0.0"), "JOINT3_TYRE: 'x' is not a number"));
+    EXPECT_TRUE(says(refused("JOINT3_TYRE", "JOINT9"), "REAR.JOINT3_TYRE: missing"));
+    EXPECT_TRUE(says(refused("0.086,-0.156,0.0", "0.086,-0.156"),
+                     "REAR.JOINT3_TYRE: expected a list of 3 numbers, found a list of 2"));
+    EXPECT_TRUE(says(refused("0.086,-0.156,0.0", "0.086,x,0.0"),
+                     "REAR.JOINT3_TYRE: expected a number, found 'x'"));
     EXPECT_TRUE(says(refused("TRACK=1.9", "TRACK"), "s.ini:26: expected [SECTION] or KEY=VALUE"));
 }
 

@@ -32,6 +32,7 @@ TEST(Points, AreTurnedToTheAxesOfAScene) {
         const std::string yaml = importer::import_text(table, "p.csv", with_axes(axes)).yaml;
         EXPECT_TRUE(says(yaml, part));
         EXPECT_TRUE(says(yaml, axes));
+        EXPECT_TRUE(says(yaml, "# Understood: 2 points."));
         EXPECT_EQ(yaml.find("left-handed") != yaml.npos, std::string_view(axes).ends_with("z-up"));
     }
 }

@@ -1,0 +1,36 @@
+// Joints and primitives of ADAMS, and what a scene has for each.
+#pragma once
+
+#include <string_view>
+
+namespace elastocheck::importer::adm {
+
+enum class Position { any, meet, on_line, on_plane };       // of I in J
+enum class Parallel { none, z, z_and_x, z_and_x_one_way };  // axes of I and J
+
+struct JointOfAdams {
+    std::string_view keyword, flag;
+    std::string_view type;  // in a scene; the first of a type is the one that is exported
+    Position position = Position::any;
+    Parallel parallel = Parallel::none;
+    const char* along = nullptr;   // its field for the axis z of J
+    int axis_i = -1, axis_j = -1;  // of the markers, which the joint keeps perpendicular
+};
+inline constexpr JointOfAdams joints_of_adams[] = {
+    {"JOINT", "REVOLUTE", "revolute", Position::meet, Parallel::z, "axis"},
+    {"JOINT", "CYLINDRICAL", "cylindrical", Position::on_line, Parallel::z, "axis"},
+    {"JOINT", "TRANSLATIONAL", "translational", Position::on_line, Parallel::z_and_x, "axis"},
+    {"JOINT", "SPHERICAL", "spherical", Position::meet},
+    {"JOINT", "FIXED", "fixed", Position::meet, Parallel::z_and_x_one_way},
+    {"JOINT", "PLANAR", "planar", Position::on_plane, Parallel::z, "normal"},
+    {"JOINT", "UNIVERSAL", "universal", Position::meet, Parallel::none, nullptr, 2, 2},
+    {"JOINT", "HOOKE", "universal", Position::meet, Parallel::none, nullptr, 0, 1},
+    {"JPRIM", "ATPOINT", "spherical", Position::meet},
+    {"JPRIM", "INLINE", "in_line", Position::on_line, Parallel::none, "axis"},
+    {"JPRIM", "INPLANE", "in_plane", Position::on_plane, Parallel::none, "normal"},
+    {"JPRIM", "PARALLEL_AXES", "parallel", Position::any, Parallel::z, "axis"},
+    {"JPRIM", "PERPENDICULAR", "perpendicular", Position::any, Parallel::none, nullptr, 2, 2},
+    {"JPRIM", "ORIENTATION", "parallel", Position::any, Parallel::z_and_x_one_way, "axis"},
+};
+
+}  // namespace elastocheck::importer::adm
