@@ -101,11 +101,12 @@ void check_options(const Format& format, const Options& options, const std::stri
             fail(file, 0, option, "only for {}", formats_with(option));
     const bool makes = !options.as.empty() || format.read == import_assetto;
     const bool has_parts = !options.pushrod.empty() || !options.damper.empty() ||
-                           !options.roles.empty() || !options.rates.empty() || options.both_wheels;
+                           !options.roles.empty() || !options.rates.empty() ||
+                           options.both_wheels || options.rocker;
     if (!makes && has_parts)
         fail(file, 0, "--as",
-             "missing; --pushrod, --damper, --role, --rates and --both-wheels are of a mechanism: "
-             "--as {}",
+             "missing; --pushrod, --rocker, --damper, --role, --rates and --both-wheels are of a "
+             "mechanism: --as {}",
              fmt::join(mechanisms(), ", "));
     if (!makes && !options.axle.empty() && !format.has_bodies)
         fail(file, 0, "--axle", "of points only with --as: {}", fmt::join(mechanisms(), ", "));

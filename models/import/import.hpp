@@ -35,6 +35,7 @@ struct Options {
     // of points: the mechanism to make of them, "double_wishbone"; empty: points alone
     std::string as = {};
     std::string pushrod = {}, damper = {};  // on which of its parts: "upright", "lower", "upper"
+    bool rocker = false;  // a pushrod to a rocker, from the damper's part if none is given
     std::vector<std::string> roles = {};  // "tie_rod_inner=NAME"
     bool both_wheels = false;             // the other one as the mirror image
     std::string rates = {};               // file of a table of rates by role; empty: rigid

@@ -456,6 +456,9 @@ const Command import_command{
         command.add_option("--pushrod", request->options.pushrod,
                            "with --as: part on which a pushrod or pullrod to a rocker stands: "
                            "upright, lower, upper");
+        command.add_flag("--rocker", request->options.rocker,
+                         "with --as: a rocker, and a pushrod to it from the part on which the "
+                         "damper would stand");
         command.add_option("--damper", request->options.damper,
                            "with --as: part on which the damper stands: upright, lower, upper");
         command.add_option("--role", request->options.roles,

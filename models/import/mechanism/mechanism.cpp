@@ -346,7 +346,7 @@ struct Maker {
         if (!list) optional.push_back(entry(groups, "contact"));
         for (std::size_t k = 0; list && k < list->items.size(); ++k)
             optional.push_back(entry(groups, list->items[k].text));
-        const bool has_rod = !options.pushrod.empty(),
+        const bool has_rod = options.rocker || !options.pushrod.empty(),
                    may_damp = standard || !options.damper.empty();
         if (has_rod && !options.damper.empty())
             fail("--damper", "with a rocker the damper stands on it");

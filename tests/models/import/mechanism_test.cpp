@@ -105,6 +105,14 @@ TEST(Mechanism, StandsOnARockerByAPushrod) {
                wheel_at_end_of(by_hand("double_wishbone_rigid.yaml"), "travel").r)
                   .norm(),
               1e-9);
+    // the same by --rocker, of the part on which the damper would stand
+    auto rocker = as("double_wishbone");
+    rocker.rocker = true;
+    const std::string points = points_named("optimum_names.csv");
+    EXPECT_EQ(importer::import_text(points, "p.csv", rocker).yaml,
+              importer::import_text(points, "p.csv", options).yaml);
+    rocker.damper = "lower";
+    EXPECT_TRUE(says(refusal_of(points, "p.csv", rocker), "--damper: with a rocker the damper"));
     // without a second point the axis is across the rocker's plane: here along x as well
     std::string text = points_named("optimum_names.csv");
     text = replaced(replaced(text, "CHAS_RocAxi_L", "Other_L"), "CHAS_RocAxi_R", "Other_R");
