@@ -35,6 +35,9 @@ void adm(std::string_view input);
 void chrono(std::string_view input);
 void subsystem(std::string_view input);  // .sub
 void points(std::string_view input);     // .csv
+void shark(std::string_view input);      // .shk
+void assetto(std::string_view input);    // .ini
+void workbook(std::string_view input);   // the parts of an .xlsx
 void property(std::string_view input);   // .bus, .spr, .bum, .reb
 
 inline constexpr std::array targets{Target{"scene", scene},
@@ -45,6 +48,9 @@ inline constexpr std::array targets{Target{"scene", scene},
                                     Target{"chrono", chrono, true, ".json"},
                                     Target{"subsystem", subsystem, false, ".sub"},
                                     Target{"points", points, false, ".csv"},
+                                    Target{"shark", shark, false, ".shk"},
+                                    Target{"assetto", assetto, false, ".ini"},
+                                    Target{"workbook", workbook},
                                     Target{"property", property, false, ".bus .spr .bum .reb"}};
 
 // Throws Fault where the text, but for its ends of lines, holds what no name may hold.
