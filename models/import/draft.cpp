@@ -234,22 +234,17 @@ std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
 
 }  // namespace
 
-namespace {
-
-// "1 point", "2 points", "3 bodies"; words of the file in capitals stay: "2 MARKER".
-std::string counted_kind(int n, const std::string& kind) {
+std::string counted(int n, const std::string& kind) {
     if (n == 1 || reader::small_letters(kind) != kind) return fmt::format("{} {}", n, kind);
     return kind.ends_with('y') ? fmt::format("{} {}ies", n, kind.substr(0, kind.size() - 1))
                                : fmt::format("{} {}s", n, kind);
 }
 
-}  // namespace
-
 std::vector<std::string> described(const Notes& notes) {
     std::vector<std::string> lines;
     std::string understood;
     for (const auto& [kind, n] : notes.understood)
-        understood += (understood.empty() ? "" : ", ") + counted_kind(n, kind);
+        understood += (understood.empty() ? "" : ", ") + counted(n, kind);
     lines.push_back("Understood: " + (understood.empty() ? "nothing" : understood) + ".");
     for (const auto& [role, point] : notes.roles)
         lines.push_back(fmt::format("Point {}: {}.", role, described(point)));

@@ -30,6 +30,9 @@ std::string with(std::string text, std::string_view word, std::string_view by);
 // What stands between the separators, trimmed.
 std::vector<std::string> split(std::string_view text, std::string_view separator);
 
+// "1 point", "2 points", "3 bodies"; words of a file in capitals stay: "2 MARKER".
+std::string counted(int n, const std::string& kind);
+
 // ---- Numbers and fields in the format of a scene.
 
 std::string number(double x);  // the shortest text that reads back as x

@@ -78,6 +78,7 @@ constexpr Format formats[] = {
     {".xlsx", "workbooks of points", read_by<import_points>, false,
      "--axes --as --axle --columns --unit --sheet"},
     {".shk", "points of Lotus SHARK", read_by<import_points>, false, "--axes --as --axle --unit"},
+    {".cmd", "points of ADAMS/View", read_by<import_points>, false, "--axes --as --axle --unit"},
     {".ini", "suspensions.ini of Assetto Corsa", import_assetto, false, "--as --axle"},
 };
 

@@ -59,7 +59,7 @@ struct Imported {
     int bodies = 0, elements = 0, joints = 0;
 };
 
-// Selects the format by extension: .adm, .json, .sub, .csv, .xlsx, .shk, .ini (points). Throws SceneError "file:line:
+// Selects the format by extension: .adm, .json, .sub, .csv, .xlsx, .shk, .cmd, .ini (points). Throws SceneError "file:line:
 // ..." for errors in the file and parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 

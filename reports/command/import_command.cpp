@@ -176,8 +176,8 @@ int import(const ImportRequest& request) {
         return fine;
     }
     for (const auto& line : lines) print("{}\n", line);
-    print("{}: {} bodies, {} joints, {} elements\n", request.output, result.bodies, result.joints,
-          result.elements);
+    print("{}: {}, {}, {}\n", request.output, importer::counted(result.bodies, "body"),
+          importer::counted(result.joints, "joint"), importer::counted(result.elements, "element"));
     return fine;
 }
 
@@ -418,12 +418,13 @@ int export_scene(const ExportRequest& request) {
 const Command import_command{
     Group::models, "import",
     "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
-    "hardpoints .sub, tables of points .csv and .xlsx, points of Lotus SHARK .shk, "
+    "hardpoints .sub, tables of points .csv and .xlsx, points of Lotus SHARK .shk and "
+    "ADAMS/View .cmd, "
     "suspensions.ini of Assetto Corsa",
     [](CLI::App& command) -> Run {
         const auto request = std::make_shared<ImportRequest>();
         as_file(command.add_option("FILE", request->file,
-                                   "the model (.adm, .json, .sub, .csv, .xlsx, .shk, .ini)"))
+                                   "the model (.adm, .json, .sub, .csv, .xlsx, .shk, .cmd, .ini)"))
             ->required();
         as_file(command.add_option("-o,--output", request->output, "write the scene to this file"));
         command.add_option("--wheel", request->options.wheel,
@@ -452,7 +453,7 @@ const Command import_command{
         command.add_option(
             "--as", request->options.as,
             "mechanism to make of points: double_wishbone, strut, five_link, "
-            "trailing_arm, live_axle; rigid without --rates (.csv, .xlsx, .shk, .sub, .ini)");
+            "trailing_arm, live_axle; rigid without --rates (.csv, .xlsx, .shk, .cmd, .sub, .ini)");
         command.add_option("--pushrod", request->options.pushrod,
                            "with --as: part on which a pushrod or pullrod to a rocker stands: "
                            "upright, lower, upper");

@@ -59,6 +59,7 @@ void points(std::string_view input) {
 }
 
 void shark(std::string_view input) { mechanisms_of(input, "points.shk", "x-rearward,y-right"); }
+void view(std::string_view input) { mechanisms_of(input, "points.cmd", "x-rearward,y-right"); }
 void assetto(std::string_view input) { mechanisms_of(input, "suspensions.ini", ""); }
 
 // The parts of a workbook, each behind a line "part NAME": as their zip file has them.

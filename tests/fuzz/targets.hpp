@@ -36,6 +36,7 @@ void chrono(std::string_view input);
 void subsystem(std::string_view input);  // .sub
 void points(std::string_view input);     // .csv
 void shark(std::string_view input);      // .shk
+void view(std::string_view input);       // .cmd
 void assetto(std::string_view input);    // .ini
 void workbook(std::string_view input);   // the parts of an .xlsx
 void property(std::string_view input);   // .bus, .spr, .bum, .reb
@@ -49,6 +50,7 @@ inline constexpr std::array targets{Target{"scene", scene},
                                     Target{"subsystem", subsystem, false, ".sub"},
                                     Target{"points", points, false, ".csv"},
                                     Target{"shark", shark, false, ".shk"},
+                                    Target{"view", view, false, ".cmd"},
                                     Target{"assetto", assetto, false, ".ini"},
                                     Target{"workbook", workbook},
                                     Target{"property", property, false, ".bus .spr .bum .reb"}};

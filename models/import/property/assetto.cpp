@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "models/import/import.hpp"
 #include "models/reader/document/characters.hpp"

@@ -9,7 +9,7 @@
 
 #include "models/import/import.hpp"
 #include "models/import/property/columns.hpp"
-#include "models/import/property/shark.hpp"
+#include "models/import/property/named_points.hpp"
 #include "models/import/property/spreadsheet.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -200,11 +200,15 @@ Draft import_points(std::string_view text, const std::string& name, const Option
         fail(name, 0, "--unit", "{} is not a unit of a coordinate; allowed: {}",
              reader::quote(options.unit), fmt::join(length_units, ", "));
     const auto along = directions(options.axes, name);
-    const bool shark = reader::small_letters(name).ends_with(".shk");
-    Draft draft = draft_of_points(name, shark ? "points of Lotus SHARK" : "table of points");
+    const std::string ending = reader::small_letters(name.substr(name.rfind('.') + 1));
+    const bool shark = ending == "shk", view = ending == "cmd";
+    Draft draft = draft_of_points(name, shark  ? "points of Lotus SHARK"
+                                        : view ? "commands of ADAMS/View"
+                                               : "table of points");
     draft.remarks = {remark_on_axes(options.axes, along)};
-    const auto points = shark ? points_of_shark(text, name, options.unit, draft)
-                              : points_of_table(text, name, options, draft);
+    const auto points = shark  ? points_of_shark(text, name, options.unit, draft)
+                        : view ? points_of_view(text, name, options.unit, draft)
+                               : points_of_table(text, name, options, draft);
     remark_on_points(
         options, "Points only: bodies and joints are not in this file. Add yours below.", draft);
     if (points.empty()) fail(name, 0, "", "no point in this file");

@@ -1,4 +1,4 @@
-#include "models/import/property/shark.hpp"
+#include "models/import/property/named_points.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -331,6 +331,30 @@ TEST(PointsTable, OfAWorkbookIsReadAsThatOfItsSheet) {
         refusal_of([&] { importer::import_file(file, with_axes("x-forward,y-left")); }).empty());
 }
 
+// Points and markers of parts that are placed and turned; a place that is an expression is left out.
+TEST(Points, OfAdamsViewAreInTheFramesOfTheirCommands) {
+    const std::string text = file_of_points("view.cmd");
+    importer::Options options = with_axes("x-rearward,y-left,z-up");
+    const auto read = importer::import_text(text, "c.cmd", options);
+    EXPECT_TRUE(says(read.yaml, "hpl_uca_front: [100, 240, 280.8]  # line 12, hpl_uca_front"));
+    EXPECT_TRUE(says(read.yaml, "upper_ball: [-12, 540, 300]"));
+    EXPECT_TRUE(says(read.yaml, "lower_ball: [5, 575, 110]"));
+    EXPECT_TRUE(says(notes_of(read), "with a place that is an expression: line 41, "));
+    options.as = "double_wishbone";
+    EXPECT_EQ(importer::import_text(text, "c.cmd", options).bodies, 4);
+    const std::string listed = file_of_points("listed.cmd");
+    const auto other = importer::import_text(listed, "c.cmd", with_axes("x-forward,y-left"));
+    EXPECT_TRUE(says(other.yaml, "arm_outer: [500, 250, 100]"));
+    EXPECT_TRUE(says(other.yaml, "arm_inner: [750, 500, 100]"));
+    const auto refused = [&](const std::string& what, const std::string& by) {
+        return refusal_of(replaced(listed, what, by), "c.cmd", with_axes("x-forward,y-left"));
+    };
+    EXPECT_TRUE(says(refused("= .car.ground.turned\n", "= .car.arm\n"),
+                     "c.cmd:5: relative_to: no command before creates '.car.arm'"));
+    EXPECT_TRUE(says(refused("length = meter", "length = mile"), "c.cmd:2: length: 'mile'"));
+    EXPECT_TRUE(says(refused("length = meter", ""), "--unit: the file does not say its unit"));
+}
+
 TEST(PointsTable, SplitsAsItsSeparatorSays) {
     const auto rows = [](const char* text) { return importer::read_sheet(text, "p.csv", 4); };
     const auto sheet = rows("sep=|\r\n\r\n a |\"b\"\"|c\"|d|1,5;2\r\n");

@@ -1,4 +1,4 @@
-// Points of Lotus SHARK: files that it saves, and its listings (.shk).
+// Points with names, of the programs whose files have them without a table.
 #pragma once
 
 #include <array>
@@ -23,5 +23,11 @@ struct NamedPoint {
 // otherwise. Throws SceneError with the line of what is neither.
 std::vector<NamedPoint> points_of_shark(std::string_view text, const std::string& file,
                                         const std::string& unit, Draft& draft);
+
+// The points and markers that the commands of ADAMS/View (.cmd) create, in the frames of the parts and
+// markers that they name. The unit is that of the file's `defaults units`, else `unit`. Throws SceneError
+// with the line of a place that is an expression, or in a frame that the file does not create.
+std::vector<NamedPoint> points_of_view(std::string_view text, const std::string& file,
+                                       const std::string& unit, Draft& draft);
 
 }  // namespace elastocheck::importer
