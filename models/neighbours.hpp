@@ -37,12 +37,14 @@ struct NeighbourStates {
     Outcome outcome = Outcome::converged;
     std::string detail;
     std::vector<Equilibrium> states;
+    bool settled = true;  // every chord method has met (of the equilibrium leg)
 };
 
 // Its largest number of steps, and the motion of the last but one as a share of that of the first:
 // the reactions follow the motion by one step.
 inline constexpr int chord_steps = 10;
 inline constexpr double chord_met = 1e-9;
+inline constexpr double chord_rounding = 1e-14;  // of a motion, in shares of the model's size
 
 // Σ |w|: the rounding of G is amplified by it.
 inline double amplification(const Neighbours& stencil) {

@@ -17,6 +17,7 @@
 #include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
 #include "models/overloaded.hpp"
+#include "models/structure.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/path.hpp"
 
@@ -460,9 +461,14 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
                         trim.adjust.size(), trim.until.size()));
     TrimProblem problem = pose(scene);
     problem.solver = solver;
-    if (solver == Leg::series)
+    std::vector<int> parts;
+    structure(problem.side.model, parts);
+    const bool is_similar = start != nullptr && start->structure == parts;
+    if (solver == Leg::series) {
         problem.analysis =
             std::make_shared<recursive::Analysis>(recursive::analyse(problem.side.model));
+        if (is_similar) problem.analysis->settled = start->settled;
+    }
     TrimRecord& record = result.record.emplace();
     const auto give_up = [&](const TrimAttempt& attempt, const std::string& where) {
         record.outcome = attempt.outcome;
@@ -476,7 +482,7 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     for (std::size_t k = 0; k < trim.adjust.size(); ++k)
         it.h[static_cast<Index>(k)] = step(trim.adjust[k]);
     const Index n = it.p.size();
-    if (start != nullptr && start->J.rows() == n && start->J.cols() == n)
+    if (is_similar && start->J.rows() == n && start->J.cols() == n)
         iterate_from(*start, problem, it);
     const bool settled = it.J.size() > 0 && it.has_met();
     if (!settled) {
@@ -500,7 +506,9 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
         if (!record.detail.empty()) return result;
     }
 
-    if (start != nullptr) *start = {it.p, it.J};
+    if (start != nullptr)
+        *start = {it.p, it.J, std::move(parts),
+                  problem.analysis ? problem.analysis->settled : start->settled};
     if (settles != nullptr) *settles = {held, it.here.state};
     apply(trim, it.p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "elastocheck/channels.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"
 #include "elastocheck/trim.hpp"
+
+namespace elastocheck::recursive::series {
+struct Start;  // recursive/series/path.hpp
+}
 
 namespace elastocheck::compare {
 
@@ -25,14 +30,16 @@ struct TrimStart {
     // [conditions × adjustments]: change of each condition [m, rad] with a step h of each
     // adjustment (elastocheck/trim.hpp)
     Eigen::MatrixXd J;
+    std::vector<int> structure = {};  // of the settled model (models/structure.hpp)
+    std::shared_ptr<const recursive::series::Start> settled = {};  // by the series
 };
 
 // trim() by the series alone, for a program without the references. No second reference confirms
 // it: `confirmed` of its conditions is NaN, and `confirmed_by` is the series.
 //
-// With a `start` the equations are solved from there by Broyden's method, to the same accuracy;
-// where that does not converge, as by trim(). A start of another size, such as an empty one, is not
-// used. A trim that is reached replaces `start`.
+// With a `start` the equations are solved from there by Broyden's method, to the same accuracy, and
+// every state settles from the last one; where that does not converge, as by trim(). A start of
+// another structure or size, such as an empty one, is not used. A trim that is reached replaces `start`.
 Trimmed trim_by_series(const Scene& scene, TrimStart* start = nullptr);
 
 // The same by the equilibrium leg.

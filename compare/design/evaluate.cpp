@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
@@ -13,8 +14,12 @@
 #include "compare/comparison/points.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/deviation/deviation.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
+#include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
+#include "models/structure.hpp"
+#include "reference/equilibrium/neighbours.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -53,25 +58,43 @@ class NamedOutputs {
     std::vector<Channel> all_;
 };
 
-// Figures of one branch by one leg.
+// The sides of a branch on which figures are read.
+std::vector<BranchSide> read_sides(const Model& model, const ReadStates& of) {
+    const Branch& branch = model.branches[of.branch];
+    return sides_of(model, branch, of.whole ? std::min(branch.steps, interpolated_points) : 1);
+}
+
+// Figures of one branch, of those at values of the parameter or of those over another output.
 struct OnBranch {
     const Model& model;
-    const Branch& branch;
+    const ReadStates& states;
     Leg leg;
     std::span<const Figure> figures;
     FigureValues& result;
     std::vector<Channel> read = {};  // outputs of the figures, each once
+    std::vector<std::size_t> which = {};
 
+    const Branch& branch() const { return model.branches[states.branch]; }
+    bool has(const Figure& figure) const {
+        return figure.branch == branch().name && figure.over.empty() != states.whole;
+    }
     void add(const std::string& name, NamedOutputs& outputs) {
         if (!name.empty() && find_channel(read, name) < 0) read.push_back(outputs(name));
+    }
+    void add_figures(NamedOutputs& outputs) {
+        for (std::size_t k = 0; k < figures.size(); ++k)
+            if (has(figures[k])) {
+                add(figures[k].name, outputs), add(figures[k].over, outputs);
+                which.push_back(k);
+            }
     }
     std::size_t column(const std::string& name) const {
         return static_cast<std::size_t>(find_channel(read, name));
     }
-    void miss(const std::string& why, Outcome outcome = Outcome::converged) const {
+    void miss(const std::string& why) const {
         if (!result.why_not.empty()) return;
         result.why_not = why;
-        result.not_applicable = is_not_applicable(outcome);
+        result.not_applicable = is_not_applicable(states.outcome);
     }
     void set(std::size_t k, double value) const {
         const Channel& channel = read[column(figures[k].name)];
@@ -84,50 +107,63 @@ struct OnBranch {
                 std::isinf(value) ? why_undefined(channel) : "it could not be computed"));
     }
 
-    // Figures at values of the parameter.
-    void at_parameters(std::map<double, std::vector<std::size_t>> at) const {
-        for (const BranchSide& side : sides_of(model, branch, 1)) {
-            std::vector<double> points;
-            for (const auto& [a, which] : at)
-                if (a == 0 || a * side.branch.to > 0) points.push_back(a);
-            std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
-            if (points.empty()) continue;
-            Analyses analyses;
-            const auto path = solve_at(side, leg, points, [&](const Equilibrium& state) {
-                const auto here = at.find(state.load);
-                if (here == at.end()) return;
-                const Row row = row_of(model, read, side, {.leg = leg}, state, analyses);
-                for (const std::size_t k : here->second)
-                    set(k, row.values[column(figures[k].name)]);
-                at.erase(here);
-            });
-            for (const double a : points)
-                if (at.erase(a) > 0)
-                    miss(fmt::format("branch '{}': {}: {}", branch.name,
-                                     elastocheck::name(path.outcome), path.detail),
-                         path.outcome);
-        }
-    }
-
-    // Figures at values of another output, interpolated on the curve of the branch.
-    void over_outputs(std::span<const std::size_t> which) const {
-        const auto sides = sides_of(model, branch, std::min(branch.steps, interpolated_points));
-        const PathCurve path = solve_branch(model, read, branch, sides, {.leg = leg});
-        for (const std::size_t k : which) {
-            const Figure& figure = figures[k];
-            const auto x = placed_by(path.curve, column(figure.over));
-            if (reaches(x, figure.at))
-                set(k, interpolate(x, path.curve.channel(column(figure.name)), figure.at, 6));
+    void read_all() const {
+        Curve curve;
+        Analyses analyses;
+        for (const Equilibrium& state : states.states)
+            append(curve, state.load,
+                   row_of(model, read, states.sides.front(), {.leg = leg}, state, analyses).values);
+        for (const std::size_t k : which)
+            if (states.whole)
+                set_over_output(k, curve);
+            else if (const auto at =
+                         std::ranges::find(states.states, figures[k].at, &Equilibrium::load);
+                     at != states.states.end())
+                set(k, curve.values[static_cast<std::size_t>(at - states.states.begin())]
+                                   [column(figures[k].name)]);
             else
-                miss(x.empty()
-                         ? fmt::format("branch '{}': {} is not monotonic", branch.name, figure.over)
-                         : fmt::format("branch '{}' does not reach {} = {:g} {}", branch.name,
-                                       figure.over, figure.at,
-                                       symbol(read[column(figure.over)].unit)),
-                     path.outcome);
-        }
+                miss(fmt::format("branch '{}': {}: {}", branch().name,
+                                 elastocheck::name(states.outcome), states.detail));
+    }
+    // At a value of another output, interpolated on the curve of the branch.
+    void set_over_output(std::size_t k, const Curve& curve) const {
+        const Figure& figure = figures[k];
+        const auto x = placed_by(curve, column(figure.over));
+        if (reaches(x, figure.at))
+            set(k, interpolate(x, curve.channel(column(figure.name)), figure.at, 6));
+        else
+            miss(x.empty()
+                     ? fmt::format("branch '{}': {} is not monotonic", branch().name, figure.over)
+                     : fmt::format("branch '{}' does not reach {} = {:g} {}", branch().name,
+                                   figure.over, figure.at, symbol(read[column(figure.over)].unit)));
     }
 };
+
+// The states of one branch side at values of the parameter.
+void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, ReadStates& into) {
+    std::erase_if(points, [&](double a) { return a * side.branch.to < 0; });
+    std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
+    const auto again = std::ranges::unique(points);
+    points.erase(again.begin(), again.end());
+    if (points.empty()) return;
+    const auto path = solve_at(side, leg, points, [&](const Equilibrium& state) {
+        if (std::ranges::find(points, state.load) != points.end()) into.states.push_back(state);
+    });
+    if (into.outcome == Outcome::converged) into.outcome = path.outcome, into.detail = path.detail;
+}
+
+// Whether a model differs from that of the states in its numbers only.
+bool same_structure(const Model& model, std::span<const ReadStates> states) {
+    std::vector<int> here, there;
+    for (const ReadStates& of : states) {
+        if (of.branch >= model.branches.size()) return false;
+        here.clear(), there.clear();
+        structure(of.sides.front().model, here);
+        structure(read_sides(model, of).front().model, there);
+        if (here != there) return false;
+    }
+    return true;
+}
 
 // Changes of the figures where a number is 2h and h smaller, h and 2h larger.
 struct Changes {
@@ -164,22 +200,92 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
     return all;
 }
 
-FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg) {
+std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg) {
+    std::vector<ReadStates> all;
+    for (std::size_t b = 0; b < model.branches.size(); ++b)
+        for (const bool whole : {false, true}) {
+            ReadStates states{b, whole, {}};
+            std::vector<double> points;
+            for (const Figure& figure : figures)
+                if (figure.branch == model.branches[b].name && figure.over.empty() != whole)
+                    points.push_back(figure.at);
+            if (points.empty()) continue;
+            states.sides = read_sides(model, states);
+            if (whole) {
+                EquilibriumPath path = solve_branch(states.sides, {.leg = leg});
+                states.states = std::move(path.points);
+                states.outcome = path.outcome, states.detail = path.detail;
+            } else {
+                bool first = true;  // the start is on the first side
+                for (const BranchSide& side : states.sides) {
+                    solve_side(side, leg, points, states);
+                    if (std::exchange(first, false)) std::erase(points, 0.);
+                }
+            }
+            all.push_back(std::move(states));
+        }
+    return all;
+}
+
+FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
+                          std::span<const Figure> figures, Leg leg) {
     FigureValues result{VectorXd::Constant(std::ssize(figures), nan)};
     NamedOutputs outputs(model);
-    for (const auto& branch : model.branches) {
-        OnBranch on{model, branch, leg, figures, result};
-        std::map<double, std::vector<std::size_t>> placed;
-        std::vector<std::size_t> over;
-        for (std::size_t k = 0; k < figures.size(); ++k) {
-            if (figures[k].branch != branch.name) continue;
-            on.add(figures[k].name, outputs), on.add(figures[k].over, outputs);
-            (figures[k].over.empty() ? placed[figures[k].at] : over).push_back(k);
-        }
-        if (!placed.empty()) on.at_parameters(std::move(placed));
-        if (!over.empty()) on.over_outputs(over);
+    for (const ReadStates& of_branch : states) {
+        OnBranch on{model, of_branch, leg, figures, result};
+        on.add_figures(outputs);
+        on.read_all();
     }
     return result;
+}
+
+FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg) {
+    return read_figures(model, states_of(model, figures, leg), figures, leg);
+}
+
+std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
+                                                         std::span<const Model* const> models,
+                                                         int threads) {
+    std::vector<std::vector<ReadStates>> all(models.size());
+    if (std::ranges::any_of(states, [](const ReadStates& of) { return !of.complete(); }))
+        return all;
+    std::vector<std::atomic<bool>> near(models.size());
+    std::vector<Job> jobs;
+    for (std::size_t m = 0; m < models.size(); ++m) {
+        near[m] = models[m] != nullptr && same_structure(*models[m], states);
+        for (std::size_t k = 0; near[m] && k < states.size(); ++k) {
+            ReadStates& of = all[m].emplace_back(states[k]);
+            of.sides = read_sides(*models[m], of);
+        }
+    }
+    const auto move_state = [&](std::size_t k, std::size_t s) {
+        const Equilibrium& state = states[k].states[s];
+        std::vector<Neighbours> stencils;
+        std::vector<std::size_t> of;  // their models
+        for (std::size_t m = 0; m < models.size(); ++m)
+            if (near[m]) {
+                stencils.push_back({{&side_at(all[m][k].sides, state.load).model, 1, 1}});
+                of.push_back(m);
+            }
+        const BranchSide& side = side_at(states[k].sides, state.load);
+        const auto found =
+            reference::equilibrium::neighbour_states(side.model, side.branch, state, stencils);
+        for (std::size_t n = 0; n < found.size(); ++n) {
+            const BranchSide& there = side_at(all[of[n]][k].sides, state.load);
+            if (found[n].outcome == Outcome::converged && found[n].settled &&
+                ends_at_table(there.model, there.branch, found[n].states.front()).empty())
+                all[of[n]][k].states[s] = found[n].states.front();
+            else
+                near[of[n]] = false;
+        }
+    };
+    for (std::size_t k = 0; k < states.size(); ++k)
+        for (std::size_t s = 0; s < states[k].states.size(); ++s)
+            jobs.push_back({"", [&, k, s] { move_state(k, s); }});
+    run_jobs(jobs, threads, {});
+    for (std::size_t m = 0; m < models.size(); ++m)
+        if (!near[m]) all[m].clear();
+    return all;
 }
 
 VectorXd SearchRange::at(const VectorXd& shares) const {

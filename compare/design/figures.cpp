@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "compare/comparison/trim.hpp"
 #include "compare/jobs/jobs.hpp"
@@ -32,54 +35,100 @@ struct NearTrim : TrimStart {
     bool by_equilibrium = false;
 };
 
-// Figures of the scene with the numbers p, by the equilibrium leg. NaN where there is no such scene
-// (a negative rate, points that meet).
-//
-// A trim of the scene starts from that of a similar scene, `near`, and replaces it. It is solved by
-// the series, or by the equilibrium leg where the start settles past a limit point, which the
-// series does not reach: first by the leg that reached the last trim, then by the other one. No
-// second reference confirms it.
-FigureValues values_at(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
-                       NearTrim& near) {
+// The scene with the numbers p, the states at which its figures are read, by the equilibrium leg, and
+// the figures. Without a model there is no such scene (a negative rate, points that meet), or its trim
+// is not reached.
+struct AtPoint {
+    NearTrim trim = {};
+    std::optional<Model> model = {};
+    std::vector<ReadStates> states = {};
+    FigureValues figures = {};
+};
+
+// A failure of `set` leaves the figures without values.
+void guarded(AtPoint& at, std::size_t figures, const std::function<void()>& set) {
     try {
-        const Scene scene = varied.scene(p);
-        const auto trim_by = [&](bool by_equilibrium) {
-            return (by_equilibrium ? trim_not_confirmed : trim_by_series)(scene, &near);
-        };
-        Trimmed trimmed = trim_by(near.by_equilibrium);
-        if (trimmed.record && !trimmed.record->reached()) {
-            trimmed = trim_by(!near.by_equilibrium);
-            if (trimmed.record->reached()) near.by_equilibrium = !near.by_equilibrium;
-        }
-        return of_trimmed(trimmed, figures, Leg::equilibrium);
+        set();
     } catch (const std::runtime_error& error) {
-        return {VectorXd::Constant(std::ssize(figures), nan), error.what()};
+        at.figures = {VectorXd::Constant(static_cast<Index>(figures), nan), error.what()};
+        at.model.reset();
     }
 }
 
-// Values at points near the first one. The trim of the first point starts from that of the last
-// first point, and the trims of the others start from that of the first. A value at the same first
-// point is kept.
+// A trim of the scene starts from that of a similar scene, `at.trim`, and replaces it. It is solved by
+// the series, or by the equilibrium leg where the start settles past a limit point, which the
+// series does not reach: first by the leg that reached the last trim, then by the other one. No
+// second reference confirms it.
+void compile_at(const Varied& varied, const VectorXd& p, std::size_t figures, AtPoint& at) {
+    guarded(at, figures, [&] {
+        const Scene scene = varied.scene(p);
+        const auto trim_by = [&](bool by_equilibrium) {
+            return (by_equilibrium ? trim_not_confirmed : trim_by_series)(scene, &at.trim);
+        };
+        Trimmed trimmed = trim_by(at.trim.by_equilibrium);
+        if (trimmed.record && !trimmed.record->reached()) {
+            trimmed = trim_by(!at.trim.by_equilibrium);
+            if (trimmed.record->reached()) at.trim.by_equilibrium = !at.trim.by_equilibrium;
+        }
+        if (trimmed.record && !trimmed.record->reached())
+            throw std::runtime_error("trim: " + trimmed.record->detail);
+        at.model = compile(trimmed.scene);
+    });
+}
+
+// Without states they are found from the design position.
+void read_at(std::span<const Figure> figures, AtPoint& at) {
+    if (!at.model) return;
+    guarded(at, figures.size(), [&] {
+        if (at.states.empty()) at.states = states_of(*at.model, figures, Leg::equilibrium);
+        at.figures = read_figures(*at.model, at.states, figures, Leg::equilibrium);
+    });
+}
+
+FigureValues values_at(const Varied& varied, std::span<const Figure> figures, const VectorXd& p) {
+    AtPoint at;
+    compile_at(varied, p, figures.size(), at);
+    read_at(figures, at);
+    return at.figures;
+}
+
+// Values at points near the first one. Trim and states of the first point start from those of the
+// last first point, and those of the others from those of the first. A value at the same first point
+// is kept.
 struct SolvedFigures {
     Varied varied;
     std::vector<Figure> figures;
     int threads;
-    NearTrim near = {};
-    VectorXd first = {}, value = {};  // the last first point, and the figures there
+    VectorXd first = {};
+    AtPoint here = {};  // at the last first point
 
+    void on_all(std::vector<AtPoint>& points, const std::function<void(std::size_t)>& run) const {
+        std::vector<Job> jobs;
+        for (std::size_t k = 0; k < points.size(); ++k) jobs.push_back({"", [&, k] { run(k); }});
+        run_jobs(jobs, threads, {});
+    }
+    std::vector<AtPoint> near(std::span<const VectorXd> points) const {
+        std::vector<AtPoint> all(points.size(), AtPoint{here.trim});
+        on_all(all, [&](std::size_t k) { compile_at(varied, points[k], figures.size(), all[k]); });
+        std::vector<const Model*> models;
+        for (const AtPoint& at : all) models.push_back(at.model ? &*at.model : nullptr);
+        auto states = neighbouring_states(here.states, models, threads);
+        on_all(all, [&](std::size_t k) {
+            all[k].states = std::move(states[k]);
+            read_at(figures, all[k]);
+        });
+        return all;
+    }
     std::vector<VectorXd> operator()(const std::vector<VectorXd>& points) {
         if (first.size() != points[0].size() || first != points[0]) {
-            value = values_at(varied, figures, points[0], near).value;
+            AtPoint there = std::move(near({points.data(), 1}).front());
             first = points[0];
+            if (!there.model) there.trim = here.trim, there.states = std::move(here.states);
+            here = std::move(there);
         }
-        std::vector<VectorXd> values(points.size(), value);
-        std::vector<Job> jobs;
-        for (std::size_t k = 1; k < points.size(); ++k)
-            jobs.push_back({"", [&, k] {
-                                NearTrim start = near;
-                                values[k] = values_at(varied, figures, points[k], start).value;
-                            }});
-        run_jobs(jobs, threads, {});
+        std::vector<VectorXd> values{here.figures.value};
+        for (const AtPoint& at : near(std::span(points).subspan(1)))
+            values.push_back(at.figures.value);
         return values;
     }
 };
@@ -99,8 +148,7 @@ Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int th
 
 std::string why_not_solved(const Varied& varied, std::span<const Figure> figures, const VectorXd& p,
                            const char* where) {
-    NearTrim near;
-    const std::string why = values_at(varied, figures, p, near).why_not;
+    const std::string why = values_at(varied, figures, p).why_not;
     if (!why.empty()) return fmt::format("no value at {}: {}", where, why);
     const Figures solved = solved_figures(varied, {figures.begin(), figures.end()});
     const MatrixXd rate = solved.gradient(p);
@@ -111,9 +159,8 @@ std::string why_not_solved(const Varied& varied, std::span<const Figure> figures
             std::string beside;
             for (const double by : {solved.step[i], -solved.step[i]})
                 if (beside.empty())
-                    beside =
-                        values_at(varied, {&figure, 1}, p + by * VectorXd::Unit(p.size(), i), near)
-                            .why_not;
+                    beside = values_at(varied, {&figure, 1}, p + by * VectorXd::Unit(p.size(), i))
+                                 .why_not;
             return fmt::format("no rate at {}: {} on branch '{}' by {}: {}", where, figure.name,
                                figure.branch, varied.numbers[static_cast<std::size_t>(i)].path,
                                beside.empty() ? "it differs on both sides of this value" : beside);
@@ -155,19 +202,23 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures, const 
     std::string& why = result.why_not;
     bool judged = false;
     const Trimmed trimmed = trim(scene);
-    for (const auto leg : {Leg::energy, Leg::series}) {
+    for (const auto leg : {Leg::equilibrium, Leg::energy, Leg::series}) {
         const FigureValues computed = of_trimmed(trimmed, figures, leg);
-        (leg == Leg::energy ? result.energy : result.series) = computed.value;
+        if (leg != Leg::equilibrium)
+            (leg == Leg::energy ? result.energy : result.series) = computed.value;
         if (computed.not_applicable) continue;
-        judged = true;
+        judged = judged || leg != Leg::equilibrium;
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const auto i = static_cast<Index>(k);
             const double difference = std::abs(computed.value[i] - values[i]);
             if (why.empty() && std::isfinite(difference) &&
                 !(difference <= legs_agree * movement[i]))
-                why = fmt::format("{}: the {} differs by {:.2g} {}", figures[k].name,
-                                  leg == Leg::energy ? "energy leg" : "series", difference,
-                                  figures[k].unit);
+                why =
+                    fmt::format("{}: the {} differs by {:.2g} {}", figures[k].name,
+                                leg == Leg::equilibrium ? "equilibrium leg from the design position"
+                                : leg == Leg::energy    ? "energy leg"
+                                                        : "series",
+                                difference, figures[k].unit);
         }
         if (why.empty()) why = computed.why_not;
         if (why.empty() && !computed.value.allFinite())

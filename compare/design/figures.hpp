@@ -43,6 +43,31 @@ struct FigureValues {
     bool not_applicable = false;  // the reason is that the leg does not apply to the scene
 };
 FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg);
+
+// States of a leg at which figures of one branch are read: at values of its parameter, or along the
+// whole branch for figures over another output.
+struct ReadStates {
+    std::size_t branch = 0;  // position in Model::branches
+    bool whole = false;
+    std::vector<BranchSide> sides;
+    std::vector<Equilibrium> states = {};
+    Outcome outcome = Outcome::converged;  // why states are missing
+    std::string detail = {};
+
+    bool complete() const { return outcome == Outcome::converged; }
+};
+// evaluate() in its two parts.
+std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg);
+FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
+                          std::span<const Figure> figures, Leg leg);
+// Of each model (null: none) the states by the equilibrium leg at the same places, from the `states`
+// of a similar model by the chord method (models/neighbours.hpp), which factorises once a state for
+// all models. None for a model of another structure, and where the method does not meet: there the
+// models are far from each other.
+std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
+                                                         std::span<const Model* const> models,
+                                                         int threads);
+
 // Of the scene with its trim.
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures,
                            Leg leg = Leg::equilibrium);
@@ -73,7 +98,8 @@ struct Figures {
     // [figures × numbers], NaN where there is no rate
     Eigen::MatrixXd gradient(const Eigen::VectorXd& p) const;
 };
-// By the equilibrium leg, points on several threads; a trim starts from that of the last first point.
+// By the equilibrium leg, points on several threads. Trim and states start from those of the last
+// first point where that is near, else from the design position.
 Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads = 1);
 
 // Reason why one of the figures has no value, or else no rate, at p: "no rate at the start: ...".
@@ -87,7 +113,8 @@ std::string why_still(const Varied& varied, const Figure& figure);
 struct Confirmation {
     Eigen::VectorXd energy, series;  // figures in their units; NaN where a leg does not apply
     // A leg other than the equilibrium leg applies, and each that applies agrees on every figure, to
-    // a millionth of its movement over the ranges of the numbers.
+    // a millionth of its movement over the ranges of the numbers; and so does the equilibrium leg,
+    // solved from the design position.
     bool confirmed = false;
     std::string why_not = {};
 };

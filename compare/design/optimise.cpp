@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <random>
 
 #include "compare/design/least_squares.hpp"
@@ -205,6 +206,27 @@ bool is_better(const Search& one, const Search& other) {
     return size(one) < size(other) - 1e-6 * std::abs(size(other));
 }
 
+// The best of the points x so far: whether it is within the bands, and its cost or its distance.
+struct Seen {
+    const Bands& bands;
+    int minimised;
+    bool met = false;
+    double size = unbounded;
+
+    bool take(const VectorXd& x, const VectorXd& f) {
+        const VectorXd off =
+            (f - f.cwiseMax(bands.low).cwiseMin(bands.high)).cwiseQuotient(bands.scale);
+        const bool is_within = off.cwiseAbs().maxCoeff() <= within_bands;
+        const double here = !is_within      ? off.norm()
+                            : minimised < 0 ? x.norm()
+                                            : f[minimised] / bands.scale[minimised];
+        if (!f.allFinite() || (met && !is_within) || (met == is_within && !(here < size)))
+            return false;
+        met = is_within, size = here;
+        return true;
+    }
+};
+
 Search search_from(Problem& problem, const Bands& bands, const VectorXd& start) {
     Search search{.p = start, .excess = unbounded, .cost = unbounded};
     problem.best = {}, problem.least_cost = unbounded;
@@ -283,11 +305,16 @@ Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& 
     optimum.after = optimum.start.value;
     if (!optimum.start.complete()) return optimum;
     int evaluations = 0;
-    const Figures counted{[&](const std::vector<VectorXd>& points) {
-                              evaluations += static_cast<int>(points.size());
-                              return figures.values(points);
-                          },
-                          figures.step};
+    std::optional<Seen> seen;
+    const Figures counted{
+        [&](const std::vector<VectorXd>& points) {
+            evaluations += static_cast<int>(points.size());
+            auto values = figures.values(points);
+            if (seen && seen->take(range.shares(points[0]), values[0]) && best_so_far)
+                best_so_far(points[0], seen->met);
+            return values;
+        },
+        figures.step};
     Problem problem = problem_of(counted, goals, range, optimum);
     Bands bands{VectorXd::Constant(goals.low.size(), -unbounded),
                 VectorXd::Constant(goals.low.size(), unbounded), optimum.scale};
@@ -297,6 +324,8 @@ Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& 
         optimum
             .still[static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(goals.minimised)])])
         return optimum;
+    seen.emplace(bands, goals.minimised);
+    (void)seen->take(range.shares(range.start), optimum.start.value);
 
     Search& best = optimum;
     for (std::size_t k = 0; k < starts.size(); ++k) {
@@ -312,7 +341,6 @@ Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& 
         if (!found.has_value || (optimum.best >= 0 && !is_better(found, best))) continue;
         optimum.best = static_cast<int>(k);
         best = found;
-        if (best_so_far) best_so_far(best.p, best.met);
     }
     if (optimum.best < 0) return optimum;
     optimum.after = figures.value(optimum.p);

@@ -69,7 +69,8 @@ struct Optimum : Search {  // the best search
     int best = -1;  // of the searches; -1: none, because a goal that counts does not move
 };
 
-// Called with the numbers of each search that is better than all before.
+// Called with all numbers at which figures are found that are better than all before: within the bands
+// at less cost, or nearer to them than at the start.
 using BestSoFar = std::function<void(const Eigen::VectorXd& p, bool met)>;
 
 // Nothing but `start` is set where that is not complete. Figures of still goals are left out of the

@@ -51,7 +51,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
         constexpr double not_judged = std::numeric_limits<double>::infinity();
         for (const System& system : systems) {
             Eigen::VectorXd x = tangent.x;
-            double first = 0;
+            double first = 0, size = 0;
             bool met = false, last = false;
             for (int step = 0; step < chord_steps && !last; ++step) {
                 last = met;
@@ -59,10 +59,11 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                     tangent, residual(system, tangent.loading, x) - here, not_judged);
                 if (by.outcome != Outcome::converged) break;
                 x = moved(system, x, by.dx);
-                const double size = pose_size(system, by.dx);
+                size = pose_size(system, by.dx);
                 if (step == 0) first = size;
                 met = size <= chord_met * first;
             }
+            result.settled = result.settled && (met || size <= chord_rounding);
             result.states.push_back(state_of(system, tangent.loading, x));
         }
     }
