@@ -26,7 +26,7 @@ bool leads_out_of(const std::filesystem::path& folder, const std::filesystem::pa
     namespace fs = std::filesystem;
     std::error_code unknown;
     const fs::path inside = fs::canonical(folder.empty() ? "." : folder, unknown),
-                   target = fs::weakly_canonical(file, unknown);
+                   target = fs::weakly_canonical(fs::absolute(file), unknown);
     return !unknown && std::ranges::mismatch(inside, target).in1 != inside.end();
 }
 
