@@ -22,6 +22,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -85,35 +86,9 @@ Curve curve_of(const Model& model, const Branch& branch, const std::vector<Chann
 // Arms that swing about lateral axes move the carrier in the side view alone: there the instant centre
 // of the drawing is the one of the motion.
 TEST(Definitions, SideViewPlanesGiveTheAntiDiveOfArmsOnLateralAxes) {
-    const char* text = R"(
-elastocheck: 1
-name: trailing links
-units: {length: m, angle: rad, force: N}
-points:
-  upper: [0.02, 0.7, 0.15]
-  lower: [-0.01, 0.7, -0.12]
-  upper_in: [-0.4, 0.6, 0.2]
-  upper_out: [-0.4, 0.8, 0.2]
-  lower_in: [-0.5, 0.6, -0.05]
-  lower_out: [-0.5, 0.8, -0.05]
-  centre: [0, 0.75, 0]
-  patch: [0, 0.75, -0.3]
-bodies: {a: {origin: upper}, b: {origin: lower}, carrier: {origin: centre}}
-joints:
-  ua: {type: revolute, bodies: [a, ground], at: upper_in, axis: y}
-  lb: {type: revolute, bodies: [b, ground], at: lower_in, axis: y}
-  u: {type: spherical, bodies: [a, carrier], at: upper}
-  l: {type: spherical, bodies: [b, carrier], at: lower}
-  straight: {type: perpendicular, bodies: [carrier, ground], axis_i: y, axis_j: x}
-springs: {coil: {bodies: [b, ground], from: lower, to: upper_in, rate: 3e4}}
-branches: {travel: {drive: travel, from: -0.02, to: 0.02, steps: 4}}
-wheel: {body: carrier, centre: centre, contact_patch: patch, spin_axis: y, side: left}
-vehicle: {wheelbase: 2.6, cg_height: 0.5, axle: AXLE, brake_share: 0.7, drive_share: 1}
-)";
     for (const auto& [axle, figure] : {std::pair{"front", "anti_dive"}, {"rear", "anti_squat"}}) {
-        std::string scene = text;
-        scene.replace(scene.find("AXLE"), 4, axle);
-        const Model model = compile(parse_scene(scene, "links.yaml"));
+        const Model model =
+            compile(support::scene_of("compare/scenes/trailing_links", {{"vehicle.axle", axle}}));
         auto both = characteristics(model);
         std::ranges::move(definition_channels(model), std::back_inserter(both));
         std::erase_if(both, [&](const Channel& c) {
@@ -291,25 +266,7 @@ void expect_near(double a, double b, const char* what) {
 // Arms that are parallel and horizontal in front view: their planes meet at infinity, at the height
 // of no inclination, so that the roll centre lies on the road.
 TEST(Definitions, RollCentreByPlanesOfHorizontalParallelArmsIsOnTheRoad) {
-    const Scene scene = parse_scene(R"(
-elastocheck: 1
-name: parallel arms
-units: {length: m, angle: deg, force: N}
-points: {lf: [0.2, 0.3, 0.2], lr: [-0.2, 0.3, 0.2], lo: [0, 0.6, 0.2], uf: [0.2, 0.35, 0.4],
-         ur: [-0.2, 0.35, 0.4], uo: [0, 0.58, 0.4], to: [-0.1, 0.6, 0.3], ti: [-0.1, 0.3, 0.3],
-         c: [0, 0.7, 0.3], p: [0, 0.7, 0]}
-bodies: {lower: {origin: lo}, upper: {origin: uo}, wheel: {origin: c}}
-joints:
-  lower: {type: revolute, bodies: [lower, ground], at: lf, axis: [lr, lf]}
-  upper: {type: revolute, bodies: [upper, ground], at: uf, axis: [ur, uf]}
-  lb: {type: spherical, bodies: [lower, wheel], at: lo}
-  ub: {type: spherical, bodies: [upper, wheel], at: uo}
-  rod: {type: distance, bodies: [wheel, ground], from: to, to: ti}
-branches: {travel: {drive: travel, from: -0.05, to: 0.05, steps: 4}}
-wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: left}
-)",
-                                    "parallel");
-    const Model model = compile(scene);
+    const Model model = compile(support::scene_of("compare/scenes/parallel_arms"));
     const auto defined = definition_channels(model);
     const int c = find_channel(defined, "roll_centre_height@planes");
     ASSERT_GE(c, 0);
@@ -400,30 +357,9 @@ TEST(DefinitionRates, ForceAtTheCentreEqualsThatAtAPatchInTheCentre) {
     EXPECT_GT(std::abs(at("lateral_force_steer@centre") - at("lateral_force_steer")), 1e-4);
 }
 
-constexpr const char* on_a_tyre = R"(
-elastocheck: 1
-name: on a tyre
-units: {length: m, angle: deg, force: N}
-points: {lf: [0.2, 0.3, 0.25], lr: [-0.2, 0.3, 0.22], lo: [0.01, 0.6, 0.2], uf: [0.2, 0.35, 0.45],
-         ur: [-0.2, 0.35, 0.43], uo: [-0.02, 0.58, 0.4], to: [-0.1, 0.6, 0.3], ti: [-0.1, 0.3, 0.32],
-         c: [0, 0.7, 0.3], p: [0, 0.7, 0], top: [0, 0.5, 0.7]}
-bodies: {lower: {origin: lo}, upper: {origin: uo}, wheel: {origin: c}}
-joints:
-  upper: {type: revolute, bodies: [upper, ground], at: uf, axis: [ur, uf]}
-  lb: {type: spherical, bodies: [lower, wheel], at: lo}
-  ub: {type: spherical, bodies: [upper, wheel], at: uo}
-  rod: {type: distance, bodies: [wheel, ground], from: to, to: ti}
-springs: {coil: {bodies: [lower, ground], from: lo, to: top, rate: 30000}}
-bushings:
-  front: {bodies: [lower, ground], at: lf, rates: [2e6, 4e6, 2e6], rotational_rates: [10, 10, 10]}
-  rear: {bodies: [lower, ground], at: lr, rates: [1e6, 2e6, 2e6], rotational_rates: [10, 10, 10]}
-TYRE
-loads: {side: {force: [0, 1, 0], on: wheel, at: p}}
-branches: {side: {load: side, from: -10, to: 10, steps: 2HOLD}}
-wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: left}
-)";
 Model with_tyre(const std::string& tyre) {
-    std::string text = on_a_tyre;
+    std::string text = support::scene_text("compare/scenes/on_a_tyre");
+    text.erase(0, text.find('\n'));
     text.replace(text.find("TYRE"), 4, tyre);
     text.replace(text.find("HOLD"), 4,
                  tyre.starts_with("tyres") ? ", hold: {tyres.t.road: 0}" : "");

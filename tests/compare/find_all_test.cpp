@@ -10,6 +10,7 @@
 #include "compare/proofs/multiple_equilibria.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -20,21 +21,8 @@ using reference::certificate::ProofState;
 // Two springs meeting at a flat apex: V(z) = 2 · ½ k (ℓ(z) - ℓ₀)² - f z, ℓ² = w² + z².
 constexpr double w = 0.3, h = 0.08, k = 100e3;
 
-std::string arch(const std::string& to) {
-    return R"(elastocheck: 1
-name: arch
-units: {length: mm, angle: deg, force: N}
-points: {l: [-300, 0, 0], r: [300, 0, 0], apex: [0, 0, 80]}
-bodies: {a: {origin: apex}}
-joints: {g: {type: translational, bodies: [a, ground], at: apex, axis: z}}
-springs:
-  l: {bodies: [a, ground], from: apex, to: l, rate: 100}
-  r: {bodies: [a, ground], from: apex, to: r, rate: 100}
-loads: {v: {on: a, at: apex, force: [0, 0, 1]}}
-branches: {d: {load: v, to: )" +
-           to + R"(, steps: 20}}
-probes: {apex: {on: a, at: apex}}
-)";
+Model arch(double to) {
+    return compile(support::scene_of("compare/scenes/arch", {setting("branches.d.to", to)}));
 }
 
 double force(double z) {
@@ -58,14 +46,13 @@ std::vector<double> heights(double load) {
     return roots;
 }
 
-AllEquilibria all_of(const std::string& text, double a) {
-    const Model model = compile(parse_scene(text, "scene.yaml"));
+AllEquilibria all_of(const Model& model, double a) {
     return find_equilibria(model, model.branches.front(), a);
 }
 
 TEST(FindAll, ArchBelowItsLimitHasTheThreeClosedFormEquilibriaProved) {
     for (const double load : {-120.0, -40.0, -200.0}) {
-        const auto all = all_of(arch("-200"), load);
+        const auto all = all_of(arch(-200), load);
         const auto expected = heights(load);
         ASSERT_EQ(expected.size(), 3u);
         ASSERT_EQ(all.list.size(), 3u) << load;
@@ -95,7 +82,7 @@ TEST(FindAll, ArchBelowItsLimitHasTheThreeClosedFormEquilibriaProved) {
 
 // Near the limit point the unstable equilibrium is 0.7 mm from the stable one.
 TEST(FindAll, StableAndUnstableEquilibriumNearTheLimitPointAreFound) {
-    const auto all = all_of(arch("-200"), -211.5);
+    const auto all = all_of(arch(-200), -211.5);
     const auto expected = heights(-211.5);
     ASSERT_EQ(expected.size(), 3u);
     ASSERT_EQ(all.list.size(), 3u);
@@ -109,21 +96,7 @@ TEST(FindAll, StableAndUnstableEquilibriumNearTheLimitPointAreFound) {
 // The arch snaps onto a stop that is so stiff that Newton's method with deflation
 // does not converge.
 TEST(FindAll, EquilibriumHeldByAStopIsFound) {
-    const auto all = all_of(R"(elastocheck: 1
-name: arch
-units: {length: m, angle: rad, force: N}
-points: {a: [0, 0, 0.0315], l: [-0.2225, 0, 0], r: [0.2225, 0, 0], low: [0, 0, -1]}
-bodies: {m: {origin: a}}
-joints: {g: {type: translational, bodies: [m, ground], at: a, axis: z}}
-springs:
-  sl: {bodies: [m, ground], from: a, to: l, rate: 15083.8, preload: 0}
-  sr: {bodies: [m, ground], from: a, to: r, rate: 15083.8}
-stops: {st: {bodies: [m, ground], from: a, to: low, bump: {clearance: 0.0454, rate: 208621.6}}}
-loads: {f: {on: m, at: a, force: [0, 0, -1]}}
-branches: {d: {load: f, to: 7.19537114428654, steps: 10}}
-probes: {tip: {on: m, at: a}}
-)",
-                            2.528);
+    const auto all = all_of(compile(support::scene_of("compare/scenes/arch_on_a_stop")), 2.528);
     EXPECT_TRUE(all.proved);
     const auto held = std::ranges::find_if(all.list, [](const FoundEquilibrium& one) {
         return std::abs(one.state.poses[0].r.z() + 0.0139) < 1e-4;
@@ -134,7 +107,7 @@ probes: {tip: {on: m, at: a}}
 }
 
 TEST(FindAll, TooLargeModelIsNotSearched) {
-    Model large = compile(parse_scene(arch("-200"), "scene.yaml"));
+    Model large = arch(-200);
     large.bodies.resize(101, large.bodies[0]);
     const auto all = find_equilibria(large, large.branches.front(), -120);
     EXPECT_EQ(all.outcome, Outcome::too_large);
@@ -143,7 +116,7 @@ TEST(FindAll, TooLargeModelIsNotSearched) {
 }
 
 TEST(FindAll, OnlyEquilibriumBeyondTheLimitPointIsOffTheBranch) {
-    const auto all = all_of(arch("-1500"), -1500);
+    const auto all = all_of(arch(-1500), -1500);
     EXPECT_NE(all.outcome, Outcome::converged);
     ASSERT_EQ(all.list.size(), 1u);
     EXPECT_TRUE(all.proved);
@@ -156,11 +129,11 @@ TEST(FindAll, OnlyEquilibriumBeyondTheLimitPointIsOffTheBranch) {
 // Flat arch with compressed springs: no branch starts, and distances are from the design position,
 // not "0 mm away".
 TEST(FindAll, DistancesAreFromTheDesignPositionIfNoBranchStarts) {
-    std::string flat = arch("-100");
+    std::string flat = support::scene_text("compare/scenes/arch");
     flat.replace(flat.find("[0, 0, 80]"), 10, "[0, 0, 0]");
     for (std::size_t at; (at = flat.find("rate: 100}")) != flat.npos;)
         flat.replace(at, 10, "rate: 100, free_length: 310}");
-    const auto all = all_of(flat, 0);
+    const auto all = all_of(compile(parse_scene(flat, "scene.yaml")), 0);
     EXPECT_FALSE(all.begins);
     ASSERT_EQ(all.list.size(), 3u);
     EXPECT_EQ(all.stable(), 2);
@@ -172,24 +145,13 @@ TEST(FindAll, DistancesAreFromTheDesignPositionIfNoBranchStarts) {
 }
 
 // Vertical rod on a torsion spring: it buckles at 100 N.
-const std::string column = R"(elastocheck: 1
-name: column
-units: {length: m, angle: rad, force: N}
-points: {foot: [0, 0, 0], head: [0, 0, 1], side: [0, 1, 0]}
-bodies: {rod: {origin: foot}}
-joints: {hinge: {type: revolute, bodies: [rod, ground], at: foot, axis: y}}
-torsion_springs: {spring: {bodies: [rod, ground], at: foot, axis: y, rate: 100}}
-loads: {v: {on: rod, at: head, force: [0, 0, -1]}}
-branches: {d: {load: v, to: 90, steps: 20}}
-probes: {head: {on: rod, at: head}}
-)";
-
 TEST(FindAll, BuckledColumnHasABentEquilibriumOnEitherSide) {
     // k θ = f sin θ
     const double f = 120;
     double theta = 1;
     for (int n = 0; n < 200; ++n) theta = f / 100 * std::sin(theta);
-    const auto all = all_of(column, f);
+    const Model model = compile(support::scene_of("compare/scenes/column"));
+    const auto all = all_of(model, f);
     ASSERT_EQ(all.list.size(), 3u);
     EXPECT_TRUE(all.proved);
     EXPECT_EQ(all.stable(), 2);
@@ -204,14 +166,13 @@ TEST(FindAll, BuckledColumnHasABentEquilibriumOnEitherSide) {
     EXPECT_NEAR(x[1], 0, 1e-8);
     EXPECT_NEAR(x[2], theta, 1e-8);
     // These are rotated by 59 deg; a smaller limit leaves only the straight one.
-    const Model model = compile(parse_scene(column, "scene.yaml"));
     const auto upright = find_equilibria(model, model.branches.front(), f, {.turn = 0.9});
     EXPECT_EQ(upright.list.size(), 1u);
     EXPECT_EQ(upright.turned_over, 2);
 }
 
 TEST(FindAll, LegsOnDifferentBranchesAreReportedAsSuch) {
-    const Model model = compile(parse_scene(arch("-120"), "scene.yaml"));
+    const Model model = arch(-120);
     const auto comparison = compare(model);
     auto branch = comparison.branches[0];
     const auto said = [&] {
@@ -239,7 +200,7 @@ TEST(FindAll, LegsOnDifferentBranchesAreReportedAsSuch) {
 
 TEST(FindAll, SlideInTheOppositeDirectionIsNotAnEquilibrium) {
     // The constraints of the slide hold in the reversed assembly too: these states are counted.
-    const auto all = all_of(arch("-200"), -120);
+    const auto all = all_of(arch(-200), -120);
     EXPECT_GT(all.other_way_round, 0);
     for (const auto& one : all.list) EXPECT_LT(one.angle, 1e-6);
 }

@@ -8,8 +8,8 @@
 #include "compare/comparison/legs.hpp"
 #include "compare/loads/loads.hpp"
 #include "elastocheck/compile.hpp"
-#include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -33,36 +33,7 @@ const Vector6& load(const PickupLoads& all, std::size_t c, const std::string& bo
 // A carrier on six rigid links does not move under load, so that the forces of the links are the
 // solution of six linear equations in the geometry as drawn:  Σ f_k n_k = -F,  Σ f_k p_k × n_k = -p × F.
 TEST(Loads, ForcesOfSixLinksAreTheSolutionOfSixEquationsOfBalance) {
-    const Scene scene = parse_scene(R"(
-elastocheck: 1
-name: six links
-units: {length: m, angle: rad, force: N}
-points:
-  a: [0.1, 0.8, 0.2]
-  b: [-0.1, 0.82, 0.22]
-  c: [0.05, 0.85, -0.15]
-  A: [0.15, 0.4, 0.25]
-  B: [-0.2, 0.42, 0.2]
-  C: [0.2, 0.35, -0.18]
-  D: [-0.25, 0.38, -0.16]
-  E: [0.15, 0.4, -0.1]
-  T: [0.02, 0.7, 0.7]
-  centre: [0, 0.9, 0]
-  patch: [0, 0.9, -0.3]
-bodies: {carrier: {origin: centre, mass: 40, centre_of_gravity: b}}
-gravity: [0, 0, -9.81]
-joints:
-  l1: {type: distance, bodies: [carrier, ground], from: a, to: A}
-  l2: {type: distance, bodies: [carrier, ground], from: a, to: B}
-  l3: {type: distance, bodies: [carrier, ground], from: c, to: C}
-  l4: {type: distance, bodies: [carrier, ground], from: c, to: D}
-  l5: {type: distance, bodies: [carrier, ground], from: b, to: E}
-  l6: {type: distance, bodies: [carrier, ground], from: b, to: T}
-loads: {up: {on: carrier, at: patch, force: [0, 0, 1]}}
-branches: {up: {load: up, to: 10, steps: 1}}
-wheel: {body: carrier, centre: centre, contact_patch: patch, contact: carrier, spin_axis: y, side: left}
-)",
-                                    "six.yaml");
+    const Scene scene = support::scene_of("compare/scenes/six_links");
     const LoadCase one{"kerb",
                        {{Kind::patch_force, 0, 2, 9000},
                         {Kind::patch_force, 0, 1, -2500},
@@ -107,22 +78,7 @@ wheel: {body: carrier, centre: centre, contact_patch: patch, contact: carrier, s
 
 // A bushing's force on its first body, in the axes of that body, is its output in its own frame.
 TEST(Loads, BushingForceInBodyAxesIsTheElasticForceInItsFrame) {
-    const Scene scene = parse_scene(R"(
-elastocheck: 1
-name: arm
-units: {length: mm, angle: deg, force: N, moment: N·m}
-points: {outer: [500, 900, 0], inner: [420, 600, -50], seat: [150, 800, 0], top: [150, 800, 300],
-         centre: [0, 1100, 0], patch: [0, 1100, -320]}
-bodies: {arm: {origin: centre}}
-bushings:
-  outer: {bodies: [arm, ground], at: outer, rates: [4000, 9000, 9000], rotational_rates: [2, 6, 6]}
-  inner: {bodies: [arm, ground], at: inner, rates: [4000, 9000, 9000], rotational_rates: [2, 6, 6]}
-springs: {coil: {bodies: [arm, ground], from: seat, to: top, rate: 90}}
-loads: {up: {on: arm, at: patch, force: [0, 0, 1]}}
-branches: {up: {load: up, to: 100, steps: 4}}
-wheel: {body: arm, centre: centre, contact_patch: patch, contact: carrier, spin_axis: y, side: left}
-)",
-                                    "arm.yaml");
+    const Scene scene = support::scene_of("compare/scenes/bushed_arm");
     const Model model = compile(
         with_cases(scene,
                    {{"up", {{Kind::patch_force, 0, 2, 800}, {Kind::patch_force, 0, 1, -300}}}}),
@@ -178,21 +134,7 @@ TEST(Loads, GroundReactionsBalanceTheLoadsOfACaseOnAnAxle) {
 }
 
 TEST(Loads, JointsThatShareALoadAreNamedAndTheirSumIsGiven) {
-    const Scene scene = parse_scene(R"(
-elastocheck: 1
-name: s
-units: {length: m, angle: rad, force: N}
-points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}
-bodies: {bar: {origin: a}}
-joints:
-  first: {type: revolute, bodies: [bar, ground], at: a, axis: x}
-  second: {type: revolute, bodies: [bar, ground], at: b, axis: x}
-bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}
-loads: {up: {on: bar, at: c, force: [0, 0, 1]}}
-branches: {up: {load: up, to: 10, steps: 2}}
-probes: {tip: {on: bar, at: c}}
-)",
-                                    "s.yaml");
+    const Scene scene = support::scene_of("compare/scenes/two_hinges");
     const auto all = loads_of(scene, {{"pull", {{Kind::body_force, 0, 1, 500}}}});
     ASSERT_FALSE(all.cases[0].loads.empty()) << all.cases[0].detail;
     EXPECT_FALSE(std::isfinite(load(all, 0, "bar", "first")[1]));

@@ -12,6 +12,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -19,25 +20,7 @@ namespace {
 
 // A block on a vertical slide and a spring of 20 N/mm, 0.4 m long in the design position,
 // under 500 N.
-Scene block() {
-    return parse_scene(
-        R"(elastocheck: 1
-name: block
-units: {length: m, angle: rad, force: N}
-points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}
-bodies: {block: {origin: high}}
-joints: {guide: {type: translational, bodies: [block, ground], at: high, axis: z}}
-springs:
-  coil: {bodies: [block, ground], from: high, to: low, rate: 20e3}
-  second: {bodies: [block, ground], from: high, to: low, rate: 10e3}
-  across: {bodies: [block, ground], from: high, to: aside, rate: 0.001}
-static_loads: {weight: {on: block, at: high, force: [0, 0, -500]}}
-loads: {up: {on: block, at: high, force: [0, 0, 1]}}
-branches: {up: {load: up, to: 100, steps: 4}}
-probes: {top: {on: block, at: high}}
-)",
-        "block.yaml");
-}
+Scene block() { return support::scene_of("compare/scenes/block"); }
 
 Trim::Adjustment preload(const Scene& scene, const std::string& spring) {
     for (std::size_t k = 0; k < scene.elastics.size(); ++k)

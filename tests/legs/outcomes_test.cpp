@@ -4,6 +4,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "tests/legs/legs.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::legs {
@@ -411,10 +412,7 @@ TEST_P(EveryMethod, SceneWithoutUnknownsConverges) {
 
 // ---- Scenes that were answered wrongly, or declined though another leg was right.
 
-OneWay found(const std::string& name) {
-    const std::filesystem::path scenes = ELASTOCHECK_SCENES;
-    return side_of(compile(read_scene(scenes / "../../tests/legs/found" / (name + ".yaml"))));
-}
+OneWay found(const std::string& name) { return side_of(support::scene_of("legs/found/" + name)); }
 
 // A rod between a block on springs and the ground, shortened from 102 mm on; the reader refuses it.
 OneWay shortened_rod(double by) {

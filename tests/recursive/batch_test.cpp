@@ -14,6 +14,7 @@
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/sides.hpp"
 #include "tests/recursive/random.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -373,17 +374,7 @@ TEST(Batch, LaneArithmeticEqualsThatOfDoubles) {
 
 // A variant whose driven length vanishes before the end of the branch.
 TEST(Batch, VariantWithInconsistentJointsIsReported) {
-    const Model design = compile(parse_scene(R"(elastocheck: 1
-name: rod
-units: {length: mm, angle: deg, force: N}
-points: {end: [400, 0, 0], base: [400, 20, 100]}
-bodies: {block: {origin: end}}
-joints: {rod: {type: distance, bodies: [block, ground], from: end, to: base}}
-bushings: {k: {bodies: [ground, block], at: end, rates: [50, 50, 50], rotational_rates: [10, 10, 10]}}
-branches: {b: {drive: joints.rod, to: -90, steps: 10}}
-probes: {end: {on: block, at: end}}
-)",
-                                             "rod.yaml"));
+    const Model design = compile(support::scene_of("recursive/scenes/rod_that_vanishes"));
     std::vector<Model> variants(5, design);
     std::get<DistanceBetween>(variants[2].constraints[0].kind).length = 0.08;
     const auto paths = in_batch(design, variants, {.points = 10});

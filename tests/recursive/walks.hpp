@@ -5,15 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "elastocheck/compile.hpp"
-#include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace elastocheck::recursive {
 
@@ -38,14 +37,11 @@ inline OneWay walked(const Scene& scene, const Branch& branch) {
 }
 
 inline Model found(const std::string& name, const std::vector<Setting>& settings = {}) {
-    const std::filesystem::path scenes = ELASTOCHECK_SCENES;
-    return compile(read_scene(scenes / "../../tests/recursive/found" / (name + ".yaml"), settings));
+    return compile(support::scene_of("recursive/found/" + name, settings));
 }
 inline Model model_of(const std::string& name, const std::vector<Setting>& settings = {},
                       Detail detail = Detail::required) {
-    const std::filesystem::path scenes = ELASTOCHECK_SCENES;
-    return compile(read_scene(scenes / "../../tests/recursive/scenes" / (name + ".yaml"), settings),
-                   detail);
+    return compile(support::scene_of("recursive/scenes/" + name, settings), detail);
 }
 
 // Outcome of every method on the first branch: one of `expected`, with `words` in its detail.

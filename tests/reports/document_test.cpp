@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include "compare/comparison/elements.hpp"
@@ -21,6 +20,7 @@
 #include "reports/render/render.hpp"
 #include "reports/tables/csv.hpp"
 #include "tests/reports/documents.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -169,40 +169,11 @@ TEST(Json, DocumentWithTooManyValuesIsRejectedBeforeParsing) {
 
 // ---- Wheel loads: what the road exerts.
 
-const std::string trailing_arm = R"(
-elastocheck: 1
-name: Semi-trailing arm with a heavy hub
-units: {length: mm, angle: deg, force: N}
-points: {outer: [500, 900, 0], inner: [420, 600, -50], seat: [150, 800, 0], top: [150, 800, 300],
-         centre: [0, 1100, 0], patch: [0, 1100, -320]}
-bodies: {arm: {origin: seat, mass: 12}, hub: {origin: centre, mass: 40}}
-gravity: [0, 0, -9.81]
-joints: {axis: {type: revolute, bodies: [arm, ground], at: outer, axis: [inner, outer]}, hub: {type: fixed, bodies: [arm, hub], at: centre}}
-springs: {coil: {bodies: [arm, ground], from: seat, to: top, rate: 90, preload: 3000}}
-tyres: {tyre: {rate: 200, preload: 4000}}
-loads:
-  vertical: {on: hub, at: patch, force: [0, 0, 1]}
-  brake: {on: hub, at: patch, force: [-1, 0, 0]}
-  spindle: {on: hub, at: centre, force: [0, 0, 1]}
-trim: {adjust: [springs.coil.preload], until: {travel: 0}, under: {vertical: 4000}}
-branches:
-  travel: {drive: travel, from: -60, to: 60, steps: 12}
-  patch: {drive: patch_travel, from: -60, to: 60, steps: 12}
-  load: {load: vertical, from: -1000, to: 1500, steps: 10}
-  held: {load: brake, to: 2000, steps: 4, hold: {travel: 0}}
-  spindle: {load: spindle, to: 800, steps: 4, static_loads: {vertical: 200}}
-  road: {drive: tyres.tyre.road, from: -15, to: 60, steps: 5, static_loads: {vertical: -4000}}
-wheel: {body: hub, centre: centre, contact_patch: patch, contact: carrier, spin_axis: y, side: left}
-)";
-
-std::string scene_text(const std::string& name) {
-    std::ifstream file(ELASTOCHECK_SCENES "/" + name + ".yaml");
-    return {std::istreambuf_iterator<char>(file), {}};
-}
+const std::string trailing_arm = support::scene_text("reports/scenes/heavy_hub");
 
 // A scene of models/scenes with masses.
 std::string heavy(const std::string& name, const std::vector<std::string>& bodies) {
-    std::string text = scene_text(name);
+    std::string text = support::text_of(ELASTOCHECK_SCENES "/" + name + ".yaml");
     for (const auto& body : bodies) {
         const auto at = text.find("\n  " + body + ": {origin: ") + 4 + body.size();
         text.insert(text.find('}', at), ", mass: 25");
@@ -275,7 +246,8 @@ TEST(WheelLoads, RoadForcesBalanceTheWeights) {
     expect_road_to_carry_the_scene(
         heavy("front_axle", {"wheel_left", "lower_arm_left", "drop_link_left", "rack"}), 3800);
     expect_road_to_carry_the_scene(heavy("solid_axle", {"axle", "lower_left"}), 4000);
-    expect_road_to_carry_the_scene(scene_text("tyre_on_road"), 3892.4);
+    expect_road_to_carry_the_scene(support::text_of(ELASTOCHECK_SCENES "/tyre_on_road.yaml"),
+                                   3892.4);
 }
 
 TEST(WheelLoads, WheelLoadIsUnknownUnderAnAmbiguousForce) {

@@ -10,19 +10,11 @@ namespace {
 struct Slider {
     double k = 20, k_s = 400, c = 1;
     double at(double F) const { return F <= k * c ? F / k : (F + k_s * c) / (k + k_s); }
-    std::string scene() const {
-        return fmt::format(
-            "elastocheck: 1\nname: slider\nunits: {{length: mm, angle: rad, force: N}}\n"
-            "points: {{seat: [0, 0, 0], top: [0, 0, 300]}}\nbodies: {{slider: {{origin: seat}}}}\n"
-            "joints: {{guide: {{type: translational, bodies: [slider, ground], at: seat, axis: "
-            "z}}}}\n"
-            "springs: {{coil: {{bodies: [slider, ground], from: seat, to: top, rate: {}, "
-            "bump_stop: "
-            "{{clearance: {}, rate: {}}}}}}}\n"
-            "loads: {{lift: {{on: slider, at: seat, force: [0, 0, 1]}}}}\n"
-            "branches: {{lift: {{load: lift, to: 100, steps: 10}}}}\n"
-            "probes: {{seat: {{on: slider, at: seat}}}}\n",
-            k, c, k_s);
+    Model model() const {
+        return compile(support::scene_of(
+            "reference/scenes/slider",
+            {setting("springs.coil.rate", k), setting("springs.coil.bump_stop.clearance", c),
+             setting("springs.coil.bump_stop.rate", k_s)}));
     }
 };
 struct OnSlider : Side {
@@ -39,7 +31,7 @@ struct OnSlider : Side {
         return certify_branch(model, branch, states);
     }
 };
-OnSlider on_slider(const Slider& slider) { return OnSlider(slider.scene()); }
+OnSlider on_slider(const Slider& slider) { return OnSlider(slider.model()); }
 
 TEST(CertifyBranch, StopOfAnyStiffnessIsCrossed) {
     for (const double k_s : {2., 400., 2e4, 2e6})
@@ -116,12 +108,7 @@ TEST(Certificate, PointOnACornerIsProvedAndAPerturbedOneIsExcluded) {
 
 // An arm on one bushing that is soft at first in all directions, and at its corner in some.
 Side cornered(const Formulation& formulation) {
-    Side at(
-        "elastocheck: 1\nname: arm\nunits: {length: mm, angle: deg, force: N}\n"
-        "points: {o: [0, 0, 0], p: [300, 100, 0]}\nbodies: {arm: {origin: p}}\n"
-        "bushings: {b: {bodies: [arm, ground], at: o, rates: [100, 200, 300], rotational_rates: "
-        "[7e5, 5e5, 4e5]}}\nloads: {push: {on: arm, at: p, force: [0.3, 0.2, 1]}}\n"
-        "branches: {up: {load: push, to: 600, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n");
+    Side at = side_of("arm_on_a_bushing");
     auto& bushing = std::get<Bushing>(at.model.elastics[0].kind);
     bushing.formulation = formulation;
     const auto K = std::get<LinearStiffness>(bushing.law).K;
@@ -188,29 +175,7 @@ TEST(CertifyBranch, CornersOfABushingAreCrossedOneAfterAnother) {
 
 // Every piece would have to cross the corner, without end.
 TEST(CertifyBranch, BranchThatStaysOnACornerIsProvedOrOpen) {
-    const Side at(R"(
-elastocheck: 1
-name: corner at rest
-units: {length: mm, angle: deg, force: N}
-points:
-  foot: [0, 0, 0]
-  head: [0, 0, 400]
-  side: [100, 0, 400]
-bodies:
-  plate: {origin: head}
-joints:
-  guide: {type: translational, bodies: [plate, ground], at: head, axis: z}
-springs:
-  first: {bodies: [plate, ground], from: head, to: foot, rate: 30}
-bushings:
-  b: {bodies: [plate, ground], at: head, rates: [10, 10, 10], rotational_rates: [1000, 1000, 1000], curves: {y: {table: [[-1, -100],[0, 0], [1, 300]]}}}
-loads:
-  vertical: {on: plate, at: head, force: [0, 0, 1]}
-branches:
-  up: {load: vertical, to: 300, steps: 10}
-probes:
-  centre: {on: plate, at: head}
-)");
+    const Side at = side_of("corner_at_rest");
     const auto path =
         equilibrium::solve(at.model, at.branch, std::vector<double>{0, 100, 200, 300});
     ASSERT_EQ(path.outcome, Outcome::converged);

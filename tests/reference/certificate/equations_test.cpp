@@ -71,19 +71,7 @@ TEST(CertificateEquations, RedundantJointsAreProvedWithTheirGapAndInconsistentOn
 // A rod on a ball joint, held by two springs at its other end, is free to spin about the line
 // between. Its origin lies beside that line.
 TEST(CertificateEquations, StateRotatedAlongAnIdleSpinIsProvedAndAStraightShiftIsExcluded) {
-    const Side way(
-        R"(elastocheck: 1
-name: rod
-units: {length: mm, angle: deg, force: N}
-points: {o: [0, 0, 0], p: [300, 0, 0], q: [150, 80, 0], s: [300, 100, 400], t: [300, -400, 100]}
-bodies: {rod: {origin: q}}
-joints: {ball: {type: spherical, bodies: [rod, ground], at: o}}
-springs: {a: {bodies: [rod, ground], from: p, to: s, rate: 30},
-          b: {bodies: [rod, ground], from: p, to: t, rate: 20}}
-loads: {push: {on: rod, at: p, force: [0, 0, 1]}}
-branches: {up: {load: push, to: 1000, steps: 10}}
-probes: {tip: {on: rod, at: p}}
-)");
+    const Side way = side_of("rod_on_a_ball");
     const Equilibrium state = way.solved(300);
     const Certificate c = way.certify(state);
     ASSERT_EQ(c.state, ProofState::proved) << c.detail;

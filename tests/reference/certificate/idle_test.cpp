@@ -9,17 +9,10 @@ namespace {
 // A body on one bushing in a turned frame, pulled along the frame's z.
 const Vector3d along = Vector3d(1, 2, 3).normalized();
 Side hung(double stiff, double soft, double load) {
-    return Side(fmt::format(
-        "elastocheck: 1\nname: soft\nunits: {{length: m, angle: rad, force: N}}\npoints: {{o: [0, "
-        "0, 0]}}\n"
-        "bodies: {{b: {{origin: o}}}}\nbushings: {{k: {{bodies: [ground, b], at: o, frame: {{z: "
-        "[1, 2, 3], "
-        "x: "
-        "[3, 0, -1]}}, rates: [{}, {}, {}], rotational_rates: [50, 50, 50]}}}}\n"
-        "loads: {{f: {{on: b, at: o, force: [0.2672612419124244, 0.5345224838248488, "
-        "0.8017837257372732]}}}}\n"
-        "branches: {{pull: {{load: f, to: {}, steps: 10}}}}\nprobes: {{tip: {{on: b, at: o}}}}\n",
-        stiff, stiff, soft, load));
+    return Side(compile(support::scene_of(
+        "reference/scenes/soft_along_z",
+        {setting("bushings.k.rates.x", stiff), setting("bushings.k.rates.y", stiff),
+         setting("bushings.k.rates.z", soft), setting("branches.pull.to", load)})));
 }
 Certificate at(const Side& way, double load, double distance) {
     Equilibrium state;
@@ -66,17 +59,7 @@ TEST(CertificateIdle, UnloadedMotionWithoutStiffnessIsIdle) {
 // A pendulum on a point: its spin about the vertical is idle, its swing is resisted by
 // the load alone.
 TEST(CertificateIdle, MotionWithGeometricStiffnessAloneIsNotIdle) {
-    const Side way(
-        R"(elastocheck: 1
-name: pendulum
-units: {length: m, angle: rad, force: N}
-points: {o: [0, 0, 0], p: [0, 0, -1]}
-bodies: {b: {origin: o}}
-bushings: {k: {bodies: [ground, b], at: o, rates: [1e9, 1e9, 1e9]}}
-loads: {f: {on: b, at: p, force: [0, 0, -1]}}
-branches: {pull: {load: f, to: 1, steps: 2}}
-probes: {tip: {on: b, at: p}}
-)");
+    const Side way = side_of("hung_on_a_point");
     for (const double tilt : {0., 1e-8, 1e-6}) {
         Equilibrium state;
         state.load = 1;
@@ -92,18 +75,7 @@ probes: {tip: {on: b, at: p}}
 // Upright column on a ball joint with a torsion spring. Its load is 1e-9 m off its axis, which
 // determines the direction of buckling.
 TEST(CertificateIdle, BucklingDirectionGivenByAnOffsetIsNotIdle) {
-    const Side way(
-        R"(elastocheck: 1
-name: column
-units: {length: m, angle: rad, force: N}
-points: {foot: [0, 0, 0], middle: [0, 0, 0.25], head: [1e-9, 0, 0.5]}
-bodies: {b: {origin: middle}}
-joints: {j: {type: spherical, bodies: [b, ground], at: foot}}
-bushings: {k: {bodies: [b, ground], at: foot, rates: [0, 0, 0], rotational_rates: [1000, 1000, 1000]}}
-loads: {f: {on: b, at: head, force: [0, 0, -1]}}
-branches: {press: {load: f, to: 6000, steps: 20}}
-probes: {tip: {on: b, at: head}}
-)");
+    const Side way = side_of("column_off_axis");
     const Equilibrium state = way.solved(6000);
     const Certificate right = way.certify(state);
     ASSERT_EQ(right.state, ProofState::proved) << right.detail;
@@ -140,19 +112,7 @@ TEST(CertificateIdle, SpinIsIdleUnderAnIsotropicLawAndNotUnderANearlyIsotropicOn
 
 // Two hinges on one axis are redundant; tilted against each other by 1e-10 rad they lock the arm.
 TEST(CertificateIdle, NearlyDependentRowsAreNotRedundant) {
-    Side way(
-        R"(elastocheck: 1
-name: swing
-units: {length: mm, angle: deg, force: N}
-points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}
-bodies: {arm: {origin: p}}
-joints: {a: {type: revolute, bodies: [arm, ground], at: o, axis: y},
-         b: {type: revolute, bodies: [arm, ground], at: q, axis: y}}
-springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}
-loads: {push: {on: arm, at: p, force: [0, 0, 1]}}
-branches: {up: {load: push, to: 1000, steps: 10}}
-probes: {tip: {on: arm, at: p}}
-)");
+    Side way = side_of("swing_on_two_hinges");
     const Equilibrium state = way.solved(500);
     ASSERT_EQ(way.certify(state).state, ProofState::proved);
     for (auto& constraint : way.model.constraints)

@@ -13,6 +13,7 @@
 #include "models/branch.hpp"
 #include "reference/certificate/certificate.hpp"
 #include "tests/support/builders.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -71,5 +72,10 @@ struct Side {
         return certificate::certify(model, branch, state, within);
     }
 };
+
+// Of a scene of tests/reference/scenes.
+inline Side side_of(const std::string& name) {
+    return Side(compile(support::scene_of("reference/scenes/" + name)));
+}
 
 }  // namespace elastocheck::reference::certificate

@@ -10,6 +10,7 @@
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace elastocheck {
 namespace {
@@ -17,77 +18,6 @@ namespace {
 // Five rods as bodies with a ball at each end, one ball duplicated; the knuckle of two welded
 // bodies with a redundant joint; a subframe of two bodies on bushings; a bracket welded to ground
 // with the spring and an idle appendage; a spring within the subframe.
-const std::string as_built = R"(elastocheck: 1
-name: as built
-units: {length: m, angle: deg, force: N}
-points:
-  hub: [0, 0.8, 0]
-  contact: [0, 0.8, -0.3]
-  in_1: [0.15, 0.4, 0.15]
-  out_1: [0.02, 0.75, 0.16]
-  in_2: [-0.2, 0.4, 0.14]
-  out_2: [-0.03, 0.74, 0.15]
-  in_3: [0.2, 0.35, -0.12]
-  out_3: [0.03, 0.76, -0.15]
-  in_4: [-0.25, 0.35, -0.1]
-  out_4: [-0.04, 0.76, -0.14]
-  in_5: [-0.2, 0.4, -0.02]
-  out_5: [-0.15, 0.78, -0.01]
-  top: [0, 0.7, 0.5]
-  mount: [0.3, 0.3, 0]
-  rear_mount: [-0.3, 0.2, 0.1]
-bodies:
-  wheel: {origin: hub}
-  knuckle: {origin: out_2}
-  rod_1: {origin: in_1}
-  rod_2: {origin: out_2}
-  rod_3: {origin: in_3}
-  rod_4: {origin: in_4}
-  rod_5: {origin: in_5}
-  subframe: {origin: mount}
-  subframe_rear: {origin: rear_mount}
-  bracket: {origin: top}
-  cable: {origin: top}
-joints:
-  inner_1: {type: spherical, bodies: [rod_1, subframe], at: in_1}
-  outer_1: {type: spherical, bodies: [rod_1, knuckle], at: out_1}
-  inner_2: {type: spherical, bodies: [subframe_rear, rod_2], at: in_2}
-  outer_2: {type: spherical, bodies: [knuckle, rod_2], at: out_2}
-  inner_3: {type: spherical, bodies: [rod_3, subframe], at: in_3}
-  outer_3: {type: spherical, bodies: [wheel, rod_3], at: out_3}
-  inner_4: {type: spherical, bodies: [rod_4, subframe_rear], at: in_4}
-  again_4: {type: spherical, bodies: [wheel, rod_4], at: out_4}
-  outer_4: {type: spherical, bodies: [rod_4, wheel], at: out_4}
-  inner_5: {type: spherical, bodies: [rod_5, ground], at: in_5}
-  outer_5: {type: spherical, bodies: [rod_5, wheel], at: out_5}
-  knuckle: {type: fixed, bodies: [knuckle, wheel], at: out_1}
-  once_more: {type: spherical, bodies: [wheel, knuckle], at: contact}
-  subframe: {type: fixed, bodies: [subframe_rear, subframe], at: rear_mount}
-  foot: {type: fixed, bodies: [bracket, ground], at: top}
-  hook: {type: revolute, bodies: [cable, bracket], at: top, axis: x}
-springs:
-  coil: {bodies: [knuckle, bracket], from: out_2, to: top, rate: 30e3, preload: 2000}
-  brace: {bodies: [subframe, subframe_rear], from: mount, to: rear_mount, rate: 30e3, preload: 2000}
-bushings:
-  mount: {bodies: [subframe, ground], at: mount, rates: [3e6, 2e6, 1e6], rotational_rates: [500, 400, 300]}
-  rear_mount:
-    {bodies: [bracket, subframe_rear], at: rear_mount, frame: {x: [1, 2, 3], y: [0, 1, 1]},
-     rates: [3e6, 2e6, 1e6], rotational_rates: [500, 400, 300], preload: [100, 20, 30]}
-static_loads:
-  weight: {on: subframe_rear, at: rear_mount, force: [0, 0, -300]}
-  torque: {on: knuckle, moment: [10, 20, 5]}
-loads:
-  up: {on: knuckle, at: contact, force: [0, 0, 1]}
-  side: {on: wheel, at: contact, force: [0.3, 1, 0]}
-  on_the_bracket: {on: bracket, at: top, force: [0, 0, 1]}
-branches:
-  up: {load: {up: 1, on_the_bracket: 1}, from: -1500, to: 2500, steps: 40}
-  side: {load: side, to: 2000, steps: 20, hold: {travel: 0.02}}
-  travel: {drive: travel, to: 0.06, steps: 20, static_loads: {side: 500}}
-wheel: {body: wheel, centre: hub, contact_patch: contact, contact: carrier, spin_axis: y, side: left}
-probes: {tip: {on: knuckle, at: out_1}}
-)";
-
 struct Side {
     const Model& model;
     EquilibriumPath path;
@@ -106,7 +36,7 @@ struct Side {
 };
 
 TEST(Condensed, CompiledModelEqualsTheSceneAsWritten) {
-    const Scene scene = parse_scene(as_built, "as_built.yaml");
+    const Scene scene = support::scene_of("reference/scenes/as_built");
     const Model small = compile(scene), whole = compile(scene, Detail::everything);
     EXPECT_EQ(small.as_written, (Size{11, 17, 4, 60}));  // with the jack
     EXPECT_EQ(small.as_solved, (Size{2, 6, 3, 6}));
