@@ -24,15 +24,6 @@ std::string rig(const std::string& branches) {
 
 Scene parsed(const std::string& text) { return parse_scene(text, "rig.yaml"); }
 
-std::string complaint(const std::string& text) {
-    try {
-        parsed(text);
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "none";
-}
-
 const Joint& joint_of(const Scene& scene, const Driver& driver) {
     return scene.joints.at(static_cast<std::size_t>(std::get<Motion>(driver.what).joint));
 }
@@ -217,37 +208,6 @@ TEST(Driven, LoadsHaveWeights) {
               Vector3d(0, 0.001, 0));  // mm
     EXPECT_EQ(drivers[3].start, 1);
     EXPECT_EQ(scene.branches[0].unit, ParameterUnit::newton);
-}
-
-// ---- Rejected input.
-
-TEST(Limits, TooManyPositionsAreRefused) {
-    std::string text =
-        R"(elastocheck: 1
-name: chain
-units: {length: m, angle: rad, force: N}
-points: {o: [0, 0, 0]}
-bodies:
-)";
-    const auto chain = [&](int count, int steps) {
-        std::string result = text;
-        for (int n = 0; n < count; ++n) result += fmt::format("  b{}: {{origin: o}}\n", n);
-        result += "joints:\n";
-        for (int n = 0; n < count; ++n)
-            result +=
-                fmt::format("  j{}: {{type: spherical, bodies: [b{}, ground], at: o}}\n", n, n);
-        return result +
-               "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, "
-               "steps: " +
-               std::to_string(steps) + "}}\nprobes: {p: {on: b0, at: o}}\n";
-    };
-    EXPECT_EQ(complaint(chain(20, 500'000)), "none");
-    EXPECT_EQ(complaint(chain(20, 500'001)),
-              "rig.yaml:48: branches.up.steps: 500001 steps of 20 bodies are too many positions to "
-              "store; allowed: 500000 steps");
-    EXPECT_EQ(complaint(chain(10'000, 1)), "none");
-    EXPECT_EQ(complaint(chain(10'001, 1)),
-              "rig.yaml:5: bodies: 10001 bodies; allowed: at most 10000");
 }
 
 TEST(Branch, UnusedLoadsAreNamed) {

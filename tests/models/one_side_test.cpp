@@ -138,22 +138,5 @@ TEST(OneSide, ManyReadingsKeepTheSettingsOfOtherNumbers) {
               message([&] { return parsed.read(all); }));
 }
 
-TEST(OneSide, NumberWithoutASideIsRejectedWithAMessage) {
-    const auto says = [](const Setting& setting, const std::string& what,
-                         const std::string& scene) {
-        try {
-            (void)read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / scene,
-                             std::vector{setting});
-            ADD_FAILURE() << setting.path;
-        } catch (const SceneError& error) {
-            EXPECT_TRUE(support::contains(error.what(), what)) << error.what();
-        }
-    };
-    says({"points.rack.z@left", "0"}, "both sides share it", "front_axle.yaml");
-    says({"points.tie_rod_inner_left.z@rihgt", "0"}, "'rihgt' is not a side; allowed: left, right",
-         "front_axle.yaml");
-    says({"springs.coil.rate@left", "1"}, "the scene has no mirror", "double_wishbone.yaml");
-}
-
 }  // namespace
 }  // namespace elastocheck

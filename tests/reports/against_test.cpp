@@ -132,17 +132,5 @@ TEST(Against, SectionDrawsBothScenesWithoutAVerdict) {
                   "differ, most " + scene.against->figures[0].output + " ["});
 }
 
-TEST(Against, CommandComparesTwoScenesWithoutAFailure) {
-    const Folder folder;
-    const std::string scene = scenes + "/double_wishbone_rigid.yaml",
-                      higher = folder.write("higher.yaml", text_of(scene)),
-                      out = " --against --quick -o " + (folder.path / "out").string(),
-                      command = "env -u CI " ELASTOCHECK_COMMAND " report " + scene;
-    const auto said = expect_said(support::says(command + " " + higher + out), 0);
-    expect_parts(said.out + said.err, {}, {"ail"});
-    expect_parts(text_of(folder.path / "out/report.html"), {"<h1>"});
-    EXPECT_EQ(support::says(command + out).code, 2) << "one scene has nothing to be compared with";
-}
-
 }  // namespace
 }  // namespace elastocheck::reports

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <regex>
 #include <set>
-#include <tuple>
 #include <vector>
 
 #include "reports/files/files.hpp"
@@ -89,54 +88,6 @@ TEST(Writers, RemoveTemporaryFilesOfEndedProcessesOnly) {
     auto expected = others;
     expected.insert("curves.csv");
     EXPECT_EQ(names_in(folder.path), expected);
-}
-
-// ---- Ended by a signal, or by a reader that closes the pipe.
-
-// Nothing under the name of the output; the next run removes the temporary one.
-TEST(Ended, SignalLeavesNoPartialOutputAndTheNextRunRemovesTemporaries) {
-    const std::string report = "report --quick " + pinned_bar + " -o out";
-    for (const auto& [what, next, target] :
-         {std::tuple{"solve " + scenes + "/front_axle.yaml --steps 200000 -o out.csv",
-                     "solve " + pinned_bar + " --steps 2 -o out.csv", "out.csv"},
-          {report, report, "out"}}) {
-        const Folder folder;
-        // The temporary name is there while it works.
-        expect_said(
-            says("cd " + folder.path.string() + " && { env --default-signal " + command + what +
-                 " >/dev/null 2>&1 & } && for k in $(seq 3000); do ls -A | grep -q elastocheck- "
-                 "&& break; sleep 0.01; done; ls -A; kill -TERM $!; wait $!"),
-            128 + SIGTERM, {.out = {".elastocheck-"}});
-        EXPECT_FALSE(fs::exists(folder.path / target)) << what;
-        EXPECT_EQ(says("cd " + folder.path.string() + " && " + command + next).code, 0);
-        EXPECT_EQ(names_in(folder.path), std::set<std::string>{target}) << what;
-    }
-}
-
-// The numbers of the best search that has ended, while others of the thousand run.
-TEST(Ended, SignalLeavesTheBestSceneOfAnOptimisation) {
-    const Folder folder;
-    folder.write("goals.yaml",
-                 "vary: {springs.first.rate: [10, 60], springs.second.rate: [20, 70]}\n"
-                 "goals: [{figure: centre_z@up:3000, at_most: 437.5}]\n");
-    expect_said(says("cd " + folder.path.string() + " && { env --default-signal " + command +
-                     "optimise " + scenes + "/parallel_springs.yaml goals.yaml --starts 1000 -o " +
-                     "new.yaml >/dev/null 2>&1 & } && for k in $(seq 3000); do " +
-                     "[ -e new.yaml ] && break; sleep 0.01; done; kill -INT $!; wait $!"),
-                128 + SIGINT, {});
-    const std::string left = text_of(folder.path / "new.yaml");
-    EXPECT_TRUE(left.starts_with("# Changed by elastocheck optimise: not finished, goals.yaml\n"))
-        << left;
-    EXPECT_TRUE(contains(left, "# springs.first.rate was 30")) << left;
-}
-
-TEST(Ended, ClosedOutputPipeLeavesNoPartialFile) {
-    const Folder folder;
-    const Said said =
-        says("cd " + folder.path.string() + " && env --default-signal " + command + "solve " +
-             pinned_bar + " --steps 20000 --states states.jsonl | head -1");
-    EXPECT_TRUE(said.out.starts_with("branch,")) << said.out << said.err;
-    EXPECT_TRUE(fs::is_empty(folder.path));
 }
 
 // ---- Killed. Of folders: ReportCommand.KilledAtAnyMoment...
@@ -252,11 +203,6 @@ TEST(FullDisk, FullFileSystemKeepsTheOldOutputAndIsReported) {
 }
 
 TEST(ClosedFolder, UnwritableFolderIsReportedAndStaysEmpty) {
-    for (const std::string& what :
-         std::vector<std::string>{"compare " + pinned_bar + " -o /proc/elastocheck",
-                                  "solve " + pinned_bar + " -o /proc/elastocheck.csv",
-                                  "gate " + pinned_bar + " --junit /proc/elastocheck.xml"})
-        expect_said(says(command + what), 2, {.err = {"/proc/elastocheck"}});
     const Place place;
     // Root gives up the capability to bypass file permissions.
     const std::string as_others =

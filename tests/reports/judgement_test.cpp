@@ -17,7 +17,6 @@ namespace {
 
 using compare::Assessment;
 using compare::Grade;
-using json = nlohmann::ordered_json;
 
 const Model& mcpherson() {
     static const Model model = compile(support::scene("chrono_mcpherson"));
@@ -213,46 +212,6 @@ TEST(Assessment, SentenceHasOutputErrorPlaceAndTolerance) {
     const std::string given = sentence(compare::assess(mcpherson(), compared(), {100, 100}));
     EXPECT_TRUE(given.starts_with("Pass: ")) << given;
     expect_parts(given, {"within 100\u00a0mm and 100\u00a0deg of the full solution"}, {"default"});
-}
-
-TEST(Assessment, CompareHasNoVerdictWithoutARequestedMethod) {
-    const Folder folder;
-    const std::string out = (folder.path / "r").string(),
-                      command = "compare " + scenes + "/chrono_mcpherson.yaml --steps 10 ";
-    const auto said = expect_says(command + "-o " + out, 0);
-    expect_parts(said.out.substr(0, said.out.find('\n')),
-                 {": the method 'published' of the linear recursion beside two full "
-                  "solutions"});
-    EXPECT_FALSE(contains(said.out, "Pass") || contains(said.out, "Fail")) << said.out;
-    const json judgement = json::parse(
-        text_of(folder.path / "r" / "result.json"))["scenes"][0]["results"][0]["verdict"];
-    EXPECT_EQ(judgement["grade"], "not requested");
-    const std::string sentence = judgement["sentence"];
-    EXPECT_TRUE(
-        sentence.starts_with("The linear recursion as published is off from the full "
-                             "solution by up to "))
-        << sentence;
-    EXPECT_TRUE(sentence.ends_with(" No verdict was requested: --within gives a tolerance."))
-        << sentence;
-    expect_parts(said.out, {sentence + "\n"});
-    for (const char* asked : {"--method published", "--within 0.01mm,0.001deg,1%"})
-        expect_parts(elastocheck_says(command + asked).out, {"\nFail: "});
-}
-
-TEST(Assessment, CompareEndsWithTheVerdictSentenceForTheGivenTolerance) {
-    const Folder folder;
-    const std::string out = (folder.path / "r").string();
-    const auto said = elastocheck_says(
-        "compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --method published -o " + out);
-    const json judgement = json::parse(
-        text_of(folder.path / "r" / "result.json"))["scenes"][0]["results"][0]["verdict"];
-    EXPECT_EQ(judgement["grade"], "fail");
-    expect_parts(said.out, {judgement["sentence"].get<std::string>() + "\n"});
-    expect_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 1m", 2);
-    expect_parts(elastocheck_says("compare " + scenes +
-                                  "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg,100000%")
-                     .out,
-                 {"\nPass: "});
 }
 
 }  // namespace

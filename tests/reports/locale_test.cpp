@@ -44,82 +44,16 @@ struct German {
     }
 };
 
-// A shell line with $E the command, $SCENES and $SAMPLES folders; run in its own folder.
 struct Line {
-    const char* command;  // one of those in the manual
-    const char* line;
+    std::string command, line;  // as in locale.lines
 };
-const Line lines[] = {
-    {"inspect", "$E inspect $SCENES/mcpherson.yaml --verbose"},
-    {"inspect", "$E inspect $SCENES/pendulum.yaml --json"},
-    {"solve", "$E solve $SCENES/mcpherson.yaml --steps 20 --method balanced --states states.jsonl"},
-    {"solve",
-     "$E solve $SCENES/two_spring_arch.yaml --method series --rates rates.csv -o curves.csv"},
-    {"solve", "$E solve $SCENES/pendulum.yaml --method energy --set points.tip.x=0.3125"},
-    {"compare",
-     "$E compare $SCENES/pendulum.yaml --quiet --jobs 1 -o compared --formulations --within "
-     "0.02mm,0.002deg"},
-    {"converge", "$E converge $SCENES/parallel_springs.yaml --quiet -o converged"},
-    {"trade", "$E trade chain.yaml --quiet -o traded --tolerance 0.015mm,0.0015deg"},
-    {"new", "$E new double_wishbone"},
-    {"import",
-     "$E import $SAMPLES/generic__DoubleWishbone.json -o wishbone.yaml && $E inspect "
-     "wishbone.yaml"},
-    {"import", "$E import $SAMPLES/chrono_RotSpring_Case01.adm -o adm.yaml"},
-    {"import", "$E import $FIXTURES/front.sub -o front.yaml"},
-    {"export", "$E export $SCENES/mcpherson.yaml -o m.adm && $E import m.adm -o back.yaml"},
-    {"export", "$E export $SCENES/double_wishbone_rigid.yaml --format chrono -o w.json"},
-    {"gate",
-     "cp $SCENES/single_bushing.yaml . && $E gate single_bushing.yaml --accept --reason first && "
-     "$E gate single_bushing.yaml --junit gate.xml --summary gate.md --json"},
-    {"certify", "$E certify $SCENES/pendulum.yaml --quiet -o proved"},
-    {"judge",
-     "$E solve $SCENES/pendulum.yaml --method midpoint --steps 150 -o mine.csv && "
-     "$E judge $SCENES/pendulum.yaml --candidate mine.csv --tolerance 0.01mm,0.001deg -o judged"},
-    {"judge",
-     "$E judge $SCENES/pendulum.yaml --candidate-timeout 30.5 --candidate-command "
-     "\"$E solve {scene} --method published --steps {steps} -o {output}\""},
-    {"report", "$E report $SCENES/single_bushing.yaml --quiet -o page"},
-    // Its joints are inconsistent, so no solver takes the requested million steps.
-    {"stress",
-     "$E stress $SCENES/../extremes/redundant_link.yaml --set joints.link.length=500.25 --quiet -o "
-     "extremes"},
-    {"equilibria", "$E equilibria $SCENES/two_spring_arch.yaml --at -120.5 --turned 80.5"},
-    {"sensitivity",
-     "$E sensitivity $SCENES/pendulum.yaml --points 1 --most 0 --csv derivatives.csv --json"},
-    {"solve-for",
-     "$E solve-for $SCENES/parallel_springs.yaml --vary springs.first.rate=10.5:60.5 --want "
-     "centre_z@up:1500.5=419.5 -o new.yaml --quiet"},
-    {"optimise",
-     "printf 'vary: {springs.first.rate: [10.5, 60.5]}\\ngoals: [{figure: centre_z@up:1500.5, "
-     "at_most: 419.5}]\\n' > g.yaml && $E optimise $SCENES/parallel_springs.yaml g.yaml -o "
-     "new.yaml "
-     "--quiet"},
-    {"fit",
-     "$E solve $SCENES/parallel_springs.yaml --steps 4 --channels centre_z -o rig.csv && $E fit "
-     "$SCENES/parallel_springs.yaml --measured rig.csv --vary springs.first.rate=10.5:60.5 --quiet "
-     "-o fitted.yaml"},
-    {"tolerances",
-     "echo 'springs.first.rate: {normal: {sd: 0.25}}' > t.yaml && $E tolerances "
-     "$SCENES/parallel_springs.yaml t.yaml --of centre_z@up:1500.5 --quiet"},
-    {"study",
-     "$E study $SCENES/../studies/mcpherson.yaml --count 16 -o studied --csv rows.csv --quiet && "
-     "rm -r studied"},
-    {"live", "$E live $SCENES/pendulum.yaml -o live.html"},  // without its component an error
-    {"loads",
-     "printf 'case,patch_force_z\\nA,6000.5\\n' > c.csv && $E loads $SCENES/mcpherson.yaml c.csv "
-     "-o loads.csv"},
-    {"man", "$E man"},
-    // Errors are reported with line and number.
-    {"inspect",
-     "{ head -c 3000 /dev/zero | tr '\\0' '\\n'; sed 's/^units:.*/units: {length: 1.5}/' "
-     "$SCENES/pendulum.yaml; } "
-     "> bad.yaml; $E inspect bad.yaml"},
-    {"inspect",
-     "{ head -c 3000 /dev/zero | tr '\\0' '\\n'; echo '[: }'; } > bad.yaml; $E inspect bad.yaml"},
-    {"solve", "$E solve $SCENES/pendulum.yaml --steps 12.5"},
-    {"solve", "$E solve $SCENES/pendulum.yaml --set points.tip.x=1,5"},
-};
+std::vector<Line> lines() {
+    std::vector<Line> all;
+    for (const auto& line : parts_of(text_of(ELASTOCHECK_LOCALE_LINES), '\n'))
+        if (const auto at = line.find(": "); !line.starts_with("#"))
+            all.push_back({line.substr(0, at), line.substr(at + 2)});
+    return all;
+}
 
 struct Found {
     support::Said said;
@@ -159,7 +93,7 @@ std::string parting(const std::string& a, const std::string& b) {
 TEST(DecimalComma, LocaleWithDecimalCommaDoesNotChangeAnyOutput) {
     const German german;
     ASSERT_TRUE(german.make());
-    for (const auto& [command, line] : lines) {
+    for (const auto& [command, line] : lines()) {
         const Found here = run(line, "LC_ALL=C.UTF-8"), there = run(line, german.environment());
         EXPECT_EQ(here.said.code, there.said.code) << line << "\n" << there.said.err;
         EXPECT_TRUE(here.said.code >= 0 && here.said.code <= 3) << line << "\n" << here.said.err;
@@ -177,7 +111,7 @@ TEST(DecimalComma, LocaleWithDecimalCommaDoesNotChangeAnyOutput) {
 
 TEST(DecimalComma, IsTriedOnEveryCommand) {
     std::set<std::string> tried;
-    for (const auto& line : lines) tried.insert(line.command);
+    for (const auto& line : lines()) tried.insert(line.command);
     int count = 0;
     const std::string heading = ".SS elastocheck ";
     for (const auto& line : parts_of(elastocheck_says("man").out, '\n')) {

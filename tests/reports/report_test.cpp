@@ -22,7 +22,6 @@ namespace elastocheck::reports {
 namespace {
 
 namespace fs = std::filesystem;
-using json = nlohmann::ordered_json;
 
 const std::string command = ELASTOCHECK_COMMAND;
 
@@ -200,46 +199,6 @@ TEST(Report, AnInconclusiveSceneIsMarkedAndSaysWhy) {
     expect_parts(
         text_of(folder.path / "out" / "report.html"),
         {"class=\"badge\">inconclusive", "<p class=\"answer\">Not judged: nothing was compared; "});
-}
-
-TEST(ReportCommand, SaysWhatItNeeds) {
-    const Folder folder;
-    const auto scene = scenes + "/single_bushing.yaml";
-    folder.write("document.json", "{}");
-    struct Case {
-        std::string arguments, why;
-    };
-    for (const auto& [arguments, why] :
-         {Case{"-o out", "needs scene files"}, Case{scene, "--output is required"},
-          Case{scene + " " + scene + " --measured x.csv -o out", "--measured belongs to one scene"},
-          Case{scene + " -o " + folder.path.string(), "document.json: is no part of a report"},
-          Case{scene + " " + scene + ".none -o out", "single_bushing.yaml.none: no such file"},
-          Case{scene + " --tolerance 1inch -o out", "'inch' is not a unit of it"},
-          Case{scene + " --measured none.csv -o out", "none.csv: cannot be read"}}) {
-        expect_said(
-            support::says("cd " + folder.path.string() + " && " + command + " report " + arguments),
-            2, {.err = {why}});
-        EXPECT_FALSE(fs::exists(folder.path / "out"));
-    }
-}
-
-TEST(ReportCommand, SolvesAndDrawsAScene) {
-    const Folder folder;
-    const auto scene = scenes + "/single_bushing.yaml";
-    const auto said = expect_said(
-        support::says(command + " report " + scene + " -o " + (folder.path / "out").string()), 0,
-        {.out = {"The page: " + (folder.path / "out" / "report.html").string()}});
-    const json result = json::parse(text_of(folder.path / "out" / "result.json"));
-    expect_parts(said.out, {": Every number on these pages: two independent solutions agree "
-                            "to ",
-                            "The cheapest method within 0.01\u00a0mm is "});
-    for (const char* part : {"model", "branches", "drawing", "results", "verdict"})
-        EXPECT_TRUE(result["scenes"][0].contains(part)) << part;
-    for (const char* analysis : {"compare", "converge", "trade", "sensitivity"})
-        EXPECT_FALSE(result_in(result["scenes"][0], analysis).is_null()) << analysis;
-    EXPECT_TRUE(result_in(result["scenes"][0], "trade")["tables"].contains("recommended"));
-    EXPECT_EQ(result["reproduce"],
-              "elastocheck report " + scene + " -o " + (folder.path / "out").string());
 }
 
 // Killed at any moment, the folder holds the old report or the new one.

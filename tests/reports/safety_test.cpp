@@ -2,11 +2,8 @@
 // work, no hidden failure.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <regex>
 
 #include "tests/reports/command.hpp"
 
@@ -20,77 +17,6 @@ const std::string scene = scenes + "/pinned_bar.yaml";
 Said in(const Folder& folder, const std::string& arguments) {
     return support::says("cd " + folder.path.string() + " && env -u GITHUB_STEP_SUMMARY CI= " +
                          ELASTOCHECK_COMMAND + " " + arguments);
-}
-
-TEST(Harm, OutputNeverOverwritesSceneDeviceLinkOrBaseline) {
-    const Folder folder;
-    folder.write("a.yaml", text_of(scene));
-    folder.write("b.json", text_of(scenes + "/baselines/pinned_bar.json"));
-    folder.write("kept", "mine");
-    fs::create_symlink("kept", folder.path / "link");
-    fs::create_symlink("nowhere", folder.path / "dangling");
-    for (const std::string target :
-         {"a.yaml", "b.json", "kept", "link", "dangling", "/dev/null", "."}) {
-        const std::string before =
-            target[0] == '/' || target == "." ? "" : text_of(folder.path / target);
-        for (const std::string& arguments :
-             {"solve a.yaml --steps 2 -o " + target,
-              "solve a.yaml --steps 2 --method series --rates " + target,
-              "gate a.yaml --junit " + target, "gate a.yaml --summary " + target}) {
-            const Said said = expect_said(in(folder, arguments), 2, {.err = {target + ": "}});
-            EXPECT_TRUE(said.out.empty()) << "refused before the work: " << arguments;
-        }
-        for (const char* command : {"compare", "report", "trade", "converge"}) {
-            const Said said =
-                expect_said(in(folder, std::string(command) + " a.yaml -o " + target), 2);
-            EXPECT_TRUE(said.out.empty())
-                << "refused before the work: " << command << " " << target;
-        }
-        if (!before.empty()) {
-            EXPECT_EQ(text_of(folder.path / target), before) << target;
-        }
-    }
-    EXPECT_FALSE(fs::exists(folder.path / "nowhere"));
-    // Files of this program are replaced.
-    for (int again = 0; again < 2; ++again) {
-        expect_said(in(folder, "solve a.yaml --steps 2 -o curves.csv"), 0);
-        expect_said(in(folder, "gate a.yaml --junit j.xml --summary s.md"), 3);
-    }
-}
-
-TEST(Harm, SummaryIsAppendedToThatOfTheWorkflowStep) {
-    const Folder folder;
-    const std::string summary = folder.write("summary", "# another step\n"),
-                      baselines = scenes + "/baselines";
-    expect_said(support::says("env CI= GITHUB_STEP_SUMMARY=" + summary + " " + ELASTOCHECK_COMMAND +
-                              " gate " + scene + " --summary " + summary),
-                0);
-    EXPECT_TRUE(text_of(summary).starts_with("# another step\n# elastocheck gate: passed"))
-        << text_of(summary);
-}
-
-TEST(Harm, NameOfSeveralLinesIsRejectedBeforeTheWork) {
-    const Folder folder;
-    const std::string plain = text_of(scene);
-    const auto named = [&](const std::string& name) {
-        std::string text = plain;
-        const auto at = text.find("name: ");
-        return text.replace(at, text.find('\n', at) - at, "name: \"" + name + "\"");
-    };
-    for (const char* escape :
-         {"a\\Nb", "a\\_b", "a\\nb", "a\\eb", "a\\x9bb", "a\\u202eb", "a\\Lb"}) {
-        folder.write("s.yaml", named(escape));
-        for (const char* command :
-             {"compare s.yaml -o out", "solve s.yaml", "gate s.yaml", "report s.yaml -o out"}) {
-            const Said said = expect_said(in(folder, command), 2);
-            expect_parts(said.err + said.out, {"s.yaml:"});
-        }
-        EXPECT_FALSE(fs::exists(folder.path / "out"));
-    }
-    folder.write("s.yaml", named("Gr\\xf6\\u00dfe, 轮"));
-    expect_said(in(folder, "compare s.yaml --steps 2 -o out"), 0);
-    EXPECT_EQ(nlohmann::json::parse(text_of(folder.path / "out/result.json"))["scenes"][0]["name"],
-              "Größe, 轮");
 }
 
 TEST(Harm, ControlCharactersInFileNamesAreEscaped) {
@@ -158,23 +84,6 @@ TEST(Harm, NewlineInABaselineMakesNoAnnotation) {
                           " gate " + scene + " --baseline " + folder.path.string()),
             3);
         expect_parts("\n" + said.out + said.err, {}, {"\n::error file=a"});
-    }
-}
-
-TEST(Harm, OneUnreadableBaselineDoesNotEndTheGate) {
-    const Folder folder;
-    fs::create_directory(folder.path / "baselines");
-    folder.write("good.yaml", text_of(scene));
-    ASSERT_EQ(in(folder, "gate good.yaml --accept --reason first").code, 0);
-    fs::create_directory(folder.path / "baselines/folder.json");
-    fs::create_symlink("loop.json", folder.path / "baselines/loop.json");
-    std::ofstream(folder.path / "baselines/broken.json") << "{";
-    folder.write("loop.yaml", text_of(scene));
-    for (const char* arguments : {"gate --junit j.xml", "gate loop.yaml good.yaml --junit j.xml"}) {
-        fs::remove(folder.path / "j.xml");
-        expect_said(in(folder, arguments), 3,
-                    {.out = {"good.yaml: passed", "loop.json: cannot be read"}});
-        expect_parts(text_of(folder.path / "j.xml"), {"good.yaml"});
     }
 }
 

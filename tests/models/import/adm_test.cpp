@@ -112,18 +112,6 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
     for (const auto& [what, text] : others) EXPECT_EQ(entries(scene_of(text)), expected) << what;
 }
 
-TEST(Adm, KeepsNamesAndSaysWhereEachElementComesFrom) {
-    const std::string yaml = scene_of(linkage);
-    EXPECT_TRUE(says(yaml, "crank: {origin: crank_cm, mass: 2}  # line 15, PART/2 'crank'"));
-    EXPECT_TRUE(
-        says(yaml, "joint_1: {type: revolute, bodies: [crank, ground], at: marker_3, axis: x}"));
-    EXPECT_TRUE(
-        says(yaml,
-             "springdamper_1: {bodies: [crank, ground], from: crank_cm, to: marker_5, rate: 12.5, "
-             "free_length: 210}"));
-    EXPECT_TRUE(says(yaml, "damping of SPRINGDAMPER/1"));
-}
-
 // Each quantity is converted by its own unit: the scene is the same for all units of the file.
 TEST(Adm, UnitsAreConvertedEachByItsOwn) {
     struct Units {
@@ -205,15 +193,8 @@ TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
 // ---- Error messages.
 
 TEST(Adm, SaysWhatIsWrongAndWhere) {
-    support::expect_refusals(import_folder / "mistakes/linkage.mistakes", linkage, "model.adm",
-                             [](const std::string& text) {
-                                 const std::string said = refusal(text);
-                                 return said.empty() ? "accepted" : said;
-                             });
-    EXPECT_TRUE(says(refusal(linkage, {"crnk", false, false}), "did you mean 'crank'"));
-    EXPECT_TRUE(says(refusal(linkage, {"pivot", false, false}), "is not on a moving part"));
-    EXPECT_TRUE(
-        says(refusal(linkage, {}, "model.txt"), "'.txt' is not a supported file extension"));
+    expect_refusals("linkage", linkage, "model.adm",
+                    [](const std::string& text) { return refusal(text); });
 }
 
 // Nothing is dropped silently: an error with its line, or with --allow-missing a note in the head.
@@ -230,7 +211,6 @@ TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
         EXPECT_TRUE(says(yaml, "NOT equivalent to the file"));
         EXPECT_EQ(entries(yaml).substr(0, 100), entries(scene_of(linkage)).substr(0, 100));
     }
-    EXPECT_EQ(refusal(linkage_with("FRICTION/1, JOINT = 1"), {"", true, false}), "");
 }
 
 // ---- Expressions.
@@ -506,45 +486,6 @@ TEST(Adm, ADatasetThatWasCutOffIsRefused) {
         const auto length = static_cast<std::size_t>(share * whole.rfind("END"));
         EXPECT_NE(refusal_of(whole.substr(0, length), "model.adm"), "") << share;
     }
-    const std::string without = linkage.substr(0, linkage.find("END"));
-    EXPECT_TRUE(says(refusal_of(without, "model.adm"), "END: the dataset does not end with END"));
-    EXPECT_TRUE(says(importer::import_text(without, "model.adm", {"", false, true}).yaml,
-                     "# MISSING: line 42, END"));
-}
-
-// Friction arguments of a joint, named as in the documentation, are left out by --drop dynamics
-// with a note that gives their line.
-TEST(Adm, FrictionOfAJointIsLeftOutByName) {
-    const std::string text = replaced(linkage, ", REVOLUTE\n",
-                                      ", REVOLUTE, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, "
-                                      "MAXIMUM_DEFORMATION = 0.01, INNER_RADIUS = 4\n");
-    EXPECT_TRUE(says(refusal(text),
-                     "MU_DYN_ROT, MAX_FRIC_ROT, INNER_RADIUS, MAXIMUM_DEFORMATION: its "
-                     "friction also acts at rest"));
-    EXPECT_TRUE(says(notes_of(importer::import_text(text, "model.adm", {"", true, false})),
-                     "\nLeft out, by --drop dynamics: line 30, MU_DYN_ROT, MAX_FRIC_ROT"));
-}
-
-// Two joints with a gap between their markers give one warning line, with the larger gap.
-TEST(Adm, WarningsOfOneKindAreOneLineWithTheLargest) {
-    const std::string text = linkage_with(
-        "PART/3, MASS = 1\nMARKER/6, PART = 3, QP = 0, 0, 0.01\nMARKER/7, PART = 1\n"
-        "PART/4, MASS = 1\nMARKER/8, PART = 4, QP = 0, 0, 0.02\n"
-        "JOINT/2, SPH, I = 6, J = 7\nJOINT/3, SPH, I = 8, J = 7");
-    const auto imported = importer::import_text(text, "model.adm", {});
-    EXPECT_EQ(imported.notes.warnings.size(), 2u);
-    const std::string notes = notes_of(imported);
-    EXPECT_TRUE(says(notes,
-                     "Warning: line 47, JOINT/3: I and J are apart by 0.02 mm in the file; in the "
-                     "scene they coincide (2 of this kind, this is the largest; also line 46, "
-                     "JOINT/2)."));
-    EXPECT_EQ(notes.find("Warning"), notes.rfind("Warning"));
-}
-
-TEST(Adm, InitialConditionsAreLeftOutEachWithItsLine) {
-    const std::string yaml =
-        scene_of(linkage_with("MOTION/1, ROT, JOINT = 1, VELOCITY, FUNCTION = 1, ICDISP = 0.1"));
-    EXPECT_TRUE(says(yaml, "line 41, ICDISP of MOTION/1"));
 }
 
 // ---- Functions of TIME: a branch over their whole range.
@@ -589,23 +530,6 @@ TEST(Adm, MotionsThatDoNotGoInProportionHaveABranchEach) {
                 1e-9);
     ASSERT_EQ(apart.branches.size(), 2u);
     EXPECT_EQ(apart.branches[1].name, "motion_2");
-}
-
-// The value at time 0 is a static load and the change is a branch, which drives all proportional
-// components together.
-TEST(Adm, ALoadInTimeIsABranchOverWhatItChangesBy) {
-    const std::string yaml =
-        scene_of(linkage_with("MARKER/9, PART = 1, FLOATING\nVFORCE/1, I = 4, "
-                              "JFLOAT = 9, RM = 5, FX = 100*SIN(2*PI*TIME)\\ "
-                              "FY = 10 + 50*SIN(2*PI*TIME)\\ FZ = 5"));
-    EXPECT_TRUE(says(yaml, "vforce_1: {on: crank, at: crank_cm, force: [0, 10, 5]}"));
-    EXPECT_TRUE(says(
-        yaml, "load: {load: {vforce_1.change: 1, vforce_1.change_2: 0.5}, from: -100, to: 100"));
-    const std::string spike = scene_of(linkage_with(
-        "SFORCE/7, TRANS, ACTIONONLY, I = 4, J = 5, FUNCTION = STEP(TIME,0.1,0,0.11,500) + "
-        "STEP(TIME,0.11,0,0.12,-500)"));
-    EXPECT_TRUE(says(spike, "load: {load: {sforce_7.change: 1}, to: 500"));
-    EXPECT_EQ(spike.find("without force at rest"), spike.npos);
 }
 
 // ---- Export and re-import.

@@ -41,6 +41,17 @@ inline std::string refusal_of(const std::string& text, const std::string& file,
     return refusal_of([&] { importer::import_text(text, file, options); });
 }
 
+// The mistakes of import/mistakes/NAME.mistakes in a text that `refused` returns no message for.
+inline void expect_refusals(const std::string& name, const std::string& valid,
+                            const std::string& file,
+                            const std::function<std::string(const std::string&)>& refused) {
+    support::expect_refusals(import_folder / "mistakes" / (name + ".mistakes"), valid, file,
+                             [&](const std::string& text) {
+                                 const std::string said = refused(text);
+                                 return said.empty() ? "accepted" : said;
+                             });
+}
+
 // The notes in the head of a scene, each on one line.
 inline std::string notes_of(const importer::Imported& imported) {
     std::string lines;

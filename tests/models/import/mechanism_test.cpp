@@ -296,12 +296,6 @@ TEST(Mechanism, HasTheRatesOfATable) {
         "tie_rod_inner,9000,9000,9000,0,0,0.1\n";
     options.rates = place.write("rates.csv", rates);
     const auto imported = importer::import_text(points_named("strut.csv"), "p.csv", options);
-    for (const char* part :
-         {"arm_rear: {type: spherical, bodies: [arm, ground], at: arm_rear}",
-          "frame: {z: [arm_rear, arm_front], x: z}", "rates: [8000, 7000, 400]",
-          "rotational_rates: [5000, 5000, 1000]", "frame: {z: [strut_lower, strut_top], x: x}",
-          "tie_rod: {origin: tie_rod_outer}", "to: strut_top, rate: 40}"})
-        EXPECT_TRUE(says(imported.yaml, part));
     const Scene soft = parse_scene(imported.yaml, "scene");
     EXPECT_EQ(soft.elastics.size(), 4u);
     options.rates.clear();
@@ -318,90 +312,6 @@ TEST(Mechanism, HasTheRatesOfATable) {
                wheel_at_end_of(rigid, "travel").r)
                   .norm(),
               1e-9);
-    const auto refused = [&](const std::string& what, const std::string& by) {
-        options.rates = place.write("rates.csv", replaced(rates, what, by));
-        return refusal_of(points_named("strut.csv"), "p.csv", options);
-    };
-    EXPECT_TRUE(
-        says(refused("x [N/mm]", "x"), "rates.csv:1: x: no unit of a rate; allowed: [N/mm]"));
-    EXPECT_TRUE(says(refused("rz [Nm/deg]", "rz [N/mm]"), "allowed: [Nmm/deg], [Nm/deg]"));
-    EXPECT_TRUE(
-        says(refused("arm_front", "arm_frnt"),
-             "rates.csv:3: arm_frnt: is not a role here that can have rates, did you mean"));
-    EXPECT_TRUE(says(refused("arm_front", "strut_top"), "rates.csv:3: strut_top: given twice"));
-    EXPECT_TRUE(says(refused("8000", "-8000"), "rates.csv:3: arm_front: '-8000' is not a rate"));
-    EXPECT_TRUE(says(refused("role,", "what,"), "rates.csv:1: 'what' is no column"));
-    options.as.clear();
-    EXPECT_TRUE(says(refusal_of(points_named("strut.csv"), "p.csv", options), "--as: missing"));
-}
-
-TEST(Mechanism, AsksForTheRolesWithoutAPoint) {
-    const std::string text = replaced(points_named("strut.csv"), "LBJ", "K7");
-    EXPECT_TRUE(says(refusal_of(text, "p.csv", as("strut")),
-                     "p.csv: --as strut: no point for ball_joint; name it with --role "
-                     "ball_joint=POINT; points without a role: 'K7'"));
-    auto options = as("strut");
-    options.roles = {"ball_joint=K7"};
-    const std::string yaml = importer::import_text(text, "p.csv", options).yaml;
-    EXPECT_TRUE(says(yaml, "Point ball_joint: line 5, K7."));
-    options.roles = {"ball_joint=K8"};
-    EXPECT_TRUE(says(refusal_of(text, "p.csv", options), "there is no point 'K8'; points: "));
-    options.roles = {"bal_joint=K7"};
-    EXPECT_TRUE(says(refusal_of(text, "p.csv", options), "did you mean 'ball_joint'?"));
-    // two points for one role
-    const std::string twice = replaced(text, "K7", "Lower ball") + "1,2,3,Lower ball old\n";
-    EXPECT_TRUE(says(refusal_of(twice, "p.csv", as("strut")),
-                     "no point for ball_joint ('Lower ball' or 'Lower ball old')"));
-}
-
-TEST(Mechanism, RefusesOptionsThatDoNotFit) {
-    const std::string text = points_named("strut.csv");
-    EXPECT_TRUE(says(refusal_of(text, "p.csv", as("strutt")), "did you mean 'strut'?"));
-    EXPECT_TRUE(says(
-        refusal_of(sample("generic__DoubleWishbone.json"), "p.json", {.as = "double_wishbone"}),
-        "--as: only for hardpoints of Adams/Car (.sub), tables of points (.csv), "));
-    auto options = as("five_link");
-    options.pushrod = "lower";
-    options.axle = "front";
-    EXPECT_TRUE(says(refusal_of(points_named("five_link.csv"), "p.csv", options),
-                     "'lower' is not a part of five_link; allowed: upright"));
-    options.as.clear();
-    options.axle.clear();
-    EXPECT_TRUE(says(refusal_of(text, "p.csv", options), "--as: missing"));
-    // left points to the right of the middle
-    EXPECT_TRUE(says(refusal_of("name,x_mm,y_mm,z_mm\nArm outer,0,-600,0\nArm inner,0,-300,0\n"
-                                "Left wheel centre,-400,-700,0\n",
-                                "p.csv", as("trailing_arm")),
-                     "p.csv:4: Left wheel centre: lies on the right"));
-}
-
-TEST(Shark, IsReadOrRefusedWithItsLine) {
-    const auto text = points_named("saved.shk");
-    importer::Options options;
-    options.axes = "x-rearward,y-right";
-    const std::string yaml = importer::import_text(text, "p.shk", options).yaml;
-    for (const char* part :
-         {"Lower_wishbone_front_pivot: [199, -479, -206]", "Wheel_centre_point: [-40, -1100, -26]",
-          "(import --as double_wishbone makes its", "Coordinates in mm, as the program"})
-        EXPECT_TRUE(says(yaml, part));
-    const auto refused = [&](const std::string& what, const std::string& by) {
-        return refusal_of(replaced(text, what, by), "p.shk", options);
-    };
-    EXPECT_TRUE(says(refused("FRONT SUSPENSION", "SUSPENSION"), "no point in this file"));
-    EXPECT_TRUE(says(refused("TEMP_SETTINGS\n", "OLD\n"), "p.shk:4: "));
-    EXPECT_TRUE(says(refused("            1\n          ", "            1\n 1 2 3\n          "),
-                     "a point without a name: TEMP_SETTINGS has 12 names"));
-    // axes in which the front pivot is behind the rear one
-    options.axes = "x-forward,y-left";
-    EXPECT_TRUE(says(refusal_of(text, "p.shk", options), "lies behind Lower wishbone rear pivot"));
-    options.axes = "x-rearward,y-right";
-    EXPECT_TRUE(says(refusal_of("FRONT SUSPENSION\n1 2 3 POINT:1\n", "p.shk", options),
-                     "p.shk:2: name: a point without a name"));
-    EXPECT_TRUE(says(refusal_of("FRONT SUSPENSION\n1 2 POINT:1 a\n", "p.shk", options),
-                     "p.shk:2: 2 numbers before POINT:"));
-    options.unit = "m";
-    EXPECT_TRUE(says(refusal_of(points_named("listing.shk"), "p.shk", options),
-                     "--unit: m; the file has its points in mm"));
 }
 
 }  // namespace

@@ -33,10 +33,8 @@ struct Data : support::Folder {
     std::string put(const std::string& name, const std::string& text) const {
         return write("generic/" + name, text);
     }
-    importer::Imported import(const std::string& vehicle, const std::string& axle,
-                              bool allow_missing = false) const {
-        return importer::import_file(put("vehicle/vehicle.json", vehicle),
-                                     {.allow_missing = allow_missing, .axle = axle});
+    importer::Imported import(const std::string& vehicle, const std::string& axle) const {
+        return importer::import_file(put("vehicle/vehicle.json", vehicle), {.axle = axle});
     }
     std::string refusal(const std::string& vehicle, const std::string& axle) const {
         return refusal_of([&] { import(vehicle, axle); });
@@ -150,54 +148,10 @@ TEST(ChronoVehicle, TheAntiRollBarActsInRollOnly) {
     EXPECT_NEAR(std::abs(arm.cross(force).y()) / (10000 * twist(end)), 1, 1e-9);
 }
 
-TEST(ChronoVehicle, AnAxleWithoutSteeringIsTheSuspensionAlone) {
-    const Data data;
-    const std::string vehicle = sample("generic__Vehicle_SemiTrailingArm.json");
-    const auto rear = data.import(vehicle, "rear");
-    const auto alone =
-        importer::import_file(data.path / "generic/suspension/SemiTrailingArm.json", {});
-    EXPECT_EQ(rear.bodies, alone.bodies);
-    EXPECT_EQ(rear.joints, alone.joints);
-    EXPECT_EQ(rear.elements, alone.elements);
-    EXPECT_FALSE(says(rear.yaml, "steering_link"));
-    // Entries say from which file they are, and what was left out is listed.
-    EXPECT_TRUE(says(rear.yaml, "suspension/SemiTrailingArm.json"));
-    const std::string head = notes_of(rear);
-    for (const char* what : {"another axle", "Driveline", "Left Wheel Input File", "Wheelbase"})
-        EXPECT_TRUE(says(head, what));
-}
-
 TEST(ChronoVehicle, MistakesNameFileAndField) {
     const Data data;
-    const std::string& good = with_rack;
-    EXPECT_TRUE(says(data.refusal(good, ""),
-                     "vehicle.json:10: Axles: there are 2; choose one with --axle: front, rear, "
-                     "or a number from 1 to 2"));
-    for (const char* axle : {"3", "0", "-1", "1x", "middle"})
-        EXPECT_TRUE(says(data.refusal(good, axle), "is not an axle of the vehicle"));
-    support::expect_refusals(import_folder / "mistakes/vehicle.mistakes", good, "vehicle.json",
-                             [&](const std::string& text) {
-                                 const std::string said = data.refusal(text, "front");
-                                 return said.empty() ? "accepted" : said;
-                             });
-    const auto rack = [&](const std::string& from, const std::string& to) {
-        data.put("steering/RackPinion.json",
-                 replaced(sample("generic__RackPinion.json"), from, to));
-        return data.refusal(good, "front");
-    };
-    EXPECT_TRUE(says(rack("\"Radius\":                   0.1", "\"Radius\": 0"),
-                     "RackPinion.json:17: Pinion.Radius: not above zero"));
-    EXPECT_TRUE(
-        says(rack("\"Template\":                   \"RackPinion\"", "\"Template\": \"RotaryArm\""),
-             "steering/RackPinion.json:4: Template: 'RotaryArm' is not a supported "
-             "steering; known: RackPinion, PitmanArm"));
-    // With --allow-missing the tie rods are on ground.
-    const auto rest = data.import(good, "front", true);
-    EXPECT_TRUE(says(rest.yaml, "tierod_left: {type: distance, bodies: [ground, upright_left]"));
-    EXPECT_TRUE(says(rest.yaml, "MISSING"));
-    const auto alone = data.path / "generic/suspension/DoubleWishbone.json";
-    EXPECT_TRUE(says(refusal_of([&] { importer::import_file(alone, {.axle = "front"}); }),
-                     "--axle: only for a vehicle"));
+    expect_refusals("vehicle", with_rack, "vehicle.json",
+                    [&](const std::string& text) { return data.refusal(text, "front"); });
 }
 
 }  // namespace
