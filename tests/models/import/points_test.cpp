@@ -113,7 +113,7 @@ TEST(PointsTable, OfAWorkbookIsReadAsThatOfItsSheet) {
 
 // Points and markers of parts that are placed and turned; a place that is an expression is left out.
 TEST(Points, OfAdamsViewAreInTheFramesOfTheirCommands) {
-    const std::string text = file_of_points("view.cmd");
+    const std::string text = support::text_of(import_folder / "points/view.cmd");
     importer::Options options = with_axes("x-rearward,y-left,z-up");
     const auto read = importer::import_text(text, "c.cmd", options);
     EXPECT_TRUE(says(read.yaml, "hpl_uca_front: [100, 240, 280.8]  # line 12, hpl_uca_front"));
@@ -122,7 +122,7 @@ TEST(Points, OfAdamsViewAreInTheFramesOfTheirCommands) {
     EXPECT_TRUE(says(notes_of(read), "with a place that is an expression: line 41, "));
     options.as = "double_wishbone";
     EXPECT_EQ(importer::import_text(text, "c.cmd", options).bodies, 4);
-    const std::string listed = file_of_points("listed.cmd");
+    const std::string listed = support::text_of(import_folder / "points/listed.cmd");
     const auto other = importer::import_text(listed, "c.cmd", with_axes("x-forward,y-left"));
     EXPECT_TRUE(says(other.yaml, "arm_outer: [500, 250, 100]"));
     EXPECT_TRUE(says(other.yaml, "arm_inner: [750, 500, 100]"));
