@@ -207,7 +207,7 @@ bool is_better(const Search& one, const Search& other) {
 }
 
 // The best of the points x so far: whether it is within the bands, and its cost or its distance.
-struct Seen {
+struct BestPoint {
     const Bands& bands;
     int minimised;
     bool met = false;
@@ -305,7 +305,7 @@ Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& 
     optimum.after = optimum.start.value;
     if (!optimum.start.complete()) return optimum;
     int evaluations = 0;
-    std::optional<Seen> seen;
+    std::optional<BestPoint> seen;
     const Figures counted{
         [&](const std::vector<VectorXd>& points) {
             evaluations += static_cast<int>(points.size());
