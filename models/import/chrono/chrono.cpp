@@ -48,16 +48,16 @@ void half_leaf(Suspension& s, const Words& words) {
                  vertical = s.real(in + "Vertical Stiffness") / (1 + bias),
                  lateral = s.real(in + "Lateral Stiffness") / (1 + bias),
                  square = arm.squaredNorm();
-    s.joint_or_bushing("revolute", name + ".yaw*", name + "*", "axle", p, no_turn,
+    s.joint_or_bushing("revolute", {name + ".yaw*", name + "*", "axle"}, p, no_turn,
                        s.optional(in + "Clamp Bushing Data"));
-    s.torsion(name + ".lateral*", name + "*", "axle", p, Vector3d::UnitZ(),
+    s.torsion({name + ".lateral*", name + "*", "axle"}, p, Vector3d::UnitZ(),
               share * lateral * square);
-    s.joint_or_bushing("revolute", name + ".pitch*", name + "*", half, p,
+    s.joint_or_bushing("revolute", {name + ".pitch*", name + "*", half}, p,
                        frame_along(-Vector3d::UnitY(), Vector3d::UnitZ()),
                        s.optional(in + "Leafspring Bushing Data"));
     // Moment about y on the leaf whose far end then pushes the chassis up with half the preload: arm ×
     // force.
-    s.torsion(name + ".vertical*", name + "*", half, p, Vector3d::UnitY(),
+    s.torsion({name + ".vertical*", name + "*", half}, p, Vector3d::UnitY(),
               share * vertical * square, -0.5 * preload * arm.x());
     if (preload != 0 && s.side > 0 && half != "front_leaf*")
         s.draft().notes.warn(s.place(in + "Vertical Preload Force"),
@@ -192,7 +192,7 @@ struct Generic {
                 "Chrono reads this as a lock, probably not intended; write Lock, or change the "
                 "joint");
         if (found->may_be_bushing)
-            return s.joint_or_bushing(found->type, part.name, i, j, at, A, data);
+            return s.joint_or_bushing(found->type, {part.name, i, j}, at, A, data);
         const bool is_lock = found->name == "Lock";
         if (data) {
             s.ignore(*data, is_lock ? "a bushing instead of a lock"
@@ -202,7 +202,7 @@ struct Generic {
         }
         std::vector<Vector3d> along;
         if (found->axis >= 0) along = {A.col(found->axis)};
-        s.joint(found->type, part.name, i, j, at, along);
+        s.joint(found->type, {part.name, i, j}, at, along);
     }
 };
 
@@ -245,9 +245,9 @@ void joint_step(Suspension& s, const std::string& verb, const Words& w) {
                                : no_turn;
     if (has_frame) along = {frame.col(0), frame.col(1)};
     if (may_be_bushing)
-        s.joint_or_bushing(type, w[0], w[1], w[2], at, frame, s.optional(w.back()));
+        s.joint_or_bushing(type, {w[0], w[1], w[2]}, at, frame, s.optional(w.back()));
     else
-        s.joint(type, w[0], w[1], w[2], at, along, held);
+        s.joint(type, {w[0], w[1], w[2]}, at, along, held);
 }
 
 // A warning if two vectors are not perpendicular.
@@ -278,7 +278,7 @@ const std::map<std::string_view, Step> steps{
      [](Suspension& s, const Words& w) {
          FilePoint at = s.point(w.at(3));
          at.from = s.place(w.at(5));
-         s.torsion(w.at(0), w.at(1), w.at(2), at, s.vector_of(w.at(4)), s.real(w.at(5)));
+         s.torsion({w.at(0), w.at(1), w.at(2)}, at, s.vector_of(w.at(4)), s.real(w.at(5)));
      }},
     {"wheel", [](Suspension& s, const Words& w) { s.spindle(w.at(0)); }},
     {"one freedom",

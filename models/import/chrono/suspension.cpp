@@ -251,12 +251,11 @@ const std::map<std::string_view, std::vector<const char*>> directions_of{
 
 }  // namespace
 
-void Suspension::joint(const std::string& type, const std::string& name, const std::string& i,
-                       const std::string& j, const FilePoint& at,
+void Suspension::joint(const std::string& type, const Between& part, const FilePoint& at,
                        const std::vector<Vector3d>& along, bool held) {
     Fields fields;
-    fields.add("type", type).add("bodies", pair(i, j));
-    if (type != "parallel") fields.add("at", hardpoint(name, at));
+    fields.add("type", type).add("bodies", pair(part.i, part.j));
+    if (type != "parallel") fields.add("at", hardpoint(part.name, at));
     std::vector<Vector3d> units;
     for (const Vector3d& v : along) units.push_back(v.normalized());
     if (units.size() == 2) {  // the second is made exactly perpendicular
@@ -272,7 +271,7 @@ void Suspension::joint(const std::string& type, const std::string& name, const s
     for (std::size_t k = 0; k < units.size(); ++k)
         fields.add(directions_of.at(type).at(k), direction(units[k]));
     if (held) fields.add("held", "true");
-    draft_.joints.push_back({joint_names_.take(on_side(name)), fields.braced(), at.from});
+    draft_.joints.push_back({joint_names_.take(on_side(part.name)), fields.braced(), at.from});
     draft_.notes.count("joint");
 }
 
@@ -288,16 +287,14 @@ void Suspension::distance(const std::string& name, const std::string& i, const F
 // A bushing with its frame fixed in body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both
 // along its axes. F is isotropic, so it acts along the line of both points. T has an energy if
 // K_rot is isotropic. Otherwise, as in place of a revolute, it is not conjugate, as in Chrono.
-void Suspension::joint_or_bushing(const std::string& type, const std::string& name,
-                                  const std::string& body1, const std::string& body2,
-                                  const FilePoint& at, const Matrix3d& frame,
-                                  const std::optional<Cursor>& data) {
+void Suspension::joint_or_bushing(const std::string& type, const Between& part, const FilePoint& at,
+                                  const Matrix3d& frame, const std::optional<Cursor>& data) {
     const bool revolves = type == "revolute", is_universal = type == "universal";
     if (!data) {
         std::vector<Vector3d> along;
         if (revolves) along = {frame.col(2)};
         if (is_universal) along = {frame.col(0), frame.col(1)};
-        return joint(type, name, body1, body2, at, along);
+        return joint(type, part, at, along);
     }
     const double linear = data->require("Stiffness Linear").number(),
                  rotational = data->require("Stiffness Rotational").number();
@@ -312,7 +309,7 @@ void Suspension::joint_or_bushing(const std::string& type, const std::string& na
         return is_fixed ? rotational : free;
     };
     Fields fields;
-    fields.add("bodies", pair(body2, body1)).add("at", hardpoint(name, at));
+    fields.add("bodies", pair(part.j, part.i)).add("at", hardpoint(part.name, at));
     const bool is_round = rate(0) == rate(1) && rate(1) == rate(2);
     if (!is_round)
         fields.add("frame", fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)),
@@ -321,7 +318,7 @@ void Suspension::joint_or_bushing(const std::string& type, const std::string& na
         .add("rotational_rates",
              fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
     if (!is_round) fields.add("formulation", "{conjugate: false}");
-    draft_.bushings.push_back({element_names_.take(on_side(name)), fields.braced(), at.from});
+    draft_.bushings.push_back({element_names_.take(on_side(part.name)), fields.braced(), at.from});
     draft_.notes.count("bushing");
 }
 
@@ -532,27 +529,27 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
         law_fields.add("curve",
                        linear(rows_of(data.require("Spring Curve Data"), free, preload), false));
     }
-    torsion(name, i, j, {p, here}, axis, law_fields);
+    torsion({name, i, j}, {p, here}, axis, law_fields);
 }
 
-void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
-                         const FilePoint& at, const Vector3d& axis, const Fields& law) {
+void Suspension::torsion(const Between& part, const FilePoint& at, const Vector3d& axis,
+                         const Fields& law) {
     Fields fields;
-    fields.add("bodies", pair(i, j))
-        .add("at", hardpoint(name, at))
+    fields.add("bodies", pair(part.i, part.j))
+        .add("at", hardpoint(part.name, at))
         .add("axis", direction(axis))
         .add(law);
     draft_.torsion_springs.push_back(
-        {element_names_.take(on_side(name)), fields.braced(), at.from});
+        {element_names_.take(on_side(part.name)), fields.braced(), at.from});
     draft_.notes.count("torsion spring");
 }
 
-void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
-                         const FilePoint& at, const Vector3d& axis, double rate, double moment) {
+void Suspension::torsion(const Between& part, const FilePoint& at, const Vector3d& axis,
+                         double rate, double moment) {
     Fields law;
     law.add("rate", rate);
     if (moment != 0) law.add("preload_moment", computed(moment));
-    torsion(name, i, j, at, axis, law);
+    torsion(part, at, axis, law);
 }
 
 // Rz(∓toe) Rx(∓camber) of the chassis, - on the left. The spin is fixed, since nothing at rest
@@ -562,7 +559,7 @@ void Suspension::spindle(const std::string& carrier) {
     const FilePoint centre = point("Spindle/COM");
     body(name, "Spindle", centre);
     const std::string at = hardpoint(name, centre);
-    joint("fixed", "wheel_bearing*", name, carrier, centre);
+    joint("fixed", {"wheel_bearing*", name, carrier}, centre);
     const double toe = number_or_zero(file_, "Toe Angle (deg)") * std::numbers::pi / 180,
                  camber = number_or_zero(file_, "Camber Angle (deg)") * std::numbers::pi / 180;
     const Vector3d axis =

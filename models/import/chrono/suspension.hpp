@@ -43,6 +43,11 @@ struct FilePoint : Vector3d {
     std::string calculated;  // "midpoint of A and B"; empty: it is a field of the file
 };
 
+// The name of a joint or element, and the bodies that it connects.
+struct Between {
+    std::string name, i, j;
+};
+
 class Suspension {
   public:
     Suspension(const reader::Cursor& file, const Options& options, Draft& draft)
@@ -93,15 +98,13 @@ class Suspension {
     void body(const std::string& name, const std::string& part, const Vector3d& com,
               const std::string& mass = "Mass");
     // `along`: the directions that a joint of the type has.
-    void joint(const std::string& type, const std::string& name, const std::string& i,
-               const std::string& j, const FilePoint& at, const std::vector<Vector3d>& along = {},
-               bool held = false);
+    void joint(const std::string& type, const Between& part, const FilePoint& at,
+               const std::vector<Vector3d>& along = {}, bool held = false);
     void distance(const std::string& name, const std::string& i, const FilePoint& from,
                   const std::string& j, const FilePoint& to);
     // A spherical, revolute or universal joint of Chrono: with `data`, its "Bushing Data", a bushing
     // at its frame.
-    void joint_or_bushing(const std::string& type, const std::string& name,
-                          const std::string& body1, const std::string& body2, const FilePoint& at,
+    void joint_or_bushing(const std::string& type, const Between& part, const FilePoint& at,
                           const Matrix3d& frame, const std::optional<reader::Cursor>& data);
     // A translational spring and damper from `i` (on the chassis) to `j`.
     void tsda(const std::string& name, const std::string& i, const Vector3d& from,
@@ -109,10 +112,9 @@ class Suspension {
     // A rotational spring and damper of `j` relative to `i`.
     void rsda(const std::string& name, const std::string& i, const std::string& j,
               const Vector3d& p, const Vector3d& axis, const reader::Cursor& data);
-    void torsion(const std::string& name, const std::string& i, const std::string& j,
-                 const FilePoint& at, const Vector3d& axis, const Fields& law);
-    void torsion(const std::string& name, const std::string& i, const std::string& j,
-                 const FilePoint& at, const Vector3d& axis, double rate, double moment = 0);
+    void torsion(const Between& part, const FilePoint& at, const Vector3d& axis, const Fields& law);
+    void torsion(const Between& part, const FilePoint& at, const Vector3d& axis, double rate,
+                 double moment = 0);
 
     // The spindle, held on `carrier`, and the wheel on it.
     void spindle(const std::string& carrier);

@@ -188,10 +188,9 @@ class ChronoWriter {
             {{"Name", name}, {"Mirrored", twice_}, {"Body1", body(i)}, {"Body2", body(j)}});
         return root[section].back();
     }
-    json& joint(json& root, const char* type, const std::string& name, BodyId i, BodyId j,
-                const Vector3d& at, const Matrix3d& A = Matrix3d::Identity()) {
+    // Completes an entry of the joints.
+    json& joint(json& one, const char* type, const Vector3d& at, const Matrix3d& A) {
         const Eigen::Quaterniond q(A);
-        json& one = entry(root, "Joints", name, i, j);
         one["Type"] = type;
         one["Position"] = coordinates(at);
         one["Rotation"] = json::array({q.w(), q.x(), q.y(), q.z()});
@@ -207,7 +206,7 @@ class ChronoWriter {
                                            {0, "joint '" + one.name + "'"});
         const auto plain = [&](const char* type, const auto& k,
                                const Matrix3d& A = Matrix3d::Identity()) {
-            joint(root, type, one.name, k.i.body, k.j.body, drawn(k.j), A);
+            joint(entry(root, "Joints", one.name, k.i.body, k.j.body), type, drawn(k.j), A);
         };
         const auto no_joint = [&](const char* what) { miss("joint '" + one.name + "'", what); };
         std::visit(
@@ -370,7 +369,7 @@ class ChronoWriter {
             return miss(what,
                         "Chrono's bushing has one rate for all translations and two for rotations, "
                         "about z and across it; this one differs");
-        json& one = joint(root, "Revolute", elastic.name, b.j.body, b.i.body,
+        json& one = joint(entry(root, "Joints", elastic.name, b.j.body, b.i.body), "Revolute",
                           drawn(b.j.body, b.j.s_local), A);
         one["Bushing Data"] = {{"Stiffness Linear", k[0]},
                                {"Damping Linear", 0},
