@@ -1,6 +1,5 @@
 // Robustness against floating-point arithmetic: rounding modes, flush-to-zero, inputs changed by
 // one ulp, and NaN in every input. A converged result must still be correct.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #ifdef __SSE2__

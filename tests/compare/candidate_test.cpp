@@ -2,7 +2,6 @@
 // missing data never passes.
 #include "compare/candidate/candidate.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -439,8 +438,8 @@ TEST(Candidate, LegAsASolverFunctionIsJudgedAsThatLeg) {
             EXPECT_LE(1e3 * exact.leftovers[b].truth[k].length, bounds.residual_length);
             EXPECT_LE(exact.leftovers[b].by_second[k].force, bounds.residual_force);
         }
-        // The energy leg uses no reactions: its residuals are the same for the recursion and for a
-        // candidate.
+        // The energy leg uses no reactions: its residuals are the same for the recursion and
+        // for a candidate.
         for (std::size_t k = 0; k < off.leftovers[b].truth.size(); ++k) {
             by_energy = std::max(by_energy, off.leftovers[b].by_second[k].force);
             length = std::max(length, off.leftovers[b].truth[k].length);

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <limits>
 #include <random>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>

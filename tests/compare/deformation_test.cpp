@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "compare/comparison/compare.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"

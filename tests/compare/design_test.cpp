@@ -167,7 +167,7 @@ TEST(SolveFor, NamesTheWishesThatConflictAndTheLimitThatPreventsOne) {
     EXPECT_EQ(limited.solution.at_limit, (std::vector<int>{1, -1}));
 }
 
-TEST(SolveFor, StillFiguresAndMissingValuesAreReported) {
+TEST(SolveFor, FiguresThatNoNumberMovesAndMissingValuesAreReported) {
     const SearchRange range{list_of({0}), list_of({-1}), list_of({2})};
     const Figures still = closed([](const VectorXd& p) { return list_of({p[0], 1}); }, 1);
     EXPECT_EQ(start_of(still, range).still, (std::vector<bool>{false, true}));
@@ -481,7 +481,7 @@ TEST(Optimise, FindsTheLeastOfTwoMinimaFromSeveralStarts) {
     EXPECT_EQ(found.p, from(wells, goals, range, 5).p);
 }
 
-TEST(Optimise, StillGoalIsLeftOutAndNotMinimised) {
+TEST(Optimise, GoalThatNoNumberMovesIsLeftOut) {
     const Figures still = closed([](const VectorXd& p) { return list_of({p[0], 7}); }, 1);
     const SearchRange range{list_of({0}), list_of({-1}), list_of({2})};
     Goals goals{.low = list_of({0.5, 6}), .high = list_of({1, 8}), .goal = {0, 1}};
@@ -572,8 +572,8 @@ TEST(Tolerances, ShareOfEachAddsUpAndTheWorstCaseIsTheSum) {
 }
 
 // 400 samples of the references. The standard deviation of a sample's standard deviation is
-// σ / √(2 N) for a normal distribution and less for a sum with uniform parts: bounds of four of
-// these.
+// σ / √(2 N) for a normal distribution and less for a sum with uniform parts: bounds of
+// four of these.
 TEST(Tolerances, LinearScatterOfAMcPhersonEqualsItsMonteCarlo) {
     const Varied varied =
         varied_of("mcpherson", {"points.tie_rod_inner.z", "points.tie_rod_outer.z",

@@ -1,6 +1,5 @@
 // Element forces in the states of the legs balance loads and joints on every body, and are reported
 // at the ends of the branches.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

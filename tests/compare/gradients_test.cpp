@@ -154,7 +154,7 @@ std::map<std::string, std::vector<Recorded>> recorded() {
     return all;
 }
 
-TEST(Gradients, AreTheRecordedExactOnes) {
+TEST(Gradients, DerivativesEqualTheRecordedExactValues) {
     int compared = 0;
     std::map<Leg, double> worst;
     const support::Folder folder;
@@ -205,7 +205,7 @@ TEST(Gradients, AreTheRecordedExactOnes) {
 }
 
 // Outputs of a group have the derivatives that they have alone, to the last bit; trim included.
-TEST(Gradients, OfGroupsAreThoseOfEachGroupAlone) {
+TEST(Gradients, DerivativesOfSeveralGroupsEqualThoseOfEachGroupAlone) {
     Asked all = asked(file_of("chrono_mcpherson_preload"));
     all.varying.numbers.resize(12);
     const std::string branch = all.model.branches.front().name;
@@ -241,7 +241,7 @@ TEST(Gradients, OfGroupsAreThoseOfEachGroupAlone) {
 }
 
 // Against extrapolated differences of whole solutions, trim included.
-TEST(Gradients, AreTheDifferencesOfScenesWithANumberSet) {
+TEST(Gradients, DerivativesEqualDifferencesOfScenesWithTheNumberChanged) {
     struct Case {
         const char *scene, *number;
         double step;
@@ -474,7 +474,7 @@ TEST(GradientsClosedForm, OfAFourBarWithEqualArms) {
 }
 
 // At the corner of a law a stiffness has two values, and an entry says so.
-TEST(Gradients, AnEntryAtACornerSaysWhyThereIsNone) {
+TEST(Gradients, UndefinedEntryAtACornerHasItsReason) {
     const std::string file =
         std::string(ELASTOCHECK_SCENES) + "/../extremes/stop_that_touches.yaml";
     const Gradients by = gradients_of(asked(file, {setting("branches.lift.to", 20)}), 2,
@@ -496,7 +496,7 @@ TEST(Gradients, AnEntryAtACornerSaysWhyThereIsNone) {
 
 // A spring of 20 N/mm that a stop of 80 N/mm joins at 10 mm: z = F / 20 below the knot and
 // 10 + (F - 200) / 100 above. At F = 200 N the force itself, a number of the scene, has two rates.
-TEST(Gradients, AtACornerBothSidesAreThoseOfTheLawOnThisSide) {
+TEST(Gradients, OneSidedDerivativesAtACornerAreThoseOfTheLawOnEitherSide) {
     const std::string text =
         "elastocheck: 1\nname: stop\nunits: {length: mm, angle: deg, force: N}\n"
         "points: {low: [0, 0, 0], top: [0, 0, 400]}\n"

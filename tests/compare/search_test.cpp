@@ -93,7 +93,7 @@ TEST(Optimise, InterruptedFirstSearchLeavesTheBestPointSoFar) {
 }
 
 // Recorded from searches in which every evaluation was solved from the design position.
-TEST(Optimise, EndsWhereSearchesByWholeSolutionsEnd) {
+TEST(Optimise, ResultEqualsThatOfASearchThatSolvesEveryPointAnew) {
     const Varied varied =
         varied_of("double_wishbone", {"points.tie_rod_inner.z", "points.upper_front.z"},
                   list_of({-0.02, 0.18}), list_of({0.02, 0.3}));

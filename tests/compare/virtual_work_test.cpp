@@ -18,7 +18,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/deformation.hpp"

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 
 namespace elastocheck::fuzz {

@@ -1,4 +1,4 @@
-// Includes between rooms. A room is a folder of source files; the public headers in
+// Includes between folders of source files; the public headers in
 // include/elastocheck/ belong to the part of the product that defines what they declare.
 #include <gtest/gtest.h>
 
@@ -65,8 +65,8 @@ const Part* part_of(std::string path) {
     return part == parts.end() ? nullptr : &*part;
 }
 
-// The room of a file: its folder, or the public headers of a part.
-std::string room_of(const std::string& path) {
+// The folder of a file, or the public headers of a part.
+std::string folder_of(const std::string& path) {
     if (is_below(path, "include/elastocheck") || is_below(path, "elastocheck"))
         return part_of(path)->folder + " (public)";
     return fs::path(path).parent_path();
@@ -141,26 +141,26 @@ const std::vector<Source>& sources() {
 
 using Graph = std::map<std::string, std::set<std::string>>;
 
-// The rooms of a cycle of includes; empty if there is none.
+// The folders of a cycle of includes; empty if there is none.
 std::vector<std::string> cycle(const Graph& graph) {
     std::set<std::string> finished;
     std::vector<std::string> path, found;
-    const auto visit = [&](const auto& self, const std::string& room) -> bool {
-        if (const auto at = std::ranges::find(path, room); at != path.end()) {
+    const auto visit = [&](const auto& self, const std::string& folder) -> bool {
+        if (const auto at = std::ranges::find(path, folder); at != path.end()) {
             found.assign(at, path.end());
             return true;
         }
-        if (finished.contains(room)) return false;
-        path.push_back(room);
-        if (const auto next = graph.find(room); next != graph.end())
+        if (finished.contains(folder)) return false;
+        path.push_back(folder);
+        if (const auto next = graph.find(folder); next != graph.end())
             for (const std::string& other : next->second)
                 if (self(self, other)) return true;
         path.pop_back();
-        finished.insert(room);
+        finished.insert(folder);
         return false;
     };
-    for (const auto& [room, next] : graph)
-        if (visit(visit, room)) break;
+    for (const auto& [folder, next] : graph)
+        if (visit(visit, folder)) break;
     return found;
 }
 
@@ -169,14 +169,14 @@ TEST(Layering, IncludesRunDownwardsAndNeverBetweenLegs) {
         for (const auto& violation : violations(file, text)) ADD_FAILURE() << violation;
 }
 
-TEST(Layering, RoomsIncludeEachOtherInNoCycle) {
+TEST(Layering, FoldersIncludeEachOtherInNoCycle) {
     Graph graph;
     for (const auto& [file, text] : sources())
         for (const auto& [target, quoted] : includes(text))
-            if (quoted && part_of(target) && room_of(target) != room_of(file))
-                graph[room_of(file)].insert(room_of(target));
+            if (quoted && part_of(target) && folder_of(target) != folder_of(file))
+                graph[folder_of(file)].insert(folder_of(target));
     EXPECT_GT(graph.size(), 20u);
-    for (const std::string& room : cycle(graph)) ADD_FAILURE() << "in a cycle: " << room;
+    for (const std::string& folder : cycle(graph)) ADD_FAILURE() << "in a cycle: " << folder;
 }
 
 TEST(Layering, AFolderHoldsAtMostTwentySourceFiles) {
@@ -185,7 +185,7 @@ TEST(Layering, AFolderHoldsAtMostTwentySourceFiles) {
     for (const auto& [folder, files] : count) EXPECT_LE(files, most_files) << folder;
 }
 
-// What the rooms that show results include of the rooms that compute them.
+// What the folders that show results include of the folders that compute them.
 TEST(Layering, FoldersOfReportsIncludeOnlyAllowedAnalyses) {
     const std::map<std::string, std::vector<std::string>> allowed{
         {"reports/page", {"compare/result", "compare/tables", "compare/outputs"}},
@@ -195,12 +195,12 @@ TEST(Layering, FoldersOfReportsIncludeOnlyAllowedAnalyses) {
         {"reports/files", {}},
         {"reports/json", {}}};
     for (const auto& [file, text] : sources())
-        for (const auto& [room, rooms] : allowed)
+        for (const auto& [folder, folders] : allowed)
             for (const auto& [target, quoted] : includes(text))
-                if (is_below(file, room) &&
+                if (is_below(file, folder) &&
                     (is_below(target, "compare") || is_below(target, "recursive"))) {
                     EXPECT_TRUE(std::ranges::any_of(
-                        rooms, [&](const std::string& r) { return is_below(target, r); }))
+                        folders, [&](const std::string& r) { return is_below(target, r); }))
                         << file << " includes " << target;
                 }
 }

@@ -1,5 +1,5 @@
-// The installed headers: at most fifteen, which include only each other, the standard library and
-// Eigen.
+// The installed headers: at most fifteen, which include only each other, the standard
+// library and Eigen.
 #include <gtest/gtest.h>
 
 #include <filesystem>

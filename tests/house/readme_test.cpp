@@ -41,8 +41,8 @@ TEST(Readme, CommitsOfTheExampleWorkflowExist) {
 std::vector<std::filesystem::path> pages() {
     namespace fs = std::filesystem;
     std::vector<fs::path> found;
-    for (const char* room : {"models", "recursive", "reference", "compare", "reports", "tests"})
-        for (const auto& entry : fs::recursive_directory_iterator(fs::path(root) / room))
+    for (const char* part : {"models", "recursive", "reference", "compare", "reports", "tests"})
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(root) / part))
             if (entry.path().extension() == ".md") found.push_back(entry.path());
     for (const char* page : {"README.md", "CONTRIBUTING.md"})
         found.push_back(fs::path(root) / page);
@@ -71,18 +71,18 @@ TEST(Readme, ItsFiguresOfSpeedAreTheMeasuredOnes) {
         << "regenerate both: cmake --build --preset release --target speed_figures";
 }
 
-// A room's page is its map: a header that moved or went is noticed here.
-TEST(Readme, HeadersThatTheRoomsPagesNameExist) {
+// The page of a folder lists its files: a header that was moved or removed is noticed here.
+TEST(Readme, HeadersThatPagesOfFoldersNameExist) {
     static const std::regex file("`([A-Za-z_/]+\\.[hc]pp)`");
     int named = 0;
-    for (const char* room : {"models", "recursive", "reference", "compare", "reports"}) {
-        const std::filesystem::path folder = std::filesystem::path(root) / room;
+    for (const char* part : {"models", "recursive", "reference", "compare", "reports"}) {
+        const std::filesystem::path folder = std::filesystem::path(root) / part;
         const std::string text = text_of(folder / "README.md");
         std::filesystem::path last = folder;
         for (std::sregex_iterator at(text.begin(), text.end(), file), end; at != end;
              ++at, ++named) {
             const std::string name = (*at)[1];
-            // From the room, from the repository, or beside the file that is named before.
+            // From the folder, from the repository, or beside the file that is named before.
             bool exists = false;
             for (const auto& from : {folder, std::filesystem::path(root), last})
                 if (std::filesystem::exists(from / name)) {
@@ -90,7 +90,7 @@ TEST(Readme, HeadersThatTheRoomsPagesNameExist) {
                     last = (from / name).parent_path();
                     break;
                 }
-            EXPECT_TRUE(exists) << room << "/README.md names " << name;
+            EXPECT_TRUE(exists) << part << "/README.md names " << name;
         }
     }
     EXPECT_GT(named, 100);

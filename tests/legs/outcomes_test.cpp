@@ -1,5 +1,6 @@
 // Outcomes: a correct result or a reported failure, never a wrong number.
 #include <filesystem>
+#include <limits>
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"

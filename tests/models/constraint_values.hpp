@@ -1,7 +1,6 @@
 // Constraint values at any poses, implemented from the comments in model.hpp.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <variant>
 #include <vector>

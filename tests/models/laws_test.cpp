@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "elastocheck/compile.hpp"
 #include "models/laws.hpp"
@@ -389,8 +388,8 @@ TEST(SpringCurve, IsDrivenByItsFreeLength) {
     EXPECT_EQ(scene.branches[0].to, 0.01);
 }
 
-// ---- Reduction by compile(): a body attached to one other is removed unless it has a loaded
-// element.
+// ---- Reduction by compile(): a body attached to one other is removed unless it has
+// a loaded element.
 
 std::size_t bodies_kept(const std::string& elements) {
     std::string text = laws_scene(

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 #include <random>
 

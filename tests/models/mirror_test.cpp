@@ -1,5 +1,4 @@
 // A mirrored scene equals the same scene with both sides written by hand.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "elastocheck/read_scene.hpp"
 #include "models/kinds.hpp"

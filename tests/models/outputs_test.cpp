@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"

@@ -528,7 +528,7 @@ TEST(Wheel, RightSideHasItsSpinAxisToTheRight) {
     EXPECT_EQ(scene.wheels.at(0).spin_axis_local, Vector3d(0, -1, 0));
 }
 
-TEST(Sections, TheirOrderDoesNotMatter) {
+TEST(Sections, OrderOfTheSectionsOfASceneDoesNotMatter) {
     std::vector<std::string> sections;
     std::istringstream lines(bench_scene);
     for (std::string line; std::getline(lines, line);) {

@@ -1,7 +1,6 @@
 // The trim of a scene file: adjustments, conditions, loads.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "elastocheck/read_scene.hpp"

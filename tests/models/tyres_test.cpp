@@ -1,5 +1,4 @@
 // Tyres: a vertical rate at the contact patch, and the road height as driver.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

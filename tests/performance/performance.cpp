@@ -1,5 +1,4 @@
 // The jobs whose instructions are held: `performance JOB`. What is counted is the function `counted`.
-#include <cstdio>
 #include <map>
 #include <string>
 #include <vector>

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <set>
-
 #include "compare/comparison/legs.hpp"
 #include "compare/stress/stress.hpp"
 #include "elastocheck/compile.hpp"

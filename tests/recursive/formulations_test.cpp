@@ -1,5 +1,4 @@
 // Curves and angles of the formulations; forces are tested in tests/legs.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "models/laws.hpp"

@@ -129,7 +129,7 @@ TEST(Knots, StopCostsOneFirstOrderStepAndLaterStepsKeepTheOrderOfTheMethod) {
     }
 }
 
-TEST(Knots, KnotOfATableCostsOneStepOfSecondOrderOrThirdWithACorrection) {
+TEST(Knots, StepAcrossAKnotHasSecondOrderOrThirdWithACorrection) {
     for (const auto& [name, behind] : {std::pair{"tangent", 2}, {"midpoint", 2}, {"chord", 3}}) {
         const Method method = method_called(name);
         const Errors coarse = errors_near(with_curve, method, 400),

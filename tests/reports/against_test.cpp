@@ -1,7 +1,6 @@
 // Two variants: what differs is named with both values, what does not is left out.
 #include "reports/document/against.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -84,7 +83,7 @@ TEST(Against, NamesTheNumberThatDiffersAndTheFiguresThatItMoved) {
     EXPECT_GT(largest, 0.01);
 }
 
-TEST(Against, OtherStepsAreComparedAtEqualParameter) {
+TEST(Against, ScenesWithDifferentStepsAreComparedAtEqualParameter) {
     SceneAnalyses coarse = base();  // every second point of each branch, by the same solution
     for (auto& branch : coarse.comparison.branches)
         truth_of(branch) = compare::thinned(truth_of(branch), 2);

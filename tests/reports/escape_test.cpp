@@ -8,8 +8,8 @@
 namespace elastocheck::reports {
 namespace {
 
-// Control characters, direction changes, bytes that are not UTF-8, and special characters of every
-// language.
+// Control characters, direction changes, bytes that are not UTF-8, and special characters
+// of every language.
 const std::vector<std::string> odd{
     "a\nb",      "\r",     "\x1b[31m", "\x7F",         "\u0085",
     "\u009b31m", "\u2028", "\u202e",   "\u2066",       std::string("\0", 1),

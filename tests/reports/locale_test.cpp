@@ -6,7 +6,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
@@ -109,7 +108,7 @@ TEST(DecimalComma, LocaleWithDecimalCommaDoesNotChangeAnyOutput) {
     }
 }
 
-TEST(DecimalComma, IsTriedOnEveryCommand) {
+TEST(DecimalComma, EveryCommandIsTestedInALocaleWithDecimalComma) {
     std::set<std::string> tried;
     for (const auto& line : lines()) tried.insert(line.command);
     int count = 0;

@@ -11,7 +11,6 @@
 #include "elastocheck/compile.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/limits.hpp"
-#include "reports/files/provenance.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/measured.hpp"

@@ -41,7 +41,7 @@ std::vector<std::string> parts(const std::string& text, const std::string& open,
     return found;
 }
 
-TEST(Report, PageAsksForNothingFromOutside) {
+TEST(Report, PageRequestsNothingFromTheNetwork) {
     const std::string html = page();
     // the page's own three scripts, by their hashes, and no other; data of the drawings are inert
     EXPECT_TRUE(std::regex_search(
@@ -114,7 +114,7 @@ TEST(Report, PageColoursAreClassesSoThatDarkPaperCanChangeThem) {
             ADD_FAILURE() << "a colour of its own: " << colour;
 }
 
-TEST(Report, PageTheMarkdownTwinSaysTheSame) {
+TEST(Report, PageAndMarkdownHaveTheSameText) {
     const Folder folder;
     write_report(report_of(two_scenes()), folder.path / "r");
     const std::string html = text_of(folder.path / "r" / "report.html"),
@@ -210,7 +210,7 @@ TEST(Report, BrowserOpensThePageWithoutAnErrorOrARequest) {
 
 // Values under the pointer, and curves switched by the legend. The policy of the page lets this
 // script run: it names its hash.
-TEST(Report, BrowserTellsTheValueUnderThePointerAndSwitchesCurves) {
+TEST(Report, BrowserShowsTheValueUnderThePointerAndSwitchesCurves) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const std::string html = page({compared_scene("front_axle")});
     const json seen = measured_in_a_browser(html, R"(
@@ -285,7 +285,7 @@ seen.focus=svg.tabIndex;seen.buttons=[...document.querySelectorAll('.turn button
     EXPECT_NEAR(across("near", 0) / across("top", 0), 1.25, 2e-3);
 }
 
-TEST(Report, BrowserMovesTheDrawingByWhatTheCurveSays) {
+TEST(Report, BrowserMovesTheDrawingByTheDisplacementsOfTheBranch) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const SceneAnalyses& scene = compared_scene("front_axle");
     const json seen = measured_in_a_browser(page({scene}), turned + R"(

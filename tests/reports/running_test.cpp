@@ -56,7 +56,7 @@ TEST(Running, KinematicsAndComplianceNeedNoStudy) {
     }
 }
 
-TEST(Running, ALineOfProgressSaysShareTimeAndWork) {
+TEST(Running, LineOfProgressHasShareTimeAndWork) {
     EXPECT_EQ(progress_line("jounce", 0.5, 12, 80),
               "[##########----------]  50 %, 12 s left: jounce");
     EXPECT_EQ(progress_line("jounce", 0.5, 12, 0), " 50 %, 12 s left: jounce");

@@ -164,7 +164,7 @@ TEST(Sections, TrustIsTheDistanceOfTheReferencesAndTheProvedPoints) {
         << said(scene, "first");
 }
 
-TEST(Sections, TrustWhatCannotBeJudgedIsSaidFirst) {
+TEST(Sections, TrustSentenceBeginsWithWhatCouldNotBeJudged) {
     SceneAnalyses scene = sample_scene();
     scene.reasons = {"jounce: energy leg: branch lost: at load 3"};
     EXPECT_TRUE(
@@ -174,7 +174,7 @@ TEST(Sections, TrustWhatCannotBeJudgedIsSaidFirst) {
         << said(scene, "first");
 }
 
-TEST(Sections, TrustAReferenceThatStoppedIsNotSaidToAgree) {
+TEST(Sections, TrustSentenceClaimsNoAgreementForAnUnfinishedReference) {
     SceneAnalyses scene = sample_scene();
     for (auto& branch : scene.comparison.branches) {
         branch.run(compare::Leg::energy).curve.a.clear();
@@ -219,7 +219,7 @@ TEST(Sections, MethodsAreWithinTheToleranceByTheirNumbers) {
     EXPECT_FALSE(within(NAN));
 }
 
-TEST(Sections, MethodsWithoutARecommendationNoneIsNamed) {
+TEST(Sections, MethodsSectionNamesNoneWithoutARecommendation) {
     SceneAnalyses scene = sample_scene();
     scene.trade->recommendation.reset();
     EXPECT_TRUE(contains(said(scene, "methods"),
@@ -229,7 +229,7 @@ TEST(Sections, MethodsWithoutARecommendationNoneIsNamed) {
 }
 
 // "at equal load" does not apply to a branch driven by a motion.
-TEST(Sections, NameTheReadingsByWhatTheBranchMoves) {
+TEST(Sections, ReadingsAreNamedByTheParameterOfTheBranch) {
     for (const auto& section : sections_of(sample_scene("slider_crank")))
         for (const auto& group : section.figures) {
             expect_parts(group.caption, {}, {"equal load"});
@@ -282,7 +282,7 @@ TEST(Sections, KinematicsNamesWhatEachBranchDoesToTheWheels) {
 }
 
 // In roll the right wheel goes the other way: over its own travel its toe is that of the left one.
-TEST(Sections, KinematicsEachWheelGoesOverItsOwnTravel) {
+TEST(Sections, KinematicsCurvesOfEachWheelAreOverItsOwnTravel) {
     SceneAnalyses scene = compared_scene("front_axle");
     const Figure coincide = figure(scene, "toe-travel");
     EXPECT_EQ(coincide.x, "wheel travel [mm]");
@@ -331,7 +331,7 @@ TEST(Sections, KinematicsTheWheelLoadHasTheStaticPart) {
     }
 }
 
-TEST(Sections, KinematicsAxesHaveTheDrivesOwnNames) {
+TEST(Sections, KinematicsAxesAreNamedByTheirDrive) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     EXPECT_EQ(figure(scene, "toe-steering").x, "rack [mm]");
     EXPECT_EQ(figure(scene, "toe-force").x, "force [N]");
@@ -514,7 +514,7 @@ TEST(Sections, RatesOfASpringAreInTheColumnOfItsWheel) {
 }
 
 // In solve, on the page and in its figure: from the drawn position.
-TEST(Sections, FirstTheTrackChangeIsThatOfTheOutput) {
+TEST(Sections, FirstScreenHasTheTrackChangeFromTheDrawnPosition) {
     SceneAnalyses scene = compared_scene("front_axle");
     const std::size_t change = channel_of(scene, "left.track_change");
     auto& values = truth_of(scene.comparison.branches[0]).values;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "compare/studies/converge.hpp"
 #include "compare/studies/work_precision.hpp"

@@ -1,7 +1,6 @@
 // The committed report in reports/validation/ agrees with the present code.
 #include <gtest/gtest.h>
 
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>

@@ -1,4 +1,4 @@
-// Directions, branches, elements and small scenes that tests of several rooms build in code, random
+// Directions, branches, elements and small scenes that tests of several folders build in code, random
 // numbers, and the worst of many deviations.
 #pragma once
 

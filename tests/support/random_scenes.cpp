@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// SplitMix64 (Steele, Lea & Flood 2014): the distributions of the standard library differ between
-// platforms.
+// SplitMix64 (Steele, Lea & Flood 2014): the distributions of the standard library
+// differ between platforms.
 struct Random {
     std::uint64_t state = 0;
 

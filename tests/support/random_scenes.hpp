@@ -1,10 +1,10 @@
 // Random mechanisms for robustness tests of solvers.
 //
-// One to forty bodies on joints, bushings, springs, stops, curves, beams, torsion springs and
-// tyres, some preloaded, some under static loads, driven by loads, jacks, angles, lengths and
-// preloads. Most are consistent in the design position. On purpose, some have inconsistent or
-// redundant joints, unresisted or irrelevant parts, planar geometry, or rates that differ by ten
-// decades.
+// One to forty bodies on joints, bushings, springs, stops, curves, beams, torsion springs
+// and tyres, some preloaded, some under static loads, driven by loads, jacks, angles,
+// lengths and preloads. Most are consistent in the design position. On purpose, some have
+// inconsistent or redundant joints, unresisted or irrelevant parts, planar geometry, or
+// rates that differ by ten decades.
 #pragma once
 
 #include <cstdint>

@@ -24,9 +24,9 @@ bool has_potential(const Scene& scene);
 // models/scenes/NAME.yaml, which is in m and N, with its numbers rewritten and read in mm and kN.
 Scene in_millimetres_and_kilonewtons(const std::string& name);
 
-// A general axle corner: eight kinds of joints, bushings with full 6×6 rates and preload, preloaded
-// springs, a static load, a load of force and moment together, body axes different from ground
-// axes.
+// A general axle corner: eight kinds of joints, bushings with full 6×6 rates and preload,
+// preloaded springs, a static load, a load of force and moment together, body axes different
+// from ground axes.
 Scene rich_scene();
 
 }  // namespace elastocheck::support

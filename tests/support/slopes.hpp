@@ -86,8 +86,8 @@ inline void expect_slope(const Eigen::VectorXd& answer, const OneWay& way,
                          const std::string& where) {
     const Eigen::VectorXd coarse = slope(way, disturbance, h, solve),
                           fine = slope(way, disturbance, h / 2, solve);
-    // What is of second order falls to a quarter, where it is more than rounding, and without it what is left is of
-    // fourth.
+    // What is of second order falls to a quarter, where it is more than rounding, and without it
+    // what is left is of fourth.
     const double missed = relative_distance(coarse, answer);
     if (missed > 1e-5) {
         EXPECT_NEAR(missed / relative_distance(fine, answer), 4, 0.5) << where;

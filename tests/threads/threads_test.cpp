@@ -105,7 +105,7 @@ std::vector<double> loads(const Branch& branch) {
     return all;
 }
 
-TEST(Threads, EveryMethodOfTheRecursionIsUndisturbed) {
+TEST(Threads, MethodsOfTheRecursionDoNotDependOnOtherThreads) {
     for (const recursive::Method& method : recursive::methods)
         for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"}) {
             SCOPED_TRACE(std::string(method.name));
@@ -119,7 +119,7 @@ TEST(Threads, EveryMethodOfTheRecursionIsUndisturbed) {
         }
 }
 
-TEST(Threads, TheEquilibriumLegIsUndisturbed) {
+TEST(Threads, EquilibriumLegDoesNotDependOnOtherThreads) {
     for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"})
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
             const auto path = reference::equilibrium::solve(model, branch, loads(branch));
@@ -129,7 +129,7 @@ TEST(Threads, TheEquilibriumLegIsUndisturbed) {
         });
 }
 
-TEST(Threads, TheEnergyLegIsUndisturbed) {
+TEST(Threads, EnergyLegDoesNotDependOnOtherThreads) {
     for (const char* scene : {"chrono_mcpherson_preload.yaml", "two_spring_arch.yaml"})
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
             const auto path = reference::energy::solve(model, branch, loads(branch));
@@ -140,7 +140,7 @@ TEST(Threads, TheEnergyLegIsUndisturbed) {
 }
 
 // Whoever compares asks all legs, how they answer at the wheels, and what each thinks of the others' states.
-TEST(Threads, AComparisonWithItsCharacteristicsIsUndisturbed) {
+TEST(Threads, ComparisonDoesNotDependOnOtherThreads) {
     expect_undisturbed("chrono_mcpherson_travel.yaml", [](const Model& model, const Branch&) {
         compare::Options few;
         few.recursion.steps = 4;

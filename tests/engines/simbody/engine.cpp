@@ -23,7 +23,6 @@ bool operator==(const Index& a, const Index& b) {
 #include <cmath>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"

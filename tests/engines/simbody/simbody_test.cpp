@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -143,7 +142,7 @@ TEST_P(Suspension, IsTheSameByBothReferencesWithCardanAngles) {
     fmt::print("{}, one law: at most {:.1e} mm\n", GetParam(), largest);
 }
 
-TEST_P(Suspension, IsTheSameByBothReferencesAsWrittenButForTheKnownDifference) {
+TEST_P(Suspension, StatesAsWrittenDifferByNoMoreThanTheKnownDifferenceOfTheLaws) {
     const Scene scene = with(Angles::rotation_vector, support::scene(GetParam()));
     double largest = 0;
     for (const auto& [branch, distance] : distances(scene, 8, {Leg::equilibrium, Leg::energy})) {

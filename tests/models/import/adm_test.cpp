@@ -76,7 +76,7 @@ std::string everywhere(std::string text, const std::string& from, const std::str
     return text;
 }
 
-TEST(Adm, IsTheSameModelHoweverItIsWritten) {
+TEST(Adm, DatasetsInDifferentNotationGiveTheSameModel) {
     const std::string expected = entries(scene_of(linkage));
     const std::pair<const char*, std::string> others[] = {
         {"lines end in CRLF", everywhere(linkage, "\n", "\r\n")},
@@ -113,7 +113,7 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
 }
 
 // Each quantity is converted by its own unit: the scene is the same for all units of the file.
-TEST(Adm, UnitsAreConvertedEachByItsOwn) {
+TEST(Adm, EachUnitIsConvertedByItsOwnFactor) {
     struct Units {
         const char *force, *mass, *length;
         double newton, kilogram, metre;
@@ -147,8 +147,8 @@ TEST(Adm, UnitsAreConvertedEachByItsOwn) {
         entries(scene_of(replaced(linkage, "MILLIMETER", "METER"))));
 }
 
-// ZP and XP are points: REULER, two points, and a marker relative to a marker define the same
-// frame.
+// ZP and XP are points: REULER, two points, and a marker relative to a marker define
+// the same frame.
 TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
     const std::string bushing = linkage_with(
         "MARKER/6, PART = 2, QP = 1, 2, 3, REULER = 30D, 40D, 50D\n"
@@ -198,7 +198,7 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
 }
 
 // Nothing is dropped silently: an error with its line, or with --allow-missing a note in the head.
-TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
+TEST(Adm, StatementWithoutASceneElementIsAnErrorOrReportedInTheHead) {
     for (const auto& [line, text, message, is_part] :
          support::mistakes_in(import_folder / "mistakes/missing.mistakes", linkage)) {
         SCOPED_TRACE(line);
@@ -252,7 +252,7 @@ TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
 
 // A block on a bushing whose markers are a centimetre and 13° apart, under its own preload: at rest
 // K δ = FORCE and KT θ = TORQUE, δ and θ of I in the axes of J, independent of the drawn position.
-TEST(Adm, ABushingComesToRestWhereItsLawSaysWhateverItsMarkersAre) {
+TEST(Adm, BushingRestsWhereItsLawBalancesTheLoadForAnyMarkers) {
     const std::string text = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = MILLIMETER, TIME = SECOND
 PART/1, GROUND
@@ -280,7 +280,7 @@ BUSHING/1, I = 1, J = 2, K = 1000, 2000, 500, KT = 3E5, 2E5, 1E5, FORCE = 300, -
 
 // Joint samples, with gravity in the direction in which the part hangs straight as drawn: the
 // reaction carries its weight.
-TEST(Adm, JointSamplesBearTheWeightAtRest) {
+TEST(Adm, JointsOfTheSamplesCarryTheWeightAtRest) {
     const double weight = 9.80665;  // of 1 kg
     for (const auto& [file, axis, g] :
          {std::tuple{"Revolute_Case01", "IGRAV", Vector3d(weight, 0, 0)},
@@ -302,7 +302,7 @@ TEST(Adm, JointSamplesBearTheWeightAtRest) {
 }
 
 // Pendulum on a torsion spring: 2 m g cos φ = k φ.
-TEST(Adm, ThePendulumOnATorsionSpringHangsWhereItsSpringLetsIt) {
+TEST(Adm, PendulumOnATorsionSpringRestsAtItsEquilibriumAngle) {
     const Scene scene = imported_scene(sample("chrono_RotSpring_Case01.adm"));
     const double k = 180 / std::numbers::pi, m_g = 9.80665;
     double phi = 0.3;
@@ -313,8 +313,8 @@ TEST(Adm, ThePendulumOnATorsionSpringHangsWhereItsSpringLetsIt) {
     EXPECT_NEAR(rest.poses.at(0).r.z(), -2 * std::sin(phi), 1e-9);
 }
 
-// A vector force of displacements equals a bushing with the same numbers, and so does a diagonal
-// FIELD.
+// A vector force of displacements equals a bushing with the same numbers, and so does
+// a diagonal FIELD.
 TEST(Adm, AVectorForceOfDisplacementsIsABushing) {
     const std::string base = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = METER, TIME = SECOND
@@ -345,9 +345,9 @@ MARKER/3, PART = 1, FLOATING
     }
 }
 
-// The end of a straight BEAM deflects by F L³/3EI + F L/(G A/s) and rotates by F L²/2EI in each
-// plane.
-TEST(Adm, ABeamBendsAsTimoshenkoSays) {
+// The end of a straight BEAM deflects by F L³/3EI + F L/(G A/s) and rotates by F L²/2EI
+// in each plane.
+TEST(Adm, BeamHasTheDeflectionOfTimoshenkosTheory) {
     const std::string text = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = METER, TIME = SECOND
 PART/1, GROUND
@@ -396,7 +396,7 @@ TEST(Adm, ASplineOfAPenetrationIsAStopWithACurve) {
     EXPECT_NEAR(force(contact.law, 0.170 - contact.free_length), -30, 1e-9);
 }
 
-TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
+TEST(Adm, SplineBecomesACurveAndItsDistanceFromAkimasSplineIsReported) {
     const std::string text = linkage_with(
         "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
         "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)");
@@ -452,7 +452,7 @@ TEST(Adm, AMotionDrivesAndACouplerDrivesInProportion) {
 
 // Each argument and flag of every statement with an effect in statics, misspelt in its first
 // letter, is an error: a word in capitals, followed by "=", "," or the end of the line.
-TEST(Adm, AMisspeltArgumentIsNeverSilent) {
+TEST(Adm, MisspeltArgumentIsReported) {
     const std::regex statement("^([A-Z_]+)/"), word("(^|[ ,])([A-Z_]+)(?=[ \t\r]*(=|,|$))"),
         without_effect("REQUEST|OUTPUT|GRAPHICS|RESULTS|INTEGRATOR|PREFERENCES|VARIABLE|END");
     int changed = 0;
@@ -534,7 +534,7 @@ TEST(Adm, MotionsThatDoNotGoInProportionHaveABranchEach) {
 
 // ---- Export and re-import.
 
-TEST(Adm, ExportedAndImportedAgainRestsWhereItDid) {
+TEST(Adm, ExportedAndImportedAgainHasTheSameEquilibrium) {
     const std::string with_all = R"(t
 UNITS/, FORCE = NEWTON, MASS = KILOGRAM, LENGTH = MILLIMETER, TIME = SECOND
 PART/1, GROUND
@@ -590,7 +590,7 @@ ACCGRAV/, KGRAV = -9806.65
     EXPECT_EQ(exported.text.find("MASS = 0"), exported.text.npos);
 }
 
-TEST(Adm, WhatADatasetCannotSayIsRefusedOnExport) {
+TEST(Adm, SceneElementWithoutADatasetStatementIsRefusedOnExport) {
     const Scene scene = read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / "mcpherson.yaml");
     EXPECT_THROW(importer::export_adm(scene, false), SceneError);
     const importer::Exported exported = importer::export_adm(scene, true);

@@ -55,8 +55,8 @@ TEST(Chrono, TheMacPhersonStrutIsWhereItsHardpointsAre) {
     EXPECT_EQ(spring.free_length, 0.306);
 }
 
-// Toe and camber rotate the spindle with the sign convention of the outputs: positive toe-in, top
-// out.
+// Toe and camber rotate the spindle with the sign convention of the outputs: positive
+// toe-in, top out.
 TEST(Chrono, ToeAndCamberAreThoseOfTheWheel) {
     std::string text = sample("generic__DoubleWishbone.json");
     text = replaced(
@@ -89,8 +89,8 @@ TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
     }
 }
 
-// A bushing in place of a revolute is free about its axis; other bushings have K_rot; the force is
-// isotropic.
+// A bushing in place of a revolute is free about its axis; other bushings have K_rot; the
+// force is isotropic.
 TEST(Chrono, BushingsStandWhereChronoPutsThem) {
     const std::string yaml = chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json"));
     const Scene scene = parse_scene(yaml, "scene");
@@ -165,7 +165,7 @@ TEST(Chrono, EveryTemplateHasItsBodiesJointsAndElements) {
 
 // Each key of every sample, misspelt in its last letter, is an error. Comments and "Visualization",
 // which is left out as a whole, have no keys.
-TEST(Chrono, AMisspeltKeyIsNeverSilent) {
+TEST(Chrono, MisspeltKeyIsReported) {
     const std::regex pattern(
         "//[^\n]*|\"Visualization\"\\s*:\\s*\\{[^{}]*(\\{[^{}]*\\}[^{}]*)*\\}|\"([^\"\n]+)\"[ "
         "\t]*:");
@@ -206,7 +206,7 @@ std::string double_wishbone(const std::string& at, const std::string& instead) {
 // Order of fields as in Chrono's ReadTSDAFunctorJSON: a map before a table before a coefficient,
 // and a damper table before a coefficient. Stops exist if both lengths are given; the deformation
 // of a map is the length itself; a tie rod without inertia is a distance.
-TEST(Chrono, TakesTheFieldThatChronoTakes) {
+TEST(Chrono, OfSynonymousFieldsTheOneThatChronoReadsIsRead) {
     const std::string coefficient = "\"Spring Coefficient\":";
     const auto law = [](const std::string& yaml) {
         const Scene scene = parse_scene(yaml, "scene");
@@ -272,10 +272,10 @@ TEST(Chrono, HardpointsOfTheFileStayWithTheirLines) {
     }
 }
 
-// A wheel directly over its spring, whose table has a row every 10 mm. At branch points on a row
-// the wheel rate is undefined, since rounding would select the side; the legs agree on these
-// points.
-TEST(Chrono, RatesHaveNoValueAtTheRowsOfATable) {
+// A wheel directly over its spring, whose table has a row every 10 mm. At branch points on
+// a row the wheel rate is undefined, since rounding would select the side; the legs agree
+// on these points.
+TEST(Chrono, WheelRateAtARowOfATableIsUndefined) {
     const Scene scene = chrono(sample("ultra_tow__UT_LeafspringAxle.json"));
     const Model model = compile(scene);
     const auto channels = compare::characteristics(model);
@@ -378,7 +378,7 @@ TEST(PropertyFile, ASpringHasTheFreeLengthOfItsFileUnlessTheSceneGivesOne) {
 }
 
 // In a spring file compression and pushing force are positive: 3000 N at 100 mm of jounce.
-TEST(PropertyFile, ASpringPushesBackByTheSideOfItsCurveThatIsCompression) {
+TEST(PropertyFile, PositiveDeflectionInASpringFileIsCompression) {
     const Scene scene = beside_fixtures(
         "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: push.spr}}}\n");
     const auto& law = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
@@ -428,7 +428,7 @@ TEST(Bushing, AFrameOfTheSecondBodyIsItsOwn) {
 // ---- Export and re-import.
 
 // The Chrono export of any imported scene can be re-imported and gives the same motion.
-TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
+TEST(Chrono, ExportedAndImportedAgainHasTheSameMotion) {
     for (const char* name : {"generic__MultiLink.json", "generic__DoubleWishbone.json",
                              "generic__SemiTrailingArm.json", "generic__ThreeLinkIRS.json",
                              "hmmwv__HMMWV_DoubleWishboneFront_bushings.json",
@@ -510,7 +510,7 @@ TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
                      "belong to a spring between the same points"));
 }
 
-TEST(Chrono, WhatASuspensionHasNoPlaceForIsRefusedOnExport) {
+TEST(Chrono, SceneElementWithoutAChronoFieldIsRefusedOnExport) {
     const Scene strut = read_scene(fs::path(ELASTOCHECK_SCENES) / "mcpherson_strut.yaml");
     EXPECT_THROW(importer::export_chrono(strut, false), SceneError);
     EXPECT_TRUE(says(importer::export_chrono(strut, true).text, "// MISSING: element"));
@@ -520,7 +520,7 @@ TEST(Chrono, WhatASuspensionHasNoPlaceForIsRefusedOnExport) {
 
 // ---- Samples
 
-TEST(Import, APipeIsRefusedAtOnce) {
+TEST(Import, PipeIsRefused) {
     const support::Folder place;
     for (const char* ending : {".adm", ".json", ".sub"}) {
         const fs::path pipe = place.path / (std::string("model") + ending);

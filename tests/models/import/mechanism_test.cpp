@@ -70,7 +70,7 @@ TEST(Mechanism, MovesAsTheSceneWrittenByHand) {
     expect_same_motion(made_of("strut.csv", as("strut")), by_hand("mcpherson_rigid.yaml"));
 }
 
-TEST(Mechanism, HasTheOtherWheelAsAMirrorImage) {
+TEST(Mechanism, BothWheelsAreMirrorImages) {
     for (const char* file : {"optimum_names.csv", "saved.shk"}) {
         const bool left = std::string_view(file).ends_with("csv");
         auto options = as("double_wishbone", left ? "x-forward,y-left" : "x-rearward,y-right");
@@ -95,7 +95,7 @@ TEST(Mechanism, HasTheOtherWheelAsAMirrorImage) {
                      "--both-wheels: live_axle has both"));
 }
 
-TEST(Mechanism, StandsOnARockerByAPushrod) {
+TEST(Mechanism, DamperActsOnARockerByAPushrod) {
     auto options = as("double_wishbone");
     options.pushrod = "lower";
     const Scene scene = made_of("optimum_names.csv", options);
@@ -122,7 +122,7 @@ TEST(Mechanism, StandsOnARockerByAPushrod) {
 }
 
 // Other layouts of the same programs: groups of columns in inches, a listing with a pushrod, whole words.
-TEST(Mechanism, IsFoundInOtherLayouts) {
+TEST(Mechanism, LayoutsOfOtherExportsAreRecognised) {
     auto options = as("double_wishbone");
     options.pushrod = "upper";
     const Scene groups = made_of("optimum_groups.csv", options);
@@ -152,7 +152,7 @@ TEST(Mechanism, IsFoundInOtherLayouts) {
     EXPECT_TRUE(says(refusal_of(words, "p.csv", options), "x-rearward,y-left needs its z"));
 }
 
-TEST(Mechanism, OfOneAxleOfTwoInTwoRowsOfHeadings) {
+TEST(Mechanism, AxleIsSelectedFromATableWithTwoRowsOfHeadings) {
     auto options = as("five_link");
     const std::string text = points_named("five_link.csv");
     EXPECT_TRUE(says(refusal_of(text, "p.csv", options), "--axle: the names are of two axles"));
@@ -165,7 +165,7 @@ TEST(Mechanism, OfOneAxleOfTwoInTwoRowsOfHeadings) {
 }
 
 // The file has the hand-written scene's points from the wheel centre, x inboard and with the rim's offset.
-TEST(Mechanism, OfAssettoCorsaIsThatOfItsPoints) {
+TEST(Mechanism, AssettoCorsaFileGivesTheMechanismOfItsPoints) {
     const std::string text = points_named("suspensions.ini");
     importer::Options options;
     EXPECT_TRUE(says(refusal_of(text, "suspensions.ini", options),
@@ -207,7 +207,7 @@ TEST(Mechanism, OfAssettoCorsaIsThatOfItsPoints) {
 }
 
 // Another car: a strut whose spring stands along it, and a live axle with its bar.
-TEST(Mechanism, OfAssettoCorsaHasSpringsAndBars) {
+TEST(Mechanism, AssettoCorsaFileGivesSpringsAndBars) {
     const std::string text = points_named("strut_and_axle.ini");
     importer::Options options;
     options.axle = "front";
@@ -251,7 +251,7 @@ TEST(Mechanism, OfAssettoCorsaHasSpringsAndBars) {
     EXPECT_TRUE(says(refused("[AXLE]", "[OTHER]"), "[AXLE]: missing"));
 }
 
-TEST(Mechanism, OfALiveAxleHasBothWheelsOnOneBody) {
+TEST(Mechanism, LiveAxleHasBothWheelsOnOneBody) {
     const std::string text = points_named("live_axle.csv");
     const auto axle = [&](const std::string& table) {
         return importer::import_text(table, "p.csv", as("live_axle"));
@@ -287,7 +287,7 @@ TEST(Mechanism, OfALiveAxleHasBothWheelsOnOneBody) {
 }
 
 // A row for each bushing, and one for the springs beside dampers.
-TEST(Mechanism, HasTheRatesOfATable) {
+TEST(Mechanism, RatesOfATableAreAssignedByRole) {
     const support::Folder place;
     auto options = as("strut");
     const std::string rates =

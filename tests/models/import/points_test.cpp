@@ -3,8 +3,6 @@
 
 #include <minizip/zip.h>
 
-#include <algorithm>
-
 #include "models/import/import.hpp"
 #include "models/import/property/spreadsheet.hpp"
 #include "tests/models/import/imports.hpp"

@@ -1,5 +1,4 @@
 // A block on a vertical slide and a spring, built in code: 1 kN/m lets it sink by 10 mm under 10 N.
-#include <cmath>
 #include <elastocheck/compile.hpp>
 #include <elastocheck/recursive.hpp>
 #include <iostream>

@@ -125,7 +125,7 @@ Side cornered(const Formulation& formulation) {
     return at;
 }
 
-TEST(CertificateEquations, SeparatedCornerHasTheSolutionsOfTheElement) {
+TEST(CertificateEquations, ElementWithASeparateUnknownAtItsCornerHasTheSameSolutions) {
     using F = Formulation;
     for (const auto angles : {F::Angles::rotation_vector, F::Angles::cardan, F::Angles::projected})
         for (const auto frame : {F::Frame::on_i, F::Frame::middle})

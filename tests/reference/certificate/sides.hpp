@@ -2,7 +2,6 @@
 // them, and the first of any scene.
 #pragma once
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "compare/comparison/legs.hpp"

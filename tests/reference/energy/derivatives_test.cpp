@@ -1,6 +1,5 @@
 // Taylor tests of all hand-derived derivatives: V(x + h s) = V(x) + h g·s + O(h²), and the same for
 // every row of Φ.
-#include <Eigen/QR>
 
 #include <numbers>
 
@@ -107,8 +106,8 @@ std::vector<Case> potentials(Random& random) {
     return cases;
 }
 
-// A chart and a place in it, both well inside the range of a bushing's angles, far from the design
-// pose.
+// A chart and a place in it, both well inside the range of a bushing's angles, far from
+// the design pose.
 struct Places {
     std::vector<Pose> centre;
     VectorXd x;
@@ -230,8 +229,8 @@ Prescribed random_rate(const Model& model, Random& random) {
     return rate;
 }
 
-// g(a + h) = g(a) + ∂g/∂a h + O(h²), for the gradient of V under every driver, along two rates at
-// once.
+// g(a + h) = g(a) + ∂g/∂a h + O(h²), for the gradient of V under every driver, along two
+// rates at once.
 TEST(Derivatives, RateOfEveryGradientIsFirstOrderExact) {
     Random random;
     for (int repeat = 0; repeat < 6; ++repeat) {
@@ -425,8 +424,8 @@ TEST(Potential, PotentialEqualsTheEnergyOfTheElementLaws) {
             if (!one.name.starts_with("spring") && !one.name.starts_with("bushing")) continue;
             const std::vector<Pose> centre{random.pose(), random.pose()};
             Chart chart = chart_about(centre);
-            // Small enough for the logarithm to stay on its sheet in most cases; the others are
-            // skipped.
+            // Small enough for the logarithm to stay on its sheet in most cases; the
+            // others are skipped.
             move_to(chart, random.many(12, 0.1));
             const double expected = energy(one.model, poses(chart)) - energy(one.model, centre);
             if (rotations(one.model, turning_bushings(one.model, {one.prescribed, one.prescribed}),

@@ -1,5 +1,4 @@
 // Large scenes: predicted cost, the limit of solving, the sparse method, and judging at any size.
-#include <Eigen/QR>
 
 #include "reference/energy/constraints/quadratic.hpp"
 #include "reference/energy/linear_response.hpp"

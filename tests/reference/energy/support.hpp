@@ -33,8 +33,8 @@ inline double largest(const Residuals& r) {
 }
 
 struct Random : support::Random {
-    // Random curve, not monotonic, with `knots` knots over about [-1, 1], continuously
-    // differentiable.
+    // Random curve, not monotonic, with `knots` knots over about [-1,
+    // 1], continuously differentiable.
     Curve smooth_curve(int knots) {
         std::vector<double> x, f, slope;
         for (int k = 0; k < knots; ++k) {
