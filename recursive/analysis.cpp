@@ -32,7 +32,8 @@ Analysis analyse(const Model& model) {
     analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space,
             pattern(model), loops(model));
 
-    assemble_consistent<double>(model, undriven, inputs, q, Vector<double>::Zero(m), system.M, Phi);
+    assemble_constraints<double>(model, inputs, q, system.M, Phi);
+    add_consistent_tangent<double>(model, undriven, inputs, q, Vector<double>::Zero(m), system.M);
     result.pivot_ratio = factorise(system);
     external_force<double>(model, undriven, inputs, q, result.R_d);
     result.R_d -= elastic_force<double>(model, inputs, q);
@@ -47,7 +48,7 @@ Analysis analyse(const Model& model) {
         largest(Phi) <= rounding;
     if (result.at_rest && curves_of(model).empty() && result.pivot_ratio > 0) {
         SteppingState s(model, undriven, result);
-        s.consistent = true;
+        s.setup.consistent = true;
         go_to(s, {1, 0});
         result.start = start_stability(s);
     }

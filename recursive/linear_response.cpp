@@ -32,29 +32,30 @@ void check(const Model& model, const Equilibrium& state,
 // Right-hand side of one disturbance. A wrench enters the upper rows. A motion of a joint enters
 // the lower row as -∂Φ/∂c and the upper rows as the change of its reaction, -∂(Φ_qᵀ λ)/∂c.
 void disturb(SteppingState& s, const Disturbance& disturbance) {
-    s.upper.setZero();
-    s.lower.setZero();
-    std::visit(overloaded{
-                   [&](const UnitWrench& wrench) {
-                       add_load<double>(DeadForce{wrench.at, wrench.force}, 1, s.q, s.upper);
-                       add_load<double>(DeadMoment{wrench.at.body, wrench.moment}, 1, s.q, s.upper);
-                   },
-                   [&](const Motion& motion) {
-                       const std::size_t k = constraint_of(s.model, motion);
-                       const int row = s.inputs.row[k];
-                       const Row<double> d =
-                           rate<double>(s.model.constraints[k].kind, s.inputs.offset[k], s.q);
-                       s.lower[row] = -d.Phi;
-                       if (d.i != ground) s.upper.segment<6>(6 * d.i) -= s.lambda[row] * d.on_i();
-                       if (d.j != ground) s.upper.segment<6>(6 * d.j) -= s.lambda[row] * d.on_j();
-                   },
-               },
-               disturbance);
+    s.work.upper.setZero();
+    s.work.lower.setZero();
+    std::visit(
+        overloaded{
+            [&](const UnitWrench& wrench) {
+                add_load<double>(DeadForce{wrench.at, wrench.force}, 1, s.q, s.work.upper);
+                add_load<double>(DeadMoment{wrench.at.body, wrench.moment}, 1, s.q, s.work.upper);
+            },
+            [&](const Motion& motion) {
+                const std::size_t k = constraint_of(s.model, motion);
+                const int row = s.inputs.row[k];
+                const Row<double> d =
+                    rate<double>(s.model.constraints[k].kind, s.inputs.offset[k], s.q);
+                s.work.lower[row] = -d.Phi;
+                if (d.i != ground) s.work.upper.segment<6>(6 * d.i) -= s.lambda[row] * d.on_i();
+                if (d.j != ground) s.work.upper.segment<6>(6 * d.j) -= s.lambda[row] * d.on_j();
+            },
+        },
+        disturbance);
 }
 
 std::string words(Outcome outcome, const Disturbance& disturbance, const Model& model,
                   const Diagnosis& diagnosis) {
-    const std::string what = std::visit(
+    const std::string cause = std::visit(
         overloaded{
             [&](const UnitWrench& wrench) {
                 return fmt::format("a wrench on '{}'",
@@ -66,11 +67,11 @@ std::string words(Outcome outcome, const Disturbance& disturbance, const Model& 
             }},
         disturbance);
     if (outcome == Outcome::loaded_idle_mode)
-        return what +
+        return cause +
                " acts on a motion that no joint or element resists at the design position: " +
                idle_modes(diagnosis);
-    if (outcome == Outcome::inconsistent_constraints) return what + " would open redundant joints";
-    return what;
+    if (outcome == Outcome::inconsistent_constraints) return cause + " would open redundant joints";
+    return cause;
 }
 
 // The responses [coordinates + rows of Φ × disturbances], with the matrix of `s`.
@@ -96,7 +97,7 @@ Response responses(SteppingState& s, const Branch& branch, const Analysis& analy
         auto& increments = response.increments.emplace_back(model.bodies.size());
         for (std::size_t b = 0; b < increments.size(); ++b) {
             const auto at = static_cast<Eigen::Index>(6 * b);
-            increments[b] = {s.x.segment<3>(at), s.x.segment<3>(at + 3)};
+            increments[b] = {s.work.x.segment<3>(at), s.work.x.segment<3>(at + 3)};
         }
     }
     return response;

@@ -43,17 +43,17 @@ std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
     }
 }
 
-// Σ w_k ΔG_k into s.upper and s.lower. Points and lengths that change together keep a row closed: what
+// Σ w_k ΔG_k into s.work.upper and s.work.lower. Points and lengths that change together keep a row closed: what
 // is left is rounding.
 void difference(SteppingState& s, double a, const Residual& here, const Neighbours& stencil) {
-    s.upper.setZero(), s.lower.setZero();
+    s.work.upper.setZero(), s.work.lower.setZero();
     for (const Neighbour& k : stencil) {
         const Residual there = residual_of(*k.model, k.model->branches.front(), a, s.q, s.lambda);
-        s.upper += k.weight * (there.upper - here.upper);
-        s.lower += k.weight * (there.lower - here.lower);
+        s.work.upper += k.weight * (there.upper - here.upper);
+        s.work.lower += k.weight * (there.lower - here.lower);
     }
     const double rounding = last_digits * (1 + reach(s.q)) * amplification(stencil);
-    for (double& row : s.lower)
+    for (double& row : s.work.lower)
         if (std::abs(row) <= rounding) row = 0;
 }
 
@@ -78,10 +78,10 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     const Residual here = residual_of(model, branch, state.load, s.q, s.lambda);
     const double stiffest = *std::ranges::max_element(s.system.M.values, {},
                                                       [](double x) { return std::abs(x); }),
-                 rounding = last_digits * stiffest * s.length;
-    std::vector<NeighbourStates> all;
+                 rounding = last_digits * stiffest * s.setup.length;
+    std::vector<NeighbourStates> neighbours;
     for (const Neighbours& stencil : stencils) {
-        NeighbourStates& result = all.emplace_back();
+        NeighbourStates& result = neighbours.emplace_back();
         difference(s, state.load, here, stencil);
         result.outcome = solve_response(s, Judged::all, rounding * amplification(stencil));
         if (result.outcome != Outcome::converged) {
@@ -97,11 +97,11 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                 last = met;
                 const Residual there =
                     residual_of(*k.model, k.model->branches.front(), state.load, q, lambda);
-                s.upper = there.upper - here.upper;
-                s.lower = there.lower - here.lower;
+                s.work.upper = there.upper - here.upper;
+                s.work.lower = there.lower - here.lower;
                 (void)solve_response(s, Judged::none);
-                advance(q, s.x.head(s.n()));
-                lambda += s.x.tail(s.m());
+                advance(q, s.work.x.head(s.n()));
+                lambda += s.work.x.tail(s.m());
                 const double size = std::sqrt(size_of_solution(s));
                 if (step == 0) first = size;
                 met = size <= chord_met * first;
@@ -111,7 +111,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             record(*k.model, inputs, q, {lambda, q}, there);
         }
     }
-    return all;
+    return neighbours;
 }
 
 }  // namespace elastocheck::recursive

@@ -27,12 +27,12 @@ double taken_by_border(const SaddlePoint<double>& system, int c) {
 Outcome check_border(SteppingState& s, Judged which, double rounding) {
     const Held<double>& held = s.system.held;
     if (held.size() == 0 || which == Judged::none) return Outcome::converged;
-    constraint_force(s.system.M, s.x.tail(s.m()), s.force);
-    const double force = size_of_force(s, s.upper) + size_of_force(s, s.force);
+    constraint_force(s.system.M, s.work.x.tail(s.m()), s.work.force);
+    const double force = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
     const double opening =
-        s.lower.norm() + std::sqrt(size_of_solution(s)) / std::min(1.0, s.length);
+        s.work.lower.norm() + std::sqrt(size_of_solution(s)) / std::min(1.0, s.setup.length);
     const double limit = guard::rounding * std::numeric_limits<double>::epsilon() +
-                         guard::share_per_error * s.Phi.norm() / std::min(1.0, s.length);
+                         guard::share_per_error * s.work.Phi.norm() / std::min(1.0, s.setup.length);
     const int judged = which == Judged::all ? held.size() : held.idle;
     for (int c = 0; c < judged; ++c) {
         const bool idle = c < held.idle;
@@ -54,8 +54,8 @@ void leave_out_idle_motion(SteppingState& s) {
             return held.row[static_cast<std::size_t>(held.begin(c) + static_cast<int>(e))];
         };
         double along = 0;
-        for (Eigen::Index e = 0; e < z.size(); ++e) along += z[e] * W2(e) * s.x[at(e)];
-        for (Eigen::Index e = 0; e < z.size(); ++e) s.x[at(e)] -= along * z[e];
+        for (Eigen::Index e = 0; e < z.size(); ++e) along += z[e] * W2(e) * s.work.x[at(e)];
+        for (Eigen::Index e = 0; e < z.size(); ++e) s.work.x[at(e)] -= along * z[e];
     }
 }
 
@@ -77,17 +77,17 @@ Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& or
         return outcome;
     if (!consistent) return Outcome::converged;
     residual_at(s, s.q, s.lambda);  // λ = 0: f_ext - f_elast
-    s.lower.setZero();
+    s.work.lower.setZero();
     back_substitute(s);
-    if (!s.x.allFinite()) return Outcome::not_finite;
-    s.lambda = s.x.tail(s.m());
-    s.consistent = true;
+    if (!s.work.x.allFinite()) return Outcome::not_finite;
+    s.lambda = s.work.x.tail(s.m());
+    s.setup.consistent = true;
     return factorise_in(s, orders.with_tangent);
 }
 
 Outcome solve_response(SteppingState& s, Judged judged, double rounding) {
     back_substitute(s);
-    if (!s.x.allFinite()) return Outcome::not_finite;
+    if (!s.work.x.allFinite()) return Outcome::not_finite;
     const Outcome outcome = check_border(s, judged, rounding);
     if (outcome == Outcome::converged) leave_out_idle_motion(s);
     return outcome;

@@ -29,7 +29,7 @@ enum class Judged {
     all            // idle motions and redundant rows; for a loaded row inconsistent_constraints
 };
 
-// Solves for the right-hand side in s.upper, s.lower: s.x = (dq, dλ), without idle motion (minimum
+// Solves for the right-hand side in s.work.upper, s.work.lower: s.work.x = (dq, dλ), without idle motion (minimum
 // norm). loaded_idle_mode, inconsistent_constraints where a held direction would carry load,
 // not_finite. `rounding` of the forces, as size_of_force(), where that is more than their last digits.
 Outcome solve_response(SteppingState& s, Judged judged, double rounding = 0);

@@ -73,9 +73,9 @@ std::string softest_motion(const Model& model, const Branch& branch, const Equil
             solver.eigenvectors().col(order[k]).head(s.n()).cwiseQuotient(
                 s.system.weight.head(s.n()));
         if (!(motion.norm() > no_motion)) continue;
-        const IdleMode mode = motion_of(model, state.poses, motion.normalized(), s.length);
+        const IdleMode mode = motion_of(model, state.poses, motion.normalized(), s.setup.length);
         if (!moves_output || !mode.outputs.empty())
-            return mode.description + moving_along(model, motion, s.length, mode.body);
+            return mode.description + moving_along(model, motion, s.setup.length, mode.body);
     }
     return {};
 }

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/formula/load_growth.hpp"
 #include "recursive/formula/parameter.hpp"
@@ -154,8 +152,8 @@ void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
 }
 
 // Whether a start that did not settle, with this outcome, may settle by another homotopy
-// (load_growth.hpp). The linear methods that store forces settle step by step as a part of their
-// path.
+// (load_growth.hpp). The linear methods that store forces settle step by step as a part
+// of their path.
 bool settles_otherwise(const Method& method, Outcome outcome) {
     const auto* linear = std::get_if<Linear>(&method.kind);
     return (!linear || linear->follow == everything) &&

@@ -109,31 +109,34 @@ void Pack::prepare(int at, const Branch& branch) {
     slot.branch = branch;
     if (!slot.s) slot.s = std::make_unique<SteppingState>(slot.model, slot.branch, design);
     SteppingState& s = *slot.s;
-    s.consistent = true;
+    s.setup.consistent = true;
     s.counts = {};
     s.q = design_state<double>(slot.model);
     s.lambda.setZero();
-    s.drawn = inputs_as_drawn<double>(slot.model);
-    s.inputs = s.drawn;
-    s.length = characteristic_length(slot.model);
-    for (int b = 0; b < s.n() / 6; ++b) s.system.weight.segment(6 * b + 3, 3).setConstant(s.length);
+    s.start.drawn = inputs_as_drawn<double>(slot.model);
+    s.inputs = s.start.drawn;
+    s.setup.length = characteristic_length(slot.model);
+    for (int b = 0; b < s.n() / 6; ++b)
+        s.system.weight.segment(6 * b + 3, 3).setConstant(s.setup.length);
     s.system.held.value = design.system.held.value;
     slot.curves = series::curves_of(slot.model);
     const Branch undriven;
     go_to(s, {0, 0});
-    assemble_consistent<double>(s.model, undriven, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
-    external_force<double>(s.model, undriven, s.inputs, s.q, s.R_d);
-    s.R_d -= elastic_force<double>(s.model, s.inputs, s.q);
-    s.Phi_d = s.Phi;
+    assemble_constraints<double>(s.model, s.inputs, s.q, s.system.M, s.work.Phi);
+    add_consistent_tangent<double>(s.model, undriven, s.inputs, s.q, s.lambda, s.system.M);
+    external_force<double>(s.model, undriven, s.inputs, s.q, s.start.R_d);
+    s.start.R_d -= elastic_force<double>(s.model, s.inputs, s.q);
+    s.start.Phi_d = s.work.Phi;
     // A residual that is rounding of coordinates, or of stiffness times them, counts as zero.
-    const double rounding = 10 * std::numeric_limits<double>::epsilon() * (s.length + reach(s.q));
+    const double rounding =
+        10 * std::numeric_limits<double>::epsilon() * (s.setup.length + reach(s.q));
     const auto largest_of = [](const Vector<double>& v) {
         return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
     };
-    slot.at_rest = largest_of(s.R_d.cwiseQuotient(s.system.weight.head(s.n()))) <=
+    slot.at_rest = largest_of(s.start.R_d.cwiseQuotient(s.system.weight.head(s.n()))) <=
                        rounding * stiffest(s.system.M) &&
-                   largest_of(s.Phi) <= rounding;
-    if (!s.R_d.allFinite() || !s.Phi.allFinite()) slot.inside = false;
+                   largest_of(s.work.Phi) <= rounding;
+    if (!s.start.R_d.allFinite() || !s.work.Phi.allFinite()) slot.inside = false;
 }
 
 void Pack::follow_group(std::size_t group) {
@@ -154,7 +157,7 @@ void Pack::follow_group(std::size_t group) {
         solve_branch(group, Drive::start, true);
         each(inside(), [&](Slot& slot, int) {
             SteppingState& s = *slot.s;
-            if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
+            if (s.start.Phi_d.norm() <= guard::closed) s.start.Phi_d.setZero();
             if (settled(s, Outcome::converged, 0.0) != Outcome::converged) slot.inside = false;
         });
     }
@@ -210,8 +213,8 @@ void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
 // The polynomial about the states of the lanes, with the factors of the last elimination.
 void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, Drive drive,
                   const LaneEnds& to) {
-    const SaddlePoint<double>& of = design.system;
-    const int n = of.n, m = of.m;
+    const SaddlePoint<double>& saddle_point = design.system;
+    const int n = saddle_point.n, m = saddle_point.m;
     each(inside(), [&](Slot& slot, int at) {
         SteppingState& s = *slot.s;
         series::begin(e, s.q, s.lambda, series::parameter(s, drive), at);
@@ -221,7 +224,7 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
     evaluate(e, {0, series::Pass::known});
     solve(lu, rhs.data(), solution.data());
     for (int k = 0; k < n + m; ++k)
-        c.unit[k] = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
+        c.unit[k] = solution[static_cast<std::size_t>(k)] * Lanes(saddle_point.scale[k]);
     c.x.setZero();
     for (int row = 0; row < m; ++row)
         c.x(n + row, 0) = e.lambda[static_cast<std::size_t>(row)].c[0];
@@ -233,42 +236,44 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
     Lanes corrected = 0;  // 1 in lanes that lose digits, else 0
     series::compute_orders(
         e, c, x,
-        [&] {
-            for (int k = 0; k < n; ++k)
-                rhs[static_cast<std::size_t>(k)] = e.G[k] * Lanes(-of.scale[k]);
-            for (int k = 0; k < m; ++k)
-                rhs[static_cast<std::size_t>(n + k)] = e.Phi[k] * Lanes(-of.scale[n + k]);
-            solve(lu, rhs.data(), solution.data());
-            for (int k = 0; k < n + m; ++k)
-                x[k] = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
-        },
-        [](int) {},
-        [&](auto&& correct) {
-            correct();
-            Lanes correction = 0, whole = 0;
-            for (int k = 0; k < n; ++k) {
-                correction += x[k] * x[k];
-                whole += c.x(k, 1) * c.x(k, 1);
-            }
-            each(inside(), [&](Slot&, int at) {
-                const bool too_large =
-                    !(std::sqrt(lane(correction, at)) <= loses_digits * std::sqrt(lane(whole, at)));
-                set_lane(corrected, at, too_large ? 1 : 0);
-            });
-            for (int k = 0; k < n + m; ++k) c.x(k, 1) += x[k] - only_where(corrected, x[k]);
-            return !is_zero(corrected);
-        },
-        // A lane that loses no digits keeps its x_k to the last bit beside one that does.
-        [&] {
-            for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = only_where(corrected, x[k]);
-        });
+        series::OrderSteps{
+            [&] {
+                for (int k = 0; k < n; ++k)
+                    rhs[static_cast<std::size_t>(k)] = e.G[k] * Lanes(-saddle_point.scale[k]);
+                for (int k = 0; k < m; ++k)
+                    rhs[static_cast<std::size_t>(n + k)] =
+                        e.Phi[k] * Lanes(-saddle_point.scale[n + k]);
+                solve(lu, rhs.data(), solution.data());
+                for (int k = 0; k < n + m; ++k)
+                    x[k] = solution[static_cast<std::size_t>(k)] * Lanes(saddle_point.scale[k]);
+            },
+            [](int) {},
+            [&](auto&& correct) {
+                correct();
+                Lanes correction = 0, whole = 0;
+                for (int k = 0; k < n; ++k) {
+                    correction += x[k] * x[k];
+                    whole += c.x(k, 1) * c.x(k, 1);
+                }
+                each(inside(), [&](Slot&, int at) {
+                    const bool too_large = !(std::sqrt(lane(correction, at)) <=
+                                             loses_digits * std::sqrt(lane(whole, at)));
+                    set_lane(corrected, at, too_large ? 1 : 0);
+                });
+                for (int k = 0; k < n + m; ++k) c.x(k, 1) += x[k] - only_where(corrected, x[k]);
+                return !is_zero(corrected);
+            },
+            // A lane that loses no digits keeps its x_k to the last bit beside one that does.
+            [&] {
+                for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = only_where(corrected, x[k]);
+            }});
 }
 
 // Shortens the range of a lane to where the first deformation leaves its piece. The lane leaves where
 // one does so at once: its expansion began on the wrong piece.
 static void stop_at_knots(Slot& slot, const series::Near& near) {
     std::vector<series::Leaving> met;
-    std::vector<std::size_t> of;
+    std::vector<std::size_t> crossed;
     slot.over.clear();
     const auto column = [&](std::size_t k) {
         return Eigen::VectorXd(slot.deformations.col(static_cast<Eigen::Index>(k)));
@@ -277,7 +282,7 @@ static void stop_at_knots(Slot& slot, const series::Near& near) {
     for (std::size_t k = 0; k < slot.curves.size(); ++k)
         if (const auto there = series::leaving(column(k), slot.curves[k], reach, near)) {
             met.push_back(*there);
-            of.push_back(k);
+            crossed.push_back(k);
             if (there->at_once) slot.inside = false;
             if (there->tau < slot.reached) {
                 slot.reached = there->tau;
@@ -286,9 +291,9 @@ static void stop_at_knots(Slot& slot, const series::Near& near) {
         }
     // Several deformations may reach their knots at the same τ.
     for (std::size_t k = 0; k < met.size(); ++k)
-        if (met[k].tau <= slot.reached ||
-            series::meets(column(of[k]), slot.curves[of[k]], met[k].direction, slot.reached, near))
-            slot.over.emplace_back(of[k], met[k].direction);
+        if (met[k].tau <= slot.reached || series::meets(column(crossed[k]), slot.curves[crossed[k]],
+                                                        met[k].direction, slot.reached, near))
+            slot.over.emplace_back(crossed[k], met[k].direction);
 }
 
 // Range of validity of a lane's polynomial. The lane leaves near a limit point.
@@ -299,7 +304,7 @@ void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive,
     for (Eigen::Index k = 0; k < c.load.size(); ++k) slot.c.load[k] = lane(c.load[k], at);
     slot.from = s.q;
     const series::Singularity nearest = series::nearest_singularity(s, slot.c);
-    const double tolerance = options.series.tolerance, per_unit = s.length / std::abs(to),
+    const double tolerance = options.series.tolerance, per_unit = s.setup.length / std::abs(to),
                  tau = series::reach(s, slot.c, tolerance, per_unit, nearest.radius),
                  rest = (to - series::parameter(s, drive)) / to;
     slot.last = tau >= rest;
@@ -309,7 +314,7 @@ void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive,
         return;
     }
     const bool whole = slot.last;
-    stop_at_knots(slot, {s.length, 0.1 * tolerance, 10 * tolerance});
+    stop_at_knots(slot, {s.setup.length, 0.1 * tolerance, 10 * tolerance});
     constexpr double close = 1e-4;
     const bool straight_ahead = nearest.angle < 1e-3 && nearest.misfit < 1e-2;
     if (!whole && nearest.radius < close && straight_ahead) slot.inside = false;
@@ -391,9 +396,9 @@ std::vector<LaneEnds> Pack::load_group(std::size_t group, Drive drive) {
         for (std::size_t side = 0; rate && side < to.size(); ++side)
             to[side][k] = slot.model.branches[branches[side]].to;
         for (Eigen::Index row = 0; !rate && row < e.G_d.size(); ++row)
-            set_lane(e.G_d[row], at, -slot.s->R_d[row]);
+            set_lane(e.G_d[row], at, -slot.s->start.R_d[row]);
         for (Eigen::Index row = 0; !rate && row < e.Phi_d.size(); ++row)
-            set_lane(e.Phi_d[row], at, slot.s->Phi_d[row]);
+            set_lane(e.Phi_d[row], at, slot.s->start.Phi_d[row]);
     });
     series::settle_on_constants(e);
     return to;
@@ -429,18 +434,18 @@ void Pack::begin_side(series::Equations<Lanes>& e, Drive drive, const std::vecto
         }
         present.load[1] *= shares;
     }
-    each(inside(), [&](Slot& slot, int at) {
+    each(inside(), [&](Slot& slot, int lane_number) {
         slot.s->q = slot.q_start;
         slot.s->lambda = slot.lambda_start;
         go(*slot.s, drive, 0);
         slot.log_begin = slot.log_at_start;
         slot.deformations = slot.deformations_at_start;
         slot.curves = slot.curves_at_start;
-        use_pieces(e, at);
+        use_pieces(e, lane_number);
         double power = 1;
         for (Eigen::Index row = 0; row < slot.deformations.rows(); ++row) {
             slot.deformations.row(row) *= power;
-            power *= share(at);
+            power *= share(lane_number);
         }
         slot.going = true;
         slot.next = 0;

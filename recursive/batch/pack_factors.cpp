@@ -22,7 +22,8 @@ constexpr double largest_multiplier = 1e4;  // as in the scalar path
 void Pack::assemble(int at) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
     SteppingState& s = *slot.s;
-    assemble_consistent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
+    assemble_constraints<double>(s.model, s.inputs, s.q, s.system.M, s.work.Phi);
+    add_consistent_tangent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M);
     load_matrix(at);
 }
 
@@ -76,8 +77,8 @@ void Pack::load_rhs(int at) {
     const auto put = [&](int k, double of) {
         set_lane(rhs[static_cast<std::size_t>(k)], at, of * s.system.scale[k]);
     };
-    for (int k = 0; k < n; ++k) put(k, s.upper[k]);
-    for (int k = 0; k < m; ++k) put(n + k, s.lower[k]);
+    for (int k = 0; k < n; ++k) put(k, s.work.upper[k]);
+    for (int k = 0; k < m; ++k) put(n + k, s.work.lower[k]);
     for (int k = n + m; k < n + m + s.system.borders(); ++k)
         set_lane(rhs[static_cast<std::size_t>(k)], at, 0);
 }
@@ -87,7 +88,7 @@ void Pack::back_substitute(const Mask& mask) {
     each(mask, [&](Slot& slot, int at) {
         SteppingState& s = *slot.s;
         for (int k = 0; k < s.n() + s.m(); ++k)
-            s.x[k] = lane(solution[static_cast<std::size_t>(k)], at) * s.system.scale[k];
+            s.work.x[k] = lane(solution[static_cast<std::size_t>(k)], at) * s.system.scale[k];
         ++s.counts.iterations;
     });
 }
@@ -108,29 +109,30 @@ void Pack::correct_ends(Drive drive, const LaneEnds& to) {
             load_rhs(at);
         });
         back_substitute(correcting);
-        for (std::size_t at = 0; at < slots.size(); ++at) {
-            Slot& slot = slots[at];
-            correcting[at] = correcting[at] && slot.inside;
-            if (!correcting[at]) continue;
+        for (std::size_t lane_number = 0; lane_number < slots.size(); ++lane_number) {
+            Slot& slot = slots[lane_number];
+            correcting[lane_number] = correcting[lane_number] && slot.inside;
+            if (!correcting[lane_number]) continue;
             SteppingState& s = *slot.s;
             const double size = std::sqrt(size_of_solution(s));
-            if (!s.x.allFinite() || check_idle_load_here(s, size) != Outcome::converged) {
-                slot.inside = correcting[at] = false;
+            if (!s.work.x.allFinite() || check_idle_load_here(s, size) != Outcome::converged) {
+                slot.inside = correcting[lane_number] = false;
                 continue;
             }
             if (k == 0) slot.error = size;
             if (!(size < slot.before)) {  // at rounding level
-                correcting[at] = false;
+                correcting[lane_number] = false;
                 continue;
             }
             slot.before = size;
-            s.dq = s.x.head(s.n());
-            advance(s.q, s.dq);
-            s.lambda += s.x.tail(s.m());
-            const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
+            s.step.dq = s.work.x.head(s.n());
+            advance(s.q, s.step.dq);
+            s.lambda += s.work.x.tail(s.m());
+            const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.setup.length;
             // No expansion starts at the end of a branch: its error is known, that is enough.
-            correcting[at] = !(slot.last && drive == Drive::rate) &&
-                             !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
+            correcting[lane_number] =
+                !(slot.last && drive == Drive::rate) &&
+                !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
         }
     }
     each(going(), [&](Slot& slot, int) {

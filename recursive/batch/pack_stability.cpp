@@ -17,10 +17,10 @@ bool may_push_idle(SteppingState& s) {
     constexpr double noticed = 1e-6;
     const double stiffness = min_of_idle(s);
     if (!(stiffness < 0)) return false;
-    external_force<double>(s.model, s.branch, s.inputs, s.q, s.upper);
-    elastic_force<double>(s.model, s.inputs, s.q, s.force);
-    const double acts = size_of_force(s, s.upper) + size_of_force(s, s.force);
-    return !(stiffness >= -noticed * acts / s.length);
+    external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.upper);
+    elastic_force<double>(s.model, s.inputs, s.q, s.work.force);
+    const double acts = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
+    return !(stiffness >= -noticed * acts / s.setup.length);
 }
 
 // Whether the determinant, 1 at τ = 0, may have a zero inside: as lost_inside() begins.
@@ -40,11 +40,11 @@ bool may_dip(double in_middle, double at_end) {
 // As min_stiffness() of one variant: the same iteration with the factors of the lanes.
 std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, Matrix<Lanes>& U) {
     constexpr int vectors = 3, first_turns = 5, turns = 2;
-    std::array<LeastStiffness, Lanes::count> found{};
+    std::array<LeastStiffness, Lanes::count> stiffness{};
     const int n = design.system.n;
     const int free =
         design.diagnosis.degrees_of_freedom() - static_cast<int>(design.diagnosis.idle.size());
-    if (free <= 0) return found;
+    if (free <= 0) return stiffness;
     Vector<Lanes> W(n), W2(n);
     for (int k = 0; k < n; ++k) {
         W[k] = 1;
@@ -102,9 +102,9 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
     each(mask, [&](Slot&, int at) {
         Eigen::MatrixXd one(H.rows(), H.cols());
         for (Eigen::Index k = 0; k < H.size(); ++k) one.data()[k] = lane(H.data()[k], at);
-        found[static_cast<std::size_t>(at)] = detail::min_of(one);
+        stiffness[static_cast<std::size_t>(at)] = detail::min_of(one);
     });
-    return found;
+    return stiffness;
 }
 
 // Whether the start is stable by the tests of stability.hpp; a lane in which one of

@@ -95,7 +95,7 @@ Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
             loops(model));
     factorise(system);
     const Columns M = sparse(system.M);
-    const auto of = [&](const VectorXd& S) {
+    const auto condition_of = [&](const VectorXd& S) {
         const VectorXd inverse = S.cwiseInverse();
         const Complement P(inverse.asDiagonal() * diagnosis.null_space);
         VectorXd x(n + m);
@@ -109,7 +109,7 @@ Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
         };
         return largest_eigenvalue(n + m, P, matrix) * largest_eigenvalue(n + m, P, inverted);
     };
-    return {of(VectorXd::Ones(n + m)), of(system.scale)};
+    return {condition_of(VectorXd::Ones(n + m)), condition_of(system.scale)};
 }
 
 }  // namespace elastocheck::recursive

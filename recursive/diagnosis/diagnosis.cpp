@@ -146,12 +146,12 @@ std::vector<Vector6<double>> root_rows(const Element& e, const Rest<double>& res
 // √K_e B_e of every element, stacked [? × 6nb].
 Rows elastic_rows(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
     Stack stack;
-    for (std::size_t at = 0; at < model.elastics.size(); ++at)
+    for (std::size_t number = 0; number < model.elastics.size(); ++number)
         std::visit(
             [&](const auto& e) {
                 const Vector3d s_i = q[e.i.body].lever(e.i.s_local),
                                s_j = q[e.j.body].lever(e.j.s_local);
-                for (const Vector6<double>& g : root_rows(e, inputs.rest[at], q)) {
+                for (const Vector6<double>& g : root_rows(e, inputs.rest[number], q)) {
                     const auto add = [&](BodyId b, const Vector3d& lever, double sign) {
                         Vector6<double> block;
                         block << sign * g.head<3>(),
@@ -163,7 +163,7 @@ Rows elastic_rows(const Model& model, const Inputs<double>& inputs, const State<
                     stack.next();
                 }
             },
-            model.elastics[at].kind);
+            model.elastics[number].kind);
     return stack.rows(coordinates(model));
 }
 
@@ -226,7 +226,7 @@ Vector3d shown(const Vector3d& u) {
 }
 
 // "rotation about ..." or "translation along ..." of the twist (v, w) of a body at r.
-std::string describe(const std::string& name, const BodyState<double>& at,
+std::string describe(const std::string& name, const BodyState<double>& placed,
                      const std::vector<Attachment>& attached, const Vector3d& v, const Vector3d& w,
                      double length) {
     if (w.norm() * length < 1e-6 * v.norm()) {
@@ -235,11 +235,11 @@ std::string describe(const std::string& name, const BodyState<double>& at,
                            u.z());
     }
     // nearest point of the axis to the origin
-    const Vector3d foot = at.r + w.cross(v) / w.squaredNorm();
+    const Vector3d foot = placed.r + w.cross(v) / w.squaredNorm();
     const Vector3d u = w.normalized();
     std::vector<std::string> on_axis;
     for (const auto& [what, s_local] : attached) {
-        const Vector3d p = at.r + at.lever(s_local);
+        const Vector3d p = placed.r + placed.lever(s_local);
         if ((p - foot).cross(u).norm() < 1e-6 * length &&
             std::ranges::find(on_axis, *what) == on_axis.end())
             on_axis.push_back(*what);

@@ -42,11 +42,11 @@ std::vector<int> loops(const Model& model) {
     for (std::size_t root = 0; root < ends.size(); ++root) {
         if (came[root] < 0) come_to(root, nowhere);
         while (!stack.empty()) {
-            Visit& at = stack.back();
-            const std::size_t body = at.body;
-            if (at.next < ends[body].size()) {
-                const End end = ends[body][at.next++];
-                if (end.constraint == at.by) continue;
+            Visit& visit = stack.back();
+            const std::size_t body = visit.body;
+            if (visit.next < ends[body].size()) {
+                const End end = ends[body][visit.next++];
+                if (end.constraint == visit.by) continue;
                 if (came[end.body] < 0) {
                     open.push_back(end.constraint);
                     come_to(end.body, end.constraint);
@@ -56,7 +56,7 @@ std::vector<int> loops(const Model& model) {
                 }
                 continue;
             }
-            const std::size_t by = at.by;
+            const std::size_t by = visit.by;
             stack.pop_back();
             if (stack.empty()) continue;
             const std::size_t before = stack.back().body;

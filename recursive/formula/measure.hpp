@@ -90,8 +90,8 @@ Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m)
            h * theta.cross(turned) * theta.transpose();
 }
 
-// ---- Cardan angles. H is divided by cos θ_y: singular at θ_y = ±90°, as any three angles are
-// somewhere.
+// ---- Cardan angles. H is divided by cos θ_y: singular at θ_y = ±90°, as any three
+// angles are somewhere.
 
 template <class Real>
 Vector3<Real> cardan(const Matrix3<Real>& B) {

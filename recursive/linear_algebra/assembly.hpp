@@ -23,20 +23,13 @@ void assemble_constraints(const Model& model, const Inputs<Real>& inputs, const 
 
 // ⎡ K(q)    Φ_q(q)ᵀ ⎤
 // ⎣ Φ_q(q)    0     ⎦  → M     (24)
+//
+// With the consistent tangent ∂G/∂q in place of K: assemble_constraints(), add_consistent_tangent().
 template <class Real>
 void assemble(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
               SaddleMatrix<Real>& M, Vector<Real>& Phi) {
     assemble_constraints<Real>(model, inputs, q, M, Phi);
     add_stiffness<Real>(model, inputs, q, M);
-}
-
-// The same with the consistent tangent ∂G/∂q in place of K (tangent.hpp).
-template <class Real>
-void assemble_consistent(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
-                         const State<Real>& q, const Vector<Real>& lambda, SaddleMatrix<Real>& M,
-                         Vector<Real>& Phi) {
-    assemble_constraints<Real>(model, inputs, q, M, Phi);
-    add_consistent_tangent<Real>(model, branch, inputs, q, lambda, M);
 }
 
 // Φ_qᵀ λ [6nb] and Φ(q), without the matrix.
@@ -63,9 +56,9 @@ extern template void add_load_stiffness<double>(const Model&, const Branch&, con
                                                 const State<double>&, SaddleMatrix<double>&);
 extern template void assemble<double>(const Model&, const Inputs<double>&, const State<double>&,
                                       SaddleMatrix<double>&, Vector<double>&);
-extern template void assemble_consistent<double>(const Model&, const Branch&, const Inputs<double>&,
-                                                 const State<double>&, const Vector<double>&,
-                                                 SaddleMatrix<double>&, Vector<double>&);
+extern template void assemble_constraints<double>(const Model&, const Inputs<double>&,
+                                                  const State<double>&, SaddleMatrix<double>&,
+                                                  Vector<double>&);
 extern template void constraint_force<double>(const Model&, const Inputs<double>&,
                                               const State<double>&, const Vector<double>&,
                                               Vector<double>&, Vector<double>&);

@@ -37,9 +37,9 @@ template void back_substitute<double>(SaddlePoint<double>&, const Vector<double>
 template void set_border<double>(SaddlePoint<double>&);
 template void assemble<double>(const Model&, const Inputs<double>&, const State<double>&,
                                SaddleMatrix<double>&, Vector<double>&);
-template void assemble_consistent<double>(const Model&, const Branch&, const Inputs<double>&,
-                                          const State<double>&, const Vector<double>&,
-                                          SaddleMatrix<double>&, Vector<double>&);
+template void assemble_constraints<double>(const Model&, const Inputs<double>&,
+                                           const State<double>&, SaddleMatrix<double>&,
+                                           Vector<double>&);
 template void constraint_force<double>(const Model&, const Inputs<double>&, const State<double>&,
                                        const Vector<double>&, Vector<double>&, Vector<double>&);
 

@@ -1,6 +1,5 @@
 #include <Eigen/CholmodSupport>
 #include <SuiteSparseQR.hpp>
-#include <cmath>
 #include <new>
 #include <queue>
 

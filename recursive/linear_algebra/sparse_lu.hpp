@@ -271,17 +271,16 @@ void analyse(SparseLU<Real>& lu, const SparseLU<Other>& other) {
 //   A_i ← A_i - l_ik U_k
 template <int rows, class Real>
 inline void subtract(Real* LU, const Elimination::Below* below, const int* target,
-                     const Elimination::Run* first, const Elimination::Run* last, Real inverse,
-                     Real& largest) {
+                     std::span<const Elimination::Run> right, Real inverse, Real& largest) {
     Real l[rows];
     for (int i = 0; i < rows; ++i) {
         l[i] = LU[below[i].at] *= inverse;
         largest = std::max(largest, std::abs(l[i]));
     }
-    const std::ptrdiff_t runs = last - first;
-    for (const auto* run = first; run != last; ++run, ++target) {
-        const std::ptrdiff_t even = (run->length + 1) & ~1;
-        const Real* const u = LU + run->at + even;
+    const auto runs = static_cast<std::ptrdiff_t>(right.size());
+    for (const Elimination::Run& run : right) {
+        const std::ptrdiff_t even = (run.length + 1) & ~1;
+        const Real* const u = LU + run.at + even;
         Real* a[rows];
         for (int i = 0; i < rows; ++i) a[i] = LU + target[i * runs] + even;
         for (std::ptrdiff_t c = -even; c != 0; c += 2) {  // two at a time: the compiler's vectors
@@ -296,6 +295,7 @@ inline void subtract(Real* LU, const Elimination::Below* below, const int* targe
                 a[i][c + 1] = left[i][1];
             }
         }
+        ++target;
     }
 }
 
@@ -335,12 +335,13 @@ Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
         const auto* const end = first_below + order.first_below[k + 1];
         const auto* const last = first_run + order.first_right[k + 1];
         const std::ptrdiff_t runs = last - run;
+        const std::span right(run, last);
         for (; end - below >= 4; below += 4, target += 4 * runs)
-            subtract<4>(LU, below, target, run, last, inverse, most);
+            subtract<4>(LU, below, target, right, inverse, most);
         for (; end - below >= 2; below += 2, target += 2 * runs)
-            subtract<2>(LU, below, target, run, last, inverse, most);
+            subtract<2>(LU, below, target, right, inverse, most);
         if (below != end) {
-            subtract<1>(LU, below++, target, run, last, inverse, most);
+            subtract<1>(LU, below++, target, right, inverse, most);
             target += runs;
         }
         run = last;

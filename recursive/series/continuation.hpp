@@ -45,14 +45,14 @@ struct Continuation {
           e(equations<double>(s.model, s.branch, options.order, drive)),
           c(reserve_coefficients<double>(s.n() + s.m(), options.order)),
           curves(curves_),
-          near{s.length, 0.1 * options.tolerance, 10 * options.tolerance},
+          near{s.setup.length, 0.1 * options.tolerance, 10 * options.tolerance},
           to(drive == Drive::start ? 1 : s.branch.to),
-          end(drive == Drive::start ? 1 : s.end),
+          end(drive == Drive::start ? 1 : s.setup.end),
           first(to),
-          per_unit(s.length / std::abs(to)),
+          per_unit(s.setup.length / std::abs(to)),
           ahead(Vector<double>::Zero(s.n() + s.m())) {
-        e.G_d = -s.R_d;
-        e.Phi_d = s.Phi_d;
+        e.G_d = -s.start.R_d;
+        e.Phi_d = s.start.Phi_d;
         for (const auto& curve : curves) follow(curve);
     }
     void follow(const Followed& curve) {

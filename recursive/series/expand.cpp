@@ -1,6 +1,5 @@
 #include "recursive/series/expand.hpp"
 
-#include <Eigen/QR>
 #include <complex>
 
 namespace elastocheck::recursive::series {
@@ -21,7 +20,7 @@ void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, dou
     evaluate(e, {0, Pass::known});
     drive_at(s, e.drive, 1.0, s.q, s.lambda);
     back_substitute(s);
-    c.unit = s.x;
+    c.unit = s.work.x;
     c.x.setZero();
     c.x.col(0).tail(s.m()) = s.lambda;
     c.load.setZero();
@@ -34,26 +33,27 @@ void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, dou
         c.load[1] = first;
     }
     c.x.col(1) = c.load[1] * c.unit;
-    s.x = c.x.col(1);
+    s.work.x = c.x.col(1);
 
-    compute_orders(
-        e, c, s.x,
-        [&] {
-            s.upper = -e.G;
-            s.lower = -e.Phi;
-            back_substitute(s);
-        },
-        [&](int k) {  // x_k ⟂ x_1
-            if (!arc_length) return;
-            c.load[k] = -inner(s.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
-            s.x += c.load[k] * c.unit;
-        },
-        [&](auto&& correct) {
-            if (arc_length) return false;
-            correct();
-            return !(s.x.head(n).norm() <= loses_digits * c.x.col(1).head(n).norm());
-        },
-        [] {});
+    compute_orders(e, c, s.work.x,
+                   OrderSteps{[&] {
+                                  s.work.upper = -e.G;
+                                  s.work.lower = -e.Phi;
+                                  back_substitute(s);
+                              },
+                              [&](int k) {  // x_k ⟂ x_1
+                                  if (!arc_length) return;
+                                  c.load[k] =
+                                      -inner(s.work.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
+                                  s.work.x += c.load[k] * c.unit;
+                              },
+                              [&](auto&& correct) {
+                                  if (arc_length) return false;
+                                  correct();
+                                  return !(s.work.x.head(n).norm() <=
+                                           loses_digits * c.x.col(1).head(n).norm());
+                              },
+                              [] {}});
 }
 
 double reach(const SteppingState& s, const Coefficients<double>& c, double tolerance,

@@ -22,28 +22,35 @@ Coefficients<Real> reserve_coefficients(int unknowns, int order) {
             Vector<Real>::Zero(unknowns), Vector<Real>::Zero(unknowns)};
 }
 
+// The steps of compute_orders() that differ between its callers.
+template <class Solve, class Straighten, class Loses, class Keep>
+struct OrderSteps {
+    Solve solve;            // (): sets x to the solution for the right-hand side (-G, -Φ)
+    Straighten straighten;  // (k): may change x_k, in x, and a_k
+    // (correct): whether the correction of x_1, which correct() puts into x, is so large that all
+    // orders are corrected
+    Loses loses;
+    Keep keep;  // (): drops from x the corrections that are not needed
+};
+template <class Solve, class Straighten, class Loses, class Keep>
+OrderSteps(Solve, Straighten, Loses, Keep) -> OrderSteps<Solve, Straighten, Loses, Keep>;
+
 // Computes the orders 1 ... p after begin() and pass `known` of order 0. x_1 = a_1 x̂ is in c.x and in
 // `x`, a workspace.
-//
-//   solve()          sets x to the solution for the right-hand side (-G, -Φ)
-//   straighten(k)    may change x_k, in x, and a_k
-//   loses(correct)   whether the correction of x_1, which correct() puts into x, is so large that
-//                    all orders are corrected
-//   keep()           drops from x the corrections that are not needed
 //
 // Residual correction of x_k: coefficient k of (G, Φ) evaluated element by element with x_k, and
 // solved with the same factors. It removes the rounding of the assembled matrix.
 template <class Real, class Solve, class Straighten, class Loses, class Keep>
-void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x, Solve&& solve,
-                    Straighten&& straighten, Loses&& loses, Keep&& keep) {
+void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x,
+                    const OrderSteps<Solve, Straighten, Loses, Keep>& steps) {
     const auto correct = [&](int k) {
         assign(e, k, x, c.load[k]);
         evaluate(e, {k, Pass::known});
-        solve();
+        steps.solve();
     };
-    const bool corrected = loses([&] { correct(1); });
+    const bool corrected = steps.loses([&] { correct(1); });
     if (corrected) {
-        keep();
+        steps.keep();
         c.x.col(1) += x;
     }
     x = c.x.col(1);
@@ -51,12 +58,12 @@ void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x, 
         assign(e, k, c.none, 0);
         evaluate(e, {k, Pass::known});
         if (k > 1) {
-            solve();
-            straighten(k);
+            steps.solve();
+            steps.straighten(k);
             c.x.col(k) = x;
             if (corrected) {
                 correct(k);
-                keep();
+                steps.keep();
                 c.x.col(k) += x;
                 x = c.x.col(k);
                 assign(e, k, c.none, 0);

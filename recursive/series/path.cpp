@@ -7,7 +7,6 @@
 #include "recursive/series/events.hpp"
 #include "recursive/series/polynomial.hpp"
 #include "recursive/series/sides.hpp"
-#include "recursive/stepping/recording.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "recursive/stepping/stability.hpp"
 #include "recursive/stepping/step_check.hpp"
@@ -16,9 +15,9 @@
 namespace elastocheck::recursive::series {
 namespace {
 
-double largest_force(const SteppingState& s) { return s.upper.cwiseAbs().maxCoeff(); }
+double largest_force(const SteppingState& s) { return s.work.upper.cwiseAbs().maxCoeff(); }
 double largest_violation(const SteppingState& s) {
-    return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff();
+    return s.m() == 0 ? 0 : s.work.lower.cwiseAbs().maxCoeff();
 }
 
 // Whether redundant joints have become inconsistent by their drivers.
@@ -35,7 +34,7 @@ Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
     SteppingState& s = w.s;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
-    const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
+    const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.setup.length;
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 8; ++k) {
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
@@ -45,7 +44,7 @@ Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
         if (slide) {
             drive_at(s, w.e.drive, 1.0, s.q, s.lambda);
             back_substitute(s);
-            w.c.unit = s.x;
+            w.c.unit = s.work.x;
         }
         residual_at(s, s.q, s.lambda);
         if (k == 0 && judged != nullptr) {
@@ -55,13 +54,13 @@ Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
         back_substitute(s);
         if (slide) {
             const auto along = w.ahead.head(n).array() * W2;
-            const double da =
-                -(along * s.x.head(n).array()).sum() / (along * w.c.unit.head(n).array()).sum();
-            s.x += da * w.c.unit;
+            const double da = -(along * s.work.x.head(n).array()).sum() /
+                              (along * w.c.unit.head(n).array()).sum();
+            s.work.x += da * w.c.unit;
             w.go_to(w.at() + da);
             slid = w.per_unit * std::abs(da);
         }
-        if (!s.x.allFinite()) return Outcome::not_finite;
+        if (!s.work.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
         if (const Outcome outcome = check_idle_load_here(w.s, std::max(size, slid));
             outcome != Outcome::converged)
@@ -69,9 +68,9 @@ Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
         if (k == 0) error = std::max(size, slid);
         if (!(size < before)) break;  // at rounding level
         before = size;
-        s.dq = s.x.head(n);
-        advance(s.q, s.dq);
-        s.lambda += s.x.tail(s.m());
+        s.step.dq = s.work.x.head(n);
+        advance(s.q, s.step.dq);
+        s.lambda += s.work.x.tail(s.m());
         // The factors belong to the point before this correction: accurate enough if it was small.
         if (size <= std::max(rounding, 1e-2 * w.options.tolerance)) break;
     }
@@ -358,12 +357,12 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
 std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagnosis) {
     const bool settles = w.e.drive == Drive::start;
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
-    const std::string at =
+    const std::string place =
         settles ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch, w.at())
                 : fmt::format("{}: at {}", branch, in_unit(w.s.branch.unit, w.at()));
-    if (!w.s.unstable_start.empty())
+    if (!w.s.start.unstable.empty())
         return fmt::format("{}: the equilibrium that settles at 0 is unstable: {}", branch,
-                           w.s.unstable_start);
+                           w.s.start.unstable);
     switch (outcome) {
         case Outcome::limit_point:
             return settles ? fmt::format(
@@ -376,58 +375,58 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
                                  "the branch",
                                  branch, in_unit(w.s.branch.unit, w.path.limits.back(), 9));
         case Outcome::iteration_limit:
-            return at + fmt::format(": {} expansions were not enough", w.path.expansions.size());
+            return place + fmt::format(": {} expansions were not enough", w.path.expansions.size());
         case Outcome::singular:
-            return at +
+            return place +
                    ": the matrix is or was singular: the branch bifurcates or loses its stability" +
                    (diagnosis.null_space.cols() > 0 ? ", or an idle mode or redundant constraint "
                                                       "of the design position no longer is one"
                                                     : "");
         case Outcome::bifurcation_point:
-            return at +
+            return place +
                    ": another curve of equilibria crosses the branch, which is unstable past this "
                    "point";
         case Outcome::inconsistent_constraints:
             if (const auto gone = vanishing_length(w.s.model, w.s.branch);
                 gone && std::abs(w.at()) >= 0.99 * std::abs(w.end))
                 return fmt::format("{}: {}", branch, no_length(w.s.model, w.s.branch, *gone));
-            return at + ": redundant joints are inconsistent";
+            return place + ": redundant joints are inconsistent";
         case Outcome::loaded_idle_mode:
-            return at +
+            return place +
                    ": the load acts on a motion that no joint or element resists at the design "
                    "position: " +
                    idle_modes(diagnosis);
         case Outcome::branch_lost:
             if (w.reversed)
-                return at +
+                return place +
                        ": a spring passes through zero length or a bushing through half a turn, "
                        "where its force jumps";
-            return at;
-        default: return at;
+            return place;
+        default: return place;
     }
 }
 
 SteppingState series_state(const Model& model, const Branch& branch, const Analysis& analysis) {
     SteppingState s(model, branch, analysis);
-    s.consistent = true;
+    s.setup.consistent = true;
     s.system.lu.largest_multiplier = 1e4;  // Newton corrections at every end restore accuracy
     return s;
 }
 
-// From the design position to the start, with the constraint error of the analysis in s.Phi_d: the
+// From the design position to the start, with the constraint error of the analysis in s.start.Phi_d: the
 // closing tolerance is no exact equilibrium.
 Outcome settle(Continuation& settling, const Analysis& analysis) {
     SteppingState& s = settling.s;
     if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged) return o;
     const Outcome walked = follow_to_end(settling);
-    if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
+    if (s.start.Phi_d.norm() <= guard::closed) s.start.Phi_d.setZero();
     return settled(s, walked, 0.0);
 }
 
 void stand_on(SteppingState& s, std::vector<Followed>& curves, const Start& start) {
     s.q = start.q;
     s.lambda = start.lambda;
-    s.Phi_d = start.Phi_d;
+    s.start.Phi_d = start.Phi_d;
     s.system = start.system;
     for (std::size_t k = 0; k < curves.size(); ++k) curves[k].piece = start.pieces[k];
 }
@@ -442,7 +441,7 @@ bool settle_near(SteppingState& s, std::vector<Followed>& curves, const recursiv
     stand_on(s, curves, other);
     Continuation w(s, curves, options, Drive::rate);
     w.go_to(0);
-    for (const double limit : {near * s.length, options.tolerance}) {
+    for (const double limit : {near * s.setup.length, options.tolerance}) {
         double correction = 0;
         if (correct_at_end(w, nullptr, correction) != Outcome::converged || !(correction <= limit))
             return false;
@@ -533,7 +532,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     // The factors of the analysis belong to the design position. If that is no equilibrium,
     // settling starts there; if it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
-        s.Phi_d = analysis.Phi_d;
+        s.start.Phi_d = analysis.Phi_d;
         Continuation settling(s, curves, options, Drive::start);
         if (const Outcome o = settle(settling, analysis); o != Outcome::converged)
             return finish(settling, o);
@@ -561,8 +560,8 @@ void keep_start(const Model& model, const Branch& branch, const recursive::Serie
     const auto keep = [&](SteppingState& s, const std::vector<Followed>& curves) {
         go_to(s, {1, 0});
         analysis.settled =
-            std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.Phi_d, s.system,
-                                          pieces_of(curves), start_stability(s));
+            std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.start.Phi_d,
+                                          s.system, pieces_of(curves), start_stability(s));
     };
     if (last) {
         SteppingState s = series_state(model, branch, analysis);
@@ -571,7 +570,7 @@ void keep_start(const Model& model, const Branch& branch, const recursive::Serie
     }
     SteppingState s = series_state(model, branch, analysis);
     std::vector<Followed> curves = curves_of(model);
-    s.Phi_d = analysis.Phi_d;
+    s.start.Phi_d = analysis.Phi_d;
     Continuation settling(s, curves, options, Drive::start);
     if (settle(settling, analysis) == Outcome::converged) keep(s, curves);
 }

@@ -376,8 +376,13 @@ template <class Real>
 void place(Arm<Real>& arm, const State<double>& q, int lane) {
     put(arm.fixed, lane, q[arm.body].lever(got(arm.local, lane)));
 }
-template <class Real>
-void place(SpringSeries<Real>& t, const State<double>& q, int lane) {
+// Of a term with two arms and nothing else that turns.
+template <class Term>
+requires requires(Term& t) {
+    t.i;
+    t.j;
+}
+void place(Term& t, const State<double>& q, int lane) {
     place(t.i, q, lane);
     place(t.j, q, lane);
 }
@@ -405,25 +410,10 @@ void place(BushingSeries<Real>& t, const State<double>& q, int lane) {
     put(t.to_relative, lane, to_relative);
 }
 template <class Real>
-void place(CoincidentSeries<Real>& t, const State<double>& q, int lane) {
-    place(t.i, q, lane);
-    place(t.j, q, lane);
-}
-template <class Real>
 void place(PlaneSeries<Real>& t, const State<double>& q, int lane) {
     place(t.i, q, lane);
     place(t.j, q, lane);
     place(t.normal, q, lane);
-}
-template <class Real>
-void place(PerpendicularSeries<Real>& t, const State<double>& q, int lane) {
-    place(t.i, q, lane);
-    place(t.j, q, lane);
-}
-template <class Real>
-void place(DistanceSeries<Real>& t, const State<double>& q, int lane) {
-    place(t.i, q, lane);
-    place(t.j, q, lane);
 }
 template <class Real>
 void place(AngleSeries<Real>& t, const State<double>& q, int lane) {

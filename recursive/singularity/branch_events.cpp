@@ -25,7 +25,7 @@ bool ends(Outcome outcome) {
 
 // Settles to the equilibrium at a = 0 and leaves its factors in the system.
 Outcome settles(SteppingState& s, const Branch& branch, const Analysis& analysis) {
-    const bool as_drawn = analysis.at_rest && starts_as_drawn(branch) && s.curves.empty();
+    const bool as_drawn = analysis.at_rest && starts_as_drawn(branch) && s.kinks.curves.empty();
     if (as_drawn) go_to(s, {1, 0});
     const Outcome outcome = as_drawn ? check_factors(s, s.q, analysis.pivot_ratio) : settle(s);
     if (outcome != Outcome::converged) return outcome;
@@ -114,7 +114,7 @@ struct Traversal {
 };
 
 Traversal follow_by_long_steps(SteppingState& s, double to) {
-    const ContinuationSettings settings{Drive::rate, tolerance * s.length, tolerance};
+    const ContinuationSettings settings{Drive::rate, tolerance * s.setup.length, tolerance};
     Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     differentiate(s, settings, node);
     double log_here = log_determinant(s.system);
@@ -186,14 +186,14 @@ std::optional<Event> find_event(const Model& model, const Branch& branch,
 std::optional<Event> watch(const Model& model, const Branch& branch, const Analysis& analysis) {
     if (branch.to == 0 || model.bodies.empty()) return std::nullopt;
     SteppingState s(model, branch, analysis);
-    s.consistent = true;
+    s.setup.consistent = true;
     // Newton corrections at every node restore accuracy, and a pivot order costs ten factorisations.
     s.system.lu.largest_multiplier = 1e4;
     if (const Outcome o = settles(s, branch, analysis); ends(o) || o == Outcome::loaded_idle_mode)
-        return Event{o, std::numeric_limits<double>::quiet_NaN(), s.unstable_start};
+        return Event{o, std::numeric_limits<double>::quiet_NaN(), s.start.unstable};
     else if (o != Outcome::converged)
         return std::nullopt;  // the method reports this failure itself
-    const Traversal traversal = follow_by_long_steps(s, s.end);
+    const Traversal traversal = follow_by_long_steps(s, s.setup.end);
     if (traversal.through) return std::nullopt;
     const std::optional<Event> event = find_event(model, branch, analysis);
     const bool sooner =

@@ -48,18 +48,18 @@ double largest(SteppingState& s, const SaddleMatrix<double>& G) {
     constexpr int vectors = 3, turns = 12;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
-    Matrix<double> U(n, std::min(vectors, s.free));
+    Matrix<double> U(n, std::min(vectors, s.setup.free));
     for (Eigen::Index c = 0; c < U.cols(); ++c)
         for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / s.system.weight[k];
     Eigen::MatrixXd H;
-    s.lower.setZero();
+    s.work.lower.setZero();
     for (int turn = 0; turn < turns; ++turn) {
         detail::orthonormalise(s.system.weight, U);
         Matrix<double> V(n, U.cols());
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
-            s.upper = times(G, U.col(c));
+            s.work.upper = times(G, U.col(c));
             back_substitute(s);
-            V.col(c) = s.x.head(n);
+            V.col(c) = s.work.x.head(n);
         }
         if (!V.allFinite()) return std::numeric_limits<double>::quiet_NaN();
         H = U.transpose() * W2.matrix().asDiagonal() * V;
@@ -75,15 +75,15 @@ double delayed_stiffness(const Model& model, const Branch& branch, const Method&
                          const Analysis& analysis, const Equilibrium& state) {
     const auto* linear = std::get_if<Linear>(&method.kind);
     SteppingState s(model, branch, analysis);
-    if (linear == nullptr || s.free <= 0) return 0;
+    if (linear == nullptr || s.setup.free <= 0) return 0;
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     if (factorise_at(s, s.q, s.lambda) != Outcome::converged)
         return std::numeric_limits<double>::quiet_NaN();
     residual_at(s, s.q, s.lambda);  // λ = 0: solves for the reactions
-    s.lower.setZero();
+    s.work.lower.setZero();
     back_substitute(s);
-    s.lambda = s.x.tail(s.m());
+    s.lambda = s.work.x.tail(s.m());
     SaddleMatrix<double> G = s.system.M;
     assemble_delayed(s, linear->follow, G);
     return largest(s, G);

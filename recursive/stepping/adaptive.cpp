@@ -11,7 +11,7 @@
 namespace elastocheck::recursive {
 namespace {
 
-// Change of the reactions by the correction in s.x, over the allowed change. Allowed are the larger
+// Change of the reactions by the correction in s.work.x, over the allowed change. Allowed are the larger
 // reactions of the two nodes `one` and `other` times length_tolerance / L, and the rounding of all
 // forces at q and of stiffness times position, since the reactions may be zero. The correction of
 // the motion does not detect this error: in a driven mechanism the drivers prescribe the whole
@@ -20,16 +20,17 @@ double share_of_reactions(SteppingState& s, const ContinuationSettings& settings
                           const State<double>& q, const Vector<double>& one,
                           const Vector<double>& other) {
     const auto force = [&](const auto& lambda) {
-        constraint_force(s.system.M, lambda, s.force);
-        return size_of_force(s, s.force);
+        constraint_force(s.system.M, lambda, s.work.force);
+        return size_of_force(s, s.work.force);
     };
-    const double largest = std::max(force(one), force(other)), change = force(s.x.tail(s.m()));
-    elastic_force<double>(s.model, s.inputs, q, s.force);
-    const double acts = std::max({largest, size_of_force(s, s.applied), size_of_force(s, s.force)});
+    const double largest = std::max(force(one), force(other)), change = force(s.work.x.tail(s.m()));
+    elastic_force<double>(s.model, s.inputs, q, s.work.force);
+    const double acts =
+        std::max({largest, size_of_force(s, s.work.applied), size_of_force(s, s.work.force)});
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    const double allowed = largest * settings.length_tolerance / s.length +
+    const double allowed = largest * settings.length_tolerance / s.setup.length +
                            guard::rounding * epsilon * acts +
-                           10 * epsilon * (s.length + reach(q)) * stiffest(s.system.M);
+                           10 * epsilon * (s.setup.length + reach(q)) * stiffest(s.system.M);
     return allowed > 0 ? change / allowed : 0;
 }
 
@@ -67,7 +68,7 @@ void keep(Sweep& w, const State<double>& q, const Vector<double>& lambda, double
 Outcome begin_anew(Sweep& w) {
     Node& node = w.stride.node;
     go_to(w.s, w.settings.at(node.p));
-    external_force<double>(w.s.model, w.s.branch, w.s.inputs, node.q, w.s.applied);
+    external_force<double>(w.s.model, w.s.branch, w.s.inputs, node.q, w.s.work.applied);
     if (const Outcome outcome = factorise_at(w.s, node.q, node.lambda);
         outcome != Outcome::converged)
         return outcome;
@@ -128,7 +129,8 @@ void take_step(Sweep& w, double log_next) {
 // only for its interpolation error.
 bool ends(Sweep& w, const Trial& trial, double step, bool judged) {
     if (std::abs(w.h) > std::abs(w.to) * short_step || w.is_done()) return false;
-    const Outcome reason = end_reason(trial, w.stride.node, w.stride.curvature, step, w.s.length);
+    const Outcome reason =
+        end_reason(trial, w.stride.node, w.stride.curvature, step, w.s.setup.length);
     if (!w.refused) w.refused_at = w.stride.node.p;
     const bool better = w.ended == Outcome::branch_lost || (w.by_error && !judged);
     if (!w.refused || (better && reason != Outcome::branch_lost)) {
@@ -142,13 +144,15 @@ bool ends(Sweep& w, const Trial& trial, double step, bool judged) {
 // One step, accepted or refused; an outcome other than `converged` where the branch ends.
 Outcome try_next(Sweep& w) {
     const Node &node = w.stride.node, &next = w.stride.next;
-    w.stride.next.p = std::abs(w.s.end - node.p) < std::abs(w.h) * 1.1 ? w.s.end : node.p + w.h;
+    w.stride.next.p =
+        std::abs(w.s.setup.end - node.p) < std::abs(w.h) * 1.1 ? w.s.setup.end : node.p + w.h;
     KnotCrossing met;
     Trial trial = step_to_knot(w.s, w.settings, w.stride, met);
     const double step = next.p - node.p;
     if (step == 0) {  // the node lies on a knot
         piece_of(w.s, *met.curve) += met.side;
-        if (++w.changes > 2 * static_cast<int>(w.s.curves.size())) return Outcome::limit_point;
+        if (++w.changes > 2 * static_cast<int>(w.s.kinks.curves.size()))
+            return Outcome::limit_point;
         return begin_anew(w);
     }
     double error = std::numeric_limits<double>::infinity();
@@ -185,7 +189,7 @@ Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& re
     // The factors are those of the last correction of settling.
     differentiate(s, w.settings, node);
     w.orientation = node.orientation;
-    if (!s.curves.empty()) {
+    if (!s.kinks.curves.empty()) {
         take_pieces(s, w.settings, node, w.h * 1e-3, w.stride.q);
         if (const Outcome outcome = begin_anew(w); outcome != Outcome::converged) return outcome;
     }
@@ -196,7 +200,7 @@ Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& re
     keep(w, node.q, node.lambda, 0);
     for (int steps = 0; !w.is_done(); ++steps) {
         if (steps == max_steps) return Outcome::iteration_limit;
-        if (node.p == s.end && s.end != to) return Outcome::inconsistent_constraints;
+        if (node.p == s.setup.end && s.setup.end != to) return Outcome::inconsistent_constraints;
         if (const Outcome outcome = try_next(w); outcome != Outcome::converged) return outcome;
     }
     return Outcome::converged;
@@ -217,7 +221,7 @@ EquilibriumPath sweep_adaptive(const Model& model, const Branch& branch, const O
     recording.finish();
     path.counts = s.counts;
     stop = {settled ? s.a : std::numeric_limits<double>::quiet_NaN(),
-            path.outcome == Outcome::singular ? s.unstable_start : std::string()};
+            path.outcome == Outcome::singular ? s.start.unstable : std::string()};
     return path;
 }
 

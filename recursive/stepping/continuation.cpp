@@ -8,20 +8,20 @@ Outcome correct(SteppingState& s, const ContinuationSettings& settings, State<do
                 Vector<double>& lambda, double p, double& size) {
     go_to(s, settings.at(p));
     external_force<double>(s.model, s.branch, s.inputs, q,
-                           s.applied);  // for the check of idle modes
-    if (const double held = 1 - s.parameters.t; held != 0) s.applied -= held * s.R_d;
+                           s.work.applied);  // for the check of idle modes
+    if (const double held = 1 - s.parameters.t; held != 0) s.work.applied -= held * s.start.R_d;
     if (const Outcome outcome = factorise_at(s, q, lambda); outcome != Outcome::converged)
         return outcome;
     residual_at(s, q, lambda);
     back_substitute(s);
-    if (!s.x.allFinite()) return Outcome::not_finite;
+    if (!s.work.x.allFinite()) return Outcome::not_finite;
     if (const Outcome outcome = check_idle_load(s, q, std::sqrt(size_of_solution(s)));
         outcome != Outcome::converged)
         return outcome;
-    size = share(settings, s.x.head(s.n()));
-    s.dq = s.x.head(s.n());
-    advance(q, s.dq);
-    lambda += s.x.tail(s.m());
+    size = share(settings, s.work.x.head(s.n()));
+    s.step.dq = s.work.x.head(s.n());
+    advance(q, s.step.dq);
+    lambda += s.work.x.tail(s.m());
     return Outcome::converged;
 }
 
@@ -32,12 +32,12 @@ Trial try_step(SteppingState& s, const ContinuationSettings& settings, const Nod
     Trial trial;
     next.q = node.q;
     next.lambda = node.lambda + h * node.dlambda + h * h / 2 * lambda_curvature;
-    s.dq = h * node.dq + h * h / 2 * curvature;
+    s.step.dq = h * node.dq + h * h / 2 * curvature;
     // The linearisation of a rotation is invalid beyond one radian.
     for (int b = 0; b < s.n() / 6; ++b)
-        if (!(s.dq.segment<3>(6 * b + 3).norm() <= guard::largest_turn)) return trial;
-    const double forecast = share(settings, s.dq);
-    advance(next.q, s.dq);
+        if (!(s.step.dq.segment<3>(6 * b + 3).norm() <= guard::largest_turn)) return trial;
+    const double forecast = share(settings, s.step.dq);
+    advance(next.q, s.step.dq);
     double before = std::numeric_limits<double>::infinity(), size = 0, corrected = 0;
     for (int k = 0; k < 6 && trial.left > 0.01; ++k) {
         trial.outcome = correct(s, settings, next.q, next.lambda, next.p, size);
@@ -70,9 +70,9 @@ bool is_inconsistent_at(SteppingState& s, const Node& node, State<double>& q,
     for (int k = 0; k < corrections; ++k) {
         residual_at(s, q, lambda);
         back_substitute(s);
-        s.dq = s.x.head(s.n());
-        advance(q, s.dq);
-        lambda += s.x.tail(s.m());
+        s.step.dq = s.work.x.head(s.n());
+        advance(q, s.step.dq);
+        lambda += s.work.x.tail(s.m());
     }
     residual_at(s, q, lambda);
     s.counts = counts;

@@ -42,8 +42,8 @@ inline void differentiate(SteppingState& s, const ContinuationSettings& settings
     go_to(s, settings.at(node.p));
     drive_at(s, settings.drive, 1, node.q, node.lambda);
     back_substitute(s);
-    node.dq = s.x.head(s.n());
-    node.dlambda = s.x.tail(s.m());
+    node.dq = s.work.x.head(s.n());
+    node.dlambda = s.work.x.tail(s.m());
     node.orientation = s.system.lu.orientation;
 }
 

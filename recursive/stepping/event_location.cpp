@@ -43,16 +43,17 @@ KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& setting
         const double t = static_cast<double>(k) / 3;
         at(t, q);
         go_to(s, settings.at(from + t * h));
-        for (std::size_t c = 0; c < s.curves.size(); ++c)
-            s.along[c][static_cast<std::size_t>(k)] = deflection(s.model, s.inputs, q, s.curves[c]);
+        for (std::size_t c = 0; c < s.kinks.curves.size(); ++c)
+            s.kinks.along[c][static_cast<std::size_t>(k)] =
+                deflection(s.model, s.inputs, q, s.kinks.curves[c]);
     }
     constexpr int samples = 24;
     KnotCrossing first;
-    for (std::size_t c = 0; c < s.curves.size(); ++c) {
-        const CurvePlace& place = s.curves[c];
+    for (std::size_t c = 0; c < s.kinks.curves.size(); ++c) {
+        const CurvePlace& place = s.kinks.curves[c];
         const auto& knots = place.curve->knots;
         const auto piece = static_cast<std::size_t>(piece_of(s, place));
-        const auto& x = s.along[c];
+        const auto& x = s.kinks.along[c];
         const auto look = [&](double knot, int side) {
             const auto beyond = [&](double t) { return side * (cubic(x, t) - knot); };
             double before = 0;
@@ -83,24 +84,24 @@ KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& setting
 // `next`.
 bool land(SteppingState& s, const ContinuationSettings& settings, const KnotCrossing& knot,
           double limit, Stride& stride) {
-    const CurvePlace& at = *knot.curve;
+    const CurvePlace& place = *knot.curve;
     Node& next = stride.next;
     const double p = stride.node.p, step = next.p - p;
     for (int k = 0; k < 5; ++k) {
         go_to(s, settings.at(next.p));
-        const double x = deflection(s.model, s.inputs, next.q, at);
-        if (std::abs(x - knot.knot) <= slack(settings, at)) return true;
+        const double x = deflection(s.model, s.inputs, next.q, place);
+        if (std::abs(x - knot.knot) <= slack(settings, place)) return true;
         const double ahead = step * 1e-4;
         stride.q = next.q;
         advance(stride.q, ahead * next.dq);
         go_to(s, settings.at(next.p + ahead));
-        const double rate = (deflection(s.model, s.inputs, stride.q, at) - x) / ahead;
+        const double rate = (deflection(s.model, s.inputs, stride.q, place) - x) / ahead;
         const double dp = (knot.knot - x) / rate;
         if (!(std::abs(dp) <= std::abs(step)) || !((next.p + dp - p) * step > 0) ||
             !((limit - next.p - dp) * step >= 0))
             return false;
-        s.dq = dp * next.dq;
-        advance(next.q, s.dq);
+        s.step.dq = dp * next.dq;
+        advance(next.q, s.step.dq);
         next.lambda += dp * next.dlambda;
         next.p += dp;
         double size = 0;
@@ -120,14 +121,15 @@ Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Strid
     Node& next = stride.next;
     const auto &curvature = stride.curvature, &lambda_curvature = stride.lambda_curvature;
     met = {};
-    if (s.curves.empty()) return try_step(s, settings, node, curvature, lambda_curvature, next);
+    if (s.kinks.curves.empty())
+        return try_step(s, settings, node, curvature, lambda_curvature, next);
     const double whole = next.p;
     KnotCrossing expected = first_meeting(s, settings, node.p, whole - node.p, stride.q,
                                           [&](double t, State<double>& at) {
                                               const double h = t * (whole - node.p);
-                                              s.dq = h * node.dq + h * h / 2 * curvature;
+                                              s.step.dq = h * node.dq + h * h / 2 * curvature;
                                               at = node.q;
-                                              advance(at, s.dq);
+                                              advance(at, s.step.dq);
                                           });
     double h = whole - node.p;
     Trial trial;
@@ -161,19 +163,19 @@ Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Strid
 void take_pieces(SteppingState& s, const ContinuationSettings& settings, const Node& node,
                  double ahead, State<double>& q) {
     q = node.q;
-    s.dq = ahead * node.dq;
-    advance(q, s.dq);
-    for (const CurvePlace& at : s.curves) {
+    s.step.dq = ahead * node.dq;
+    advance(q, s.step.dq);
+    for (const CurvePlace& place : s.kinks.curves) {
         go_to(s, settings.at(node.p));
-        const double x = deflection(s.model, s.inputs, node.q, at);
+        const double x = deflection(s.model, s.inputs, node.q, place);
         go_to(s, settings.at(node.p + ahead));
-        const bool rises = deflection(s.model, s.inputs, q, at) > x;
-        const auto& knots = at.curve->knots;
-        Piece piece = piece_at(*at.curve, x);
+        const bool rises = deflection(s.model, s.inputs, q, place) > x;
+        const auto& knots = place.curve->knots;
+        Piece piece = piece_at(*place.curve, x);
         for (std::size_t k = 0; k < knots.size(); ++k)
-            if (std::abs(x - knots[k]) <= slack(settings, at))
+            if (std::abs(x - knots[k]) <= slack(settings, place))
                 piece = static_cast<Piece>(rises ? k + 1 : k);
-        piece_of(s, at) = piece;
+        piece_of(s, place) = piece;
     }
     go_to(s, settings.at(node.p));
 }

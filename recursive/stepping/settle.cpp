@@ -6,9 +6,10 @@ namespace {
 // Whether joints that are open at the design position are still open after settling. An angle
 // counts as closed on one side only (u_i·w = 0 has two solutions).
 bool remains_open(const SteppingState& s, double share) {
-    const double open = s.Phi_d.norm();
-    const double rounding = std::max(
-        10 * guard::closed, 100 * std::numeric_limits<double>::epsilon() * std::max(1.0, s.length));
+    const double open = s.start.Phi_d.norm();
+    const double rounding =
+        std::max(10 * guard::closed,
+                 100 * std::numeric_limits<double>::epsilon() * std::max(1.0, s.setup.length));
     Vector<double> Phi = constraint_values<double>(s.model, s.inputs, s.q);
     for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
         const ConstraintKind& kind = s.model.constraints[c].kind;
@@ -25,7 +26,7 @@ bool loads_idle_mode(const SteppingState& s) {
     elastic_force<double>(s.model, s.inputs, s.q, f_elast);
     const double whole = size_of_force(s, f_ext) + size_of_force(s, f_elast);
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
-    const double blur = s.Phi_d.norm() / std::min(1.0, s.length);
+    const double blur = s.start.Phi_d.norm() / std::min(1.0, s.setup.length);
     return !(load_on_idle_modes(s, f_ext - f_elast, whole) <=
              rounding + guard::share_per_error * blur);
 }
@@ -34,7 +35,7 @@ Outcome settled(const SteppingState& s, Outcome outcome, double share) {
     if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode ||
         outcome == Outcome::iteration_limit)
         return outcome;
-    const bool was_open = s.Phi_d.norm() > 0;
+    const bool was_open = s.start.Phi_d.norm() > 0;
     if (outcome != Outcome::converged)
         return was_open ? Outcome::inconsistent_constraints : outcome;
     // A gap that linear steps open between closed joints is a step error, not inconsistency.
@@ -43,23 +44,23 @@ Outcome settled(const SteppingState& s, Outcome outcome, double share) {
 
 Outcome settle(SteppingState& s, const Linear& method, int steps) {
     // The error of one linear step is the square of its size: below rounding for this size.
-    const double at_rest = 1e-6 * s.length;
+    const double at_rest = 1e-6 * s.setup.length;
     for (const int N : {1, steps}) {
-        s.consistent = false;
-        s.q = s.before = design_state<double>(s.model);
+        s.setup.consistent = false;
+        s.q = s.step.before = design_state<double>(s.model);
         s.lambda.setZero();
         go_to(s, {1, 0});
         if (loads_idle_mode(s)) return Outcome::loaded_idle_mode;
         go_to(s, {0, 0});
-        external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
-        s.applied -= s.R_d;
-        elastic_force<double>(s.model, s.inputs, s.q, s.stored);
-        s.element.clear();
+        external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
+        s.work.applied -= s.start.R_d;
+        elastic_force<double>(s.model, s.inputs, s.q, s.work.stored);
+        s.work.element.clear();
         for (std::size_t k = 0; k < s.model.elastics.size(); ++k)
-            s.element.push_back(
+            s.work.element.push_back(
                 element_force<double>(s.model.elastics[k].kind, s.inputs.rest[k], s.q));
         drive_at(s, Drive::start, 1, s.q, s.lambda);
-        if (s.upper.isZero(0) && s.lower.isZero(0)) {  // nothing is held: λ⁻¹ = 0
+        if (s.work.upper.isZero(0) && s.work.lower.isZero(0)) {  // nothing is held: λ⁻¹ = 0
             go_to(s, {1, 0});
             return Outcome::converged;
         }
@@ -67,9 +68,9 @@ Outcome settle(SteppingState& s, const Linear& method, int steps) {
         for (int k = 1; k <= N && outcome == Outcome::converged; ++k)
             outcome =
                 step(s, method, {k == N ? 1 : static_cast<double>(k) / static_cast<double>(N), 0});
-        const bool rested = outcome == Outcome::converged && s.last.norm() <= at_rest;
-        s.swings = 0;
-        s.last.setZero();
+        const bool rested = outcome == Outcome::converged && s.step.last.norm() <= at_rest;
+        s.step.swings = 0;
+        s.step.last.setZero();
         // The gap left by linear steps falls with their number; a gap of more than half
         // is not closing.
         if (rested || N == steps) return settled(s, outcome, 0.5);
@@ -80,16 +81,16 @@ Outcome settle(SteppingState& s, const Linear& method, int steps) {
 namespace {
 
 Outcome settle_consistently(SteppingState& s) {
-    s.consistent = true;
+    s.setup.consistent = true;
     go_to(s, {1, 0});
     if (loads_idle_mode(s)) return Outcome::loaded_idle_mode;
-    const double length = s.length;
+    const double length = s.setup.length;
     // Steps before the end need only stay in the convergence region of Newton's method.
     const ContinuationSettings settings{Drive::start, 1e-4 * length, 1e-4};
     Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     go_to(s, {0, 0});
     drive_at(s, Drive::start, 1, s.q, s.lambda);
-    if (!s.upper.isZero(0) || !s.lower.isZero(0)) {
+    if (!s.work.upper.isZero(0) || !s.work.lower.isZero(0)) {
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
         differentiate(s, settings, node);
@@ -132,10 +133,10 @@ Outcome settle_consistently(SteppingState& s) {
         --s.counts.evaluations;  // a check only: not counted
         if (is_inconsistent(s, node.q)) return Outcome::inconsistent_constraints;
     }
-    s.q = s.before = node.q;
+    s.q = s.step.before = node.q;
     s.lambda = node.lambda;
-    s.orientation = s.system.lu.orientation;
-    s.last.setZero();
+    s.start.orientation = s.system.lu.orientation;
+    s.step.last.setZero();
     return Outcome::converged;
 }
 

@@ -67,7 +67,7 @@ bool has_negative_eigenvalue(const Eigen::SparseMatrix<double>& saddle,
 }  // namespace
 
 bool is_unstable(const SteppingState& s) {
-    if (s.free <= 0 || !has_energy(s.model, s.branch)) return false;
+    if (s.setup.free <= 0 || !has_energy(s.model, s.branch)) return false;
     const Held<double>& idle = s.system.held;
     std::vector<int> held;
     for (int c = 0; c < idle.idle; ++c) {
@@ -145,7 +145,7 @@ std::string softest_motion(const SteppingState& s) {
 // not decide on complex ones.
 bool is_unstable_under_moments(const SteppingState& s) {
     constexpr double rounding = 1e-12;  // of the largest eigenvalue
-    if (s.free <= 0 || s.n() > max_reduced || s.system.held.idle > 0) return false;
+    if (s.setup.free <= 0 || s.n() > max_reduced || s.system.held.idle > 0) return false;
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(reduced(s).K, false);
     const auto& mu = solver.eigenvalues();
     const double size = mu.cwiseAbs().maxCoeff();
@@ -171,7 +171,7 @@ StartStability start_stability(SteppingState& s) {
 
 Outcome check_start_stability(SteppingState& s, const StartStability& start) {
     if (!start.unstable || !has_energy(s.model, s.branch)) return Outcome::converged;
-    s.unstable_start = start.motion;
+    s.start.unstable = start.motion;
     return Outcome::singular;
 }
 
@@ -206,7 +206,8 @@ bool determinant_dips(double log_from, double log_middle, double log_to) {
            parabola_dips({0, 0.5, 1}, {from, middle, to}, 0).has_value();
 }
 
-Dip lowest_determinant(std::array<double, 3> d, const std::function<double(double)>& at) {
+Dip lowest_determinant(std::array<double, 3> d,
+                       const std::function<double(double)>& determinant_at) {
     // Smallest distance of a new point from the others, as a fraction of their interval.
     constexpr double separation = 0.05, outside = 0.1;
     constexpr int looks = 20;
@@ -218,7 +219,7 @@ Dip lowest_determinant(std::array<double, 3> d, const std::function<double(doubl
         double there = std::clamp(dip->t, t[0] + nearest, t[2] - nearest);
         if (!(std::abs(there - t[1]) > nearest))
             there = t[1] + (t[2] - t[1] > t[1] - t[0] ? nearest : -nearest);
-        const double value = at(there);
+        const double value = determinant_at(there);
         if (value < 0) return {there, value};
         const bool left = there < t[1];
         if (value < d[1]) {
@@ -286,10 +287,10 @@ double negative_idle_stiffness(SteppingState& s, const State<double>& near,
     const auto least = [&](const State<double>& q) {
         const double stiffness = min_of_idle(s);
         if (!(stiffness < 0)) return 0.;
-        external_force<double>(s.model, s.branch, s.inputs, q, s.upper);
-        elastic_force<double>(s.model, s.inputs, q, s.force);
-        const double acts = size_of_force(s, s.upper) + size_of_force(s, s.force);
-        return stiffness < -noticed * acts / s.length ? stiffness : 0.;
+        external_force<double>(s.model, s.branch, s.inputs, q, s.work.upper);
+        elastic_force<double>(s.model, s.inputs, q, s.work.force);
+        const double acts = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
+        return stiffness < -noticed * acts / s.setup.length ? stiffness : 0.;
     };
     if (!(least(near) < 0)) return 0;
     const Counts counts = s.counts;  // a check only: not counted
@@ -299,10 +300,10 @@ double negative_idle_stiffness(SteppingState& s, const State<double>& near,
     for (int k = 0; k < corrections && there; ++k) {
         residual_at(s, q, lambda);
         back_substitute(s);
-        there = s.x.allFinite();
-        s.dq = s.x.head(s.n());
-        advance(q, s.dq);
-        lambda += s.x.tail(s.m());
+        there = s.work.x.allFinite();
+        s.step.dq = s.work.x.head(s.n());
+        advance(q, s.step.dq);
+        lambda += s.work.x.tail(s.m());
         there = there && factorise_at(s, q, lambda) == Outcome::converged;
     }
     s.counts = counts;

@@ -45,7 +45,7 @@ double strain_of_held(SteppingState& s, const State<double>& q) {
     double worst = 0;
     for (int c = 0; c < held.idle; ++c) {
         double energy = 0, single = 0;
-        for (const auto& [k, at_i, at_j] : s.moved[static_cast<std::size_t>(c)]) {
+        for (const auto& [k, at_i, at_j] : s.idle.moved[static_cast<std::size_t>(c)]) {
             const auto e = element_stiffness<double>(s.model.elastics[k].kind, s.inputs.rest[k], q);
             // a curve may have a negative slope
             const Vector6<double> rates = e.K.diagonal().cwiseAbs();
@@ -57,8 +57,9 @@ double strain_of_held(SteppingState& s, const State<double>& q) {
                 const Vector3<double> v = z.head<3>(), w = z.tail<3>();
                 de.head<3>() += sign * (v - lever.cross(w));
                 de.tail<3>() += sign * w;
-                single += k_T * (v.squaredNorm() + s.length * s.length * w.squaredNorm()) +
-                          k_R * w.squaredNorm();
+                single +=
+                    k_T * (v.squaredNorm() + s.setup.length * s.setup.length * w.squaredNorm()) +
+                    k_R * w.squaredNorm();
             };
             end(at_i, e.s_i, -1);
             end(at_j, e.s_j, +1);
@@ -76,7 +77,7 @@ double strain_of_held(SteppingState& s, const State<double>& q) {
                     if (const BodyId b =
                             M.ends[static_cast<std::size_t>(row)][static_cast<std::size_t>(end)];
                         b != ground)
-                        visit(row, end, s.force.segment<6>(6 * b),
+                        visit(row, end, s.work.force.segment<6>(6 * b),
                               held.value[static_cast<std::size_t>(e)]);
             }
         };
@@ -98,20 +99,22 @@ double strain_of_held(SteppingState& s, const State<double>& q) {
 }
 
 bool has_diverged(SteppingState& s) {
-    const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
-    const double size = weighted.matrix().squaredNorm(), size_before = s.last.squaredNorm();
-    if (s.consistent) s.missed = (weighted - s.last.array()).matrix().norm();
-    const bool comparable = s.kinked == 0;
-    if (!comparable) --s.kinked;
-    const bool swung = comparable && (weighted * s.last.array()).sum() < 0 && size > size_before;
+    const auto weighted = s.step.dq.array() * s.system.weight.head(s.n()).array();
+    const double size = weighted.matrix().squaredNorm(), size_before = s.step.last.squaredNorm();
+    if (s.setup.consistent) s.step.missed = (weighted - s.step.last.array()).matrix().norm();
+    const bool comparable = s.kinks.uncompared == 0;
+    if (!comparable) --s.kinks.uncompared;
+    const bool swung =
+        comparable && (weighted * s.step.last.array()).sum() < 0 && size > size_before;
     const bool too_long =
-        comparable && s.consistent && size_before > 0 &&
-        disagree(s, (weighted - s.last.array()).matrix().squaredNorm(), size, size_before);
-    s.swings = swung ? s.swings + 1 : 0;
-    s.last = weighted;
+        comparable && s.setup.consistent && size_before > 0 &&
+        disagree(s, (weighted - s.step.last.array()).matrix().squaredNorm(), size, size_before);
+    s.step.swings = swung ? s.step.swings + 1 : 0;
+    s.step.last = weighted;
     double turn = 0;
-    for (int b = 0; b < s.n() / 6; ++b) turn = std::max(turn, s.dq.segment<3>(6 * b + 3).norm());
-    return s.swings >= guard::swings || too_long || !(turn <= guard::largest_turn);
+    for (int b = 0; b < s.n() / 6; ++b)
+        turn = std::max(turn, s.step.dq.segment<3>(6 * b + 3).norm());
+    return s.step.swings >= guard::swings || too_long || !(turn <= guard::largest_turn);
 }
 
 Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_ratio) {
@@ -120,7 +123,7 @@ Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_rat
     // A strain above the blur is a real stiffness; holding that mode would give a
     // wrong result silently.
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
-    const double blur = s.Phi.norm() / std::min(1.0, s.length);
+    const double blur = s.work.Phi.norm() / std::min(1.0, s.setup.length);
     if (!(strain_of_held(s, q) <= rounding + guard::idle_strain + guard::strain_per_error * blur))
         return Outcome::singular;
     return Outcome::converged;
@@ -128,40 +131,41 @@ Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_rat
 
 Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed) {
     if (s.system.held.idle == 0) return Outcome::converged;
-    double blur = s.Phi.norm(), whole = size_of_force(s, s.applied), share = 0;
-    if (s.consistent ? s.at_idle.empty() : s.pushing.empty()) {
-        share = load_on_idle_modes(s, s.applied, whole);
+    double blur = s.work.Phi.norm(), whole = size_of_force(s, s.work.applied), share = 0;
+    if (s.setup.consistent ? s.idle.elements.empty() : s.idle.pushing.empty()) {
+        share = load_on_idle_modes(s, s.work.applied, whole);
     } else {
-        s.force.setZero();
-        for (const std::size_t k : s.consistent ? s.at_idle : s.pushing) {
+        s.work.force.setZero();
+        for (const std::size_t k : s.setup.consistent ? s.idle.elements : s.idle.pushing) {
             const ElasticKind& element = s.model.elastics[k].kind;
             const auto [i, j] = bodies_of(element);
             add_element_force<double>(i, j, element_force<double>(element, s.inputs.rest[k], q),
-                                      s.force);
+                                      s.work.force);
         }
-        whole += size_of_force(s, s.force);
-        s.force = s.applied - s.force;
-        share = load_on_idle_modes(s, s.force, whole);
+        whole += size_of_force(s, s.work.force);
+        s.work.force = s.work.applied - s.work.force;
+        share = load_on_idle_modes(s, s.work.force, whole);
         blur += missed;
     }
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
-    blur /= std::min(1.0, s.length);
+    blur /= std::min(1.0, s.setup.length);
     return share <= rounding + guard::share_per_error * blur ? Outcome::converged
                                                              : Outcome::loaded_idle_mode;
 }
 
 Outcome check_idle_load_here(SteppingState& s, double missed) {
     if (s.system.held.idle == 0) return Outcome::converged;
-    external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
-    s.applied -= (1 - s.parameters.t) * s.R_d;
+    external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
+    s.work.applied -= (1 - s.parameters.t) * s.start.R_d;
     return check_idle_load(s, s.q, missed);
 }
 
 Outcome factorise_at(SteppingState& s, const State<double>& q, const Vector<double>& lambda) {
-    if (s.consistent)
-        assemble_consistent<double>(s.model, s.branch, s.inputs, q, lambda, s.system.M, s.Phi);
+    assemble_constraints<double>(s.model, s.inputs, q, s.system.M, s.work.Phi);
+    if (s.setup.consistent)
+        add_consistent_tangent<double>(s.model, s.branch, s.inputs, q, lambda, s.system.M);
     else
-        assemble<double>(s.model, s.inputs, q, s.system.M, s.Phi);
+        add_stiffness<double>(s.model, s.inputs, q, s.system.M);
     double pivot_ratio = factorise(s.system);
     ++s.counts.factorisations;
     if (pivot_ratio >= 0 && !is_regular(s, pivot_ratio)) {
@@ -173,15 +177,15 @@ Outcome factorise_at(SteppingState& s, const State<double>& q, const Vector<doub
 }
 
 void residual_at(SteppingState& s, const State<double>& q, const Vector<double>& lambda) {
-    external_force<double>(s.model, s.branch, s.inputs, q, s.upper);
-    elastic_force<double>(s.model, s.inputs, q, s.force);
-    s.upper -= s.force;
-    constraint_force<double>(s.model, s.inputs, q, lambda, s.force, s.lower);
-    s.upper -= s.force;
-    s.lower = -s.lower;
+    external_force<double>(s.model, s.branch, s.inputs, q, s.work.upper);
+    elastic_force<double>(s.model, s.inputs, q, s.work.force);
+    s.work.upper -= s.work.force;
+    constraint_force<double>(s.model, s.inputs, q, lambda, s.work.force, s.work.lower);
+    s.work.upper -= s.work.force;
+    s.work.lower = -s.work.lower;
     if (const double held = 1 - s.parameters.t; held != 0) {
-        s.upper -= held * s.R_d;
-        s.lower += held * s.Phi_d;
+        s.work.upper -= held * s.start.R_d;
+        s.work.lower += held * s.start.Phi_d;
     }
     ++s.counts.evaluations;
 }
@@ -193,7 +197,7 @@ double largest_gap(const SteppingState& s, const Vector<double>& Phi) {
         const bool direction = member<Point>(kind) == nullptr;
         const double open =
             Phi.segment(s.inputs.row[c], static_cast<Eigen::Index>(rows(kind))).norm();
-        const double share = direction ? open : open / s.length;
+        const double share = direction ? open : open / s.setup.length;
         if (!(share <= worst)) worst = share;
     }
     return worst;
@@ -201,17 +205,18 @@ double largest_gap(const SteppingState& s, const Vector<double>& Phi) {
 
 void drive_at(SteppingState& s, Drive drive, double amount, const State<double>& q,
               const Vector<double>& lambda) {
-    s.upper.setZero();
-    s.force.setZero();
-    s.lower.setZero();
-    add_load_rate<double>(s.branch, drive, amount, q, s.upper);
-    add_stored_rate<double>({s.model, s.branch, s.inputs, drive, amount, q}, s.force);
-    add_reaction_rate<double>({s.model, s.branch, s.inputs, drive, amount, q}, lambda, s.force);
-    s.upper -= s.force;
-    add_constraint_rate<double>({s.model, s.branch, s.inputs, drive, -amount, q}, s.lower);
+    s.work.upper.setZero();
+    s.work.force.setZero();
+    s.work.lower.setZero();
+    add_load_rate<double>(s.branch, drive, amount, q, s.work.upper);
+    add_stored_rate<double>({s.model, s.branch, s.inputs, drive, amount, q}, s.work.force);
+    add_reaction_rate<double>({s.model, s.branch, s.inputs, drive, amount, q}, lambda,
+                              s.work.force);
+    s.work.upper -= s.work.force;
+    add_constraint_rate<double>({s.model, s.branch, s.inputs, drive, -amount, q}, s.work.lower);
     if (drive == Drive::start) {
-        s.upper += amount * s.R_d;
-        s.lower -= amount * s.Phi_d;
+        s.work.upper += amount * s.start.R_d;
+        s.work.lower -= amount * s.start.Phi_d;
     }
 }
 

@@ -86,78 +86,101 @@ inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
 struct SteppingState {
     const Model& model;
     const Branch& branch;
-    double length;  // L of the diagnosis [m]
-    double end;     // last parameter that is followed: branch.to, or before a driven length is zero
-    int free;       // number of motions that the joints allow and something resists
+    struct Setup {
+        double length;  // L of the diagnosis [m]
+        double
+            end;   // last parameter that is followed: branch.to, or before a driven length is zero
+        int free;  // number of motions that the joints allow and something resists
+        bool consistent = false;  // whether the matrix is the consistent tangent, else K of (19)
+    } setup;
     Counts counts;
-    bool consistent = false;  // whether the matrix is the consistent tangent, else K of (19)
 
-    State<double> q;             // qⁿ
-    State<double> before;        // qⁿ⁻¹
-    Vector<double> lambda;       // λⁿ⁻¹, total
-    Vector<double> lambda_half;  // halfway to λⁿ
-    double a = 0;                // parameter of qⁿ
-    Parameters parameters;       // of `inputs`
-    Inputs<double> drawn, inputs;
-    Vector<double> R_d, Phi_d;  // imbalance and constraint error at the design position [6nb], [m]
+    State<double> q;        // qⁿ
+    Vector<double> lambda;  // λⁿ⁻¹, total
+    double a = 0;           // parameter of qⁿ
+    Parameters parameters;  // of `inputs`
+    Inputs<double> inputs;
     SaddlePoint<double> system;
 
-    Vector<double> applied;  // f_ext at (qⁿ, aⁿ⁺¹), of the load configuration that the method uses
-    Vector<double> stored;  // f_elast at qⁿ, with levers and axes that the method uses
-    // per elastic element, for methods that store forces by element
-    std::vector<ElementForce<double>> element;
+    // The design position, and the settled start of the branch.
+    struct Start {
+        Inputs<double> drawn;
+        Vector<double> R_d, Phi_d;  // imbalance and constraint error as drawn [6nb], [m]
+        int orientation = 0;        // sign of the consistent tangent's determinant
+        // where it is unstable: the bodies that move in the motion of least stiffness
+        std::string unstable = {};
+    } start;
 
-    Vector<double> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
-    int orientation = 0;  // sign of the consistent tangent's determinant at the start of the branch
-    double missed = 0;  // estimate of the distance of qⁿ from equilibrium: |W Δqⁿ⁻¹ - W Δqⁿ⁻²| [m]
-    // where the settled start is unstable: the bodies that move in the motion of least stiffness
-    std::string unstable_start = {};
-    int swings = 0;  // steps in a row that reversed the one before and were larger
+    // Forces of the step and workspace of its solution.
+    struct Work {
+        // f_ext at (qⁿ, aⁿ⁺¹), of the load configuration that the method uses
+        Vector<double> applied;
+        Vector<double> stored;  // f_elast at qⁿ, with levers and axes that the method uses
+        // per elastic element, for methods that store forces by element
+        std::vector<ElementForce<double>> element;
+        Vector<double> upper, lower, x, Phi, force;
+    } work;
 
-    std::vector<std::vector<Moved>> moved;  // for every idle mode
-    // The elastic elements that idle modes move, and those of them that may exert a
-    // force along one.
-    std::vector<std::size_t> at_idle, pushing;
+    // The last step.
+    struct Step {
+        State<double> before;        // qⁿ⁻¹
+        Vector<double> lambda_half;  // halfway to λⁿ
+        Vector<double> dq, last;     // last: W Δqⁿ⁻¹
+        double missed = 0;  // estimated distance of qⁿ from equilibrium: |W Δqⁿ⁻¹ - W Δqⁿ⁻²| [m]
+        int swings = 0;  // steps in a row that reversed the one before and were larger
+    } step;
 
-    std::vector<CurvePlace> curves;
-    std::vector<int> sides, sides_ahead;       // of the kinks, at q and at another configuration
-    std::vector<std::array<double, 4>> along;  // deflections at four points of a step
-    // number of coming steps that are not compared with the step before
-    int kinked = 0;
+    struct Idle {
+        std::vector<std::vector<Moved>> moved;  // for every idle mode
+        // The elastic elements that idle modes move, and those of them that may exert a
+        // force along one.
+        std::vector<std::size_t> elements, pushing;
+    } idle;
+
+    struct Kinks {
+        std::vector<CurvePlace> curves;
+        std::vector<int> sides, sides_ahead;       // at q and at another configuration
+        std::vector<std::array<double, 4>> along;  // deflections at four points of a step
+        int uncompared = 0;  // number of coming steps that are not compared with the step before
+    } kinks;
 
     SteppingState(const Model& model_, const Branch& branch_, const Analysis& analysis)
         : model(model_),
           branch(branch_),
-          length(analysis.diagnosis.length),
-          end(last_parameter(model_, branch_)),
-          free(analysis.diagnosis.degrees_of_freedom() -
-               static_cast<int>(analysis.diagnosis.idle.size())),
+          setup{.length = analysis.diagnosis.length,
+                .end = last_parameter(model_, branch_),
+                .free = analysis.diagnosis.degrees_of_freedom() -
+                        static_cast<int>(analysis.diagnosis.idle.size())},
           q(design_state<double>(model)),
-          before(q),
-          drawn(inputs_as_drawn<double>(model)),
-          R_d(analysis.R_d),
-          Phi_d(analysis.Phi_d),
-          system(analysis.system) {
+          system(analysis.system),
+          start{.drawn = inputs_as_drawn<double>(model),
+                .R_d = analysis.R_d,
+                .Phi_d = analysis.Phi_d} {
         const int n = system.n, m = system.m;
         if (n != coordinates(model) || m != constraint_rows(model))
             throw std::invalid_argument("the analysis belongs to another model");
-        for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
-        for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
-        x.setZero(n + m);
-        if (Phi_d.norm() <= guard::closed) Phi_d.setZero();
-        set_inputs<double>(model, branch, drawn, 0, 0, inputs);
-        moved = moved_elements(model, system.held);
-        for (const auto& elements : moved)
-            for (const Moved& each : elements) at_idle.push_back(each.element);
-        std::ranges::sort(at_idle);
-        at_idle.erase(std::unique(at_idle.begin(), at_idle.end()), at_idle.end());
-        std::ranges::copy_if(at_idle, std::back_inserter(pushing), [this](std::size_t k) {
-            return may_push(branch, model.elastics[k].kind, static_cast<int>(k));
-        });
-        curves = curves_of(model);
-        sides.assign(curves.size(), 0);
-        sides_ahead = sides;
-        along.resize(curves.size());
+        step.before = q;
+        for (auto* v :
+             {&work.applied, &work.stored, &work.upper, &work.force, &step.dq, &step.last})
+            v->setZero(n);
+        for (auto* v : {&lambda, &step.lambda_half, &work.lower, &work.Phi}) v->setZero(m);
+        work.x.setZero(n + m);
+        if (start.Phi_d.norm() <= guard::closed) start.Phi_d.setZero();
+        set_inputs<double>(model, branch, start.drawn, 0, 0, inputs);
+        idle.moved = moved_elements(model, system.held);
+        for (const auto& elements : idle.moved)
+            for (const Moved& each : elements) idle.elements.push_back(each.element);
+        std::ranges::sort(idle.elements);
+        idle.elements.erase(std::unique(idle.elements.begin(), idle.elements.end()),
+                            idle.elements.end());
+        std::ranges::copy_if(
+            idle.elements, std::back_inserter(idle.pushing), [this](std::size_t k) {
+                return may_push(branch, model.elastics[k].kind, static_cast<int>(k));
+            });
+        kinks.curves = curves_of(model);
+        kinks.sides.assign(kinks.curves.size(), 0);
+        kinks.sides_ahead = kinks.sides;
+        kinks.along.resize(kinks.curves.size());
         check_followers(analysis.system.lu.order.pattern);
     }
     int n() const { return system.n; }
@@ -181,20 +204,20 @@ struct SteppingState {
 
 // Whether the last step, which led to q, crossed a kink; sets how many next steps are not compared.
 inline bool pass_kinks(SteppingState& s) {
-    if (!find_sides(s.model, s.inputs, s.q, s.curves, s.sides)) return false;
-    s.kinked = guard::kinked;
+    if (!find_sides(s.model, s.inputs, s.q, s.kinks.curves, s.kinks.sides)) return false;
+    s.kinks.uncompared = guard::kinked;
     return true;
 }
 // Whether a kink lies between the start of the step and q.
 inline bool beyond_a_kink(SteppingState& s, const State<double>& q) {
-    s.sides_ahead = s.sides;
-    return find_sides(s.model, s.inputs, q, s.curves, s.sides_ahead);
+    s.kinks.sides_ahead = s.kinks.sides;
+    return find_sides(s.model, s.inputs, q, s.kinks.curves, s.kinks.sides_ahead);
 }
 
 // Sets the inputs to those of (t, a).
 inline void go_to(SteppingState& s, Parameters parameters) {
     s.parameters = parameters;
-    set_inputs<double>(s.model, s.branch, s.drawn, parameters.t, parameters.a, s.inputs);
+    set_inputs<double>(s.model, s.branch, s.start.drawn, parameters.t, parameters.a, s.inputs);
 }
 
 // Largest work of the force on a held idle mode, as a fraction of `whole`.
@@ -211,13 +234,13 @@ double strain_of_held(SteppingState& s, const State<double>& q);
 // Whether two increments that should agree differ by more than half the larger one and by more than
 // rounding. All three arguments are |W Δq|² [m²].
 inline bool disagree(const SteppingState& s, double change, double one, double other) {
-    const double rounding = 100 * std::numeric_limits<double>::epsilon() * s.length;
+    const double rounding = 100 * std::numeric_limits<double>::epsilon() * s.setup.length;
     return !(4 * change <= std::max({one, other, rounding * rounding}));
 }
 
-// |W Δq|² of the solution now in s.x.
+// |W Δq|² of the solution now in s.work.x.
 inline double size_of_solution(const SteppingState& s) {
-    return s.x.head(s.n()).cwiseProduct(s.system.weight.head(s.n())).squaredNorm();
+    return s.work.x.head(s.n()).cwiseProduct(s.system.weight.head(s.n())).squaredNorm();
 }
 
 // Whether the last step has diverged.
@@ -239,7 +262,7 @@ inline bool is_regular(const SteppingState& s, double pivot_ratio) {
 // Checks the factors in the system, of its matrix at q: finite, regular, and held modes still idle.
 Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_ratio);
 
-// Whether s.applied and the elements at q load an idle mode. The border of (24) would carry that
+// Whether s.work.applied and the elements at q load an idle mode. The border of (24) would carry that
 // load like a joint, and the result would be a false equilibrium. `missed` is the distance of q
 // from equilibrium [m], which blurs the decision as |Φ| does.
 Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed);
@@ -268,17 +291,17 @@ inline double reach(const State<double>& q) {
 // Relative precision of the input coordinates at q: 64 units of round-off of the largest coordinate,
 // as a fraction of L or of a unit direction.
 inline double input_precision(const SteppingState& s, const State<double>& q) {
-    return 64 * std::numeric_limits<double>::epsilon() * (1 + reach(q) / s.length);
+    return 64 * std::numeric_limits<double>::epsilon() * (1 + reach(q) / s.setup.length);
 }
 
 // The largest |Φ_k| in `Phi`, as a fraction of L where it is a length.
 double largest_gap(const SteppingState& s, const Vector<double>& Phi);
 
 // Whether redundant joints are inconsistent at q. Pre: the corrections have converged and
-// residual_at has set s.lower, which holds the gap that the border has absorbed.
+// residual_at has set s.work.lower, which holds the gap that the border has absorbed.
 inline bool is_inconsistent(const SteppingState& s, const State<double>& q) {
     return has_redundancy(s) &&
-           !(largest_gap(s, s.lower) <= guard::agreeing + input_precision(s, q));
+           !(largest_gap(s, s.work.lower) <= guard::agreeing + input_precision(s, q));
 }
 
 // amount · ∂/∂t or ∂/∂a of the same right-hand side, at (q, λ) and the present inputs.
@@ -286,7 +309,7 @@ void drive_at(SteppingState& s, Drive drive, double amount, const State<double>&
               const Vector<double>& lambda);
 
 inline void back_substitute(SteppingState& s) {
-    back_substitute(s.system, s.upper, s.lower, s.x);
+    back_substitute(s.system, s.work.upper, s.work.lower, s.work.x);
     ++s.counts.iterations;
 }
 

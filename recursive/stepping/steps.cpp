@@ -8,11 +8,11 @@ namespace {
 // current lever.
 void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amount, double held) {
     if (follow.load) {
-        external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
-        if (held != 0) s.applied -= held * s.R_d;
+        external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
+        if (held != 0) s.work.applied -= held * s.start.R_d;
     } else {
-        add_load_rate<double>(s.branch, drive, amount, s.q, s.applied);
-        if (drive == Drive::start) s.applied += amount * s.R_d;
+        add_load_rate<double>(s.branch, drive, amount, s.q, s.work.applied);
+        if (drive == Drive::start) s.work.applied += amount * s.start.R_d;
     }
 }
 
@@ -26,20 +26,21 @@ void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amou
 void store(SteppingState& s, const Follow& follow) {
     if (follow.lever && follow.axis) return;
     if (!follow.lever && !follow.axis) {
-        constraint_force(s.system.M, s.lambda, s.force);
-        s.stored = s.applied - s.force;
+        constraint_force(s.system.M, s.lambda, s.work.force);
+        s.work.stored = s.work.applied - s.work.force;
         return;
     }
-    if (follow.lever) s.stored.setZero();
+    if (follow.lever) s.work.stored.setZero();
     for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
         const ElasticKind& kind = s.model.elastics[k].kind;
         const auto [i, j] = bodies_of(kind);
-        ElementForce<double>& kept = s.element[k];
+        ElementForce<double>& kept = s.work.element[k];
         const ElementForce<double> now = element_force<double>(kind, s.inputs.rest[k], s.q);
         const auto motion = [&](BodyId b) -> Vector6<double> {
-            return b == ground ? Vector6<double>::Zero() : Vector6<double>(s.dq.segment<6>(6 * b));
+            return b == ground ? Vector6<double>::Zero()
+                               : Vector6<double>(s.step.dq.segment<6>(6 * b));
         };
-        const auto k_e = element_stiffness<double>(kind, s.inputs.rest[k], s.before);
+        const auto k_e = element_stiffness<double>(kind, s.inputs.rest[k], s.step.before);
         if (follow.lever) {
             const Vector6<double> dq_i = motion(k_e.i), dq_j = motion(k_e.j);
             Vector6<double> de;  // (12)-(13)
@@ -48,10 +49,10 @@ void store(SteppingState& s, const Follow& follow) {
                 dq_j.tail<3>() - dq_i.tail<3>();
             const Vector6<double> df = k_e.K * de;
             kept = {kept.F + df.head<3>(), kept.M + df.tail<3>(), now.lever_i, now.lever_j};
-            add_element_force<double>(i, j, kept, s.stored);
+            add_element_force<double>(i, j, kept, s.work.stored);
         } else {
             const ElementForce<double> increment{now.F - kept.F, now.M - kept.M, k_e.s_i, k_e.s_j};
-            add_element_force<double>(i, j, increment, s.stored);
+            add_element_force<double>(i, j, increment, s.work.stored);
             kept = now;
         }
     }
@@ -60,14 +61,15 @@ void store(SteppingState& s, const Follow& follow) {
 // Adds the change of f_elast at qⁿ by the drivers in this step, ∂f_elast/∂a Δa, to
 // the stored forces.
 void store_driven(SteppingState& s, const Follow& follow, Drive drive, double amount) {
-    if (follow.lever && follow.axis) return elastic_force<double>(s.model, s.inputs, s.q, s.stored);
+    if (follow.lever && follow.axis)
+        return elastic_force<double>(s.model, s.inputs, s.q, s.work.stored);
     for_each_stored_rate<double>({s.model, s.branch, s.inputs, drive, amount, s.q},
                                  [&](std::size_t k, const ElementForce<double>& force) {
                                      const auto [i, j] = bodies_of(s.model.elastics[k].kind);
-                                     add_element_force<double>(i, j, force, s.stored);
+                                     add_element_force<double>(i, j, force, s.work.stored);
                                      if (!follow.lever && !follow.axis) return;
-                                     s.element[k].F += force.F;
-                                     s.element[k].M += force.M;
+                                     s.work.element[k].F += force.F;
+                                     s.work.element[k].M += force.M;
                                  });
 }
 
@@ -88,14 +90,15 @@ bool turns_too_far(const SteppingState& s, Drive drive, double amount) {
 Outcome step(SteppingState& s, const Linear& method, Parameters next) {
     const Drive drive = next.t != s.parameters.t ? Drive::start : Drive::rate;
     const double amount = drive == Drive::start ? next.t - s.parameters.t : next.a - s.parameters.a;
-    if (s.end != s.branch.to && !(std::abs(next.a) <= std::abs(s.end)))
+    if (s.setup.end != s.branch.to && !(std::abs(next.a) <= std::abs(s.setup.end)))
         return Outcome::inconsistent_constraints;
     if (turns_too_far(s, drive, amount)) return Outcome::diverged;
     const Parameters here = s.parameters;
     if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
-        s.lower.setZero();
-        add_constraint_rate<double>({s.model, s.branch, s.inputs, drive, -amount, s.q}, s.lower);
-        if (drive == Drive::start) s.lower -= amount * s.Phi_d;
+        s.work.lower.setZero();
+        add_constraint_rate<double>({s.model, s.branch, s.inputs, drive, -amount, s.q},
+                                    s.work.lower);
+        if (drive == Drive::start) s.work.lower -= amount * s.start.Phi_d;
     }
     go_to(s, next);
     apply_load(s, method.follow, drive, amount, 1 - next.t);
@@ -106,19 +109,19 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
     if (!method.closed) go_to(s, next);
     if (const Outcome outcome = check_idle_load(s, s.q, 0); outcome != Outcome::converged)
         return outcome;
-    s.upper = s.applied - s.stored;
+    s.work.upper = s.work.applied - s.work.stored;
     if (method.closed) {
-        s.lower = -s.Phi;
-        if (next.t != 1) s.lower += (1 - next.t) * s.Phi_d;
+        s.work.lower = -s.work.Phi;
+        if (next.t != 1) s.work.lower += (1 - next.t) * s.start.Phi_d;
     }
     back_substitute(s);
     ++s.counts.evaluations;
-    s.before = s.q;
-    s.lambda = s.x.tail(s.m());
-    s.dq = s.x.head(s.n());
-    if (!s.x.allFinite()) return Outcome::not_finite;
+    s.step.before = s.q;
+    s.lambda = s.work.x.tail(s.m());
+    s.step.dq = s.work.x.head(s.n());
+    if (!s.work.x.allFinite()) return Outcome::not_finite;
     if (has_diverged(s)) return Outcome::diverged;
-    advance(s.q, s.dq);
+    advance(s.q, s.step.dq);
     s.a = next.a;
     pass_kinks(s);
     store(s, method.follow);
@@ -127,54 +130,57 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
 
 Outcome step(SteppingState& s, const Consistent& method, Parameters next) {
     const int n = s.n(), m = s.m();
-    if (s.end != s.branch.to && !(std::abs(next.a) <= std::abs(s.end)))
+    if (s.setup.end != s.branch.to && !(std::abs(next.a) <= std::abs(s.setup.end)))
         return Outcome::inconsistent_constraints;
     if (turns_too_far(s, Drive::rate, next.a - s.parameters.a)) return Outcome::diverged;
     go_to(s, next);
     // for the check of idle modes
-    external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
+    external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
-    if (const Outcome outcome = check_idle_load(s, s.q, s.missed); outcome != Outcome::converged)
+    if (const Outcome outcome = check_idle_load(s, s.q, s.step.missed);
+        outcome != Outcome::converged)
         return outcome;
     // A determinant with another sign than at a = 0 has passed through zero: there the branch
     // turned back, bifurcated or became unstable.
-    if (s.system.lu.orientation != s.orientation) return Outcome::singular;
+    if (s.system.lu.orientation != s.start.orientation) return Outcome::singular;
     residual_at(s, s.q, s.lambda);
     back_substitute(s);
-    s.before = s.q;
+    s.step.before = s.q;
     if (method.solve == Consistent::Solve::midpoint) {
         // G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz + O(Δ³): the same residual, the matrix half a step ahead.
-        s.dq = s.x.head(n) / 2;
-        advance(s.q, s.dq);
+        s.step.dq = s.work.x.head(n) / 2;
+        advance(s.q, s.step.dq);
         if (beyond_a_kink(s, s.q)) {
-            s.q = s.before;
+            s.q = s.step.before;
         } else {
-            s.lambda_half = s.lambda + s.x.tail(m) / 2;
-            if (const Outcome outcome = factorise_at(s, s.q, s.lambda_half);
+            s.step.lambda_half = s.lambda + s.work.x.tail(m) / 2;
+            if (const Outcome outcome = factorise_at(s, s.q, s.step.lambda_half);
                 outcome != Outcome::converged)
                 return outcome;
-            s.q = s.before;
+            s.q = s.step.before;
             back_substitute(s);
-            const double change =
-                (s.x.head(n) - 2 * s.dq).cwiseProduct(s.system.weight.head(n)).squaredNorm();
+            const double change = (s.work.x.head(n) - 2 * s.step.dq)
+                                      .cwiseProduct(s.system.weight.head(n))
+                                      .squaredNorm();
             if (disagree(s, change, size_of_solution(s), 0)) return Outcome::diverged;
         }
     }
-    s.lambda += s.x.tail(m);
-    s.dq = s.x.head(n);
-    if (!s.x.allFinite()) return Outcome::not_finite;
+    s.lambda += s.work.x.tail(m);
+    s.step.dq = s.work.x.head(n);
+    if (!s.work.x.allFinite()) return Outcome::not_finite;
     if (has_diverged(s)) return Outcome::diverged;
-    advance(s.q, s.dq);
+    advance(s.q, s.step.dq);
     const bool kinked = pass_kinks(s);
     if (method.solve == Consistent::Solve::corrected && !kinked) {
         residual_at(s, s.q, s.lambda);
         back_substitute(s);
-        if (!s.x.allFinite()) return Outcome::not_finite;
-        if (disagree(s, size_of_solution(s), s.last.squaredNorm(), 0)) return Outcome::diverged;
-        s.dq = s.x.head(n);
-        advance(s.q, s.dq);
-        s.lambda += s.x.tail(m);
+        if (!s.work.x.allFinite()) return Outcome::not_finite;
+        if (disagree(s, size_of_solution(s), s.step.last.squaredNorm(), 0))
+            return Outcome::diverged;
+        s.step.dq = s.work.x.head(n);
+        advance(s.q, s.step.dq);
+        s.lambda += s.work.x.tail(m);
         pass_kinks(s);
     }
     s.a = next.a;

@@ -23,20 +23,20 @@ Outcome step(SteppingState& s, const Consistent& method, Parameters next);
 // Checks the held modes at the end of the last step, as each next step does for the one before it:
 // whether they are still idle and not loaded.
 inline Outcome check_held_modes(SteppingState& s) {
-    if (s.pushing.empty()) return Outcome::converged;
+    if (s.idle.pushing.empty()) return Outcome::converged;
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
-    return check_idle_load(s, s.q, s.consistent ? s.missed : 0);
+    return check_idle_load(s, s.q, s.setup.consistent ? s.step.missed : 0);
 }
 
 // Error of the last step, by a correction with its own factors; for other steps the next
 // step shows it.
 inline Outcome check_last_step(SteppingState& s) {
-    if (s.kinked > 0) return Outcome::converged;  // the step is not comparable
+    if (s.kinks.uncompared > 0) return Outcome::converged;  // the step is not comparable
     residual_at(s, s.q, s.lambda);
     back_substitute(s);
-    return disagree(s, size_of_solution(s), s.last.squaredNorm(), 0) ? Outcome::diverged
-                                                                     : Outcome::converged;
+    return disagree(s, size_of_solution(s), s.step.last.squaredNorm(), 0) ? Outcome::diverged
+                                                                          : Outcome::converged;
 }
 
 }  // namespace elastocheck::recursive

@@ -42,25 +42,26 @@ namespace elastocheck::recursive {
 
 LeastStiffness min_stiffness(SteppingState& s, Matrix<double>& U) {
     constexpr int vectors = 3, first_turns = 5, turns = 2;
-    if (s.free <= 0) return {};
+    if (s.setup.free <= 0) return {};
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     const bool first = U.cols() == 0;
     if (first) {
-        U.resize(n, std::min(vectors, s.free));
+        U.resize(n, std::min(vectors, s.setup.free));
         for (Eigen::Index c = 0; c < U.cols(); ++c)
             for (Eigen::Index k = 0; k < n; ++k)
                 U(k, c) = scattered(k + c * n) / s.system.weight[k];
         detail::orthonormalise(s.system.weight, U);
     }
     Eigen::MatrixXd H;
-    s.lower.setZero();
+    s.work.lower.setZero();
     for (int turn = first ? first_turns : turns; turn > 0; --turn) {
         Matrix<double> V(n, U.cols());
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
-            s.upper = U.col(c).array() * W2;
-            back_substitute(s.system, s.upper, s.lower, s.x);  // a check only: not counted
-            V.col(c) = s.x.head(n);
+            s.work.upper = U.col(c).array() * W2;
+            back_substitute(s.system, s.work.upper, s.work.lower,
+                            s.work.x);  // a check only: not counted
+            V.col(c) = s.work.x.head(n);
         }
         H = (U.transpose() * W2.matrix().asDiagonal() * V).cast<double>();
         U = V;

@@ -24,7 +24,7 @@ inline EquilibriumPath sweep(const Model& model, const Branch& branch, const Opt
         stop.at = 0;
         keep(0);
         pass_kinks(s);  // kinks at the settled start
-        s.kinked = 0;
+        s.kinks.uncompared = 0;
         for (int k = 1; k <= N; ++k) {
             stop.at = branch.to * k / N;
             if (const Outcome o = step(s, method, {1, stop.at}); o != Outcome::converged) return o;
@@ -37,9 +37,9 @@ inline EquilibriumPath sweep(const Model& model, const Branch& branch, const Opt
         const bool follows = method->follow.lever || method->follow.axis;
         const bool truth = method->follow == everything;
         path.outcome = truth ? settle(s) : settle(s, *method, N);
-        s.consistent = false;
+        s.setup.consistent = false;
         if (path.outcome == Outcome::converged)
-            path.outcome = equal_steps(*method, follows ? s.q : s.before);
+            path.outcome = equal_steps(*method, follows ? s.q : s.step.before);
     } else {
         const auto& tangent = std::get<Consistent>(options.method.kind);
         path.outcome = settle(s);

@@ -98,7 +98,7 @@ TEST(Allocation, ExpansionsOfTheSeriesReuseTheirCoefficients) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         SteppingState s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
-        s.applied.setZero();
+        s.work.applied.setZero();
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);
         series::Equations<double> e = series::equations<double>(model, branch, 16);
         series::Coefficients<double> c = series::reserve_coefficients<double>(s.n() + s.m(), 16);

@@ -2,8 +2,6 @@
 // Offsets, angles, free lengths, preloads.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
 #include "recursive/diagnosis/analysis.hpp"
@@ -104,8 +102,9 @@ Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
     advance(q, dq);
     SaddleMatrix<double> M = saddle_matrix(model);
     const Branch& branch = model.branches[0];
-    assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, branch.to / 2), q,
-                                lambda, M, Phi);
+    const auto inputs = inputs_at<double>(model, branch, branch.to / 2);
+    assemble_constraints<double>(model, inputs, q, M, Phi);
+    add_consistent_tangent<double>(model, branch, inputs, q, lambda, M);
     pattern = recursive::pattern(model);
     return sparse(M);
 }

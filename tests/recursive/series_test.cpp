@@ -328,7 +328,7 @@ TEST(Series, ChangePassEqualsTheTangentTimesTheCoefficient) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
         SteppingState s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
-        s.applied = Vector<double>::Zero(s.n());
+        s.work.applied = Vector<double>::Zero(s.n());
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);
         Equations<double> e = equations<double>(model, branch, 8);
         std::vector<Followed> curves = curves_of(model);

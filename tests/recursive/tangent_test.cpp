@@ -84,8 +84,10 @@ Matrix<Real> tangent(const Case& c) {
     SaddleMatrix<Real> M = saddle_matrix(c.model).template cast<Real>();
     Vector<Real> Phi(constraint_rows(c.model));
     const Vector<Real> lambda = c.lambda.cast<Real>();
-    assemble_consistent<Real>(c.model, c.branch, inputs_of<Real>(c), state_of<Real>(c.poses),
-                              lambda, M, Phi);
+    const auto inputs = inputs_of<Real>(c);
+    const auto q = state_of<Real>(c.poses);
+    assemble_constraints<Real>(c.model, inputs, q, M, Phi);
+    add_consistent_tangent<Real>(c.model, c.branch, inputs, q, lambda, M);
     return Matrix<Real>::NullaryExpr(6 * bodies, 6 * bodies, [&](Eigen::Index i, Eigen::Index j) {
         const int at = M.at(static_cast<int>(i), static_cast<int>(j));
         return at < 0 ? Real(0) : M.values[static_cast<std::size_t>(at)];
