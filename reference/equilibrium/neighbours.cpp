@@ -32,9 +32,9 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
         return {stencils.size(), NeighbourStates{tangent.outcome, tangent.what, {}}};
     const Eigen::VectorXd here = residual(tangent.system, tangent.loading, tangent.x);
     const double rounding = last_digits * largest_entry(tangent.at.J);
-    std::vector<NeighbourStates> all;
+    std::vector<NeighbourStates> neighbours;
     for (const Neighbours& stencil : stencils) {
-        NeighbourStates& result = all.emplace_back();
+        NeighbourStates& result = neighbours.emplace_back();
         std::vector<System> systems;
         Eigen::VectorXd E_rate = Eigen::VectorXd::Zero(here.size());
         for (const Neighbour& k : stencil) {
@@ -67,7 +67,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             result.states.push_back(state_of(system, tangent.loading, x));
         }
     }
-    return all;
+    return neighbours;
 }
 
 }  // namespace elastocheck::reference::equilibrium

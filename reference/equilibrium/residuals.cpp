@@ -1,6 +1,5 @@
 // Residuals of a state from any leg.
 #include <Eigen/QR>
-#include <algorithm>
 
 #include "elastocheck/equilibrium.hpp"
 #include "reference/equilibrium/statement/system.hpp"
@@ -46,19 +45,19 @@ struct Judge {
 
 // Wrenches that the constraints of a joint can transmit, one column per row and unit reaction, as
 // (force; moment about `at` / L) [6 × rows].
-MatrixXd transmitted_by(const Judge& judge, std::size_t joint, const Vector3d& at) {
+MatrixXd transmitted_by(const Judge& judge, std::size_t joint, const Vector3d& centre) {
     MatrixXd columns(6, 0);
     const auto& constraints = judge.system.model->constraints;
     for (const std::size_t c : judge.constraints[joint]) {
         const auto [i, j] = bodies_of(constraints[c].kind);
         for (int k = 0; k < rows(constraints[c].kind); ++k) {
             const Vector3d unit = Vector3d::Unit(k);
-            const auto on_i = holding(judge.system, c, judge.state.load, 0., judge.frame(i),
-                                      judge.frame(j), unit.data())
+            const auto on_i = holding(judge.system, c, judge.state.load, 0.,
+                                      {judge.frame(i), judge.frame(j)}, unit.data())
                                   .reaction;
             columns.conservativeResize(6, columns.cols() + 1);
             columns.rightCols<1>() << on_i.force,
-                (on_i.moment + cross(Vector3d(on_i.at - at), on_i.force)) / judge.system.length;
+                (on_i.moment + cross(Vector3d(on_i.at - centre), on_i.force)) / judge.system.length;
             const double size = columns.rightCols<1>().norm();
             if (size > 0) columns.rightCols<1>() /= size;
         }
@@ -91,7 +90,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         const auto& kind = model.constraints[c].kind;
         const auto [i, j] = bodies_of(kind);
         const Vector3d none = Vector3d::Zero();
-        const auto h = holding(system, c, a, 0., judge.frame(i), judge.frame(j), none.data());
+        const auto h = holding(system, c, a, 0., {judge.frame(i), judge.frame(j)}, none.data());
         for (int k = 0; k < rows(kind); ++k)
             raise(is_direction(kind) ? worst.direction : worst.length, std::abs(h.Phi[k]));
         if (const auto* angle = std::get_if<DirectionAtAngle>(&kind)) {
@@ -107,7 +106,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
 
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
         const auto [i, j] = bodies_of(model.elastics[e].kind);
-        const auto on = interaction(system, e, a, 0.0, {}, judge.frame(i), judge.frame(j));
+        const auto on = interaction(system, e, a, 0.0, {}, {judge.frame(i), judge.frame(j)});
         judge.apply(i, on.i, 1);
         judge.apply(j, on.j, 1);
     }

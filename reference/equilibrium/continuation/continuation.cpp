@@ -206,7 +206,7 @@ bool directions_are_kept(const System& system, const VectorXd& from, const Vecto
 // Movement of a state under a rounding error of all constrained quantities; the signs come from
 // fractions of multiples of the golden ratio, which are independent of the system. A soft mode
 // moves more and is judged by its stiffness: its softening since the start is divided out.
-double moved_by_rounding(const Continuation& continuation, const Station& at) {
+double moved_by_rounding(const Continuation& continuation, const Station& station) {
     const int m = continuation.system.constraint_rows;
     VectorXd E = VectorXd::Zero(continuation.system.equations());
     for (int k = 0; k < m; ++k)
@@ -214,10 +214,11 @@ double moved_by_rounding(const Continuation& continuation, const Station& at) {
                                                     ? constrained_rounding
                                                     : -constrained_rounding;
     if (m == 0) return 0;
-    const double softer =
-        continuation.first_stiffness > 0 ? at.stiffness.least / continuation.first_stiffness : 1;
+    const double softer = continuation.first_stiffness > 0
+                              ? station.stiffness.least / continuation.first_stiffness
+                              : 1;
     return std::clamp(softer, 0., 1.) *
-           pose_size(continuation.system, solve_bordered(at.linearised.bordered, E).dx);
+           pose_size(continuation.system, solve_bordered(station.linearised.bordered, E).dx);
 }
 
 // Whether the correction of a predicted state, with the matrix of the last one, is much smaller than

@@ -2,9 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "models/eigen/dense.hpp"
 #include "reference/equilibrium/continuation/newton.hpp"

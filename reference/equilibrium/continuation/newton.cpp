@@ -38,20 +38,20 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
                const Linearisation& near, const Options& options, Counts& counts) {
     Attempt attempt{start, 0, false};
     VectorXd& x = attempt.x;
-    Derivatives by = derivatives(system, loading, x, counts);
-    attempt.residual = largest(by.E);
+    Derivatives derivative = derivatives(system, loading, x, counts);
+    attempt.residual = largest(derivative.E);
     if (!std::isfinite(attempt.residual) || system.equations() == 0) return attempt;
 
-    double before = level(near, by.E);
+    double before = level(near, derivative.E);
     for (int iteration = 0;; ++iteration) {
         if (iteration == options.iteration_limit) {
             attempt.out_of_time = true;
             return attempt;
         }
-        if (!is_finite(by.J)) return attempt;
+        if (!is_finite(derivative.J)) return attempt;
         ++counts.factorisations;
         ++counts.iterations;
-        const VectorXd dx = solve_bordered(bordered_like(near, by.J), by.E).dx;
+        const VectorXd dx = solve_bordered(bordered_like(near, derivative.J), derivative.E).dx;
         if (!dx.allFinite()) return attempt;
 
         double part = 1, now = 0;
@@ -69,7 +69,7 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
         before = now;
         if (attempt.residual <= options.tolerance && part * dx.norm() <= smallest_step)
             return attempt;
-        by = derivatives(system, loading, x, counts);
+        derivative = derivatives(system, loading, x, counts);
     }
 }
 

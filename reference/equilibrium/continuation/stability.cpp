@@ -59,8 +59,8 @@ struct Spectrum {
 // rounding of M; otherwise, and for more coordinates than `few`, the result is empty.
 std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle, Index redundant) {
     constexpr Index few = 72;
-    // relative to the largest entry: an idle eigenvalue, the least other one; to that one:
-    // asymmetry
+    // relative to the largest entry: an idle eigenvalue, the least other one; to
+    // that one: asymmetry
     constexpr double zero = 1e-11, enough = 1e-6, may_matter = 1e-3;
     const Index n = 6 * system.bodies, m = system.constraint_rows, d = n - m + redundant;
     if (n > few || d <= idle) return std::nullopt;

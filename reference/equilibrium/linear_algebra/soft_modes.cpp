@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace elastocheck::reference::equilibrium {
 namespace {
@@ -44,22 +43,22 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
     const Index n = 6 * system.bodies;
     const double size = largest_entry(J);
     std::vector<Index> idle, resisted;
-    std::vector<Deforming> by;
+    std::vector<Deforming> deformations_of;
     for (Index k = 0; k < modes.cols(); ++k) {
         const VectorXd v = modes.col(k);
         const double motion = v.head(n).norm(), left = (J * v).head(n).norm();
-        Deforming one = deforming(system, loading, x, v);
+        Deforming deforming_element = deforming(system, loading, x, v);
         const double zero_tolerance =
             std::max(std::pow(no_deformation * motion, 2) * size, left * left / (threshold * size));
         // The elastic stiffness may be cancelled by the geometric one, as of a loaded bushing that
         // spins: then G exceeds |J v|.
-        const double stored = one.rate.dot(one.force_rate),
+        const double stored = deforming_element.rate.dot(deforming_element.force_rate),
                      most = few * left * motion + entry_rounding * size;
         if (motion < part_of_bodies * v.norm() || !(stored > zero_tolerance && stored <= most)) {
             idle.push_back(k);
         } else {
             resisted.push_back(k);
-            by.push_back(std::move(one));
+            deformations_of.push_back(std::move(deforming_element));
         }
     }
     const auto count = static_cast<Index>(resisted.size());
@@ -68,8 +67,8 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
     MatrixXd G(count, count);
     for (Index a = 0; a < count; ++a)
         for (Index b = 0; b < count; ++b)
-            G(a, b) = by[static_cast<std::size_t>(a)].rate.dot(
-                by[static_cast<std::size_t>(b)].force_rate);
+            G(a, b) = deformations_of[static_cast<std::size_t>(a)].rate.dot(
+                deformations_of[static_cast<std::size_t>(b)].force_rate);
     G = ((G + G.transpose()) / 2).eval();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
     const double largest = solver.eigenvalues()[count - 1];

@@ -135,27 +135,29 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
 // Not conjugate (frame on i): the moment is A_i g, although it is not conjugate to θ. Without
 // offset moment, D × F acts on neither body: F acts on each at its own marker.
 template <class T>
-OnBoth<T> interaction(const Bushing& bushing, const Measured<T>& at, const Vec6<T>& fg,
+OnBoth<T> interaction(const Bushing& bushing, const Measured<T>& measured_at, const Vec6<T>& fg,
                       bool rotational) {
     const Formulation& formulation = bushing.formulation;
     Interaction<T> on_i;
-    on_i.force = turned(at.A_f, Vec3<T>(fg.template head<3>()));
-    on_i.at = at.p_j;
+    on_i.force = turned(measured_at.A_f, Vec3<T>(fg.template head<3>()));
+    on_i.at = measured_at.p_j;
     if (rotational) {
         const Vec3<T> g = fg.template tail<3>();
         Vec3<T> m = g;
         if (formulation.conjugate)
-            m = at.angles.a[0] * g[0] + at.angles.a[1] * g[1] + at.angles.a[2] * g[2];
-        on_i.moment = turned(at.A_i, m);
+            m = measured_at.angles.a[0] * g[0] + measured_at.angles.a[1] * g[1] +
+                measured_at.angles.a[2] * g[2];
+        on_i.moment = turned(measured_at.A_i, m);
     }
     if (!formulation.offset_moment) {
         OnBoth<T> on = opposed(on_i);
-        on.i.at = at.p_i;
+        on.i.at = measured_at.p_i;
         return on;
     }
     if (formulation.frame == Formulation::Frame::middle) {
-        const Vec3<T> offset = cross(Vec3<T>(at.p_j - at.p_i), on_i.force);
-        on_i.moment -= (offset + cross(turned(at.A_i, at.half_turn), offset)) * T(0.5);
+        const Vec3<T> offset = cross(Vec3<T>(measured_at.p_j - measured_at.p_i), on_i.force);
+        on_i.moment -=
+            (offset + cross(turned(measured_at.A_i, measured_at.half_turn), offset)) * T(0.5);
     }
     return opposed(on_i);
 }

@@ -363,8 +363,8 @@ Equilibrium state_of(const System& system, const Loading& loading, const VectorX
         Vector3d R = Vector3d::Zero();
         R.head(rows(constraint.kind)) =
             unit * x.segment(7 * system.bodies + row, rows(constraint.kind));
-        const auto h = holding(system, c, loading.a, loading.held, frame_of(system, x, i),
-                               frame_of(system, x, j), R.data());
+        const auto h = holding(system, c, loading.a, loading.held,
+                               {frame_of(system, x, i), frame_of(system, x, j)}, R.data());
         Phi2 += h.Phi.head(rows(constraint.kind)).squaredNorm();
 
         const auto& joint = model.joints[static_cast<std::size_t>(constraint.joint)];

@@ -17,7 +17,6 @@
 // (x, a), and ∂E/∂a comes from the same automatic differentiation as ∂E/∂x.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 
@@ -145,22 +144,31 @@ Vec6<T> deformed(const Bushing& bushing, const ElementPath& path, const T& a,
     return e;
 }
 
+// The frames of the two bodies of an element or constraint.
+template <class T>
+struct FramePair {
+    const Frame<T>& i;
+    const Frame<T>& j;
+};
+
 // Actions of element e on its two bodies.
 template <class T>
 OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const T& held,
-                      const Pieces& pieces, const Frame<T>& i, const Frame<T>& j) {
+                      const Pieces& pieces, const FramePair<T>& frames) {
     const ElementPath& path = system.elements[e];
     const ElementPieces& on = pieces.empty() ? all_by_themselves : pieces[e];
     return std::visit(
         overloaded{[&](const AxialSpring& spring) {
                        const T preload = system.grows ? T(-held * path.stored[0]) : T(0.0);
-                       return interaction(spring, path.free_length.at(a), preload, on[0], i, j);
+                       return interaction(spring, path.free_length.at(a), preload, on[0], frames.i,
+                                          frames.j);
                    },
                    [&](const Bushing& bushing) {
                        Vec6<T> preload = preload_at(path, a);
                        if (system.grows)
                            for (int k = 0; k < 6; ++k) preload[k] -= held * path.stored[k];
-                       const Measured<T> at = measured(bushing, path.rotational, i, j);
+                       const Measured<T> at =
+                           measured(bushing, path.rotational, frames.i, frames.j);
                        const Vec6<T> law =
                            gradient(bushing.law, deformed(bushing, path, a, at), on);
                        return interaction(bushing, at, Vec6<T>(law + preload), path.rotational);
@@ -188,9 +196,9 @@ Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Fram
 // Constraint c with the reactions R of its rows [N, N·m].
 template <class T>
 Holding<T> holding(const System& system, std::size_t c, const T& a, const T& held,
-                   const Frame<T>& i, const Frame<T>& j, const T* R) {
+                   const FramePair<T>& frames, const T* R) {
     const T value = system.values[c].at(a) + held * system.turns[c];
-    return std::visit([&](const auto& kind) { return holding(kind, value, i, j, R); },
+    return std::visit([&](const auto& kind) { return holding(kind, value, frames.i, frames.j, R); },
                       system.model->constraints[c].kind);
 }
 
@@ -247,7 +255,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     const auto add_element = [&]<class S>(const Part& part, const auto& frames, const S& at,
                                           const S& at_held) {
         const Frame<S> frame_i = frames.frame(part, 0), frame_j = frames.frame(part, 1);
-        const auto on = interaction(system, part.number, at, at_held, pieces, frame_i, frame_j);
+        const auto on = interaction(system, part.number, at, at_held, pieces, {frame_i, frame_j});
         apply(part, part.i, frame_i, on.i, S(+1.0));
         apply(part, part.j, frame_j, on.j, S(+1.0));
     };
@@ -304,7 +312,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         for (int k = 0; k < part.rows; ++k)
             R[k] = source.reaction(part, k) *
                    (directions ? system.force * system.length : system.force);
-        const Holding<T> h = holding(system, c, a, held, frame_i, frame_j, R);
+        const Holding<T> h = holding(system, c, a, held, {frame_i, frame_j}, R);
         apply(part, i, frame_i, h.reaction, T(+1.0));
         apply(part, j, frame_j, h.reaction, T(-1.0));
         for (int k = 0; k < part.rows; ++k)
