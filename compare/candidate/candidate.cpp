@@ -18,225 +18,13 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double same_load = 1e-14;  // of a branch's length: rounding of a unit conversion
-constexpr double end_met = 1e-9;     // of a branch's length: tolerance of a point at the end
 // of a branch's length: a larger missing part counts as not given
 constexpr double part_left = 1e-6;
 
-// Limit of an output on any branch; infinite where the limit is a share of the output's extent on a
-// branch.
+// Limit of an output on any branch; infinite where the limit is a share of the output's extent
+// on a branch.
 double bound_of(const Channel& channel, const Tolerance& tolerance) {
     return limit_of(channel, std::numeric_limits<double>::infinity(), tolerance);
-}
-
-// ---- The equilibrium leg at the points of the candidate.
-
-// Outputs at loads [SI] of a branch, continued over the branch's own grid; empty where the leg does
-// not get there.
-class Reference {
-  public:
-    Reference(const Model& model, const Branch& branch, int steps, std::vector<Channel> channels)
-        : model_(model),
-          sides_(sides_of(model, branch, steps)),
-          sorted_(requested_parameters(sides_, 1)),
-          channels_(std::move(channels)) {
-        std::ranges::sort(sorted_);
-    }
-
-    // Outputs at a load that was visited; null if the leg does not get there.
-    const std::vector<double>* at(double load) const {
-        if (std::isnan(load)) return nullptr;
-        const auto found = known_.find(load);
-        return found == known_.end() ? nullptr : &found->second;
-    }
-
-    // Load at which the reference is evaluated: that of a step if equal to rounding, the given load
-    // within the branch side, its end up to `end_met` beyond; else NaN.
-    double placed(double load) const {
-        const double length = sorted_.back() - sorted_.front();
-        const auto near = std::ranges::lower_bound(sorted_, load - same_load * length);
-        if (near != sorted_.end() && *near - load <= same_load * length) return *near;
-        for (const auto& side : sides_) {
-            const double to = side.branch.to;
-            if (load * to < 0) continue;
-            if (std::abs(load) <= std::abs(to)) return load;
-            if (std::abs(load) <= std::abs(to) * (1 + end_met)) return to;
-        }
-        return nan;
-    }
-
-    // Solves the branch at these loads, besides the grid, and keeps the outputs there for at().
-    void visit(const std::vector<double>& loads) {
-        Analyses analyses;
-        for (const auto& side : sides_) {
-            const double to = side.branch.to;
-            std::vector<double> requested;
-            for (const double load : loads)
-                if (std::isfinite(load) && load * to >= 0 && std::abs(load) <= std::abs(to) &&
-                    at(load) == nullptr)
-                    requested.push_back(load);
-            if (requested.empty()) continue;
-            const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
-            std::ranges::sort(requested, nearer);
-            std::vector<double> grid = requested_parameters({side}, 1);
-            std::erase_if(grid, [&](double a) { return std::abs(a) > std::abs(requested.back()); });
-            std::ranges::copy(requested, std::back_inserter(grid));
-            std::ranges::sort(grid, nearer);
-            grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
-            solve_at(side, Leg::equilibrium, grid, [&](const Equilibrium& state) {
-                if (!std::ranges::binary_search(requested, state.load, nearer)) return;
-                known_[state.load] =
-                    row_of(model_, channels_, side, {.leg = Leg::equilibrium}, state, analyses)
-                        .values;
-            });
-        }
-    }
-
-  private:
-    const Model& model_;
-    std::vector<BranchSide> sides_;
-    std::vector<double> sorted_;  // loads of its steps
-    std::vector<Channel> channels_;
-    std::map<double, std::vector<double>> known_;
-};
-
-// ---- One reading of one branch.
-
-struct PointsOnBranch {
-    std::vector<std::size_t> on_branch;  // points of the candidate
-    const Points& points;
-    const std::vector<PointColumn>& columns;
-    // number of other definitions, which the reference's rows hold after the columns
-    std::size_t defined = 0;
-};
-
-// Compares candidate and reference column by column, at the places `x` that the candidate gives
-// (parameter [unit] or abscissa; NaN: none) and at the loads [SI] where the reference is there; NaN
-// beyond its range.
-CandidateReading compared(const PointsOnBranch& given, const std::vector<double>& x,
-                          const std::vector<double>& loads, const Reference& reference,
-                          const BranchComparison& branch) {
-    CandidateReading reading;
-    std::vector<const std::vector<double>*> rows;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        if (std::isnan(x[k])) continue;
-        const auto* row = reference.at(loads[k]);
-        if (row == nullptr) {
-            ++reading.outside;
-            continue;
-        }
-        rows.push_back(row);
-        reading.points.push_back(given.on_branch[k]);
-        reading.at.push_back(x[k]);
-    }
-    for (std::size_t c = 0; c < given.columns.size(); ++c) {
-        const auto& [channel, change, values] = given.columns[c];
-        std::vector<double> given_values, truth, places;
-        auto &given_row = reading.candidate.emplace_back(rows.size(), nan),
-             &truth_row = reading.truth.emplace_back(rows.size(), nan);
-        for (std::size_t k = 0; k < rows.size(); ++k) {
-            const double value = values[reading.points[k]];
-            if (!branch.determined[channel] || std::isnan(value)) continue;
-            given_values.push_back(given_row[k] = value);
-            truth.push_back(truth_row[k] = (*rows[k])[c]);
-            places.push_back(reading.at[k]);
-        }
-        const auto truth_on_branch = truth_of(branch).channel(channel);
-        const auto [low, high] = std::ranges::minmax(truth_on_branch);
-        reading.columns.push_back(deviation_of(truth, given_values, places));
-        reading.columns.back().range = high - low;
-    }
-    for (std::size_t d = 0; d < given.defined; ++d) {
-        auto& values = reading.defined.emplace_back();
-        for (const auto* row : rows) values.push_back((*row)[given.columns.size() + d]);
-    }
-    return reading;
-}
-
-CandidateReading not_compared(std::string why) {
-    CandidateReading none;
-    none.not_compared = std::move(why);
-    return none;
-}
-
-CandidateReading at_equal_parameter(const PointsOnBranch& given, Reference& reference,
-                                    const BranchComparison& branch) {
-    if (given.points.a.empty())
-        return not_compared(fmt::format("it gives no {}", parameter_word(symbol(branch.unit))));
-    std::vector<double> x, loads;
-    for (const std::size_t k : given.on_branch) {
-        x.push_back(given.points.a[k]);
-        loads.push_back(reference.placed(given.points.a[k] / in_unit(branch.unit)));
-    }
-    reference.visit(loads);
-    return compared(given, x, loads, reference, branch);
-}
-
-// Loads [SI] at which the reference is at the places `x` of the abscissa, which is its last output,
-// by the secant method; NaN where it is not.
-std::vector<double> loads_at(const std::vector<double>& x, Reference& reference,
-                             const BranchComparison& branch) {
-    const Curve& truth = truth_of(branch);
-    const auto t = truth.channel(static_cast<std::size_t>(branch.abscissa));
-    const double length = std::abs(t.back() - t.front()), rounding = end_met * length;
-    const double per_unit = 1 / in_unit(branch.unit);
-    const auto travel = [&](double load) {
-        const auto* row = reference.at(load);
-        return row == nullptr ? nan : row->back();
-    };
-    std::vector<double> loads(x.size(), nan), slope(x.size(), nan);  // Δa/Δt [SI per unit]
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        if (!(x[k] >= std::min(t.front(), t.back()) - rounding) ||
-            !(x[k] <= std::max(t.front(), t.back()) + rounding))
-            continue;
-        std::size_t i = 1;
-        while (i + 1 < t.size() && (t[i] - x[k]) * (t.back() - t.front()) < 0) ++i;
-        slope[k] = (truth.a[i] - truth.a[i - 1]) / (t[i] - t[i - 1]) * per_unit;
-        loads[k] = reference.placed(per_unit * truth.a[i - 1] + (x[k] - t[i - 1]) * slope[k]);
-    }
-    constexpr int passes = 12;
-    reference.visit(loads);
-    bool better = true;
-    for (int pass = 0; pass < passes && better; ++pass) {
-        std::vector<double> next(x.size(), nan);
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const double miss = x[k] - travel(loads[k]);
-            if (!(std::abs(miss) > 1e-13 * std::max(length, std::abs(x[k]))))
-                continue;  // converged, or no load
-            const double load = reference.placed(loads[k] + miss * slope[k]);
-            if (load != loads[k]) next[k] = load;
-        }
-        reference.visit(next);
-        better = false;
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const double travel_before = travel(loads[k]), travel_next = travel(next[k]);
-            if (!(std::abs(x[k] - travel_next) < std::abs(x[k] - travel_before))) continue;
-            slope[k] = (next[k] - loads[k]) / (travel_next - travel_before);
-            loads[k] = next[k];
-            better = true;
-        }
-    }
-    // a knot of a curve, or a branch that ends early
-    for (std::size_t k = 0; k < x.size(); ++k)
-        if (!(std::abs(travel(loads[k]) - x[k]) <= rounding)) loads[k] = nan;
-    return loads;
-}
-
-CandidateReading at_equal_abscissa(const PointsOnBranch& given,
-                                   const std::vector<Channel>& channels, Reference& reference,
-                                   const BranchComparison& branch) {
-    if (branch.abscissa < 0) return not_compared("the scene has no position to read by");
-    const auto c = static_cast<std::size_t>(branch.abscissa);
-    const auto column = std::ranges::find(given.columns, c, &PointColumn::channel);
-    if (given.points.abscissa != c && column == given.columns.end())
-        return not_compared(fmt::format("it gives no {}", channels[c].name));
-    const auto& places = given.points.abscissa == c ? given.points.at : column->values;
-    const Curve& truth = truth_of(branch);
-    if (auto by = abscissa(channels, branch.abscissa, truth, truth); !by.why_not.empty())
-        return not_compared(std::move(by.why_not));
-    std::vector<double> x;
-    for (const std::size_t k : given.on_branch) x.push_back(places[k]);
-    return compared(given, x, loads_at(x, reference, branch), reference, branch);
 }
 
 // ---- Missing parts.
@@ -277,7 +65,8 @@ void add_missing_parts(const Branch& branch, const BranchComparison& compared_br
             if (kind == ReadingKind::equal_abscissa) {
                 const auto abscissa = static_cast<std::size_t>(compared_branch.abscissa);
                 const auto travel = truth_of(compared_branch).channel(abscissa);
-                low = std::ranges::min(travel), high = std::ranges::max(travel);
+                low = std::ranges::min(travel);
+                high = std::ranges::max(travel);
                 unit_name = symbol(channels[abscissa].unit);
                 if (!(high - low >= min_travel)) continue;
             }
@@ -424,33 +213,33 @@ CandidateBranch read_branch(const Model& model, const Comparison& comparison, st
                             const Candidate& candidate, std::vector<std::size_t> points,
                             CandidateJudgement& result) {
     const Branch& branch = model.branches[b];
-    const BranchComparison& of = comparison.branches[b];
+    const BranchComparison& compared = comparison.branches[b];
     const std::vector<Channel>& channels = comparison.channels;
-    CandidateBranch given{
-        of.branch, of.unit, static_cast<int>(points.size()), nan, nan, of.abscissa, {}, {}};
+    CandidateBranch given{compared.branch,
+                          compared.unit,
+                          static_cast<int>(points.size()),
+                          nan,
+                          nan,
+                          compared.abscissa,
+                          {},
+                          {}};
     for (const std::size_t k : points) {
         if (candidate.points.a.empty() || std::isnan(candidate.points.a[k])) continue;
         const double a = candidate.points.a[k];
         given.from = std::isnan(given.from) ? a : std::min(given.from, a);
         given.to = std::isnan(given.to) ? a : std::max(given.to, a);
     }
-    const auto objections = disagreements(model, channels, branch, of, Of::references);
-    for (const auto& why : objections.texts()) result.reasons.push_back(of.branch + ": " + why);
+    const auto objections = disagreements(model, channels, branch, compared, Of::references);
+    for (const auto& why : objections.texts())
+        result.reasons.push_back(compared.branch + ": " + why);
     if (!objections.empty()) {
         given.equal_parameter.not_compared = given.equal_abscissa.not_compared =
             "there are no references";
         return given;
     }
-    std::vector<Channel> outputs;
-    for (const auto& column : result.columns) outputs.push_back(channels[column.channel]);
-    outputs.insert(outputs.end(), result.defined.begin(), result.defined.end());
-    if (of.abscissa >= 0) outputs.push_back(channels[static_cast<std::size_t>(of.abscissa)]);
-    Reference reference(model, branch, of.steps, outputs);
-    const PointsOnBranch all{std::move(points), candidate.points, result.columns,
-                             result.defined.size()};
-    given.equal_parameter = at_equal_parameter(all, reference, of);
-    given.equal_abscissa = at_equal_abscissa(all, channels, reference, of);
-    add_missing_parts(branch, of, given, result, channels, result.not_given);
+    add_readings(model, branch, compared, channels,
+                 {std::move(points), candidate.points, result.columns, result.defined}, given);
+    add_missing_parts(branch, compared, given, result, channels, result.not_given);
     result.outside += std::max(given.equal_parameter.outside, given.equal_abscissa.outside);
     return given;
 }
@@ -496,9 +285,14 @@ int judge_columns(const std::vector<Compared>& readings, const std::vector<Chann
             judged += d.compared;
             const double extent = of.extents[result.columns[c].channel];
             CandidateWorst worst;
-            worst.branch = branch.branch, worst.channel = channel.name, worst.unit = channel.unit;
-            worst.max = d.max, worst.end = d.end, worst.range = d.range;
-            worst.kind = kind, worst.at = d.at;
+            worst.branch = branch.branch;
+            worst.channel = channel.name;
+            worst.unit = channel.unit;
+            worst.max = d.max;
+            worst.end = d.end;
+            worst.range = d.range;
+            worst.kind = kind;
+            worst.at = d.at;
             worst.limit = limit_of(channel, extent, result.tolerance);
             worst.extent = std::isinf(bound_of(channel, result.tolerance)) ? extent : 0;
             keep_worst(result.worst, worst);

@@ -1,12 +1,10 @@
 // Diagnosis and convergence study of a candidate.
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compare/candidate/judgement.hpp"
@@ -23,6 +21,20 @@ Comparison outline(const Model& model);
 inline const Curve& truth_of(const BranchComparison& branch) {
     return branch.run(Leg::equilibrium).curve;
 }
+
+// ---- Readings of a branch (candidate_readings.cpp).
+
+struct PointsOnBranch {
+    std::vector<std::size_t> on_branch;  // points of the candidate
+    const Points& points;
+    const std::vector<PointColumn>& columns;
+    const std::vector<Channel>& defined;  // other definitions, in the reference after the columns
+};
+// Sets the readings at equal parameter and at equal abscissa: the candidate's points beside the
+// equilibrium leg at the same parameters and at the same abscissae.
+void add_readings(const Model& model, const Branch& branch, const BranchComparison& of,
+                  const std::vector<Channel>& channels, const PointsOnBranch& points,
+                  CandidateBranch& given);
 
 // ---- Diagnosis of a wrong column (candidate_faults.cpp).
 

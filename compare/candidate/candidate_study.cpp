@@ -21,7 +21,8 @@ std::string branch_of(const Model& model, const Points& points, std::size_t k) {
 // Points of a level (one number of steps) on one branch side, from a = 0 on, in the units of `all`
 // channels; those that the candidate does not give are NaN.
 Curve curve_on(const Model& model, const BranchSide& side, const std::string& branch,
-               const std::vector<Channel>& all, const Comparison& outline, const Points& points) {
+               const std::vector<Channel>& channels, const Comparison& outline,
+               const Points& points) {
     const double unit = in_unit(unit_of(side.branch.unit)), to = unit * side.branch.to;
     const auto columns = as_they_stand(model, outline, points.columns);
     std::vector<std::size_t> order;
@@ -31,9 +32,9 @@ Curve curve_on(const Model& model, const BranchSide& side, const std::string& br
     Curve curve;
     curve.unit = unit_of(side.branch.unit);
     for (const std::size_t k : order) {
-        std::vector<double> values(all.size(), nan);
+        std::vector<double> values(channels.size(), nan);
         for (const auto& column : columns)
-            if (const int c = find_channel(all, outline.channels[column.channel].name); c >= 0)
+            if (const int c = find_channel(channels, outline.channels[column.channel].name); c >= 0)
                 values[static_cast<std::size_t>(c)] = column.values[k];
         append(curve, points.a[k] / unit, std::move(values));
     }

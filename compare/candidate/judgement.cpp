@@ -1,7 +1,6 @@
 #include "compare/candidate/judgement.hpp"
 #include "compare/deviation/tolerance.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace elastocheck::compare {
@@ -23,8 +22,8 @@ bool is_worse(const Worst& one, const std::optional<Worst>& than) {
 
 bool is_within(const Worst& worst) { return std::isfinite(worst.max) && worst.max <= worst.limit; }
 
-// Calls sink(channel, worst) for every determined output of one reading of a branch, with its
-// limit.
+// Calls sink(channel, worst) for every determined output of one reading of a branch,
+// with its limit.
 template <class Sink>
 void for_each_output(const Comparison& comparison, const BranchComparison& branch, ReadingKind kind,
                      const Tolerance& tolerance, Sink&& sink) {
@@ -84,8 +83,8 @@ Assessment assess(const Model& model, const Comparison& comparison, const Tolera
         std::optional<Worst>&position = across ? j.position_across : j.position,
         &angle = across ? j.angle_across : j.angle, &other = across ? j.other_across : j.other;
         std::optional<Worst> position_otherwise, angle_otherwise;  // of outputs that are not main
-        // of rates that may be undefined: near the zero of a denominator a small error is a large
-        // share
+        // of rates that may be undefined: near the zero of a denominator a small error is
+        // a large share
         std::optional<Worst> quotient;
         for (const auto& branch : comparison.branches)
             for_each_output(

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/legs.hpp"
@@ -102,9 +101,9 @@ struct Given {
     const DefinedCurves& defined;
 };
 
-// The points of branch b, and the values of a leg at their places by interpolation of degree 5; for
-// the equilibrium leg also those of the figures by other definitions. NaN where the leg does not
-// reach.
+// The points of branch b, and the values of a leg at their places by interpolation of degree 5;
+// for the equilibrium leg also those of the figures by other definitions. NaN where the leg
+// does not reach.
 CandidateReading beside_leg(const Given& given, const std::vector<Place>& places, std::size_t b,
                             Leg leg) {
     const auto& [comparison, points, defined] = given;
@@ -160,14 +159,18 @@ void turn_places(const Given& given, std::vector<Place>& places, std::vector<std
                 const double v = as_given.candidate[c][k], r = as_given.truth[c][k],
                              t = as_turned.truth[c][k];
                 if (!std::isfinite(v + r + t)) continue;
-                n += 1, sum += v, squares += v * v;
-                as_is += (v - r) * (v - r), sign += (v + r) * (v + r);
+                n += 1;
+                sum += v;
+                squares += v * v;
+                as_is += (v - r) * (v - r);
+                sign += (v + r) * (v + r);
                 place += (v - t) * (v - t);
             }
             const double scatter = squares - sum * sum / n;
             if (!(n >= 3) || !(scatter > 1e-12 * squares)) continue;
             ++count;
-            before += as_is / scatter, by_columns += std::min(as_is, sign) / scatter;
+            before += as_is / scatter;
+            by_columns += std::min(as_is, sign) / scatter;
             by_places += place / scatter;
         }
         if (!(before > min_deviation * min_deviation * count) ||
@@ -274,7 +277,8 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
             for (std::size_t b = 0; b < branches.size(); ++b) {
                 auto row = measured_row(branches[b], c, result.used);
                 if (row.compared() == 0) continue;
-                row.branch = comparison.branches[b].branch, row.channel = means.columns[c].channel;
+                row.branch = comparison.branches[b].branch;
+                row.channel = means.columns[c].channel;
                 result.compared += row.compared();
                 reading.rows.push_back(std::move(row));
             }

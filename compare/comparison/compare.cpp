@@ -40,8 +40,8 @@ bool has_characteristics(const std::vector<Channel>& channels) {
         channels, [](const Channel& c) { return c.kind() == ChannelKind::characteristic; });
 }
 
-// Responses at the landmarks, kept where outputs were read from them, so that they are not computed
-// again.
+// Responses at the landmarks, kept where outputs were read from them, so that they are
+// not computed again.
 struct Responses {
     std::optional<WheelResponse> front, start, back;
 };
@@ -93,8 +93,8 @@ Tally proved(const BranchSide& side, const LegRun& run, bool ends_only,
     return tally;
 }
 
-// Parameters of the points whose states are kept: all of up to 17, else 17 of evenly spaced
-// position.
+// Parameters of the points whose states are kept: all of up to 17, else 17 of
+// evenly spaced position.
 std::vector<double> stations_of(const std::vector<double>& requested) {
     constexpr std::size_t max_intervals = 16;
     std::vector<double> stations;

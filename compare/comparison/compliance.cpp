@@ -4,7 +4,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <functional>
 #include <variant>
 
 #include "compare/outputs/catalogue/subject.hpp"

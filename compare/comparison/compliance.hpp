@@ -16,7 +16,6 @@
 // free one, from one factorisation; only where these forces are not determined is it solved itself.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +42,7 @@ struct ResponseCache {
 struct Analyses {
     ResponseCache free, jacked, tied;
     std::optional<std::vector<int>> dependent_rows;  // of diagnosis.hpp, likewise
+    std::optional<WheelResponse> response;           // at the state of the last row_of()
 };
 
 // Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix

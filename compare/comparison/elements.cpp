@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "compare/comparison/compliance.hpp"
@@ -16,7 +14,6 @@
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compare.hpp"
 #include "models/kinds.hpp"
-#include "models/overloaded.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/diagnosis/self_stress.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -200,8 +199,8 @@ EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverS
 }
 
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
-           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses,
-           std::optional<WheelResponse>& response) {
+           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses) {
+    std::optional<WheelResponse>& response = analyses.response;
     Row row{state.load, state.constraint_error, evaluate(model, side, channels, state, analyses)};
     response.reset();
     std::optional<bool> corner;
@@ -228,12 +227,6 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
 }
 
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
-           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses) {
-    std::optional<WheelResponse> response;
-    return row_of(model, channels, side, solver, state, analyses, response);
-}
-
-Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state) {
     Analyses analyses;
     return row_of(model, channels, side, solver, state, analyses);
@@ -252,14 +245,13 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
     walked.curve.unit = unit_of(branch.unit);
     double reading = 0;
     Analyses analyses;
-    std::optional<WheelResponse> response;
     const double start = processor_time();
     const EquilibriumPath path = solve_branch(
         sides, solver,
         [&](const Equilibrium& state) {
             const double found = processor_time();
-            Row row = row_of(model, channels, sides.front(), solver, state, analyses, response);
-            if (also) also(state, response ? &*response : nullptr);
+            Row row = row_of(model, channels, sides.front(), solver, state, analyses);
+            if (also) also(state, analyses.response ? &*analyses.response : nullptr);
             reading += processor_time() - found;
             return row;
         },
@@ -361,22 +353,22 @@ std::string nothing_drives(const Model& model, const Branch& branch) {
 PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves) {
     if (curves.size() == 1) return curves.front();
     const PathCurve &first = curves.front(), &second = curves.back();
-    PathCurve all = second;
-    all.outcome = first.outcome;
-    all.detail = first.detail;
-    all.counts = first.counts;
-    all.seconds += first.seconds;
-    end_as_both(sides, all, second);
+    PathCurve whole = second;
+    whole.outcome = first.outcome;
+    whole.detail = first.detail;
+    whole.counts = first.counts;
+    whole.seconds += first.seconds;
+    end_as_both(sides, whole, second);
     // The start is that of the second side, if it has one.
     const std::size_t from = second.curve.a.empty() ? 0 : 1, size = first.curve.a.size();
     const auto before = [&](auto& list, const auto& more) {
         for (std::size_t k = from; k < size; ++k) list.insert(list.begin(), more[k]);
     };
-    before(all.curve.a, first.curve.a);
-    before(all.curve.values, first.curve.values);
-    before(all.constraint_error, first.constraint_error);
-    all.curve.start = size > 0 ? size - 1 : 0;
-    return all;
+    before(whole.curve.a, first.curve.a);
+    before(whole.curve.values, first.curve.values);
+    before(whole.constraint_error, first.constraint_error);
+    whole.curve.start = size > 0 ? size - 1 : 0;
+    return whole;
 }
 
 PathCurve second_reference(const Model& model, const std::vector<Channel>& channels,

@@ -34,10 +34,7 @@ struct Analyses;       // compliance.hpp
 struct WheelResponse;  // compliance.hpp
 // Evaluates the channels at one point. A characteristic is computed by the leg that found the
 // state, with these settings. `analyses` are reused over the points of a branch
-// side. `response` receives what the characteristics are read from; empty where there are none.
-Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
-           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses,
-           std::optional<WheelResponse>& response);
+// side; their `response` is what the characteristics are read from, empty where there are none.
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses);
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,

@@ -251,23 +251,23 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
 
 void apply(const Trim& trim, const VectorXd& p, Scene& scene) {
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
-        const double by = trim.adjust[k].per_unit * p[static_cast<Index>(k)];
+        const double change = trim.adjust[k].per_unit * p[static_cast<Index>(k)];
         std::visit(
             overloaded{
                 [](const Load&) {},
                 [&](const Motion& m) {
-                    std::visit(overloaded{[&](Distance& j) { j.length += by; },
-                                          [&](InPlane& j) { j.offset += by; },
-                                          [&](Angle& j) { j.angle += by; }, [](auto&) {}},
+                    std::visit(overloaded{[&](Distance& j) { j.length += change; },
+                                          [&](InPlane& j) { j.offset += change; },
+                                          [&](Angle& j) { j.angle += change; }, [](auto&) {}},
                                scene.joints[static_cast<std::size_t>(m.joint)].kind);
                 },
                 [&](const FreeLength& l) {
                     std::get<AxialSpring>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind)
-                        .free_length += by;
+                        .free_length += change;
                 },
                 [&](const Preload& l) {
                     std::get<Bushing>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind)
-                        .preload += by * l.direction;
+                        .preload += change * l.direction;
                 }},
             trim.adjust[k].what);
     }

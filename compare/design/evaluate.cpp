@@ -214,7 +214,8 @@ std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> fi
             if (whole) {
                 EquilibriumPath path = solve_branch(states.sides, {.leg = leg});
                 states.states = std::move(path.points);
-                states.outcome = path.outcome, states.detail = path.detail;
+                states.outcome = path.outcome;
+                states.detail = path.detail;
             } else {
                 bool first = true;  // the start is on the first side
                 for (const BranchSide& side : states.sides) {
@@ -261,22 +262,22 @@ std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadSta
     const auto move_state = [&](std::size_t k, std::size_t s) {
         const Equilibrium& state = states[k].states[s];
         std::vector<Neighbours> stencils;
-        std::vector<std::size_t> of;  // their models
+        std::vector<std::size_t> model_of;  // their models
         for (std::size_t m = 0; m < models.size(); ++m)
             if (near[m]) {
                 stencils.push_back({{&side_at(all[m][k].sides, state.load).model, 1, 1}});
-                of.push_back(m);
+                model_of.push_back(m);
             }
         const BranchSide& side = side_at(states[k].sides, state.load);
         const auto found =
             reference::equilibrium::neighbour_states(side.model, side.branch, state, stencils);
         for (std::size_t n = 0; n < found.size(); ++n) {
-            const BranchSide& there = side_at(all[of[n]][k].sides, state.load);
+            const BranchSide& there = side_at(all[model_of[n]][k].sides, state.load);
             if (found[n].outcome == Outcome::converged && found[n].settled &&
                 ends_at_table(there.model, there.branch, found[n].states.front()).empty())
-                all[of[n]][k].states[s] = found[n].states.front();
+                all[model_of[n]][k].states[s] = found[n].states.front();
             else
-                near[of[n]] = false;
+                near[model_of[n]] = false;
         }
     };
     for (std::size_t k = 0; k < states.size(); ++k)

@@ -59,20 +59,21 @@ void guarded(AtPoint& at, std::size_t figures, const std::function<void()>& set)
 // the series, or by the equilibrium leg where the start settles past a limit point, which the
 // series does not reach: first by the leg that reached the last trim, then by the other one. No
 // second reference confirms it.
-void compile_at(const Varied& varied, const VectorXd& p, std::size_t figures, AtPoint& at) {
-    guarded(at, figures, [&] {
+void compile_at(const Varied& varied, const VectorXd& p, std::size_t figures, AtPoint& compiled) {
+    guarded(compiled, figures, [&] {
         const Scene scene = varied.scene(p);
         const auto trim_by = [&](bool by_equilibrium) {
-            return (by_equilibrium ? trim_not_confirmed : trim_by_series)(scene, &at.trim);
+            return (by_equilibrium ? trim_not_confirmed : trim_by_series)(scene, &compiled.trim);
         };
-        Trimmed trimmed = trim_by(at.trim.by_equilibrium);
+        Trimmed trimmed = trim_by(compiled.trim.by_equilibrium);
         if (trimmed.record && !trimmed.record->reached()) {
-            trimmed = trim_by(!at.trim.by_equilibrium);
-            if (trimmed.record->reached()) at.trim.by_equilibrium = !at.trim.by_equilibrium;
+            trimmed = trim_by(!compiled.trim.by_equilibrium);
+            if (trimmed.record->reached())
+                compiled.trim.by_equilibrium = !compiled.trim.by_equilibrium;
         }
         if (trimmed.record && !trimmed.record->reached())
             throw std::runtime_error("trim: " + trimmed.record->detail);
-        at.model = compile(trimmed.scene);
+        compiled.model = compile(trimmed.scene);
     });
 }
 

@@ -75,8 +75,8 @@ FigureValues figure_values(const Scene& scene, std::span<const Figure> figures,
 // Limits of the numbers of a search, in their units; infinite where there are none.
 struct SearchRange {
     Eigen::VectorXd start, low, high;
-    // The numbers at these shares of the range from the start, within the limits; and the shares of
-    // numbers.
+    // The numbers at these shares of the range from the start, within the limits; and the
+    // shares of numbers.
     Eigen::VectorXd at(const Eigen::VectorXd& shares) const;
     Eigen::VectorXd shares(const Eigen::VectorXd& p) const;
 };

@@ -66,7 +66,8 @@ Minimum minimise(const LeastSquares& problem, VectorXd start) {
     if (minimum.converged) return minimum;
     Stacked stacked{problem, J, problem.pull * largest_column, J.rows() + J.cols()};
     Eigen::LevenbergMarquardt<Stacked> method(stacked);
-    method.parameters.ftol = least_decrease, method.parameters.xtol = least_change;
+    method.parameters.ftol = least_decrease;
+    method.parameters.xtol = least_change;
     auto status = method.minimizeInit(minimum.x);
     bool meets_undefined = false;
     do {

@@ -92,7 +92,10 @@ struct Problem {
             if (++repeats >= calls_at_one_point && run) nlopt_force_stop(run);
             return;
         }
-        current = x, p = range.at(x), f = figures.value(p), f_x = {};
+        current = x;
+        p = range.at(x);
+        f = figures.value(p);
+        f_x = {};
         repeats = 0;
         if (has_value() && largest_excess() <= within_bands && cost() < least_cost)
             best = x, least_cost = cost();
@@ -222,7 +225,8 @@ struct BestPoint {
                                             : f[minimised] / bands.scale[minimised];
         if (!f.allFinite() || (met && !is_within) || (met == is_within && !(here < size)))
             return false;
-        met = is_within, size = here;
+        met = is_within;
+        size = here;
         return true;
     }
 };

@@ -73,9 +73,9 @@ struct Optimum : Search {  // the best search
 // at less cost, or nearer to them than at the start.
 using BestSoFar = std::function<void(const Eigen::VectorXd& p, bool met)>;
 
-// Nothing but `start` is set where that is not complete. Figures of still goals are left out of the
-// search; the caller refuses those that are outside of their bands, and a minimised figure that is
-// still.
+// Nothing but `start` is set where that is not complete. Figures of still goals are left out of
+// the search; the caller refuses those that are outside of their bands, and a minimised figure
+// that is still.
 Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& range,
                  const std::vector<Eigen::VectorXd>& starts, const Progress& progress = {},
                  const BestSoFar& best_so_far = {});

@@ -64,7 +64,7 @@ Table numbers_table(const Varied& varied, const VectorXd& to, const std::vector<
 // What stands in the way of `what` ("bands"): those that conflict, and limits of numbers.
 void add_conflict(Result& result, const std::vector<std::string>& conflicting,
                   const std::string& together, const Varied& varied,
-                  const std::vector<int>& at_limit, const char* what) {
+                  const std::vector<int>& at_limit, const char* noun) {
     result.notes.push_back(
         fmt::format("{}: {}.{}", conflicting.size() > 1 ? "In conflict" : "Out of reach",
                     fmt::join(conflicting, "; "), conflicting.size() > 1 ? together : ""));
@@ -77,7 +77,7 @@ void add_conflict(Result& result, const std::vector<std::string>& conflicting,
     result.notes.push_back(
         limits.empty()
             ? "No limit of a number causes this: more or other numbers are needed."
-            : fmt::format("The {} would come nearer with {}.", what, fmt::join(limits, "; ")));
+            : fmt::format("The {} would come nearer with {}.", noun, fmt::join(limits, "; ")));
 }
 
 // Numbers with which wishes are not met are the nearest ones, and those with which they are change least,

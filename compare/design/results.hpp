@@ -30,8 +30,8 @@ struct Goal {
     std::vector<Figure> points = {};  // in the order of their places
     double low = -INFINITY, high = INFINITY;
     std::string where = {};  // the place of its point, or "travel from -80 to 80 mm"
-    // of a curve: the output or the branch whose parameter places its points ("travel"), and its
-    // unit
+    // of a curve: the output or the branch whose parameter places its points ("travel"),
+    // and its unit
     std::string along = {}, along_unit = {};
     double along_factor = 1;     // from Figure::at to that unit
     bool any_branch = false;     // each point lies on the branch that reaches its place

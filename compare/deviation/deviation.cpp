@@ -66,8 +66,8 @@ bool same(double a, double b, const Curve& curve) {
     return std::abs(a - b) <= 1e-12 * std::max(std::abs(curve.a.front()), std::abs(curve.a.back()));
 }
 
-// Raises the worst deviation of the channel's unit; of a force or moment with an extent the worst
-// share.
+// Raises the worst deviation of the channel's unit; of a force or moment with an extent
+// the worst share.
 void raise(const std::vector<Channel>& channels, std::size_t c, double difference, Accuracy& worst,
            const std::vector<double>& extents = {}) {
     if (!channels[c].main) {

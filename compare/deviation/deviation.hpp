@@ -5,7 +5,6 @@
 // and vanishes at equal travel; an error across the path appears in both.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "compare/outputs/curve.hpp"

@@ -90,8 +90,8 @@ const Allowance* tolerance_of(const Tolerances& tolerances, const Series& s) {
 bool sane(double bound) { return std::isfinite(bound) && bound >= 0; }
 bool sane(const Allowance* t) { return t != nullptr && sane(t->atol) && sane(t->rtol); }
 
-// Smallest change of a number of the series that an engineer notices: from the baseline, else the
-// default.
+// Smallest change of a number of the series that an engineer notices: from the baseline,
+// else the default.
 double noticeable(const Baseline& baseline, const Series& s) {
     static const Tolerances usual = default_tolerances(ToleranceClass::physical);
     const auto own = baseline.tolerances.find(ToleranceClass::physical);
@@ -459,8 +459,8 @@ GateVerdict judge(const Baseline& baseline, const Measurement& measurement, Tole
         verdict.reasons.push_back(fmt::format("the baseline is of scene '{}', this is '{}'",
                                               baseline.accepted.scene, measurement.scene));
     const auto common = common_branches(baseline, measurement, verdict);
-    // A series of a branch that neither side lists is compared too, so that none is skipped
-    // silently.
+    // A series of a branch that neither side lists is compared too, so that none
+    // is skipped silently.
     const auto looked_at = [&](const std::string& branch) {
         return std::ranges::find(common, branch) != common.end() ||
                (find(baseline.accepted, branch) == nullptr && find(measurement, branch) == nullptr);

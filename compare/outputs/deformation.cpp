@@ -197,19 +197,19 @@ std::string outside_table(const Model& model, const Branch& branch, const Equili
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& elastic = model.elastics[k];
         const bool is_spring = member<ScalarLaw>(elastic.kind) != nullptr;
-        std::string found;
+        std::string names;
         each_curve(elastic.kind, [&](std::size_t axis, const elastocheck::Curve& curve) {
             const double x = deformation(elastic.kind, k, branch,
                                          state)[static_cast<Eigen::Index>(axis)],
                          end = end_passed(curve, x);
-            if (std::isnan(end) || !found.empty()) return;
-            found = is_spring
+            if (std::isnan(end) || !names.empty()) return;
+            names = is_spring
                         ? beyond_end(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm)
                         : beyond_end(fmt::format("bushing '{}' {} {}", elastic.name,
                                                  axis < 3 ? "along" : "about", axes[axis % 3]),
                                      x, end, axis < 3 ? Unit::mm : Unit::deg);
         });
-        if (!found.empty()) return found;
+        if (!names.empty()) return names;
     }
     return {};
 }

@@ -2,7 +2,6 @@
 // scales and ranges, not for a solution.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "compare/outputs/not_a_number.hpp"
 #include "recursive/series/path.hpp"

@@ -1,7 +1,6 @@
 // Interval proofs (reference/certificate) of the points of a path, and of the path as one curve.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <deque>
 #include <random>
-#include <ranges>
 #include <span>
 #include <utility>
 

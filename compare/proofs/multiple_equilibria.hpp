@@ -13,9 +13,7 @@
 // over, of which rigid bodies on springs have hundreds.
 #pragma once
 
-#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compare/outputs/curve.hpp"

@@ -40,7 +40,8 @@ constexpr double across_a_knot = std::numeric_limits<double>::max();
 
 bool compile_points(const Changing& changing, const Stencil& stencil, double h, Compiled& result) {
     result.points.clear();
-    result.stencil = &stencil, result.h = h;
+    result.stencil = &stencil;
+    result.h = h;
     try {
         for (const double t : stencil.t) result.points.push_back(changing.at(t * h));
     } catch (const SceneError& error) {
@@ -80,18 +81,18 @@ std::vector<NeighbourStates> neighbour_states(Leg leg, const BranchSide& side,
 
 // Per curve of an element: the piece on which it is deformed.
 std::vector<std::size_t> pieces(const BranchSide& side, const Equilibrium& state) {
-    std::vector<std::size_t> all;
+    std::vector<std::size_t> rows_with_number;
     for (std::size_t e = 0; e < side.model.elastics.size(); ++e) {
         const ElasticKind& kind = side.model.elastics[e].kind;
         std::optional<Vector6> x;
         each_curve(kind, [&](std::size_t axis, const elastocheck::Curve& curve) {
             if (!x) x = deformation(kind, e, side.branch, state);
-            all.push_back(static_cast<std::size_t>(
+            rows_with_number.push_back(static_cast<std::size_t>(
                 std::ranges::upper_bound(curve.knots, (*x)[static_cast<Index>(axis)]) -
                 curve.knots.begin()));
         });
     }
-    return all;
+    return rows_with_number;
 }
 
 struct Entries {
@@ -103,19 +104,19 @@ struct Entries {
 };
 
 // The weighted differences over the neighbours of each number.
-Entries differences(const ReadSide& of, Leg leg, const Equilibrium& state,
+Entries differences(const ReadSide& read_side, Leg leg, const Equilibrium& state,
                     std::span<const Neighbouring> near, Analyses& analyses,
                     const std::optional<Corner>& corner = {}) {
-    const auto rows = std::ssize(of.outputs.channels), columns = std::ssize(near);
-    Entries all{MatrixXd::Constant(rows, columns, nan),
-                MatrixXd::Zero(rows, columns),
-                MatrixXd::Zero(rows, columns),
-                {},
-                VectorXd::Constant(columns, nan)};
+    const auto rows = std::ssize(read_side.outputs.channels), columns = std::ssize(near);
+    Entries entries{MatrixXd::Constant(rows, columns, nan),
+                    MatrixXd::Zero(rows, columns),
+                    MatrixXd::Zero(rows, columns),
+                    {},
+                    VectorXd::Constant(columns, nan)};
     std::vector<Neighbours> stencils;
     std::vector<std::size_t> of_column;
     for (std::size_t k = 0; k < near.size(); ++k) {
-        all.why.push_back(near[k].undefined);
+        entries.why.push_back(near[k].undefined);
         if (!near[k].undefined.empty()) continue;
         of_column.push_back(k);
         Neighbours& stencil = stencils.emplace_back();
@@ -123,21 +124,23 @@ Entries differences(const ReadSide& of, Leg leg, const Equilibrium& state,
             stencil.push_back({&near[k].sides[p].model, near[k].stencil->t[p] * near[k].h,
                                near[k].stencil->weight[p] / near[k].h});
     }
-    if (stencils.empty()) return all;
-    std::vector<Channel> channels = of.outputs.channels;
+    if (stencils.empty()) return entries;
+    std::vector<Channel> channels = read_side.outputs.channels;
     const auto read = [&](const BranchSide& side, const Equilibrium& at,
                           const Outputs::Placed& placed) {
         for (std::size_t c = 0; c < channels.size(); ++c) channels[c].reads = placed.reads[c];
         const auto values = row_of(side.model, channels, side, {.leg = leg}, at, analyses).values;
         return VectorXd(Eigen::Map<const VectorXd>(values.data(), rows) - placed.from);
     };
-    const auto pieces_here = pieces(of.side, state);
-    const VectorXd here = read(of.side, state, of.outputs.placed(of.side.model, {}));
-    const auto found = neighbour_states(leg, of.side, state, stencils);
-    for (std::size_t n = 0; n < found.size(); ++n) {
+    const auto pieces_here = pieces(read_side.side, state);
+    const VectorXd here =
+        read(read_side.side, state, read_side.outputs.placed(read_side.side.model, {}));
+    const auto neighbours = neighbour_states(leg, read_side.side, state, stencils);
+    for (std::size_t n = 0; n < neighbours.size(); ++n) {
         const std::size_t k = of_column[n];
-        if (found[n].outcome != Outcome::converged) {
-            all.why[k] = fmt::format("{}: {}", name(found[n].outcome), found[n].detail);
+        if (neighbours[n].outcome != Outcome::converged) {
+            entries.why[k] =
+                fmt::format("{}: {}", name(neighbours[n].outcome), neighbours[n].detail);
             continue;
         }
         VectorXd rate = VectorXd::Zero(rows), check = rate, kink = rate;
@@ -145,33 +148,34 @@ Entries differences(const ReadSide& of, Leg leg, const Equilibrium& state,
         bool crosses = false;
         for (std::size_t p = 0; p < near[k].sides.size(); ++p) {
             const BranchSide& side = near[k].sides[p];
-            const VectorXd change = read(side, found[n].states[p], near[k].placed[p]) - here;
+            const VectorXd change = read(side, neighbours[n].states[p], near[k].placed[p]) - here;
             rate += near[k].stencil->weight[p] / near[k].h * change;
             check += near[k].stencil->check[p] / near[k].h * change;
             kink += near[k].stencil->kink[p] / near[k].h * change;
-            crosses = crosses || (!corner && pieces(side, found[n].states[p]) != pieces_here);
+            crosses = crosses || (!corner && pieces(side, neighbours[n].states[p]) != pieces_here);
             if (corner)
                 opens += near[k].stencil->weight[p] / near[k].h *
-                         beyond_knot(side.model, side.branch, found[n].states[p], *corner);
+                         beyond_knot(side.model, side.branch, neighbours[n].states[p], *corner);
         }
         for (Index c = 0; c < rows; ++c)
             if (const auto column = static_cast<Index>(k); std::isfinite(rate[c])) {
-                all.rate(c, column) = rate[c];
-                all.kink(c, column) = std::abs(kink[c]);
-                all.check(c, column) =
+                entries.rate(c, column) = rate[c];
+                entries.kink(c, column) = std::abs(kink[c]);
+                entries.check(c, column) =
                     crosses ? across_a_knot : std::abs(check[c]) + std::abs(kink[c]);
             }
-        if (corner) all.beyond[static_cast<Index>(k)] = opens;
+        if (corner) entries.beyond[static_cast<Index>(k)] = opens;
     }
-    return all;
+    return entries;
 }
 
 // The one-sided derivatives at a corner. Where a number moves the state above the knot, those of the
 // model above it hold; the two models must agree on the direction.
-OneSided beside_corner(const ReadSide& of, Leg leg, const Equilibrium& state, const Corner& corner,
-                       std::span<const Neighbouring> near, Analyses& analyses) {
+OneSided beside_corner(const ReadSide& read_side, Leg leg, const Equilibrium& state,
+                       const Corner& corner, std::span<const Neighbouring> near,
+                       Analyses& analyses) {
     const auto on = [&](int which) {
-        ReadSide side = of;
+        ReadSide side = read_side;
         side.side.model = one_sided(side.side.model, corner, which);
         std::vector<Neighbouring> beside(near.begin(), near.end());
         for (Neighbouring& one : beside)
@@ -188,8 +192,8 @@ OneSided beside_corner(const ReadSide& of, Leg leg, const Equilibrium& state, co
         both.falling.col(k) = (up.beyond[k] > 0 ? down : up).rate.col(k);
     }
     // what needs a stiffness of the corner itself has none
-    for (std::size_t c = 0; c < of.outputs.channels.size(); ++c)
-        if (of.outputs.channels[c].kind() == ChannelKind::characteristic)
+    for (std::size_t c = 0; c < read_side.outputs.channels.size(); ++c)
+        if (read_side.outputs.channels[c].kind() == ChannelKind::characteristic)
             both.growing.row(static_cast<Index>(c)).setConstant(nan),
                 both.falling.row(static_cast<Index>(c)).setConstant(nan);
     return both;
@@ -358,24 +362,24 @@ Compiled compiled(const Changing& changing) {
     return result;
 }
 
-Neighbouring on_side(const Compiled& compiled, const ReadSide& of) {
+Neighbouring on_side(const Compiled& compiled, const ReadSide& read_side) {
     Neighbouring near{{}, {}, compiled.stencil, compiled.h, compiled.undefined};
     if (!near.undefined.empty()) return near;
     std::vector<int> expected, structure;
-    elastocheck::structure(of.side.model, expected);
+    elastocheck::structure(read_side.side.model, expected);
     for (const Changed& point : compiled.points) {
-        BranchSide there{of.side.name, {}, of.side.branch, of.side.analysis};
+        BranchSide there{read_side.side.name, {}, read_side.side.branch, read_side.side.analysis};
         const auto branch =
-            std::ranges::find(point.model.branches, of.side.branch.name, &Branch::name);
+            std::ranges::find(point.model.branches, read_side.side.branch.name, &Branch::name);
         if (branch != point.model.branches.end()) there.branch.drivers = branch->drivers;
         there.model = on_branch(point.model, there.branch);
         elastocheck::structure(there.model, structure);
         if (structure != expected) {
             near.undefined = "decides at this value which parts the model has" +
-                             difference(of.side.model, there.model);
+                             difference(read_side.side.model, there.model);
             return near;
         }
-        near.placed.push_back(of.outputs.placed(there.model, point.trim));
+        near.placed.push_back(read_side.outputs.placed(there.model, point.trim));
         near.sides.push_back(std::move(there));
     }
     return near;
@@ -384,8 +388,8 @@ Neighbouring on_side(const Compiled& compiled, const ReadSide& of) {
 Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
                std::span<const Neighbouring> near, bool judges_kinks, Analyses& analyses) {
     const auto& [side, leg, state] = of;
-    const auto at = corners(side.side.model, side.side.branch, state);
-    if (!at.empty()) {
+    const auto corners_here = corners(side.side.model, side.side.branch, state);
+    if (!corners_here.empty()) {
         const MatrixXd nothing =
             MatrixXd::Constant(std::ssize(side.outputs.channels), std::ssize(near), nan);
         Rates none{nothing, nothing, {}};
@@ -394,8 +398,8 @@ Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
                                    ? number.undefined
                                    : "an element is at a corner of its law, where its stiffness "
                                      "has two values");
-        if (at.size() == 1)
-            none.one_sided = beside_corner(side, leg, state, at.front(), near, analyses);
+        if (corners_here.size() == 1)
+            none.one_sided = beside_corner(side, leg, state, corners_here.front(), near, analyses);
         return none;
     }
     const Entries first = differences(side, leg, state, near, analyses);

@@ -87,8 +87,8 @@ struct StateOfLeg {
     Leg leg;
     const Equilibrium& state;
 };
-// `near`: of each of `numbers`. With `judges_kinks` an entry whose slopes to both sides differ has no
-// derivative.
+// `near`: of each of `numbers`. With `judges_kinks` an entry whose slopes to both sides differ
+// has no derivative.
 Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
                std::span<const Neighbouring> near, bool judges_kinks, Analyses& analyses);
 

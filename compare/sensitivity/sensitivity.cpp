@@ -65,9 +65,9 @@ Changed with_adjustments(Scene scene, const VectorXd& x) {
 std::vector<Changing> all_changing(const Scene& scene, const Trimmed& trimmed,
                                    const VaryingScene& varying) {
     const VectorXd x = adjusted(trimmed);
-    std::vector<Changing> all;
+    std::vector<Changing> changing;
     for (std::size_t k = 0; k < varying.numbers.size(); ++k)
-        all.push_back(
+        changing.push_back(
             {[&varying, x, k](double by) { return with_adjustments(varying.with(k, by), x); },
              difference_step(varying.numbers[k]), varying.numbers[k].step});
     for (Index k = 0; k < x.size(); ++k) {
@@ -75,12 +75,13 @@ std::vector<Changing> all_changing(const Scene& scene, const Trimmed& trimmed,
         const double h = unit == Unit::mm    ? 2e-5
                          : unit == Unit::deg ? 3e-4
                                              : 1;  // [m, rad, N, N·m]
-        all.push_back({[&scene, x, k](double by) {
-                           return with_adjustments(scene, x + by * VectorXd::Unit(x.size(), k));
-                       },
-                       h, 100 * h});
+        changing.push_back({[&scene, x, k](double by) {
+                                return with_adjustments(scene,
+                                                        x + by * VectorXd::Unit(x.size(), k));
+                            },
+                            h, 100 * h});
     }
-    return all;
+    return changing;
 }
 
 // The parameter of the branch, as if it were a number: all drivers start later.
@@ -139,7 +140,9 @@ Outputs conditions_of(const Trim& trim, const Model& model) {
 BranchSide at_rest(const Model& model) {
     Branch branch;
     branch.name = "trim";
-    branch.to = 1, branch.steps = 1, branch.unit = ParameterUnit::none;
+    branch.to = 1;
+    branch.steps = 1;
+    branch.unit = ParameterUnit::none;
     return {"trim", on_branch(model, branch), branch, {}};
 }
 
@@ -253,7 +256,7 @@ struct SideWork {
 
 std::vector<SideWork> sides_to_follow(const Model& model, std::span<const Channel> outputs,
                                       const GradientOptions& options) {
-    std::vector<SideWork> all;
+    std::vector<SideWork> works;
     for (const Branch& branch : model.branches) {
         if (!options.branches.empty() && std::ranges::count(options.branches, branch.name) == 0)
             continue;
@@ -267,7 +270,8 @@ std::vector<SideWork> sides_to_follow(const Model& model, std::span<const Channe
             if (chosen && work.stations.empty()) continue;
             side.analysis =
                 std::make_shared<const recursive::Analysis>(recursive::analyse(side.model));
-            work.result.name = side.name, work.result.branch = branch.name;
+            work.result.name = side.name;
+            work.result.branch = branch.name;
             work.result.unit = unit_of(side.branch.unit);
             const auto active = active_channels(outputs, side.model);
             Analyses as_drawn;
@@ -280,10 +284,10 @@ std::vector<SideWork> sides_to_follow(const Model& model, std::span<const Channe
                                                      ? why_undefined(outputs[c])
                                                      : idle_motion_of(side, outputs[c]));
             work.read = {std::move(side), outputs_of(outputs, options.changes)};
-            all.push_back(std::move(work));
+            works.push_back(std::move(work));
         }
     }
-    return all;
+    return works;
 }
 
 // ---- The columns of the numbers, from those of numbers and adjustments.
@@ -341,30 +345,30 @@ void take(SideWork& work, Index numbers, const std::vector<Adjusting>& adjusting
 }
 
 // The largest entry of every output's row by the first leg, each number by its step.
-std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
-    std::vector<double> sizes(all.outputs.size(), 0);
+std::vector<double> row_sizes(const Gradients& gradients, const SideGradients& side) {
+    std::vector<double> sizes(gradients.outputs.size(), 0);
     for (std::size_t c = 0; c < sizes.size(); ++c) {
         if (!side.why_output[c].empty()) continue;
         for (const MatrixXd& at : side.legs.front().at)
-            for (std::size_t k = 0; k < all.numbers.size(); ++k) {
+            for (std::size_t k = 0; k < gradients.numbers.size(); ++k) {
                 const double entry = std::abs(at(static_cast<Index>(c), static_cast<Index>(k)) *
-                                              all.numbers[k].step);
+                                              gradients.numbers[k].step);
                 if (entry > sizes[c]) sizes[c] = entry;
             }
     }
-    return least_sizes(all.outputs, std::move(sizes));
+    return least_sizes(gradients.outputs, std::move(sizes));
 }
 
-Disagreement compared(const Gradients& all, const SideGradients& side) {
+Disagreement compared(const Gradients& gradients, const SideGradients& side) {
     Disagreement worst;
-    const auto sizes = row_sizes(all, side);
+    const auto sizes = row_sizes(gradients, side);
     const LegGradients& first = side.legs.front();
     for (const LegGradients& other : std::span(side.legs).subspan(1)) {
         if (other.not_applicable) continue;
         for (std::size_t s = 0; s < std::min(first.at.size(), other.at.size()); ++s)
             for (std::size_t c = 0; c < sizes.size(); ++c) {
                 if (!side.why_output[c].empty()) continue;
-                for (std::size_t k = 0; k < all.numbers.size(); ++k) {
+                for (std::size_t k = 0; k < gradients.numbers.size(); ++k) {
                     const auto row = static_cast<Index>(c), column = static_cast<Index>(k);
                     const double a = first.at[s](row, column), b = other.at[s](row, column);
                     if ((std::isnan(a) && std::isnan(b)) || !side.why_number[s][k].empty())
@@ -372,14 +376,14 @@ Disagreement compared(const Gradients& all, const SideGradients& side) {
                     ++worst.compared;
                     const double rounding = first.rounding[s](row, column) +
                                             other.rounding[s](row, column),
-                                 distance = std::abs(a - b) * all.numbers[k].step,
-                                 off = distance - rounding * all.numbers[k].step,
+                                 distance = std::abs(a - b) * gradients.numbers[k].step,
+                                 off = distance - rounding * gradients.numbers[k].step,
                                  share = off <= 0 ? 0 : off / sizes[c];
                     worst.whole = std::max(worst.whole, distance / sizes[c]);
                     if (share <= worst.share || std::isnan(worst.share)) continue;
                     worst.share = share;
                     worst.where = fmt::format("{} by {} at {:g} {}: {} {:.12g}, {} {:.12g}",
-                                              all.outputs[c].name, all.numbers[k].path,
+                                              gradients.outputs[c].name, gradients.numbers[k].path,
                                               in_unit(side.unit) * side.a[s], symbol(side.unit),
                                               name(first.leg), a, name(other.leg), b);
                 }

@@ -15,7 +15,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <limits>
 #include <map>
 #include <span>
 #include <string>

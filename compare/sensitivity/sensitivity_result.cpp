@@ -102,27 +102,27 @@ std::vector<double> largest_effects(const Gradients& all, const SideGradients& s
     return sizes;
 }
 
-Table shown_table(const Gradients& all, const SideGradients& side, int most) {
+Table shown_table(const Gradients& gradients, const SideGradients& side, int most) {
     if (side.a.empty())
         return {.caption = fmt::format("{}: {}", side.name, side.legs.front().failure)};
     const std::size_t last = side.a.size() - 1;
     std::vector<ShownNumber> rows;
     std::set<std::string> reasons;
-    for (std::size_t c = 0; c < all.outputs.size(); ++c) {
+    for (std::size_t c = 0; c < gradients.outputs.size(); ++c) {
         if (!side.why_output[c].empty()) {
-            reasons.insert(
-                fmt::format("no derivative: {}: {}", all.outputs[c].name, side.why_output[c]));
+            reasons.insert(fmt::format("no derivative: {}: {}", gradients.outputs[c].name,
+                                       side.why_output[c]));
             continue;
         }
-        const auto sizes = largest_effects(all, side, c);
+        const auto sizes = largest_effects(gradients, side, c);
         std::vector<std::size_t> order(sizes.size());
         std::iota(order.begin(), order.end(), 0u);
         std::ranges::stable_sort(order, std::ranges::greater{},
                                  [&](std::size_t k) { return sizes[k]; });
         if (most > 0) order.resize(std::min(order.size(), static_cast<std::size_t>(most)));
-        std::string output = all.outputs[c].name;
+        std::string output = gradients.outputs[c].name;
         for (const std::size_t k : order) {
-            const Derivative start{all, side, 0, c, k}, end{all, side, last, c, k};
+            const Derivative start{gradients, side, 0, c, k}, end{gradients, side, last, c, k};
             for (const Derivative& at : {start, end})
                 if (!at.missing().empty()) reasons.insert(at.reason());
             if (sizes[k] == 0 && !std::isnan(start.value()) && !std::isnan(end.value()) &&
@@ -133,9 +133,10 @@ Table shown_table(const Gradients& all, const SideGradients& side, int most) {
         }
     }
     Table shown = table("", ShownNumber::columns(), rows);
-    shown.caption = fmt::format("{}: derivatives at {:g} and {:g} {}", side.name,
-                                Derivative{all, side, 0, 0, 0}.parameter(),
-                                Derivative{all, side, last, 0, 0}.parameter(), symbol(side.unit));
+    shown.caption =
+        fmt::format("{}: derivatives at {:g} and {:g} {}", side.name,
+                    Derivative{gradients, side, 0, 0, 0}.parameter(),
+                    Derivative{gradients, side, last, 0, 0}.parameter(), symbol(side.unit));
     shown.notes.assign(reasons.begin(), reasons.end());
     for (const auto& leg : side.legs)
         if (leg.not_applicable)
@@ -180,7 +181,7 @@ Table derivatives_table(const Gradients& all) {
         rows);
 }
 
-Table varied_numbers_table(const Gradients& all) {
+Table varied_numbers_table(const Gradients& gradients) {
     using enum Digits;
     using Row = VariedNumber;
     return table("numbers",
@@ -193,7 +194,7 @@ Table varied_numbers_table(const Gradients& all) {
                       "1, -1: derivatives are those where it grows, falls"},
                      {"undefined", words, [](const Row& r) { return r.undefined; },
                       "why there is no derivative by it"}},
-                 all.numbers);
+                 gradients.numbers);
 }
 
 // Of every leg on every side how far the derivatives agree with those of the others.
@@ -228,22 +229,22 @@ Table legs_agreement_table(const Gradients& all) {
 
 }  // namespace
 
-Result result_of(const Gradients& all, int most) {
+Result result_of(const Gradients& gradients, int most) {
     Result result{.analysis = "sensitivity"};
-    for (const SideGradients& side : all.sides)
-        result.tables.push_back(shown_table(all, side, most));
-    for (Table programs :
-         {derivatives_table(all), varied_numbers_table(all), legs_agreement_table(all)}) {
+    for (const SideGradients& side : gradients.sides)
+        result.tables.push_back(shown_table(gradients, side, most));
+    for (Table programs : {derivatives_table(gradients), varied_numbers_table(gradients),
+                           legs_agreement_table(gradients)}) {
         programs.detail = true;
         result.tables.push_back(std::move(programs));
     }
-    result.verdict.reasons = all.not_confirmed();
-    result.verdict.grade = all.conclusive() ? Grade::pass : Grade::not_judged;
-    if (all.conclusive())
+    result.verdict.reasons = gradients.not_confirmed();
+    result.verdict.grade = gradients.conclusive() ? Grade::pass : Grade::not_judged;
+    if (gradients.conclusive())
         result.verdict.sentence =
             fmt::format("the legs agree within {:g} of the largest of each row, beyond rounding",
                         gradients_agree);
-    for (const SideGradients& side : all.sides)
+    for (const SideGradients& side : gradients.sides)
         result.verdict.compared += static_cast<int>(side.worst.compared);
     return result;
 }

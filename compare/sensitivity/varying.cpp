@@ -80,7 +80,8 @@ std::vector<VariedNumber> joined(const File& file, std::vector<VariedNumber> num
             both.path += "," + numbers[second].path;
             if (!file.accepts(both)) continue;
             numbers[first] = std::move(both);
-            wanted[first] = known[first] = known[second] = true, wanted[second] = false;
+            wanted[first] = known[first] = known[second] = true;
+            wanted[second] = false;
             break;
         }
     }
@@ -111,7 +112,8 @@ std::vector<std::string> paths_in(const std::string& joined) {
 VariedNumber varied_number(const Number& number) {
     VariedNumber varied{.path = number.path, .value = number.value, .unit = number.unit};
     if (const auto unit = millimetre().find(varied.unit); unit != millimetre().end()) {
-        varied.step = unit->second, varied.step_name = "1 mm";
+        varied.step = unit->second;
+        varied.step_name = "1 mm";
         return varied;
     }
     varied.step = varied.value != 0 ? std::abs(varied.value) / 100 : 1;

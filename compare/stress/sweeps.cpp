@@ -132,7 +132,7 @@ std::vector<Variant> invariances(const Scene& scene) {
 }  // namespace
 
 std::vector<Trial> trials(const std::string& name, const Scene& scene) {
-    std::vector<Trial> all{{name, std::string(as_it_is), {"as it is", scene}}};
+    std::vector<Trial> trials{{name, std::string(as_it_is), {"as it is", scene}}};
     using Sweep = std::pair<const char*, std::vector<Variant> (*)(const Scene&)>;
     for (const auto& [sweep, variants] : {Sweep{"transforms", invariances},
                                           {"units", units},
@@ -142,8 +142,8 @@ std::vector<Trial> trials(const std::string& name, const Scene& scene) {
                                           {"load", loads},
                                           {"beyond", beyond},
                                           {"steps", steps}})
-        for (auto& variant : variants(scene)) all.push_back({name, sweep, std::move(variant)});
-    return all;
+        for (auto& variant : variants(scene)) trials.push_back({name, sweep, std::move(variant)});
+    return trials;
 }
 
 }  // namespace elastocheck::compare

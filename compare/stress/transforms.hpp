@@ -7,8 +7,8 @@
 namespace elastocheck::compare {
 
 // A point at p moves to  length · M p + t; every force is multiplied by `force`, hence moments by
-// both, rates by force / length, rotational rates by force · length, branch parameters by their
-// unit.
+// both, rates by force / length, rotational rates by force · length, branch parameters
+// by their unit.
 struct Transform {
     Eigen::Matrix3d M = Eigen::Matrix3d::Identity();  // a rotation or a mirror image
     Eigen::Vector3d t = Eigen::Vector3d::Zero();      // [m]

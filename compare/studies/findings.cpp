@@ -130,8 +130,8 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
             continue;
         for (std::size_t w = 0; w < model.wheels.size(); ++w) {
             const Wheel& wheel = model.wheels[w];
-            const Lifted by = lifted(model, model.branches[b], wheel);
-            if (by.by == Lift::none) continue;
+            const Lifted lift = lifted(model, model.branches[b], wheel);
+            if (lift.by == Lift::none) continue;
             const auto channel = [&](auto&& wanted) {
                 const auto found = std::ranges::find_if(comparison.channels, wanted);
                 return static_cast<std::size_t>(found - comparison.channels.begin());
@@ -141,7 +141,7 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 [&](const Channel& c) { return c.name == prefix + std::string(figure::travel); });
             const std::size_t force = channel([&](const Channel& c) {
                 const auto* effort = std::get_if<Effort>(&c.reads);
-                return effort != nullptr && effort->joint == by.joint;
+                return effort != nullptr && effort->joint == lift.joint;
             });
             const auto gained = [](const Curve& curve, std::size_t c, std::size_t end) {
                 return curve.values[end][c] - curve.values[curve.start][c];
@@ -156,14 +156,14 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 // Lifting force [N]: of the load; of the jack; of the tyre on the road, k_t
                 // (Δh - Δz) with z of the patch
                 const auto lifting = [&](const LegRun& run) {
-                    if (by.by == Lift::load) return by.force * change;
-                    if (by.by == Lift::jack) return gained(run.curve, force, end);
+                    if (lift.by == Lift::load) return lift.force * change;
+                    if (lift.by == Lift::jack) return gained(run.curve, force, end);
                     const auto z = [&](const std::optional<Equilibrium>& at) {
                         return at ? position(at->poses, wheel.contact).z() : NAN;
                     };
                     const auto& [front, start, middle, back] = run.landmarks;
                     return wheel.tyre_rate *
-                           (by.height * change - (z(end == 0 ? front : back) - z(start)));
+                           (lift.height * change - (z(end == 0 ? front : back) - z(start)));
                 };
                 // [N/mm]: under a load, equal force over different travel; on a
                 // jack, different forces
@@ -172,13 +172,13 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                 };
                 error.wheel_rate = rate(reference);
                 error.off = rate(recursion) / error.wheel_rate - 1;
-                if (by.by == Lift::jack)
+                if (lift.by == Lift::jack)
                     error.force = fast.values[end][force] - truth.values[end][force];
                 if (wheel.tyre_rate > 0) {
                     const double tyre = 1e-3 * wheel.tyre_rate;
                     const auto ride = [&](const LegRun& run) {
-                        return by.by == Lift::road ? 1e-3 * lifting(run) / (by.height * change)
-                                                   : 1 / (1 / rate(run) + 1 / tyre);
+                        return lift.by == Lift::road ? 1e-3 * lifting(run) / (lift.height * change)
+                                                     : 1 / (1 / rate(run) + 1 / tyre);
                     };
                     error.ride_rate = ride(reference);
                     error.ride_off = ride(recursion) / error.ride_rate - 1;

@@ -47,12 +47,12 @@ struct SolvedFormulation {
     Curve curve;
 };
 
-std::optional<FormulationSpread> spread_of(const std::vector<SolvedFormulation>& all,
+std::optional<FormulationSpread> spread_of(const std::vector<SolvedFormulation>& solved,
                                            std::size_t channel) {
     FormulationSpread found{.channel = channel, .spread = -1, .at = 0, .lowest = {}, .highest = {}};
     // Range that every curve reaches, around the start points.
-    std::size_t before = all.front().curve.start, after = all.front().curve.a.size();
-    for (const auto& one : all) {
+    std::size_t before = solved.front().curve.start, after = solved.front().curve.a.size();
+    for (const auto& one : solved) {
         before = std::min(before, one.curve.start);
         after = std::min(after, one.curve.a.size() - one.curve.start);
     }
@@ -60,12 +60,12 @@ std::optional<FormulationSpread> spread_of(const std::vector<SolvedFormulation>&
         const auto value = [&](const SolvedFormulation& one) {
             return one.curve.values[one.curve.start - before + k][channel];
         };
-        const auto [low, high] = std::ranges::minmax_element(all, {}, value);
+        const auto [low, high] = std::ranges::minmax_element(solved, {}, value);
         const double spread = value(*high) - value(*low);
         if (!std::isfinite(spread)) return std::nullopt;
         if (spread <= found.spread) continue;
         found.spread = spread;
-        found.at = all.front().curve.a[all.front().curve.start - before + k];
+        found.at = solved.front().curve.a[solved.front().curve.start - before + k];
         found.lowest = low->name;
         found.highest = high->name;
     }

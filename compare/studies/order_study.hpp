@@ -1,9 +1,7 @@
 // Study of the series over its order: number of expansions, cost and error.
 #pragma once
 
-#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compare/studies/solves.hpp"

@@ -63,22 +63,22 @@ const References& reference_runs(Solves& solves, const BranchSide& side) {
 References read_references(Solves& solves, const Branch& branch, std::vector<BranchSide> sides,
                            int multiple) {
     std::vector<PathCurve> truth, other;
-    References all;
+    References references;
     for (const auto& side : sides) {
         const References& runs = reference_runs(solves, side);
         truth.push_back(runs.truth);
         other.push_back(runs.other);
-        all.scale = larger(all.scale, runs.scale);
-        all.second_leg = runs.second_leg;
+        references.scale = larger(references.scale, runs.scale);
+        references.second_leg = runs.second_leg;
     }
-    all.truth = joined(sides, truth);
-    all.other = joined(sides, other);
+    references.truth = joined(sides, truth);
+    references.other = joined(sides, other);
     const auto stride = static_cast<std::size_t>(solves.finest / multiple);
-    for (PathCurve* path : {&all.truth, &all.other})
+    for (PathCurve* path : {&references.truth, &references.other})
         if (stride > 1) path->curve = thinned(path->curve, stride);
     for (auto& side : sides) side = at_points(std::move(side), multiple);
-    judge_references(solves.model, solves.channels, branch, sides, all);
-    return all;
+    judge_references(solves.model, solves.channels, branch, sides, references);
+    return references;
 }
 
 }  // namespace

@@ -325,8 +325,8 @@ Study study(Solves& solves, const StudyOptions& options) {
             "step counts: at least five are needed, positive and increasing");
     Study result;
     result.steps = options.steps;
-    const auto& all = solves.channels;
-    for (const std::size_t c : main_channels(all)) result.channels.push_back(all[c]);
+    const auto& channels = solves.channels;
+    for (const std::size_t c : main_channels(channels)) result.channels.push_back(channels[c]);
 
     auto sides =
         studied_sides(solves, options.steps, options.threads, part(options.progress, 0, 0.3));
@@ -344,8 +344,8 @@ Study study(Solves& solves, const StudyOptions& options) {
     });
     std::vector<Job> jobs;
     for (const auto& side : sides)
-        result.branches.push_back({studied_branch(side, all, side.known.truth.curve), side.steps,
-                                   std::vector<MethodStudy>(methods.size())});
+        result.branches.push_back({studied_branch(side, channels, side.known.truth.curve),
+                                   side.steps, std::vector<MethodStudy>(methods.size())});
     for (std::size_t b = 0; b < sides.size(); ++b)
         for (std::size_t m = 0; m < methods.size(); ++m)
             jobs.push_back({fmt::format("{}: {}", sides[b].name, methods[m].name), [&, b, m] {

@@ -10,9 +10,7 @@
 // The two sides of a branch are studied separately, since each has an end of its own.
 #pragma once
 
-#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compare/outputs/curve.hpp"

@@ -173,9 +173,9 @@ double misfit(double error, double neighbour, double other, bool between) {
     return std::max(error / expected, expected / error);
 }
 
-// Sets the band of the error: [e / factor - u, e factor + u], the factor by misfit() at two
-// neighbouring rungs of the ladder (step counts or tolerances of one method), u the reference
-// uncertainty.
+// Sets the band of the error: [e / factor - u, e factor + u], the factor by misfit()
+// at two neighbouring rungs of the ladder (step counts or tolerances of one method), u
+// the reference uncertainty.
 void band(const Trade& trade, Recommendation& recommendation) {
     const auto k = static_cast<std::ptrdiff_t>(recommendation.point);
     const Accuracy &e = trade.points[recommendation.point].error, &u = trade.uncertainty;

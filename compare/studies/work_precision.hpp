@@ -20,12 +20,10 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compare/deviation/deviation.hpp"

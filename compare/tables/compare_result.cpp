@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <tuple>
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
@@ -217,7 +216,8 @@ std::string about(const Model& model, const Comparison& comparison) {
 
 // Deviations of the recursion, and the distance of the references. Readers see the unit of `at` in
 // the headings.
-Table deviation_table(const Comparison& all, const BranchComparison& branch, bool each_rate) {
+Table deviation_table(const Comparison& comparison, const BranchComparison& branch,
+                      bool each_rate) {
     using enum Digits;
     const Reading &load = branch.deviation.equal_parameter,
                   &travel = branch.deviation.equal_abscissa,
@@ -228,14 +228,16 @@ Table deviation_table(const Comparison& all, const BranchComparison& branch, boo
     const auto at_travel = [&](std::size_t c) {
         return travel.channels.empty() ? none : travel.channels[c];
     };
-    const Channel* by =
-        branch.abscissa < 0 ? nullptr : &all.channels[static_cast<std::size_t>(branch.abscissa)];
-    const std::string over = abscissa_reading(by == nullptr ? "" : by->name);
+    const Channel* abscissa_channel =
+        branch.abscissa < 0 ? nullptr
+                            : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
+    const std::string over =
+        abscissa_reading(abscissa_channel == nullptr ? "" : abscissa_channel->name);
     using C = std::size_t;
     const std::vector<ColumnOf<C>> columns{
         {"branch", hidden, [&](C) { return branch.branch; }},
-        {"output", words, [&](C c) { return all.channels[c].name; }},
-        {"unit", words, [&](C c) { return symbol(all.channels[c].unit); }},
+        {"output", words, [&](C c) { return comparison.channels[c].name; }},
+        {"unit", words, [&](C c) { return symbol(comparison.channels[c].unit); }},
         {"range", three, [&](C c) { return at_load(c).range; }, "of the reference over the branch"},
         {"deviation", deviation, [&](C c) { return at_load(c).signed_max; },
          "of the recursion from the equilibrium leg at equal parameter, largest over the branch",
@@ -248,7 +250,7 @@ Table deviation_table(const Comparison& all, const BranchComparison& branch, boo
         {"deviation across", deviation, [&](C c) { return at_travel(c).signed_max; },
          "likewise at equal abscissa", "", over + ": max"},
         {"at abscissa", three, [&](C c) { return at_travel(c).at; }, "abscissa there", "",
-         fmt::format("at {}", by == nullptr ? "" : symbol(by->unit))},
+         fmt::format("at {}", abscissa_channel == nullptr ? "" : symbol(abscissa_channel->unit))},
         {"rms across", rounded, [&](C c) { return at_travel(c).rms; }, "", "", "rms"},
         {"share across", percent, [&](C c) { return share_of_range(at_travel(c)); }, "", "",
          "share"},
@@ -256,7 +258,7 @@ Table deviation_table(const Comparison& all, const BranchComparison& branch, boo
          "distance of the references, largest over the branch"}};
     const bool compared = !load.channels.empty() && !doubt.channels.empty();
     Table result = table("deviation", columns,
-                         compared ? shown(all, branch, load, each_rate) : std::vector<C>{});
+                         compared ? shown(comparison, branch, load, each_rate) : std::vector<C>{});
     if (!compared) {
         result.notes.push_back("nothing compared: " +
                                (load.channels.empty() ? load.not_compared : doubt.not_compared));

@@ -17,17 +17,18 @@ std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison&
             if (other.unit == figure.unit) pairs.push_back(figure), pairs.push_back(other);
     if (pairs.empty()) return rows;
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
-        const BranchComparison& of = comparison.branches[b];
+        const BranchComparison& compared = comparison.branches[b];
         const Branch& branch = model.branches[b];
-        const PathCurve path = solve_branch(model, pairs, branch, sides_of(model, branch, of.steps),
-                                            {.leg = Leg::equilibrium});
+        const PathCurve path =
+            solve_branch(model, pairs, branch, sides_of(model, branch, compared.steps),
+                         {.leg = Leg::equilibrium});
         for (std::size_t p = 0; p + 1 < pairs.size(); p += 2) {
             const auto figure =
                 static_cast<std::size_t>(find_channel(comparison.channels, pairs[p].name));
-            DefinitionRow row{.branch = of.branch,
+            DefinitionRow row{.branch = compared.branch,
                               .output = pairs[p + 1].name,
                               .unit = symbol(pairs[p].unit),
-                              .parameter_unit = symbol(of.unit),
+                              .parameter_unit = symbol(compared.unit),
                               .formula = pairs[p + 1].definition};
             const auto &here = path.curve.channel(p), &otherwise = path.curve.channel(p + 1);
             bool any = false;
@@ -40,7 +41,7 @@ std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison&
                     row.difference = difference, row.at = path.curve.a[k];
             }
             if (!any) continue;
-            const auto& deviations = of.deviation.equal_parameter.channels;
+            const auto& deviations = compared.deviation.equal_parameter.channels;
             if (figure < deviations.size()) row.deviation = finite_or_nan(deviations[figure].max);
             rows.push_back(std::move(row));
         }

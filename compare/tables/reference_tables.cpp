@@ -1,5 +1,4 @@
 // How far the references agree, by what they are judged, and which of their points are proved.
-#include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
@@ -16,8 +15,8 @@ std::pair<double, int> distance_in(Unit unit, const Comparison& all,
     double largest = -1;
     int compared = 0;
     for (std::size_t c = 0; c < apart.size() && !std::isnan(largest); ++c) {
-        // A length that is not a position, such as a swing arm length near infinity, has its own
-        // scale.
+        // A length that is not a position, such as a swing arm length near infinity, has
+        // its own scale.
         const bool place = unit == Unit::mm || unit == Unit::deg;
         if (all.channels[c].unit != unit || !branch.determined[c] ||
             (place && !all.channels[c].kinematic()))

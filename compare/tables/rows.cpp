@@ -21,8 +21,8 @@ namespace {
 
 double count(auto number) { return static_cast<double>(number); }
 
-// Calls sink(name of the reading, value) for both readings of a branch: over its parameter and its
-// abscissa.
+// Calls sink(name of the reading, value) for both readings of a branch: over its parameter
+// and its abscissa.
 template <class T, class Sink>
 void both(Unit unit, const std::string& abscissa, const T& at_parameter, const T& at_abscissa,
           Sink&& sink) {
@@ -164,9 +164,9 @@ std::vector<StudyRow> study_rows(const Study& study) {
     for (const auto& branch : study.branches)
         for (const auto& m : branch.methods)
             both(branch.unit, branch.abscissa, m.equal_parameter, m.equal_abscissa,
-                 [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
+                 [&](const std::string& reading, const std::vector<ChannelStudy>& outputs) {
                      const OrderFit& Phi = m.constraint_order;
-                     if (found.empty())
+                     if (outputs.empty())
                          rows.push_back({.branch = branch.branch,
                                          .method = m.method,
                                          .reading = reading,
@@ -174,8 +174,8 @@ std::vector<StudyRow> study_rows(const Study& study) {
                                          .constraint_order_error = Phi.order_error,
                                          .not_studied = m.not_studied.empty() ? m.no_abscissa
                                                                               : m.not_studied});
-                     for (std::size_t c = 0; c < found.size(); ++c) {
-                         const ChannelStudy& s = found[c];
+                     for (std::size_t c = 0; c < outputs.size(); ++c) {
+                         const ChannelStudy& s = outputs[c];
                          rows.push_back({branch.branch,
                                          m.method,
                                          reading,
@@ -208,8 +208,8 @@ std::vector<StepRow> step_rows(const Study& study) {
     for (const auto& branch : study.branches)
         for (const auto& m : branch.methods)
             both(branch.unit, branch.abscissa, m.equal_parameter, m.equal_abscissa,
-                 [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
-                     for (std::size_t c = 0; c < std::max<std::size_t>(1, found.size()); ++c)
+                 [&](const std::string& reading, const std::vector<ChannelStudy>& outputs) {
+                     for (std::size_t c = 0; c < std::max<std::size_t>(1, outputs.size()); ++c)
                          for (std::size_t l = 0; l < branch.steps.size(); ++l) {
                              StepRow row{.branch = branch.branch,
                                          .method = m.method,
@@ -217,13 +217,13 @@ std::vector<StepRow> step_rows(const Study& study) {
                                          .steps = count(branch.steps[l]),
                                          .outcome = elastocheck::name(m.outcomes[l]),
                                          .constraint_error = m.constraint_error[l]};
-                             if (!found.empty()) {
+                             if (!outputs.empty()) {
                                  row.output = study.channels[c].name;
                                  row.unit = symbol(study.channels[c].unit);
-                                 row.end = found[c].step_error_end[l];
-                                 row.largest = found[c].step_error_max[l];
-                                 row.rms = found[c].step_error_rms[l];
-                                 row.error = row.end + found[c].gap;
+                                 row.end = outputs[c].step_error_end[l];
+                                 row.largest = outputs[c].step_error_max[l];
+                                 row.rms = outputs[c].step_error_rms[l];
+                                 row.error = row.end + outputs[c].gap;
                              }
                              rows.push_back(std::move(row));
                          }
@@ -273,22 +273,23 @@ std::vector<TradeRow> trade_rows(const Trade& trade) {
     return rows;
 }
 
-std::vector<EffectRow> effect_rows(const Gradients& all) {
+std::vector<EffectRow> effect_rows(const Gradients& gradients) {
     std::vector<EffectRow> rows;
-    for (std::size_t b = 0; b < all.sides.size(); ++b) {
-        const SideGradients& side = all.sides[b];
+    for (std::size_t b = 0; b < gradients.sides.size(); ++b) {
+        const SideGradients& side = gradients.sides[b];
         for (std::size_t s = 0; s < side.a.size(); ++s) {
             if (b > 0 && side.a[s] == 0) continue;
-            for (std::size_t c = 0; c < all.outputs.size(); ++c)
-                for (std::size_t k = 0; k < all.numbers.size(); ++k) {
-                    const VariedNumber& number = all.numbers[k];
+            for (std::size_t c = 0; c < gradients.outputs.size(); ++c)
+                for (std::size_t k = 0; k < gradients.numbers.size(); ++k) {
+                    const VariedNumber& number = gradients.numbers[k];
                     const double rate = side.legs.front().at[s](static_cast<Eigen::Index>(c),
                                                                 static_cast<Eigen::Index>(k));
                     const std::string& why =
                         side.why_output[c].empty() ? side.why_number[s][k] : side.why_output[c];
                     rows.push_back({side.branch, parameter_in(side.unit, side.a[s]),
-                                    symbol(side.unit), all.outputs[c].name,
-                                    symbol(all.outputs[c].unit), number.path, number.step_name,
+                                    symbol(side.unit), gradients.outputs[c].name,
+                                    symbol(gradients.outputs[c].unit), number.path,
+                                    number.step_name,
                                     why.empty() ? finite_or_nan(rate * number.step) : nan, why});
                 }
         }

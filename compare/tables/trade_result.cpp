@@ -1,7 +1,6 @@
 // The price of accuracy of every method, and the recommended one, for readers.
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 
 #include "compare/result/result.hpp"

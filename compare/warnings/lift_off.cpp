@@ -62,8 +62,8 @@ struct LoadAt {
     double a = 0, load = 0;
 };
 
-// The zero between two parameters by false position (Illinois), NaN where the leg does not solve
-// there.
+// The zero between two parameters by false position (Illinois), NaN where the leg does
+// not solve there.
 double place(const Pusher& of, const BranchSide& side, Leg leg, LoadAt from, LoadAt to) {
     auto [a, f_a] = from;
     auto [b, f_b] = to;

@@ -7,14 +7,12 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <span>
 
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/kinds.hpp"
-#include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
 namespace {

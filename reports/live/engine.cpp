@@ -94,9 +94,7 @@ struct Solver {
         return compare::solve_branch(
             sides, solver,
             [&](const Equilibrium& state) {
-                std::optional<compare::WheelResponse> response;
-                compare::Row row =
-                    row_of(model, read, sides.front(), solver, state, analyses, response);
+                compare::Row row = row_of(model, read, sides.front(), solver, state, analyses);
                 row.values.resize(channels.size(), not_computed);
                 if (!wanted.geometry) return row;
                 for (const Point& point : points)
@@ -107,7 +105,8 @@ struct Solver {
                          Vector3d(compare::pose(state.poses, wheel.body).p * wheel.spin_axis_local))
                         row.values.push_back(x);
                 for (const Vector3d& p : compare::points_of_figures(
-                         sides.front().model, state, response.value_or(compare::WheelResponse{})))
+                         sides.front().model, state,
+                         analyses.response.value_or(compare::WheelResponse{})))
                     for (const double x : p) row.values.push_back(1e3 * x);
                 return row;
             },

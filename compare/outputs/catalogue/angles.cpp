@@ -152,7 +152,7 @@ double roll_moment(const Subject& x) {
 
 // ---- Positions: an entry an axis.
 
-void add_position(std::vector<Entry>& all, Owner owner, const std::string& stem,
+void add_position(std::vector<Entry>& entries, Owner owner, const std::string& stem,
                   const std::string& of, Point (*point)(const Wheel&),
                   std::array<Properties, 3> is = {}) {
     for (int k = 0; k < 3; ++k) {
@@ -163,7 +163,7 @@ void add_position(std::vector<Entry>& all, Owner owner, const std::string& stem,
                     is[a]};
         entry.axis = k;
         entry.point = point;
-        all.push_back(std::move(entry));
+        entries.push_back(std::move(entry));
     }
 }
 Point centre_of(const Wheel& wheel) { return {wheel.body, wheel.centre_local}; }
@@ -529,7 +529,7 @@ std::string axis_words(int axis) {
     return std::string("ground axis ") + axes[a] + ", positive " + towards[a];
 }
 
-void add_angles(std::vector<Entry>& all) {
+void add_angles(std::vector<Entry>& entries) {
     const auto moves = [](const char* rig, const Drawing& drawn) {
         return Properties{.main = true, .rig = rig, .drawn = {drawn}};
     };
@@ -538,7 +538,7 @@ void add_angles(std::vector<Entry>& all) {
                           "since the start of the branch, forward positive", Shown::change});
     x.drawn.push_back(
         {Over::load, 4, "Wheel centre, longitudinal change", "forward positive", Shown::change});
-    add_position(all, Owner::wheel, "wheel_centre", "the wheel centre", centre_of,
+    add_position(entries, Owner::wheel, "wheel_centre", "the wheel centre", centre_of,
                  {x,
                   moves("wheel centre y, wheel center y",
                         {Over::if_given, 1, "Lateral movement of the wheel centre",
@@ -546,15 +546,15 @@ void add_angles(std::vector<Entry>& all) {
                   moves("wheel centre z, wheel center z",
                         {Over::if_given, 2, "Vertical movement of the wheel centre", "up positive",
                          Shown::change})});
-    std::ranges::copy(of_wheel, std::back_inserter(all));
-    add_position(all, Owner::rolling_wheel, "contact_patch",
+    std::ranges::copy(of_wheel, std::back_inserter(entries));
+    add_position(entries, Owner::rolling_wheel, "contact_patch",
                  "the contact patch, the lowest point of the rolling wheel", patch_of);
-    add_position(all, Owner::wheel_with_fixed_patch, "contact_patch",
+    add_position(entries, Owner::wheel_with_fixed_patch, "contact_patch",
                  "the point of the carrier that is the contact patch at the design position",
                  patch_of);
-    std::ranges::copy(of_patch, std::back_inserter(all));
-    all.push_back(wheel_load_entry());
-    all.push_back(roll_moment_entry());
+    std::ranges::copy(of_patch, std::back_inserter(entries));
+    entries.push_back(wheel_load_entry());
+    entries.push_back(roll_moment_entry());
 }
 
 void add_angles_otherwise(std::vector<Entry>& all) {

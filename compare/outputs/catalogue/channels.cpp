@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -108,12 +107,12 @@ constexpr std::array<UnitEntry, static_cast<std::size_t>(Unit::newton_metre_per_
 
 // ---- The list
 
-std::string body_name(const Model& model, BodyId body) {
+std::string quoted_body(const Model& model, BodyId body) {
     return body == ground ? "ground"
                           : "'" + model.bodies[static_cast<std::size_t>(body)].name + "'";
 }
 
-void add_wrench(std::vector<Channel>& list, const std::string& stem, const std::string& what,
+void add_wrench(std::vector<Channel>& list, const std::string& stem, const std::string& quantity,
                 const std::string& about, const auto& reads) {
     for (int k = 0; k < 6; ++k) {
         const auto axis = static_cast<std::size_t>(k % 3);
@@ -122,10 +121,10 @@ void add_wrench(std::vector<Channel>& list, const std::string& stem, const std::
              .unit = k < 3 ? Unit::newton : Unit::newton_metre,
              .main = false,
              .reads = reads(k),
-             .definition = k < 3 ? fmt::format("force of {}, {}", what, axis_words(k))
+             .definition = k < 3 ? fmt::format("force of {}, {}", quantity, axis_words(k))
                                  : fmt::format("moment of {}, about {}, ground axis {}, "
                                                "right-handed",
-                                               what, about, axes[axis])});
+                                               quantity, about, axes[axis])});
     }
 }
 
@@ -246,7 +245,7 @@ std::vector<Channel> channels(const Model& model) {
     for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const ModelJoint& joint = model.joints[k];
         add_wrench(list, joint.name,
-                   fmt::format("joint '{}' on {}", joint.name, body_name(model, joint.i)),
+                   fmt::format("joint '{}' on {}", joint.name, quoted_body(model, joint.i)),
                    "the joint's point", [&](int component) {
                        return Reaction{static_cast<int>(k), component};
                    });
@@ -270,7 +269,7 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
                 names += (names.empty() ? "'" : ", '") + joint_of(model, k).name + "'";
             }
             add_wrench(list, stem,
-                       fmt::format("joints {} together on {}", names, body_name(model, body)),
+                       fmt::format("joints {} together on {}", names, quoted_body(model, body)),
                        fmt::format("the point of '{}'", joint_of(model, on.front()).name),
                        [&, body = body, on = on](int component) {
                            return Total{on, body, component};

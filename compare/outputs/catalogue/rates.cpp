@@ -99,7 +99,7 @@ double anti(const Subject& x, const Placed& at, double share, double sign) {
 }
 // The same with the instant centre of the side view as drawn by hand: the planes of the two wishbones
 // meet the longitudinal plane through the wheel centre in two lines, and these in (x, z).
-double anti_by_planes(const Subject& x, const Vector3d& at, double share, double sign) {
+double anti_by_planes(const Subject& x, const Vector3d& patch, double share, double sign) {
     const auto planes = wishbone_planes(x);
     if (planes.size() != 2) return undefined;
     const double y = x.centre().at.y();
@@ -112,8 +112,8 @@ double anti_by_planes(const Subject& x, const Vector3d& at, double share, double
     }
     // (x, z) = N / determinant; of parallel lines at infinity, in their direction
     const double determinant = A.determinant(),
-                 rise = A(0, 0) * b[1] - A(1, 0) * b[0] - determinant * at.z(),
-                 run = b[0] * A(1, 1) - b[1] * A(0, 1) - determinant * at.x();
+                 rise = A(0, 0) * b[1] - A(1, 0) * b[0] - determinant * patch.z(),
+                 run = b[0] * A(1, 1) - b[1] * A(0, 1) - determinant * patch.x();
     const Vehicle& vehicle = *x.model.vehicle;
     return sign * share * ratio(rise, -run, nowhere) * vehicle.wheelbase / vehicle.cg_height;
 }
@@ -401,23 +401,24 @@ const Entry otherwise[] = {
 // Of a spring or damper.
 std::vector<Entry> motion_ratios(Owner owner, const std::string& word,
                                  double (*motion_ratio)(const Subject&), const char* inverse) {
-    const std::string of = "shortening of the " + word,
+    const std::string definition = "shortening of the " + word,
                       still = "the " + word + " does not move with the wheel",
                       rise = "the vertical displacement of the contact patches, their mean";
     return {
-        Entry(owner, "motion_ratio@inverse", Unit::none, "travel of the wheel centres over " + of,
-              still, [=](const Subject& x) { return ratio(1, motion_ratio(x), nowhere); },
+        Entry(owner, "motion_ratio@inverse", Unit::none,
+              "travel of the wheel centres over " + definition, still,
+              [=](const Subject& x) { return ratio(1, motion_ratio(x), nowhere); },
               {.elsewhere = inverse}),
-        Entry(owner, "motion_ratio@patch", Unit::none, of + " over " + rise, never,
+        Entry(owner, "motion_ratio@patch", Unit::none, definition + " over " + rise, never,
               [=](const Subject& x) { return ratio(motion_ratio(x), mean_rise(x), nowhere); },
               {.elsewhere = "deflection counted at the tyre"}),
-        Entry(owner, "motion_ratio@patch_inverse", Unit::none, rise.substr(4) + ", over " + of,
-              still,
+        Entry(owner, "motion_ratio@patch_inverse", Unit::none,
+              rise.substr(4) + ", over " + definition, still,
               [=](const Subject& x) { return ratio(mean_rise(x), motion_ratio(x), nowhere); },
               {.elsewhere = owner == Owner::spring ? "deflection at the tyre over spring travel"
                                                    : "deflection at the tyre over damper travel"}),
         Entry(owner, "motion_ratio@patch_path", Unit::none,
-              "path of the contact patches in space, their mean, over " + of, still,
+              "path of the contact patches in space, their mean, over " + definition, still,
               [=](const Subject& x) { return ratio(mean_path(x), motion_ratio(x), nowhere); },
               {.elsewhere = owner == Owner::spring
                                 ? "OptimumK: wheel displacement over spring displacement"
@@ -549,19 +550,19 @@ void add_rates(std::vector<Entry>& all) {
     std::ranges::copy(of_springs, std::back_inserter(all));
 }
 
-void add_rates_otherwise(std::vector<Entry>& all) {
-    std::ranges::copy(otherwise, std::back_inserter(all));
+void add_rates_otherwise(std::vector<Entry>& entries) {
+    std::ranges::copy(otherwise, std::back_inserter(entries));
     std::ranges::move(
         motion_ratios(
             Owner::spring, "spring", spring_ratio,
             "wheel travel over spring travel; a manufacturer's table (tests/outside/README.md)"),
-        std::back_inserter(all));
+        std::back_inserter(entries));
     std::ranges::move(
         motion_ratios(Owner::damper, "damper", damper_ratio, "wheel travel over damper travel"),
-        std::back_inserter(all));
-    std::ranges::copy(more_otherwise, std::back_inserter(all));
-    add_roll_otherwise(all);
-    add_force_tests(all, true);
+        std::back_inserter(entries));
+    std::ranges::copy(more_otherwise, std::back_inserter(entries));
+    add_roll_otherwise(entries);
+    add_force_tests(entries, true);
 }
 
 }  // namespace elastocheck::compare
