@@ -29,8 +29,8 @@ namespace py = pybind11;
 
 namespace {
 
-// Output of a command: what it prints, its text where it prints a document, what it reports as
-// errors.
+// Output of a command: what it prints, its text where it prints a document, what it
+// reports as errors.
 struct Output {
     int exit_code = reports::fine;
     std::string printed = {}, text = {}, errors = {};

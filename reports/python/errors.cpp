@@ -3,13 +3,11 @@
 #include <pybind11/pybind11.h>
 
 #include <filesystem>
-#include <new>
 #include <stdexcept>
 
 #include "elastocheck/read_scene.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/files/files.hpp"
-#include "reports/given/measurement.hpp"
 #include "reports/json/json_cursor.hpp"
 
 namespace elastocheck::python {

@@ -91,15 +91,15 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
                   .every = request.solver.every,
                   .channels = channels->size() + (request.states ? 7 * model.bodies.size() : 0)});
     const bool is_recursive = solver.leg == compare::Leg::recursive;
-    std::vector<BranchCurves> all;
+    std::vector<BranchCurves> list;
     for (const Branch& branch : branches) {
-        BranchCurves& of = all.emplace_back();
-        of.branch = branch.name;
-        of.leg = solver.leg;
-        of.method = is_recursive ? std::string(how.method.name) : name(solver.leg);
-        of.unit = compare::unit_of(branch.unit);
-        of.channels = channels;
-        of.scene = scene;
+        BranchCurves& curves = list.emplace_back();
+        curves.branch = branch.name;
+        curves.leg = solver.leg;
+        curves.method = is_recursive ? std::string(how.method.name) : name(solver.leg);
+        curves.unit = compare::unit_of(branch.unit);
+        curves.channels = channels;
+        curves.scene = scene;
         reports::SolvedBranch solved = reports::solve_branch(
             model, branch, *channels, solver,
             [&](const Equilibrium& state, compare::Row& row) {
@@ -108,17 +108,17 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
             [&](compare::Row row) {
                 const auto outputs =
                     row.values.begin() + static_cast<std::ptrdiff_t>(channels->size());
-                of.poses.insert(of.poses.end(), outputs, row.values.end());
+                curves.poses.insert(curves.poses.end(), outputs, row.values.end());
                 row.values.erase(outputs, row.values.end());
-                of.rows.push_back(std::move(row));
+                curves.rows.push_back(std::move(row));
             });
-        of.outcome = solved.path.outcome;
-        of.detail = solved.path.detail;
-        of.ends = std::move(solved.ends);
+        curves.outcome = solved.path.outcome;
+        curves.detail = solved.path.detail;
+        curves.ends = std::move(solved.ends);
         if (!solved.softest_motion.empty())
-            of.detail += "; the softest motion before it is " + solved.softest_motion;
+            curves.detail += "; the softest motion before it is " + solved.softest_motion;
     }
-    return all;
+    return list;
 }
 
 namespace {
@@ -234,10 +234,9 @@ std::string drawing_of(const SceneOfFile& scene, const std::string& view) {
     return reports::picture(reports::drawing_of(scene.loaded.scene, scene.loaded.model, {}), view);
 }
 
-}  // namespace
+using release = py::call_guard<py::gil_scoped_release>;
 
-void bind_scene(py::module_& module) {
-    using release = py::call_guard<py::gil_scoped_release>;
+void bind_curves(py::module_& module) {
     py::class_<BranchCurves, std::shared_ptr<BranchCurves>>(module, "Curves")
         .def_readonly("branch", &BranchCurves::branch)
         .def_property_readonly("leg", [](const BranchCurves& c) { return name(c.leg); })
@@ -271,7 +270,12 @@ void bind_scene(py::module_& module) {
         .def("csv", &csv_of, py::arg("header") = true)
         .def("__getitem__", &column)
         .def("__len__", [](const BranchCurves& c) { return c.rows.size(); });
+}
 
+}  // namespace
+
+void bind_scene(py::module_& module) {
+    bind_curves(module);
     py::class_<SceneOfFile, std::shared_ptr<SceneOfFile>>(module, "Scene", py::dynamic_attr())
         .def_readonly("file", &SceneOfFile::file)
         .def_property_readonly("name", [](const SceneOfFile& s) { return s.loaded.model.name; })

@@ -24,8 +24,8 @@ struct SceneOfFile {
 };
 using SharedScene = std::shared_ptr<const SceneOfFile>;
 
-// Throw as the reader and trimmed_and_compiled() do. `name`: of the file in messages, instead of its
-// path.
+// Throw as the reader and trimmed_and_compiled() do. `name`: of the file in messages, instead
+// of its path.
 SharedScene read(const std::string& file, const reports::Settings& settings,
                  const std::string& name = {});
 // The same text with these settings in addition.

@@ -55,31 +55,30 @@ Table table_of(const std::string& id, const std::string& caption, const Columns&
 }
 
 Chart chart_of(const std::string& kind, const std::string& title, const std::string& table,
-               const std::string& only, const std::string& axis, const std::string& x,
-               std::vector<std::string> y, std::vector<double> marks) {
-    const auto of = std::ranges::find(compare::chart_kinds, kind);
+               const std::string& x, std::vector<std::string> y) {
+    const auto known = std::ranges::find(compare::chart_kinds, kind);
     return {.title = title,
             .table = table,
             .x = x,
             .y = std::move(y),
-            .kind = static_cast<Chart::Kind>(of - compare::chart_kinds),
-            .only = only,
-            .axis = axis,
-            .marks = std::move(marks)};
+            .kind = static_cast<Chart::Kind>(known - compare::chart_kinds)};
 }
 
-compare::Result findings_of(bool fine, const std::string& sentence,
-                            std::vector<std::string> reasons, int compared,
-                            std::vector<Table> tables, std::vector<Chart> charts,
-                            std::vector<std::string> notes) {
+compare::Verdict verdict_of(bool fine, const std::string& sentence,
+                            std::vector<std::string> reasons, int compared) {
+    return {.grade = fine ? compare::Grade::pass : compare::Grade::not_judged,
+            .sentence = sentence,
+            .reasons = std::move(reasons),
+            .compared = compared,
+            .requested = compared > 0};
+}
+
+compare::Result findings_of(compare::Verdict verdict, std::vector<Table> tables,
+                            std::vector<Chart> charts, std::vector<std::string> notes) {
     int number = 0;
     for (Chart& chart : charts) chart.id = fmt::format("f{}", ++number);
     return {.analysis = "study",
-            .verdict = {.grade = fine ? compare::Grade::pass : compare::Grade::not_judged,
-                        .sentence = sentence,
-                        .reasons = std::move(reasons),
-                        .compared = compared,
-                        .requested = compared > 0},
+            .verdict = std::move(verdict),
             .tables = std::move(tables),
             .charts = std::move(charts),
             .notes = std::move(notes)};
@@ -136,12 +135,17 @@ void bind_study(py::module_& module) {
         .def(py::init(&table_of), py::arg("id"), py::arg("caption"), py::arg("columns"),
              py::arg("rows"));
     py::class_<Chart>(module, "Chart")
-        .def(py::init(&chart_of), py::arg("kind"), py::arg("title"), py::arg("table"),
-             py::arg("only"), py::arg("axis"), py::arg("x"), py::arg("y"),
-             py::arg("marks") = std::vector<double>());
+        .def(py::init(&chart_of), py::arg("kind"), py::arg("title"), py::arg("table"), py::arg("x"),
+             py::arg("y"))
+        .def_readwrite("only", &Chart::only)
+        .def_readwrite("axis", &Chart::axis)
+        .def_readwrite("marks", &Chart::marks);
+    py::class_<compare::Verdict>(module, "Verdict")
+        .def(py::init(&verdict_of), py::arg("fine"), py::arg("sentence"), py::arg("reasons"),
+             py::arg("compared"));
     py::class_<compare::Result>(module, "Findings")
-        .def(py::init(&findings_of), py::arg("fine"), py::arg("sentence"), py::arg("reasons"),
-             py::arg("compared"), py::arg("tables"), py::arg("charts"), py::arg("notes"))
+        .def(py::init(&findings_of), py::arg("verdict"), py::arg("tables"), py::arg("charts"),
+             py::arg("notes"))
         .def_property_readonly("text",
                                [](const compare::Result& found) { return reports::text(found); })
         .def_property_readonly("document",

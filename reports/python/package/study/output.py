@@ -37,6 +37,12 @@ def _table(name, rows, caption):
     return _core.Table(name, caption, columns, [list(row.values()) for row in rows])
 
 
+def _chart(kind, title, table, x, y, only, axis="", marks=()):
+    chart = _core.Chart(kind, title, table, x, y)
+    chart.only, chart.axis, chart.marks = only, axis, marks
+    return chart
+
+
 def _sample(study, most=400):
     """Numbers of independent variants, evenly spread, and the values of their variables. Not at equal distances: of a
     Sobol sequence those leave gaps that it has not."""
@@ -67,10 +73,10 @@ class Report(Result):
         captions = {"variables": "Variables", "figures": "Figures", "sobol": "Shares of the variance (Sobol indices)",
                     "rare": "Rare failures", "witnesses": f"Every {study.witness} variants by the equilibrium leg too",
                     "failed": "The first failed variants"} | dict.fromkeys(_DATA, "")
+        verdict = _core.Verdict(not self.exit_code, f"{self.rows} of {count} variants: {', '.join(parts)}.", reasons,
+                                sum(row["witnesses"] for row in rows["witnesses"]))
         self.found = _core.Findings(
-            not self.exit_code, f"{self.rows} of {count} variants: {', '.join(parts)}.", reasons,
-            sum(row["witnesses"] for row in rows["witnesses"]),
-            [_table(name, rows[name], caption) for name, caption in captions.items() if rows[name]], charts, [f"Content {self.content}"])
+            verdict, [_table(name, rows[name], caption) for name, caption in captions.items() if rows[name]], charts, [f"Content {self.content}"])
         document = {"schema": "elastocheck/study/3", "reproduce": reproduce,
                     "provenance": {"version": _core.build, "compiler": _core.compiler}, "study": study.file, "scene": study.scene_file,
                     "identity": study.identity, "count": count, "rows": self.rows, "outcomes": self.outcomes,
@@ -106,21 +112,21 @@ class Report(Result):
             counts, edges = np.histogram(drawn, bins)
             rows["histograms"] += [{"figure": figure.name, "from": low, "to": high, "variants": n}
                                    for low, high, n in zip(edges, edges[1:], counts)]
-            charts.append(_core.Chart("bars", "Distribution", "histograms", figure.name, heading(figure), "from",
-                                      ["to", "variants"], [figure.low, figure.high]))
+            charts.append(_chart("bars", "Distribution", "histograms", "from", ["to", "variants"],
+                                 figure.name, heading(figure), [figure.low, figure.high]))
             if shares := sobol_rows(study, figure, values):
                 rows["sobol"] += shares
                 rank = {row["variable"]: row["total"] for row in shares}
-                charts.append(_core.Chart("ranked", "Shares of the variance", "sobol", figure.name, "total Sobol index",
-                                          "variable", ["total", "total from", "total to"]))
+                charts.append(_chart("ranked", "Shares of the variance", "sobol", "variable",
+                                     ["total", "total from", "total to"], figure.name, "total Sobol index"))
             else:
                 rank = (varied.corrwith(sample[heading(figure)].where(np.isfinite)) ** 2).fillna(0)
                 rows["correlations"] += [{"figure": figure.name, "variable": name, "squared": x} for name, x in rank.items()]
-                charts.append(_core.Chart("ranked", "Squared correlation", "correlations", figure.name,
-                                          "squared correlation", "variable", ["squared"]))
+                charts.append(_chart("ranked", "Squared correlation", "correlations", "variable", ["squared"], figure.name,
+                                     "squared correlation"))
             for name in sorted(names, key=lambda name, rank=rank: -rank[name])[:3]:
-                charts.append(_core.Chart("points", "Over " + name, "sample", figure.name, "",
-                                          sample.columns[names.index(name)], [heading(figure)]))
+                charts.append(_chart("points", "Over " + name, "sample", sample.columns[names.index(name)],
+                                     [heading(figure)], figure.name))
         rows["sample"] = sample.to_dict("records")
         return rows, reasons, charts
 
