@@ -1,5 +1,4 @@
 // `elastocheck certify`: proves by interval arithmetic that computed points are equilibria.
-#include <algorithm>
 #include <memory>
 
 #include "compare/proofs/certify.hpp"

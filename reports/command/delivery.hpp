@@ -1,5 +1,5 @@
-// Output of a command: text on the terminal, one JSON document on standard output, or files in a
-// folder.
+// Output of a command: text on the terminal, one JSON document on standard output, or files
+// in a folder.
 #pragma once
 
 #include <nlohmann/json.hpp>

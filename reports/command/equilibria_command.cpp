@@ -1,11 +1,9 @@
-// `elastocheck equilibria`: multiple equilibria at one load, each proved, and their relation to the
-// branch.
-#include <algorithm>
+// `elastocheck equilibria`: multiple equilibria at one load, each proved, and their relation
+// to the branch.
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
-#include <vector>
 
 #include "compare/proofs/multiple_equilibria.hpp"
 #include "reports/command/delivery.hpp"

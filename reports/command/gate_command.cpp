@@ -1,5 +1,5 @@
-// `elastocheck gate`: judges scenes by their baselines, or accepts the measurements as new
-// baselines.
+// `elastocheck gate`: judges scenes by their baselines, or accepts the measurements
+// as new baselines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,10 +61,10 @@ fs::path baseline_of(const fs::path& scene, const std::string& folder) {
 }
 
 std::vector<Task> tasks(const GateOptions& options) {
-    std::vector<Task> all;
+    std::vector<Task> tasks;
     for (const auto& scene : options.scenes)
-        all.push_back({scene, baseline_of(scene, options.folder), ""});
-    if (!all.empty()) return all;
+        tasks.push_back({scene, baseline_of(scene, options.folder), ""});
+    if (!tasks.empty()) return tasks;
     const fs::path folder = options.folder.empty() ? "baselines" : options.folder;
     std::error_code unreadable;
     const auto entries = fs::directory_iterator(folder, unreadable);
@@ -79,22 +79,22 @@ std::vector<Task> tasks(const GateOptions& options) {
                 (folder / for_terminal(entry.path().filename().string())).string(), wrong));
         try {
             const BaselineFile file = read_baseline(entry.path());
-            all.push_back({(folder / file.scene_file).lexically_normal(), entry.path(), ""});
+            tasks.push_back({(folder / file.scene_file).lexically_normal(), entry.path(), ""});
         } catch (const std::runtime_error& error) {  // BaselineError, FileError
-            all.push_back({entry.path(), entry.path(), error.what()});
+            tasks.push_back({entry.path(), entry.path(), error.what()});
         }
     }
-    std::ranges::sort(all, {}, &Task::baseline);
-    if (all.empty())
+    std::ranges::sort(tasks, {}, &Task::baseline);
+    if (tasks.empty())
         print_error(
             "elastocheck: there is no baseline in {}; name a SCENE, or the folder with "
             "--baseline\n",
             folder.string());
-    return all;
+    return tasks;
 }
 
-// Relative path from the baseline to the scene. It may contain folder names that are not valid
-// text.
+// Relative path from the baseline to the scene. It may contain folder names that are
+// not valid text.
 std::string name_beside(const Task& task) {
     // Absolute, since relative() fails for a folder that does not exist yet.
     const fs::path folder = fs::absolute(task.baseline).parent_path();

@@ -1,5 +1,5 @@
-// `elastocheck import`: converts a model of another program to a scene. `elastocheck export`: the
-// reverse.
+// `elastocheck import`: converts a model of another program to a scene. `elastocheck
+// export`: the reverse.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -260,8 +260,8 @@ Breakpoints branch_breakpoints(const Scene& scene, const Branch& branch,
     return points;
 }
 
-// Coefficients of compliance at the design position, at the start of the branch as it stands in the
-// scene.
+// Coefficients of compliance at the design position, at the start of the branch as it stands
+// in the scene.
 int add_compliance(const ExportRequest& request, KCBlocks& blocks) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Branch& branch = branch_named(loaded.model, request.over, "--over");

@@ -1,5 +1,4 @@
 // `elastocheck judge`: judges another solver's results by the references.
-#include <fmt/format.h>
 
 #include <memory>
 
@@ -10,7 +9,6 @@
 #include "reports/command/program/command.hpp"
 #include "reports/document/curves.hpp"
 #include "reports/document/document.hpp"
-#include "reports/files/files.hpp"
 #include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
 

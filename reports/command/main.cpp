@@ -1,7 +1,7 @@
 // The elastocheck command.
 //
-// Exit codes: 0 fine · 1 a gate's limit is broken · 2 bad input · 3 could not judge · 4 internal
-// error.
+// Exit codes: 0 fine · 1 a gate's limit is broken · 2 bad input · 3 could not judge ·
+// 4 internal error.
 #include <fmt/format.h>
 
 #include <csignal>

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <iterator>
 #include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compare_with.hpp"
@@ -19,7 +23,6 @@
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "reports/command/browser.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/live/live_page.hpp"
 #include "reports/command/options/candidate_options.hpp"
@@ -37,10 +40,52 @@
 #include "reports/page/report/report.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
+#include "reports/text/escape.hpp"
 #include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
+
+std::string variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? "" : value;
+}
+
+bool succeeds(const std::string& line) { return std::system(line.c_str()) == 0; }
+
+bool is_there(const std::string& command) {
+    const std::string program = command.substr(0, command.find(' '));
+    return !program.empty() && succeeds("command -v " + for_shell(program) + " >/dev/null 2>&1");
+}
+
+// Command of a browser: the first of the colon-separated list $BROWSER whose program exists, else
+// xdg-open. Throws std::invalid_argument without a browser, and where CI is set.
+std::string browser() {
+    if (const std::string ci = variable("CI"); !ci.empty() && ci != "false" && ci != "0")
+        throw std::invalid_argument("--open: not in CI (variable CI is set)");
+    std::istringstream list(variable("BROWSER"));
+    for (std::string command; std::getline(list, command, ':');)
+        if (is_there(command)) return command;
+    if (is_there("xdg-open")) return "xdg-open";
+    throw std::invalid_argument(
+        "--open: there is nothing to open a page with: $BROWSER names no program, and xdg-open (of "
+        "xdg-utils) is not there");
+}
+
+// Runs it in a shell with the page in place of %s, or after it, and waits for it. Throws
+// std::invalid_argument where it fails.
+void open_in(const std::string& browser, const std::string& page) {
+    const std::string address = for_shell(std::filesystem::absolute(page).string());
+    std::string line = browser;
+    if (const auto at = line.find("%s"); at != line.npos)
+        line.replace(at, 2, address);
+    else
+        line += " " + address;
+    // Its output goes to standard error: standard output may be a document.
+    if (!succeeds(line + " >&2"))
+        throw std::invalid_argument(
+            fmt::format("--open: {} failed; the page is {}", browser, page));
+}
 
 using json = nlohmann::ordered_json;
 
@@ -141,14 +186,14 @@ struct KeyOutputs {
 };
 KeyOutputs key_outputs(const Model& model) {
     KeyOutputs key;
-    const auto all = compare::figure_outputs(model);
+    const auto outputs = compare::figure_outputs(model);
     // of the first wheel, or of the axle
     const auto is_first = [&](const compare::Channel& channel) {
         const std::string_view figure = compare::without_owner(channel.name);
         return channel.name.size() == figure.size() ||
                channel.name == model.wheels.front().name + "." + std::string(figure);
     };
-    for (const auto& channel : all) {
+    for (const auto& channel : outputs) {
         if (model.wheels.empty() || !is_first(channel)) continue;
         const compare::Entry* entry = compare::find_entry(channel.name);
         if (entry != nullptr && entry->is.explained) key.at_design.push_back(channel);
@@ -156,7 +201,7 @@ KeyOutputs key_outputs(const Model& model) {
             key.at_ends.push_back(channel);
     }
     constexpr std::size_t without_wheel = 3;
-    for (const auto& channel : all)
+    for (const auto& channel : outputs)
         if (model.wheels.empty() && channel.main && key.at_ends.size() < without_wheel)
             key.at_ends.push_back(channel);
     return key;

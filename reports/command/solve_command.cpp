@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -135,9 +134,12 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         const EquilibriumPath& path = solved.path;
         if (csv) progress("");
         if (delivery.as_json) {
-            whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
+            whole.outcome = path.outcome;
+            whole.detail = path.detail;
+            whole.counts = path.counts;
             compare::BranchComparison& alone = kept.emplace_back();
-            alone.branch = branch.name, alone.runs = {whole};
+            alone.branch = branch.name;
+            alone.runs = {whole};
         }
         for (const auto& event : compare::lift_offs(
                  model, branch, leg == compare::Leg::recursive ? compare::Leg::series : leg))

@@ -1,7 +1,5 @@
 #include "reports/document/document.hpp"
 
-#include <cmath>
-
 #include "compare/comparison/elements.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
@@ -169,7 +167,7 @@ json wheels_json(const Model& model) {
 
 }  // namespace
 
-std::string driven_name(const Model& model, const Driven& what) {
+std::string driven_name(const Model& model, const Driven& driven) {
     const auto element = [&](int k) { return model.elastics[static_cast<std::size_t>(k)].name; };
     return std::visit(
         overloaded{
@@ -181,7 +179,7 @@ std::string driven_name(const Model& model, const Driven& what) {
                        of.name;
             },
             [&](const Preload& p) { return "preload of " + element(p.elastic); }},
-        what);
+        driven);
 }
 
 json document(const std::string& reproduce, const Provenance& provenance) {
@@ -212,8 +210,8 @@ json branches_json(const SceneAnalyses& scene) {
         const auto pair = [&](const compare::Pair& p) {
             return pair_json(p, comparison, branch.determined);
         };
-        json one = branch_json(model, model.branches[b]);
-        one.update(
+        json document = branch_json(model, model.branches[b]);
+        document.update(
             {{"abscissa",
               branch.abscissa < 0
                   ? json(nullptr)
@@ -228,8 +226,8 @@ json branches_json(const SceneAnalyses& scene) {
              {"inconclusive", branch.inconclusive.texts()},
              {"case", load_case(model, model.branches[b])},
              {"events", scene.lift_offs[b]}});
-        if (branch.every > 1) one["steps"] = branch.steps;
-        branches.push_back(std::move(one));
+        if (branch.every > 1) document["steps"] = branch.steps;
+        branches.push_back(std::move(document));
     }
     return branches;
 }

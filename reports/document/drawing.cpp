@@ -183,8 +183,8 @@ std::vector<Drawing::Symbol> symbols_of(const Sketch& sketch) {
                 return driver.rate != 0 && driven_joint(driver.what) == static_cast<int>(k);
             });
         });
-        // The driver of a joint is a plane constraint on one of its points; under a wheel it is a
-        // jack.
+        // The driver of a joint is a plane constraint on one of its points; under a wheel it
+        // is a jack.
         if (const auto* plane = std::get_if<InPlane>(&joint.kind)) {
             const bool jack = std::ranges::any_of(
                 scene.wheels, [&](const Wheel& wheel) { return wheel.body == plane->i.body; });

@@ -1,6 +1,6 @@
-// The list of what is drawn of a suspension, by the report's fixed views, its turned view and the
-// live page: points, lines and labels at the design position, and their positions along every
-// branch.
+// The list of what is drawn of a suspension, by the report's fixed views, its turned view
+// and the live page: points, lines and labels at the design position, and their positions
+// along every branch.
 #pragma once
 
 #include <array>

@@ -188,6 +188,15 @@ void fill(const fs::path& file, std::string_view content) {
     if (out < 0 || !write_and_close(out, content)) fail_access(file, "written");
 }
 
+fs::path beside_program(std::initializer_list<std::string> places) {
+    std::error_code failed;
+    for (fs::path file = fs::read_symlink("/proc/self/exe", failed), folder = file.parent_path();
+         !failed && folder != file; file = folder, folder = folder.parent_path())
+        for (const std::string& place : places)
+            if (std::error_code unseen; fs::exists(folder / place, unseen)) return folder / place;
+    return {};
+}
+
 std::string read_whole(const fs::path& file, std::size_t largest) {
     const int in = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     struct stat entry {};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -38,10 +39,10 @@ void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 // those that interrupted runs left there.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
-// A file that is written in pieces under a temporary name beside its own, and renamed when it is
-// complete. An unfinished file is removed by its owner; if a signal or a crash ended the owner, by
-// the next run that writes this file. Throws FileError; an older file of that name is then
-// untouched.
+// A file that is written in pieces under a temporary name beside its own, and renamed when it
+// is complete. An unfinished file is removed by its owner; if a signal or a crash ended the
+// owner, by the next run that writes this file. Throws FileError; an older file of that name
+// is then untouched.
 class AtomicFile {
   public:
     // check_may_write; creates the folder when it is missing.
@@ -70,6 +71,10 @@ void append(const std::filesystem::path& file, std::string_view content);
 
 // Writes a file in a staging folder (folder.hpp). Throws FileError.
 void fill(const std::filesystem::path& file, std::string_view content);
+
+// A file of an installed program or of its build tree: the first of these that exists below a folder above
+// the running program, the nearest one; empty if none does.
+std::filesystem::path beside_program(std::initializer_list<std::string> places);
 
 // Reads a file or a pipe; throws FileError, for a larger one as soon as it exceeds the limit.
 std::string read_whole(const std::filesystem::path& file, std::size_t largest = largest_file);

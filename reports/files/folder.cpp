@@ -49,9 +49,10 @@ void check_all_listed(const fs::path& folder) {
     }
     for (const auto& file : files_in(folder))
         if (!listed.contains(file) || !is_regular(file))
-            fail(folder / file,
-                 "is no part of a report, and replacing the folder would lose it; choose another "
-                 "folder");
+            fail(
+                folder / file,
+                "is not a part of a report, and replacing the folder would lose it; choose another "
+                "folder");
 }
 
 // The folder after resolving links and checking that it may be replaced.

@@ -30,8 +30,8 @@ class Staging {
 
     const std::filesystem::path& path() const { return staging_; }
 
-    // Writes the manifest and replaces the old folder. Throws FileError; the old folder is then
-    // untouched.
+    // Writes the manifest and replaces the old folder. Throws FileError; the old folder
+    // is then untouched.
     void publish();
 
   private:

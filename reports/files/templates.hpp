@@ -1,5 +1,5 @@
-// Mustache templates with all markup of a report, from reports/page/templates/, compiled into the
-// program.
+// Mustache templates with all markup of a report, from reports/page/templates/, compiled
+// into the program.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -59,7 +59,7 @@ struct Display {
     std::mutex lock;  // of all below, and of both streams
     const bool terminal = is_terminal(STDERR_FILENO);
     bool hidden = false, works = false, begun = false, on_screen = false;
-    std::string what;
+    std::string task;
     double done = 0;
     Clock::time_point began;
     std::condition_variable_any changed;  // work has begun
@@ -72,13 +72,13 @@ struct Display {
     void show() {
         const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
         if (!terminal) {
-            (void)write(stderr, progress_line(what, done, seconds, 0) + "\n");
+            (void)write(stderr, progress_line(task, done, seconds, 0) + "\n");
             return;
         }
         winsize size{};
         const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
         clear();
-        (void)write(stderr, progress_line(what, done, seconds, known ? size.ws_col : 80));
+        (void)write(stderr, progress_line(task, done, seconds, known ? size.ws_col : 80));
         on_screen = true;
     }
     void repeat(const std::stop_token& end) {
@@ -140,7 +140,7 @@ void print_error(std::string_view lines) {
     (void)write(stderr, lines);
 }
 
-std::string progress_line(std::string_view what, double done, double seconds, int width) {
+std::string progress_line(std::string_view task, double done, double seconds, int width) {
     constexpr int bar = 20;
     // Before that little is known of the time.
     constexpr double least_done = 0.02, least_seconds = 1;
@@ -156,25 +156,26 @@ std::string progress_line(std::string_view what, double done, double seconds, in
     } else {
         line = fmt::format("{:.0f} s", seconds);
     }
-    line += fmt::format(": {}", what);
+    line += fmt::format(": {}", task);
     return std::string(width > 0 ? cut(line, width - 1) : line);
 }
 
-void progress(std::string_view what, double done) {
+void progress(std::string_view task, double done) {
     if (collected != nullptr) {
-        if (collected->progress && !what.empty()) collected->progress(what, done);
+        if (collected->progress && !task.empty()) collected->progress(task, done);
         return;
     }
     Display& shown = display();
     const std::lock_guard guard(shown.lock);
     if (shown.hidden) return;
-    if (what.empty()) {
+    if (task.empty()) {
         shown.clear();
         shown.works = false;
         return;
     }
     if (!shown.works) shown.begin();
-    shown.what = what, shown.done = done;
+    shown.task = task;
+    shown.done = done;
     if (shown.terminal) shown.show();
 }
 

@@ -13,8 +13,8 @@ namespace elastocheck::reports {
 // The reader closed standard output (`| head`): not an error, and no more output is needed.
 struct OutputClosed {};
 
-// Writes lines of text, each through for_terminal(). Throws FileError where they cannot be written,
-// OutputClosed.
+// Writes lines of text, each through for_terminal(). Throws FileError where they cannot
+// be written, OutputClosed.
 void print(std::string_view lines);
 void print_error(std::string_view lines);  // to standard error; ignored where that is closed
 

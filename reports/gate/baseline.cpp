@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <tuple>
@@ -161,15 +160,15 @@ std::string figure_key(const FigureLine& line) {
 }
 
 json figures_json(const compare::Measurement& measurement) {
-    json all = json::object();
+    json curves = json::object();
     for (const auto& branch : measurement.branches) {
-        const auto at = compare::stations(branch.a);
+        const auto stations = compare::stations(branch.a);
         std::vector<FigureLine> lines;
         for (const auto& s : measurement.series) {
             if (!s.main || s.branch != branch.name) continue;
             json values = json::array();
-            for (std::size_t k = 0; k < at.size(); ++k) {
-                const std::size_t place = s.values.size() == at.size() ? k : at[k];
+            for (std::size_t k = 0; k < stations.size(); ++k) {
+                const std::size_t place = s.values.size() == stations.size() ? k : stations[k];
                 if (place < s.values.size()) values.push_back(shown(s.values[place], s.unit));
             }
             const auto [owner, output] = owner_and_output(s.channel);
@@ -186,11 +185,11 @@ json figures_json(const compare::Measurement& measurement) {
         }
         if (lines.empty()) continue;
         json parameters = json::array(), figures = json::object();
-        for (const std::size_t k : at) parameters.push_back(branch.a[k]);
+        for (const std::size_t k : stations) parameters.push_back(branch.a[k]);
         for (const auto& line : lines) figures[figure_key(line)] = line.values;
-        all[branch.name] = {{"at", parameters}, {"unit", branch.unit}, {"figures", figures}};
+        curves[branch.name] = {{"at", parameters}, {"unit", branch.unit}, {"figures", figures}};
     }
-    return all;
+    return curves;
 }
 
 // ---- Text.

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
@@ -92,8 +91,8 @@ OutputTable read_table(std::string_view csv, const std::string& file, const Name
     return table;
 }
 
-// Adds the parameters of one column where it is in the unit of the point's branch, converted to that
-// unit.
+// Adds the parameters of one column where it is in the unit of the point's branch, converted
+// to that unit.
 void add_parameters(const OutputTable& table, std::size_t c, const std::string& file,
                     const Names& names, std::vector<double>& a) {
     const Meaning& meaning = table.columns[c];

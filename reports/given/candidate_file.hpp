@@ -1,11 +1,10 @@
-// Reader of candidate files and measurements: a table of outputs, or states. Formats in
-// reports/README.md.
+// Reader of candidate files and measurements: a table of outputs, or states.
+// Formats in reports/README.md.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "compare/candidate/candidate.hpp"

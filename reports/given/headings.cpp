@@ -142,7 +142,8 @@ namespace {
 bool is_parameter(const Heading& heading, Meaning& meaning) {
     if (heading.name != "parameter" && heading.name != "load") return false;
     if (!heading.unit.empty() && !is_written(heading.unit)) return false;
-    meaning.kind = Meaning::Kind::parameter, meaning.unit = heading.unit;
+    meaning.kind = Meaning::Kind::parameter;
+    meaning.unit = heading.unit;
     return true;
 }
 bool is_output(const Heading& heading, const std::vector<compare::Channel>& channels,
@@ -157,8 +158,10 @@ bool is_output(const Heading& heading, const std::vector<compare::Channel>& chan
     const auto c = static_cast<std::size_t>(channel);
     const auto factor = factor_of(heading.unit, channels[c].unit);
     if (!factor) return false;
-    meaning.kind = Meaning::Kind::output, meaning.channel = c;
-    meaning.change = is_change, meaning.factor = *factor;
+    meaning.kind = Meaning::Kind::output;
+    meaning.channel = c;
+    meaning.change = is_change;
+    meaning.factor = *factor;
     return true;
 }
 
@@ -311,27 +314,27 @@ std::vector<std::string> branches_of_test(std::string_view test,
             words, [&](const std::string& word) { return lists(test_of_rig.words, word); });
     });
     if (known == rig_tests.end()) return {};
-    std::vector<std::string> found;
+    std::vector<std::string> names;
     for (const auto& moves : known->moves)
-        if (found.empty() && !moves.empty())
-            for (const auto& one : branches)
-                if (one.moves == moves) found.push_back(one.branch);
-    if (found.size() < 2) return found;
+        if (names.empty() && !moves.empty())
+            for (const auto& branch : branches)
+                if (branch.moves == moves) names.push_back(branch.branch);
+    if (names.size() < 2) return names;
     // the one that is called so: by all of the words that some of them have
     for (const auto& word : words) {
         std::vector<std::string> called;
-        for (const auto& name : found)
+        for (const auto& name : names)
             if (has(words_of(name), word)) called.push_back(name);
-        if (!called.empty()) found = std::move(called);
+        if (!called.empty()) names = std::move(called);
     }
-    if (found.size() > 1) {
+    if (names.size() > 1) {
         std::vector<std::string> by_travel;
         for (const auto& one : branches)
-            if (one.by_travel && std::ranges::find(found, one.branch) != found.end())
+            if (one.by_travel && std::ranges::find(names, one.branch) != names.end())
                 by_travel.push_back(one.branch);
-        if (by_travel.size() == 1) found = std::move(by_travel);
+        if (by_travel.size() == 1) names = std::move(by_travel);
     }
-    return found;
+    return names;
 }
 
 std::string no_branch(const std::string& name, const std::vector<std::string>& branches) {

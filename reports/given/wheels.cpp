@@ -1,13 +1,11 @@
 #include "reports/given/wheels.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/wheel_load.hpp"
 #include "models/kinds.hpp"
-#include "models/overloaded.hpp"
 
 namespace elastocheck::reports {
 namespace {

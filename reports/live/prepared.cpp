@@ -35,22 +35,27 @@ Prepared& prepared(Session& session, const std::vector<Setting>& settings) {
 }
 
 Prepared& prepared(Session& session, const Request& request) {
-    Prepared& at = prepared(session, request.settings);
-    if (at.branch == request.only && at.points == request.points) return at;
-    const auto branch = std::ranges::find(at.model.branches, request.only, &Branch::name);
-    if (branch == at.model.branches.end())
+    Prepared& prepared_model = prepared(session, request.settings);
+    if (prepared_model.branch == request.only && prepared_model.points == request.points)
+        return prepared_model;
+    const auto branch =
+        std::ranges::find(prepared_model.model.branches, request.only, &Branch::name);
+    if (branch == prepared_model.model.branches.end())
         throw std::invalid_argument(fmt::format("there is no branch '{}'", request.only));
-    at.stations.clear(), at.paths.clear();
-    at.sides = compare::sides_of(at.model, *branch, request.points);
-    for (std::size_t side = 0; side < at.sides.size(); ++side)
-        at.paths.push_back(compare::solve_branch(at.sides[side], {.leg = compare::Leg::series},
-                                                 [&](const Equilibrium& state) {
-                                                     if (side == 0 || state.load != 0)
-                                                         at.stations.push_back({side, state});
-                                                 }));
-    std::ranges::sort(at.stations, {}, [](const auto& station) { return station.state.load; });
-    at.branch = request.only, at.points = request.points;
-    return at;
+    prepared_model.stations.clear(), prepared_model.paths.clear();
+    prepared_model.sides = compare::sides_of(prepared_model.model, *branch, request.points);
+    for (std::size_t side = 0; side < prepared_model.sides.size(); ++side)
+        prepared_model.paths.push_back(
+            compare::solve_branch(prepared_model.sides[side], {.leg = compare::Leg::series},
+                                  [&](const Equilibrium& state) {
+                                      if (side == 0 || state.load != 0)
+                                          prepared_model.stations.push_back({side, state});
+                                  }));
+    std::ranges::sort(prepared_model.stations, {},
+                      [](const auto& station) { return station.state.load; });
+    prepared_model.branch = request.only;
+    prepared_model.points = request.points;
+    return prepared_model;
 }
 
 }  // namespace elastocheck::live

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -52,24 +51,24 @@ Varied varied_of(const json& read, const Scene& scene, const Model& model) {
     const json &vary = read["vary"], &want = read["want"];
     if (!vary.is_array() || !want.is_array() || vary.empty() || want.empty())
         throw std::invalid_argument("at least one number and one wanted figure are needed");
-    Varied all;
-    compare::SearchRange& range = all.range;
+    Varied varied;
+    compare::SearchRange& range = varied.range;
     for (VectorXd* list : {&range.start, &range.low, &range.high}) list->resize(std::ssize(vary));
-    all.target.resize(std::ssize(want));
+    varied.target.resize(std::ssize(want));
     for (std::size_t i = 0; i < vary.size(); ++i) {
-        const auto at = static_cast<Index>(i);
+        const auto index = static_cast<Index>(i);
         const std::string path = text_at(vary[i], 0);
         const auto number = std::ranges::find(scene.numbers, path, &Number::path);
         if (number == scene.numbers.end())
             throw std::invalid_argument(path + ": the scene has no such number");
-        range.start[at] = number->value;
-        range.low[at] = number_at(vary[i], 1), range.high[at] = number_at(vary[i], 2);
-        if (!(range.low[at] < range.high[at] && range.low[at] <= number->value &&
-              number->value <= range.high[at]))
+        range.start[index] = number->value;
+        range.low[index] = number_at(vary[i], 1), range.high[index] = number_at(vary[i], 2);
+        if (!(range.low[index] < range.high[index] && range.low[index] <= number->value &&
+              number->value <= range.high[index]))
             throw std::invalid_argument(fmt::format("{}: {} is not within its limits {} to {}",
-                                                    path, number->value, range.low[at],
-                                                    range.high[at]));
-        all.paths.push_back(path);
+                                                    path, number->value, range.low[index],
+                                                    range.high[index]));
+        varied.paths.push_back(path);
     }
     const auto outputs = channels_of(model);
     for (std::size_t j = 0; j < want.size(); ++j) {
@@ -79,10 +78,10 @@ Varied varied_of(const json& read, const Scene& scene, const Model& model) {
             throw std::invalid_argument(fmt::format("the scene has no output '{}' on branch '{}'",
                                                     figure.name, figure.branch));
         figure.at = number_at(want[j], 2) / in_unit(compare::unit_of(branch->unit));
-        all.target[static_cast<Index>(j)] = number_at(want[j], 3);
-        all.figures.push_back(std::move(figure));
+        varied.target[static_cast<Index>(j)] = number_at(want[j], 3);
+        varied.figures.push_back(std::move(figure));
     }
-    return all;
+    return varied;
 }
 
 json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
@@ -101,46 +100,46 @@ json wish(Session& session, std::string_view text) {
     };
     const auto drawn = model_of(settings);
     if (!drawn) throw std::invalid_argument("the trim is not reached");
-    const Varied all = varied_of(json::parse(text), session.parsed->read(settings), *drawn);
+    const Varied varied = varied_of(json::parse(text), session.parsed->read(settings), *drawn);
     const auto value = [&](const VectorXd& p) -> VectorXd {
         auto with = settings;
         std::erase_if(with, [&](const Setting& setting) {
-            return std::ranges::find(all.paths, setting.path) != all.paths.end();
+            return std::ranges::find(varied.paths, setting.path) != varied.paths.end();
         });
-        for (std::size_t i = 0; i < all.paths.size(); ++i)
-            with.push_back({all.paths[i], fmt::format("{:.17g}", p[static_cast<Index>(i)])});
+        for (std::size_t i = 0; i < varied.paths.size(); ++i)
+            with.push_back({varied.paths[i], fmt::format("{:.17g}", p[static_cast<Index>(i)])});
         const auto model = model_of(with);
-        return model ? compare::evaluate(*model, all.figures, compare::Leg::series).value
-                     : VectorXd::Constant(std::ssize(all.figures), compare::nan);
+        return model ? compare::evaluate(*model, varied.figures, compare::Leg::series).value
+                     : VectorXd::Constant(std::ssize(varied.figures), compare::nan);
     };
     const auto at_all = [&](const std::vector<VectorXd>& points) {
         std::vector<VectorXd> values;
         for (const VectorXd& p : points) values.push_back(value(p));
         return values;
     };
-    const compare::SearchRange& range = all.range;
+    const compare::SearchRange& range = varied.range;
     const compare::Figures figures{at_all, share_of_range * (range.high - range.low)};
     const auto start = compare::start_of(figures, range);
     const bool moves = start.complete() && std::ranges::count(start.still, true) == 0;
-    compare::Solution found{.p = range.start, .off = VectorXd::Zero(all.target.size())};
+    compare::Solution solution{.p = range.start, .off = VectorXd::Zero(varied.target.size())};
     if (moves)
-        found = compare::solve_for(figures, {all.target, all.target, start.movement}, range,
-                                   range.start);
-    const VectorXd after = figures.value(found.p);
-    const bool met = moves && found.excess() <= compare::met_within;
+        solution = compare::solve_for(figures, {varied.target, varied.target, start.movement},
+                                      range, range.start);
+    const VectorXd after = figures.value(solution.p);
+    const bool met = moves && solution.excess() <= compare::met_within;
 
-    json answer = {{"met", met}, {"converged", found.converged}};
-    for (Index i = 0; i < found.p.size(); ++i) {
+    json answer = {{"met", met}, {"converged", solution.converged}};
+    for (Index i = 0; i < solution.p.size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
-        answer["numbers"].push_back({{"path", all.paths[at]},
+        answer["numbers"].push_back({{"path", varied.paths[at]},
                                      {"from", range.start[i]},
-                                     {"to", found.p[i]},
-                                     {"at_limit", met || !moves ? 0 : found.at_limit[at]}});
+                                     {"to", solution.p[i]},
+                                     {"at_limit", met || !moves ? 0 : solution.at_limit[at]}});
     }
     const auto outputs = channels_of(*drawn);
     for (Index j = 0; j < after.size(); ++j) {
-        const auto at = static_cast<std::size_t>(j);
-        const Figure& figure = all.figures[at];
+        const auto index = static_cast<std::size_t>(j);
+        const Figure& figure = varied.figures[index];
         const auto& output =
             outputs[static_cast<std::size_t>(compare::find_channel(outputs, figure.name))];
         const auto branch = std::ranges::find(drawn->branches, figure.branch, &Branch::name);
@@ -149,11 +148,11 @@ json wish(Session& session, std::string_view text) {
              {"branch", figure.branch},
              {"a", compare::parameter_in(compare::unit_of(branch->unit), figure.at)},
              {"unit", symbol(output.unit)},
-             {"target", all.target[j]},
+             {"target", varied.target[j]},
              {"before", or_null(start.value[j])},
              {"after", or_null(after[j])},
-             {"still", !start.still.empty() && start.still[at]},
-             {"conflict", met || !moves ? 0 : found.conflict()[j]}});
+             {"still", !start.still.empty() && start.still[index]},
+             {"conflict", met || !moves ? 0 : solution.conflict()[j]}});
         const bool has_value = std::isfinite(start.value[j]),
                    no_rate = start.gradient.rows() > 0 && !start.gradient.row(j).allFinite();
         if ((!has_value || no_rate) && !answer.contains("why_not"))

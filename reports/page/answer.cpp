@@ -75,7 +75,8 @@ std::string trust_sentence(const SceneAnalyses& scene) {
     int points = 0, proved = 0;
     for (const auto& branch : scene.comparison.branches) {
         const compare::Tally& tally = branch.run(compare::Leg::equilibrium).proved;
-        points += tally.points, proved += tally.proved;
+        points += tally.points;
+        proved += tally.proved;
     }
     std::string text =
         agreement.empty() ? "Every number on these pages is from one solution of the full equations"
@@ -111,8 +112,8 @@ std::vector<MethodRow> studied(const SceneAnalyses& scene, const compare::Trade&
     for (const auto& method : distinct(points, &TradeRow::method)) {
         auto wanted = where(where(points, &TradeRow::method, method), &TradeRow::leg, "recursive");
         std::erase_if(wanted, [&](const TradeRow& r) { return !std::isfinite(share(r)); });
-        // the recommended one, else the cheapest that is good enough, else the cheapest of the most
-        // accurate
+        // the recommended one, else the cheapest that is good enough, else the cheapest of
+        // the most accurate
         const TradeRow* best = nullptr;
         double least = INFINITY;
         for (const auto& r : wanted) least = std::min(least, share(r));

@@ -105,7 +105,8 @@ Figure ranking_of(const compare::Chart& chart, const Table& table) {
                                   {{values[2], place}, {values[3], place}, {}});
     }
     figure.description += ".";
-    figure.y_low = -0.6 - static_cast<double>(all.size()), figure.y_high = -0.4;
+    figure.y_low = -0.6 - static_cast<double>(all.size());
+    figure.y_high = -0.4;
     figure.height = 0.45 + 0.08 * static_cast<double>(all.size());
     figure.series.push_back(std::move(bars));
     if (!intervals.rows.empty()) figure.series.push_back(std::move(intervals));
@@ -120,7 +121,8 @@ Figure figure_of(const compare::Chart& chart, const Table& table, const std::str
         Figure figure = chart.kind == points ? scatter_of(chart, table)
                         : chart.kind == bars ? bars_of(chart, table)
                                              : ranking_of(chart, table);
-        figure.id = chart.id, figure.title = chart.title;
+        figure.id = chart.id;
+        figure.title = chart.title;
         return figure;
     }
     const std::size_t x = place_of(table, chart.x);

@@ -1,5 +1,5 @@
-// Content of a report independent of HTML, Markdown and plots: sections with sentences, figures,
-// tables.
+// Content of a report independent of HTML, Markdown and plots: sections with
+// sentences, figures, tables.
 #pragma once
 
 #include <limits>
@@ -37,8 +37,8 @@ struct Series {
     Style style = Style::line;
     Colour colour = ink;
     int mark = 0;  // symbol index, for points
-    // x, y; bars: x, y, x low, x high, y low, y high; face: corners of one area. An empty row is a
-    // gap
+    // x, y; bars: x, y, x low, x high, y low, y high; face: corners of one area. An empty row
+    // is a gap
     std::vector<std::vector<double>> rows{};
     double opacity = 0.18;  // of a face
     // entries of the figure's legend that switch it; without a legend of the figure, its own title

@@ -70,7 +70,8 @@ Axis ticked(bool logarithmic, Range data, double low, double high, double most) 
     if (!(data.low <= data.high)) data = {0, 1};
     if (data.high - data.low <= 1e-9 * std::max(std::abs(data.low), std::abs(data.high))) {
         const double beside = data.low == 0 || logarithmic ? 1 : 0.1 * std::abs(data.low);
-        data.low -= beside, data.high += beside;
+        data.low -= beside;
+        data.high += beside;
     }
     double step = round_step((data.high - data.low) / most);
     if (logarithmic) step = std::max(1.0, std::ceil((data.high - data.low) / most));
@@ -288,7 +289,8 @@ std::vector<Entry> legend(const Figure& figure, double lines_width) {
     for (auto& entry : entries) {
         const double need = sample + 4 + text_width(entry.text, letter);
         if (x > 0 && x + need > lines_width) x = 0, ++line;
-        entry.x = x, entry.line = line;
+        entry.x = x;
+        entry.line = line;
         x += need + 6;
     }
     return entries;
@@ -300,19 +302,19 @@ void draw_entry(Svg& svg, const Entry& entry, PaperPoint at) {
     } else if (entry.series->style == Series::Style::bars) {
         svg.area(rectangle(at.x, at.y - 4, at.x + sample, at.y + 4), entry.series->colour);
     } else {
-        Series one = *entry.series;
-        one.rows = {{0, 0}, {sample, 0}};
-        const Series line = one;
+        Series series = *entry.series;
+        series.rows = {{0, 0}, {sample, 0}};
+        const Series line = series;
         const auto place = [&](double x, double y) {
             return std::optional(PaperPoint{at.x + x, at.y + y});
         };
-        if (marker_radius(one.style) > 0) {
-            one.rows = {{sample / 2, 0}};
-            if (one.style == Series::Style::line_points)
-                svg.stroke(Svg::polyline({*place(0, 0), *place(sample, 0)}), one.colour,
-                           line_width(one.style));
+        if (marker_radius(series.style) > 0) {
+            series.rows = {{sample / 2, 0}};
+            if (series.style == Series::Style::line_points)
+                svg.stroke(Svg::polyline({*place(0, 0), *place(sample, 0)}), series.colour,
+                           line_width(series.style));
         }
-        draw_series(svg, one, place, at.y - 10, at.y + 10);
+        draw_series(svg, series, place, at.y - 10, at.y + 10);
     }
     svg.text({at.x + sample + 4, at.y + 3.9}, entry.text, ink, "start");
 }
@@ -332,7 +334,8 @@ Svg draw_plot(const Figure& figure) {
                            (bottom - top) / (figure.log_y ? 22 : 15));
         if (!figure.y_ticks.empty()) axis.ticks.clear();
         for (const auto& [at, text] : figure.y_ticks) axis.ticks.push_back({at, text, ""});
-        axis.start = bottom, axis.stop = top;
+        axis.start = bottom;
+        axis.stop = top;
         return axis;
     };
     const auto left_of = [&](const Axis& axis) {
@@ -350,7 +353,8 @@ Svg draw_plot(const Figure& figure) {
         if (most < 3 || widest(x) + 4 < (right - left) / static_cast<double>(x.ticks.size() - 1))
             break;
     }
-    x.start = left, x.stop = right;
+    x.start = left;
+    x.stop = right;
     const auto on = [](const Axis& axis, double at) {
         return axis.start + (at - axis.low) / (axis.high - axis.low) * (axis.stop - axis.start);
     };

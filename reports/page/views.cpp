@@ -114,8 +114,8 @@ struct Canvas {
 
 constexpr Colour moved_colours[] = {sky, pink};
 
-// ---- Signs of links and symbols. `along` is the direction of a symbol's axis on paper,
-// foreshortened.
+// ---- Signs of links and symbols. `along` is the direction of a symbol's axis
+// on paper, foreshortened.
 
 using Place = PaperPoint;
 struct Sign {
@@ -410,7 +410,8 @@ std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& vie
         const double x = (e.left + e.right) / 2 - frame.width / scale / 2,
                      y = (e.bottom + e.top) / 2 - (height + legend) / scale / 2;
         Canvas canvas{plane, x, y, scale};
-        canvas.paper.width = frame.width, canvas.paper.height = height;
+        canvas.paper.width = frame.width;
+        canvas.paper.height = height;
         draw_suspension(canvas, s);
         draw_legend(canvas, list, frame.width);
         draw_axes(canvas, legend, frame.width);

@@ -72,25 +72,26 @@ std::vector<ShownColumn> shown_columns(const Table& table, std::string (*written
     std::ranges::stable_sort(order, {}, place);
     std::vector<ShownColumn> shown;
     for (const std::size_t c : order) {
-        const Column& of = table.columns[c];
-        if (of.digits == Digits::hidden ||
+        const Column& column = table.columns[c];
+        if (column.digits == Digits::hidden ||
             std::ranges::all_of(table.rows, [&](const auto& row) { return empty(row[c]); }))
             continue;
-        shown.push_back({with_unit(of.heading.empty() ? of.name : of.heading, of.unit),
-                         of.words,
-                         of.digits == Digits::note,
-                         {},
-                         {}});
+        shown.push_back(
+            {with_unit(column.heading.empty() ? column.name : column.heading, column.unit),
+             column.words,
+             column.digits == Digits::note,
+             {},
+             {}});
         double largest = 0;
         for (const auto& row : table.rows)
-            if (const auto* value = std::get_if<double>(&row[c]); of.digits == Digits::shaded)
+            if (const auto* value = std::get_if<double>(&row[c]); column.digits == Digits::shaded)
                 largest = std::max(largest, value != nullptr ? *value : 0);
         for (const auto& row : table.rows) {
             const auto* value = std::get_if<double>(&row[c]);
             if (largest > 0)
                 shown.back().shades.push_back(value != nullptr && *value > 0 ? *value / largest
                                                                              : 0);
-            shown.back().cells.push_back(value != nullptr ? written(*value, of.digits)
+            shown.back().cells.push_back(value != nullptr ? written(*value, column.digits)
                                                           : std::get<std::string>(row[c]));
         }
     }

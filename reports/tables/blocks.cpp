@@ -141,9 +141,8 @@ std::string blocks_csv(const KCBlocks& blocks, BlockAxes axes) {
     }
     text +=
         "\n# compliance at the design position, per wheel: toe positive towards toe-in, camber "
-        "where "
-        "the top leans out, in either axes\ncoefficient,wheel,value,unit,in "
-        "degrees,unit,definition\n";
+        "where the top leans out, in either axes\n"
+        "coefficient,wheel,value,unit,in degrees,unit,definition\n";
     for (std::size_t c = 0; c < blocks.compliance.size(); ++c) {
         const auto& [channel, output, wheel, side] = blocks.compliance[c];
         const double value = blocks.coefficients[c];

@@ -34,7 +34,7 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
     for (const CandidateWorst& w : j.worst) {
         const auto& branch =
             *std::ranges::find(comparison.branches, w.branch, &compare::BranchComparison::branch);
-        const std::string by =
+        const std::string abscissa =
             branch.abscissa < 0
                 ? ""
                 : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
@@ -45,7 +45,7 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
             w.extent > 0 ? fmt::format(", {} of its extent", percent(w.max / w.extent)) : "",
             as_words(w.channel), w.branch,
             parameter ? compare::parameter_reading(symbol(branch.unit))
-                      : compare::abscissa_reading(by));
+                      : compare::abscissa_reading(abscissa));
     }
     return text;
 }
@@ -109,11 +109,11 @@ void add_reading(std::vector<ColumnOf<Row>>& columns, const std::string& kind,
 
 compare::Table deviations(const CandidateBranch& branch, const CandidateJudgement& j,
                           const compare::Comparison& comparison) {
-    const compare::Channel* by =
+    const compare::Channel* abscissa =
         branch.abscissa < 0 ? nullptr
                             : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
     const std::string load = compare::parameter_reading(symbol(branch.unit)),
-                      travel = compare::abscissa_reading(by == nullptr ? "" : by->name);
+                      travel = compare::abscissa_reading(abscissa == nullptr ? "" : abscissa->name);
     std::vector<ColumnOf<Row>> columns{
         {"branch", Digits::hidden, [](const Row& r) { return r.branch->branch; }},
         {"output", Digits::words, [](const Row& r) { return r.channel->name; }},
@@ -124,8 +124,8 @@ compare::Table deviations(const CandidateBranch& branch, const CandidateJudgemen
          [](const Row& r) { return std::max(r.parameter.range, r.abscissa.range); },
          "of the reference on the branch"}};
     add_reading(columns, "at equal parameter", load, symbol(branch.unit), &Row::parameter);
-    add_reading(columns, "at equal abscissa", travel, by == nullptr ? "" : symbol(by->unit),
-                &Row::abscissa);
+    add_reading(columns, "at equal abscissa", travel,
+                abscissa == nullptr ? "" : symbol(abscissa->unit), &Row::abscissa);
     compare::Table table = compare::table("deviations", columns, rows_of(branch, j, comparison));
     table.caption = fmt::format("branch '{}': {} points", branch.branch, branch.points);
     if (!std::isnan(branch.from))
@@ -193,8 +193,8 @@ void add_states(const compare::Leftover& left, compare::Result& result) {
     result.tables.push_back(compare::table("residuals", columns_of_states(true), all));
 }
 
-// Largest imbalance of the states in the equilibrium leg [N], [N·m]; 0 without states; NaN is
-// ignored.
+// Largest imbalance of the states in the equilibrium leg [N], [N·m]; 0 without states;
+// NaN is ignored.
 std::pair<double, double> imbalance(const CandidateJudgement& j) {
     double force = 0, moment = 0;
     for (const auto& left : j.leftovers)
@@ -212,8 +212,8 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
     if (j.outside > 0)
         partly += fmt::format(" {} of its points {} outside the range of the full solution.",
                               j.outside, j.outside == 1 ? "lies" : "lie");
-    // Forces are judged where they have a tolerance; a state out of balance is reported in any
-    // case.
+    // Forces are judged where they have a tolerance; a state out of balance is reported
+    // in any case.
     constexpr double balanced = 1e-2;  // [N], [N·m]: imbalance of poses accurate to the last digit
     const auto [force, moment] = imbalance(j);
     const bool in_balance = !(force > balanced) && !(moment > balanced);

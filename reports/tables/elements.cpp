@@ -84,10 +84,10 @@ struct Resisted {
     std::vector<std::size_t> all, curves;
 };
 Resisted resisted(const SpatialLaw& law) {
-    Resisted found;
+    Resisted motion;
     const auto add = [&](std::size_t k, bool is_curve) {
-        found.all.push_back(k);
-        if (is_curve) found.curves.push_back(k);
+        motion.all.push_back(k);
+        if (is_curve) motion.curves.push_back(k);
     };
     std::visit(overloaded{[&](const LinearStiffness& u) {
                               for (std::size_t k = 0; k < 6; ++k)
@@ -107,7 +107,7 @@ Resisted resisted(const SpatialLaw& law) {
                                       u.axis[k]);
                           }},
                law);
-    return found;
+    return motion;
 }
 
 std::string law_words(const SpatialLaw& law, std::size_t k, const RateUnits& s) {

@@ -79,9 +79,9 @@ double text_width(std::string_view text, double size) {
 }
 
 std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, const Paper& paper) {
-    // Points in crowded places first. Each label goes to the free place of least cost, its distance
-    // from the point and a penalty for each line that it covers, among 16 directions at 9
-    // distances.
+    // Points in crowded places first. Each label goes to the free place of least cost, its
+    // distance from the point and a penalty for each line that it covers, among 16 directions
+    // at 9 distances.
     std::vector<std::size_t> order(labels.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     const auto neighbours = [&](std::size_t k) {
@@ -102,8 +102,8 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
         for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0, 125.0, 160.0})
             for (int direction = 0; direction < 16; ++direction) {
                 const double angle = 2 * std::numbers::pi * direction / 16;
-                // The side or corner of the box that faces the point touches the circle of this
-                // radius.
+                // The side or corner of the box that faces the point touches the circle
+                // of this radius.
                 const double x = label.at.x + reach * std::cos(angle),
                              y = label.at.y + reach * std::sin(angle);
                 const double across = 0.5 * (std::cos(angle) - 1), up = 0.5 * (std::sin(angle) - 1);

@@ -44,7 +44,7 @@ std::string refusal(const fs::path& folder) {
     return "written";
 }
 
-TEST(Report, IsAFunctionOfItsScenesAndOfNothingElse) {
+TEST(Report, EqualScenesGiveEqualFilesByteByByte) {
     const Folder folder;
     for (const char* name : {"a", "b"})
         write_report(report_of({sample_scene()}), folder.path / name);
@@ -64,7 +64,7 @@ TEST(Report, EveryFigureIsWellFormed) {
         support::says("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg"), 0);
 }
 
-TEST(Report, NamesAreTextWhateverTheyContain) {
+TEST(Report, NamesWithMarkupAreShownAsText) {
     const Folder folder;
     SceneAnalyses scene = small_scene("<b>&\"'| `x` $(reboot) \\ *bold*");
     const std::string evil = "'; system 'touch hacked'; '<script>";
@@ -79,7 +79,7 @@ TEST(Report, NamesAreTextWhateverTheyContain) {
     EXPECT_FALSE(fs::exists(folder.path / "r" / "hacked"));
 }
 
-TEST(Report, AFigureIsWellFormedWhateverItsWordsAre) {
+TEST(Report, FigureIsWellFormedForAnyText) {
     const Folder folder;
     for (const std::string evil :
          {"x\ny", "a<b>&\"'", "]]><script>", "x\u2028y", "100 %", "\x01"}) {
@@ -120,7 +120,7 @@ TEST(Report, SeveralScenesBeginWithASummaryOfTheirMethods) {
     EXPECT_TRUE(contains(row("second"), "| not judged |")) << row("second");
 }
 
-TEST(Report, ReplacesAnOlderOneCompletely) {
+TEST(Report, OlderReportIsReplacedCompletely) {
     const Folder folder;
     write_report(report_of({sample_scene()}), folder.path / "r");
     write_report(report_of({small_scene("new")}), folder.path / "r");
@@ -132,14 +132,14 @@ TEST(Report, ReplacesAnOlderOneCompletely) {
     EXPECT_EQ(left, 1);  // nothing beside it
 }
 
-TEST(Report, NeverTouchesAFolderWithSomebodysFiles) {
+TEST(Report, FolderWithForeignFilesIsNotChanged) {
     const Folder folder;
     folder.write("notes.txt", "mine");
-    expect_parts(refusal(folder.path), {"notes.txt: is no part of a report"});
+    expect_parts(refusal(folder.path), {"notes.txt: is not a part of a report"});
     write_report(report_of({small_scene("old")}), folder.path / "r");
     std::ofstream(folder.path / "r" / "figures" / "mine.svg") << "mine";
     const Contents before = contents_of(folder.path / "r");
-    expect_parts(refusal(folder.path / "r"), {"figures/mine.svg: is no part of a report"});
+    expect_parts(refusal(folder.path / "r"), {"figures/mine.svg: is not a part of a report"});
     EXPECT_EQ(contents_of(folder.path / "r"), before);
     const auto file = folder.write("file", "mine");
     expect_parts(refusal(file), {"is a file; a folder is written here"});
@@ -155,7 +155,7 @@ TEST(Report, ReplacesOnlyFilesOfItsManifest) {
     std::ofstream(theirs / "files.txt") << "thesis.tex\nfiles.txt\n";
     std::ofstream(theirs / "thesis.tex") << "years of work";
     Contents before = contents_of(theirs);
-    expect_parts(refusal(theirs), {"files.txt: is no part of a report"});
+    expect_parts(refusal(theirs), {"files.txt: is not a part of a report"});
     EXPECT_EQ(contents_of(theirs), before);
     // Nor does a result.json beside it.
     const fs::path result = folder.path / "result";
@@ -163,19 +163,19 @@ TEST(Report, ReplacesOnlyFilesOfItsManifest) {
     std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/6\"}";
     std::ofstream(result / "curves.csv") << "measured by hand";
     before = contents_of(result);
-    expect_parts(refusal(result), {"curves.csv: is no part of a report"});
+    expect_parts(refusal(result), {"curves.csv: is not a part of a report"});
     EXPECT_EQ(contents_of(result), before);
     // A link in the place of a file.
     write_report(report_of({small_scene("old")}), folder.path / "r");
     fs::remove(folder.path / "r" / "report.md");
     fs::create_symlink(theirs / "thesis.tex", folder.path / "r" / "report.md");
-    expect_parts(refusal(folder.path / "r"), {"report.md: is no part of a report"});
+    expect_parts(refusal(folder.path / "r"), {"report.md: is not a part of a report"});
     fs::remove(folder.path / "r" / "report.md");
     EXPECT_EQ(refusal(folder.path / "r"), "written");
     // A manifest of older versions, with a hash before each name.
     std::ofstream(folder.path / "r" / "files.txt") << "elastocheck files 1\n"
                                                       "0123456789abcdef  report.html\n";
-    expect_parts(refusal(folder.path / "r"), {"curves.csv: is no part of a report"});
+    expect_parts(refusal(folder.path / "r"), {"curves.csv: is not a part of a report"});
 }
 
 TEST(Report, ReplacesAFolderBehindALinkAndLeavesTheLink) {
@@ -191,7 +191,7 @@ TEST(Report, ReplacesAFolderBehindALinkAndLeavesTheLink) {
     expect_parts(refusal(""), {"is not a folder name"});
 }
 
-TEST(Report, AnInconclusiveSceneIsMarkedAndSaysWhy) {
+TEST(Report, InconclusiveSceneIsMarkedWithItsReason) {
     const Folder folder;
     SceneAnalyses doubtful = small_scene("doubtful");
     doubtful.reasons = {"nothing was compared"};

@@ -1,7 +1,5 @@
 // `elastocheck compare`: all three legs on one scene, their deviations, and a verdict on a method.
-#include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compare_with.hpp"

@@ -67,7 +67,8 @@ void read_band(const Cursor& entry, Goal& goal) {
             "them");
     if (within) {
         const auto both = within->list(2, "bounds, [LOW, HIGH]");
-        goal.low = both[0].number(), goal.high = both[1].number();
+        goal.low = both[0].number();
+        goal.high = both[1].number();
     }
     if (least) goal.low = least->number();
     if (most) goal.high = most->number();
@@ -113,12 +114,15 @@ void add_curve(const Cursor& entry, const LoadedScene& loaded, const std::string
     Figure point = figure_at(branch ? *branch : entry, name + "@" + on, model);
     if (over) {
         const Figure abscissa = figure_at(*over, over->text("an output of the scene"), model);
-        point.over = goal.along = abscissa.name, goal.along_unit = abscissa.unit;
+        point.over = goal.along = abscissa.name;
+        goal.along_unit = abscissa.unit;
         goal.any_branch = !branch;
     } else {
         const auto unit =
             compare::unit_of(std::ranges::find(model.branches, on, &Branch::name)->unit);
-        goal.along = on, goal.along_unit = symbol(unit), goal.along_factor = compare::in_unit(unit);
+        goal.along = on;
+        goal.along_unit = symbol(unit);
+        goal.along_factor = compare::in_unit(unit);
         for (const double end : {from, to})
             (void)figure_at(entry, fmt::format("{}@{}:{}", name, on, end), model);
     }
@@ -232,8 +236,8 @@ GoalFigures figures_of(const std::vector<Goal>& goals, const std::optional<Figur
     return result;
 }
 
-// Adds the points of the curves between theirs at which they are outside of their bands. Returns the
-// furthest.
+// Adds the points of the curves between theirs at which they are outside of their bands.
+// Returns the furthest.
 std::optional<compare::Between> add_points_outside(const compare::OptimisedScene& optimised,
                                                    const Model& model, std::vector<Goal>& goals) {
     const Scene scene = optimised.varied.scene(optimised.optimum.p);
@@ -341,9 +345,9 @@ compare::CertifyStudy certificate(const Scene& scene, const std::vector<Figure>&
                                     .progress = progress});
 }
 
-// Exit code 0: the bands are met at the least cost that was found, confirmed and proved; 1: they
-// cannot be met; 3: a figure has no value, or the result is not confirmed, not proved or not
-// converged.
+// Exit code 0: the bands are met at the least cost that was found, confirmed and proved; 1:
+// they cannot be met; 3: a figure has no value, or the result is not confirmed, not proved
+// or not converged.
 int optimise(const OptimiseRequest& request, const Delivery& delivery) {
     check_may_write_scene(request.output);
     const LoadedScene loaded = load_scene(request.scene, request.settings);

@@ -1,7 +1,6 @@
 // `elastocheck solve-for`: numbers of a scene for wanted figures.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>

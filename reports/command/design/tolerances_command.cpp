@@ -1,7 +1,6 @@
 // `elastocheck tolerances`: scatter of figures by the tolerances of the numbers of a scene.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>

@@ -24,16 +24,12 @@ constexpr std::size_t largest_page = 16u << 20;
 // The page without a scene, that `./dev live` builds: PREFIX/share/elastocheck/live.html of an installed program, or
 // build/live/live.html for a program in its build tree. Throws std::invalid_argument where it is not built.
 std::string built_page() {
-    std::error_code failed;
-    for (fs::path file = fs::read_symlink("/proc/self/exe", failed), folder = file.parent_path();
-         !failed && folder != file; file = folder, folder = folder.parent_path())
-        for (const char* place : {"share/elastocheck/live.html", "live/live.html"})
-            if (std::error_code unseen; fs::is_regular_file(folder / place, unseen))
-                return read_whole(folder / place, largest_page);
+    if (const auto file = beside_program({"share/elastocheck/live.html", "live/live.html"});
+        !file.empty())
+        return read_whole(file, largest_page);
     throw std::invalid_argument(
         "live: this program was built without the component 'live' (WebAssembly); ./dev live in "
-        "the "
-        "source tree builds it");
+        "the source tree builds it");
 }
 
 // As JSON within a script element, which ends at the first "</script" and knows comments "<!--".

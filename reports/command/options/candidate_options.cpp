@@ -130,7 +130,9 @@ compare::CandidateJudgement judged(const CandidateOutput& output, const Candidat
                                    const LoadedScene& loaded, const compare::Comparison& comparison,
                                    const compare::Tolerance& tolerance, bool given) {
     compare::CandidateJudgement none;
-    none.name = output.name, none.tolerance = tolerance, none.tolerance_given = given;
+    none.name = output.name;
+    none.tolerance = tolerance;
+    none.tolerance_given = given;
     if (!output.failed.empty()) {
         none.reasons.push_back(output.failed);
         return none;

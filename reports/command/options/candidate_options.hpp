@@ -1,9 +1,7 @@
 // Command-line options for external candidates, and their outputs.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compare/candidate/candidate.hpp"
@@ -36,8 +34,8 @@ struct CandidateOutput {
     std::string failed;
 };
 
-// Throws std::invalid_argument for a request that is invalid for any candidate; called before the
-// work.
+// Throws std::invalid_argument for a request that is invalid for any candidate; called
+// before the work.
 void check(const CandidateRequest& request, const Settings& settings);
 
 // Reads the files, and runs the command once per number of steps. A failure of the command is not

@@ -15,8 +15,8 @@ namespace elastocheck::reports {
 // unknown name with the nearest.
 void add_numbers(compare::Varied& varied, const Scene& scene, const std::string& name, double low,
                  double high);
-// The numbers of "points.tie_rod_inner.z=260:340"; without "=LOW:HIGH" a number has no limits. Throws
-// likewise.
+// The numbers of "points.tie_rod_inner.z=260:340"; without "=LOW:HIGH" a number has no
+// limits. Throws likewise.
 compare::Varied parse_varied(const std::vector<std::string>& words, const Scene& scene);
 // Varied::scene: of the file with these values of the numbers; `settings` apply to all others.
 void set_scene(compare::Varied& varied, const std::string& file, const Settings& settings);

@@ -53,7 +53,7 @@ std::vector<Item> of_names(const char* option, const char* label, const char* la
 // The stations "BRANCH:VALUE", values in the unit of the branch's parameter.
 std::map<std::string, std::vector<double>> stations(const std::vector<std::string>& words,
                                                     const Model& model) {
-    std::map<std::string, std::vector<double>> all;
+    std::map<std::string, std::vector<double>> stations;
     for (const std::string& word : words) {
         compare::Station station;
         try {
@@ -65,9 +65,9 @@ std::map<std::string, std::vector<double>> stations(const std::vector<std::strin
             throw std::invalid_argument(fmt::format(
                 "--at '{}': allowed: BRANCH:VALUE, such as {}:{:g}", word, word,
                 compare::in_unit(compare::unit_of(station.branch->unit)) * station.branch->to));
-        all[station.branch->name].push_back(*station.at);
+        stations[station.branch->name].push_back(*station.at);
     }
-    return all;
+    return stations;
 }
 
 }  // namespace

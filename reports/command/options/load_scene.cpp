@@ -44,18 +44,18 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
         }
         return any;
     };
-    for (const auto& one : list) {
+    for (const auto& warning : list) {
         const auto wrong = [&](const std::string& what) {
-            reader::fail(file, one.line, one.path, what);
+            reader::fail(file, warning.line, warning.path, what);
         };
         std::vector<std::string> names;
-        if (one.figure.empty()) {
+        if (warning.figure.empty()) {
             const auto sets = compare::definition_sets();
-            const auto set = std::ranges::find(sets, one.name, &compare::DefinitionSet::name);
+            const auto set = std::ranges::find(sets, warning.name, &compare::DefinitionSet::name);
             for (const auto& known : sets) names.push_back(known.name);
             if (set == sets.end())
-                wrong(fmt::format("there is no set {}{}", reader::quote(one.name),
-                                  reader::did_you_mean(one.name, names, "allowed")));
+                wrong(fmt::format("there is no set {}{}", reader::quote(warning.name),
+                                  reader::did_you_mean(warning.name, names, "allowed")));
             bool any = false;
             for (const std::string& member : set->members) {
                 const auto at = member.find('@');
@@ -71,18 +71,18 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
         for (const compare::Entry* known : definitions) {
             const auto at = known->name.find('@');
             add_once(figures, known->name.substr(0, at));
-            if (known->name.substr(0, at) == one.figure)
+            if (known->name.substr(0, at) == warning.figure)
                 add_once(names, known->name.substr(at + 1));
         }
         if (names.empty())
             wrong(fmt::format("no figure with other definitions{}",
-                              reader::did_you_mean(one.figure, figures, "allowed")));
-        if (std::ranges::find(names, one.name) == names.end())
-            wrong(fmt::format("there is no definition {}{}", reader::quote(one.name),
-                              reader::did_you_mean(one.name, names, "allowed")));
-        if (!add(one.figure, one.name))
-            wrong(fmt::format("the scene has no {} by the definition {}", one.figure,
-                              reader::quote(one.name)));
+                              reader::did_you_mean(warning.figure, figures, "allowed")));
+        if (std::ranges::find(names, warning.name) == names.end())
+            wrong(fmt::format("there is no definition {}{}", reader::quote(warning.name),
+                              reader::did_you_mean(warning.name, names, "allowed")));
+        if (!add(warning.figure, warning.name))
+            wrong(fmt::format("the scene has no {} by the definition {}", warning.figure,
+                              reader::quote(warning.name)));
     }
     for (auto& output : outputs) output.main = output.kinematic();
     return outputs;

@@ -38,8 +38,8 @@ struct LoadedScene {
     std::vector<compare::Channel> definitions = {};
 };
 
-// Trims and compiles what was read from a file. Throws SceneError for an ill-posed trim, and
-// NotTrimmed.
+// Trims and compiles what was read from a file. Throws SceneError for an ill-posed
+// trim, and NotTrimmed.
 LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::string& file,
                                  Detail detail = Detail::required);
 // Reads the file too, and prints the warnings to standard error. Throws SceneError. With a place for

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
@@ -31,7 +30,8 @@ std::string differences(const Model& model, const Branch& branch, const Equilibr
         for (std::size_t c = 0; c < main.size(); ++c) {
             const double distance = compare::worse(std::abs(given[c] - expected[c]), largest);
             if (main[c].unit != unit || (worst != nullptr && distance == largest)) continue;
-            worst = &main[c], largest = distance;
+            worst = &main[c];
+            largest = distance;
         }
         if (worst != nullptr)
             text += fmt::format("{}{:.2g} {} ({})", text.empty() ? "" : " and ", largest,
@@ -83,7 +83,7 @@ compare::SolverSettings certified_solver(const std::string& solver) {
 SolvedBranch solve_branch(const Model& model, const Branch& branch,
                           const std::vector<Channel>& channels,
                           const compare::SolverSettings& solver,
-                          const std::function<void(const Equilibrium&, compare::Row&)>& found,
+                          const std::function<void(const Equilibrium&, compare::Row&)>& change_row,
                           const std::function<void(compare::Row)>& hand_over) {
     const auto sides = compare::sides_of(model, branch, solver.recursion.steps);
     compare::Analyses analyses;
@@ -94,7 +94,7 @@ SolvedBranch solve_branch(const Model& model, const Branch& branch,
             static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
         if (!last_states[side_index] || state.load != 0) last_states[side_index] = state;
         auto row = compare::row_of(model, channels, sides.front(), solver, state, analyses);
-        found(state, row);
+        change_row(state, row);
         return row;
     };
     SolvedBranch solved{compare::solve_branch(sides, solver, row_at, hand_over)};

@@ -9,6 +9,7 @@
 
 #include "models/reader/document/suggestions.hpp"
 #include "reports/command/program/command.hpp"
+#include "reports/files/files.hpp"
 #include "reports/files/provenance.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/text/escape.hpp"
@@ -19,18 +20,13 @@ namespace {
 // Path of a document by its name in the source tree: PREFIX/share/doc/elastocheck/NAME of an
 // installed program, or the one in the source tree; else only its name.
 std::string documentation(const std::string& name) {
-    namespace fs = std::filesystem;
-    std::error_code failed;
-    for (fs::path file = fs::read_symlink("/proc/self/exe", failed), folder = file.parent_path();
-         !failed && folder != file; file = folder, folder = folder.parent_path())
-        for (const fs::path& place : {folder / "share/doc/elastocheck" / name, folder / name})
-            if (std::error_code unseen; fs::is_regular_file(place, unseen)) return place.string();
-    return name;
+    const std::filesystem::path file = beside_program({"share/doc/elastocheck/" + name, name});
+    return file.empty() ? name : file.string();
 }
 
-// Throws std::invalid_argument for a word that is not UTF-8 or has control characters (escape.hpp:
-// flaw), since words appear in reports, annotations and terminals. A --reason may have several
-// lines.
+// Throws std::invalid_argument for a word that is not UTF-8 or has control characters
+// (escape.hpp: flaw), since words appear in reports, annotations and terminals. A --reason may
+// have several lines.
 void check_words(int argc, char** argv) {
     for (int k = 1; k < argc; ++k) {
         const std::string_view word = argv[k];

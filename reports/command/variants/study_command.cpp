@@ -27,14 +27,10 @@ sys.exit(main(**json.loads(sys.argv[1])))
 // The folder with the package, of the build tree or of an installed program; empty where Python has
 // to find it.
 std::string package_folder() {
-    std::error_code failed;
-    for (fs::path file = fs::read_symlink("/proc/self/exe", failed), folder = file.parent_path();
-         !failed && folder != file; file = folder, folder = folder.parent_path())
-        for (const char* place : {"reports/python/package", "lib/python3/dist-packages"})
-            if (std::error_code unseen;
-                fs::exists(folder / place / "elastocheck/study/__main__.py", unseen))
-                return (folder / place).string();
-    return {};
+    const fs::path package =
+        beside_program({"reports/python/package/elastocheck/study/__main__.py",
+                        "lib/python3/dist-packages/elastocheck/study/__main__.py"});
+    return package.empty() ? "" : package.parent_path().parent_path().parent_path().string();
 }
 
 // Becomes the Python program, with the options of elastocheck.study.run().

@@ -94,7 +94,7 @@ struct Page {
         for (const auto& table : section.tables) tables.push_back(page_table(table));
         json groups = single;
         for (const auto& entry : several) groups.push_back(entry);
-        const json all = paragraphs(section);
+        const json texts = paragraphs(section);
         return {{"id", unique(fmt::format("{}-{}", part.id, section.id))},
                 {"title", section.title},
                 {"first", section.part == Part::first && section.id != "conditions"},
@@ -104,10 +104,10 @@ struct Page {
                          : section.mark == Mark::fail
                              ? json{{"class", "fail"}, {"text", "fail"}}
                              : json{{"class", "open"}, {"text", "not judged"}}},
-                {"paragraphs", all},
-                {"lead", all.empty() ? json("") : all[0]},
-                {"rest", all.size() > 1 ? json(std::vector<json>(all.begin() + 1, all.end()))
-                                        : json::array()},
+                {"paragraphs", texts},
+                {"lead", texts.empty() ? json("") : texts[0]},
+                {"rest", texts.size() > 1 ? json(std::vector<json>(texts.begin() + 1, texts.end()))
+                                          : json::array()},
                 {"has_figures", !groups.empty()},
                 {"groups", groups},
                 {"has_tables", !tables.empty()},

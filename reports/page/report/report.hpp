@@ -32,8 +32,8 @@ struct Answer {
     std::string name, source;
     std::string
         sentence;  // how far the numbers can be trusted, and which fast method is good enough
-    // "pass", "fail", "not judged" of the candidates where there are any; else "judged" or "not
-    // judged"
+    // "pass", "fail", "not judged" of the candidates where there are any; else "judged"
+    // or "not judged"
     std::string mark;
     bool conclusive = false;           // it could be judged
     std::vector<std::string> reasons;  // reasons if not

@@ -17,23 +17,23 @@ using compare::EffectRow;
 constexpr std::size_t most_bars = 5, most_charts = 6, most_columns = 8;
 
 // The five numbers with the largest effects as bars.
-Figure tornado(const KeyFigure& of) {
-    Figure figure{.id = fmt::format("change-{}", slug(of.title)),
-                  .title = of.title,
-                  .description = fmt::format("The largest effects on {}:", of.title),
-                  .x = fmt::format("change of {} [{}]", of.title, of.unit),
+Figure tornado(const KeyFigure& key) {
+    Figure figure{.id = fmt::format("change-{}", slug(key.title)),
+                  .title = key.title,
+                  .description = fmt::format("The largest effects on {}:", key.title),
+                  .x = fmt::format("change of {} [{}]", key.title, key.unit),
                   .y = ""};
     Series bars{.style = Series::Style::bars, .colour = blue};
     double row = 0;
-    for (const EffectRow& effect : of.effects) {
-        if (row <= -static_cast<double>(most_bars) || !of.counts(effect.effect)) break;
+    for (const EffectRow& effect : key.effects) {
+        if (row <= -static_cast<double>(most_bars) || !key.counts(effect.effect)) break;
         --row;
         const std::string label = number_label(effect);
         figure.y_ticks.emplace_back(row, label);
         bars.rows.push_back({effect.effect / 2, row, std::min(0.0, effect.effect),
                              std::max(0.0, effect.effect), row - 0.3, row + 0.3});
         figure.description +=
-            fmt::format(" {} {} {};", label, signed_number(effect.effect, 2), of.unit);
+            fmt::format(" {} {} {};", label, signed_number(effect.effect, 2), key.unit);
     }
     figure.description.back() = '.';
     figure.series.push_back(std::move(bars));

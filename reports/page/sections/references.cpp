@@ -34,12 +34,12 @@ void add_why_not_energy(nlohmann::ordered_json& words, const compare::BranchComp
 }  // namespace
 
 std::optional<Section> references_section(const SceneAnalyses& scene) {
-    const auto& all = scene.comparison;
+    const auto& comparison = scene.comparison;
     Section section{.id = "references",
                     .title = "Agreement and certification of the references",
                     .part = Part::evidence};
     auto& words = section.words;
-    for (const auto& branch : all.branches) {
+    for (const auto& branch : comparison.branches) {
         for (const auto& run : branch.runs) {
             if (run.proved.proved > 0) words["proofs"] = true;
             if (!run.proved.theorem.empty() && !words.contains("says_also"))
@@ -49,8 +49,8 @@ std::optional<Section> references_section(const SceneAnalyses& scene) {
         for (const auto& reason : branch.inconclusive.texts())
             words["reasons"].push_back(fmt::format("{}: {}", branch.branch, reason));
     }
-    Table agreement = agreement_table(all), proofs = proof_table(all),
-          work = with_columns(compare::leg_table(all.branches),
+    Table agreement = agreement_table(comparison), proofs = proof_table(comparison),
+          work = with_columns(compare::leg_table(comparison.branches),
                               {"branch", "leg", "outcome", "detail", "points", "factorisations",
                                "iterations", "evaluations"});
     agreement.caption =
@@ -63,7 +63,7 @@ std::optional<Section> references_section(const SceneAnalyses& scene) {
     proofs.caption +=
         scene.quick ? " at the ends (--quick)" : " at the start, the middle and the ends";
     work.caption = "Outcome and work of each solution";
-    section.tables = {agreement, proofs, residual_table(all), work};
+    section.tables = {agreement, proofs, residual_table(comparison), work};
     return section;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "compare/outputs/readings.hpp"
@@ -62,7 +61,7 @@ std::optional<Section> candidate_section(const SceneAnalyses& scene) {
 }
 
 std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sweep,
-                                     const std::string& by, const std::string& channel) {
+                                     const std::string& abscissa, const std::string& channel) {
     std::vector<Series> list;
     const auto& channels = scene.comparison.channels;
     for (const auto& [candidate, sentence] : scene.candidates) {
@@ -86,7 +85,7 @@ std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sw
             const std::string over = by_parameter || branch.abscissa < 0
                                          ? ""
                                          : channels[static_cast<std::size_t>(branch.abscissa)].name;
-            const auto* x = by == over ? &reading.at : column(reading, branch, by);
+            const auto* x = abscissa == over ? &reading.at : column(reading, branch, abscissa);
             const auto* y = column(reading, branch, channel);
             if (x == nullptr || y == nullptr) continue;
             for (const auto k : thinned(x->size(), 21))

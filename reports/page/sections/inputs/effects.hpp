@@ -9,7 +9,6 @@
 
 #include "reports/document/scene_analyses.hpp"
 #include "reports/page/page.hpp"
-#include "reports/page/views.hpp"
 
 namespace elastocheck::reports {
 

@@ -1,6 +1,5 @@
 #include "reports/page/sections/inputs/measured.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "reports/page/common.hpp"

@@ -1,8 +1,5 @@
 #include "reports/page/sections/kinematics/cases.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 
 #include "reports/given/wheels.hpp"

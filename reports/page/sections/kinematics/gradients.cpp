@@ -65,22 +65,23 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
         if (!quantity.has_gradient || quantity.shown == compare::Shown::off_centre) continue;
         GradientRow row{label_of(quantity), "", std::vector(wheels.size(), compare::nan)};
         double sum = 0, count = 0;
-        for (const auto& of : outputs_of(scene, quantity.name)) {
-            auto x = abscissa_of(scene, family, c, of.wheel), y = c.curve.channel(of.channel);
+        for (const auto& output : outputs_of(scene, quantity.name)) {
+            auto x = abscissa_of(scene, family, c, output.wheel),
+                 y = c.curve.channel(output.channel);
             if (x.size() != y.size()) continue;
             // rolls towards this wheel
-            if (over.by == By::roll && !of.of_all)
-                for (double& value : x) value *= -of.wheel.side;
-            const Scale scale = scale_of(quantity, of.wheel.side, y, c.curve.start);
+            if (over.by == By::roll && !output.of_all)
+                for (double& value : x) value *= -output.wheel.side;
+            const Scale scale = scale_of(quantity, output.wheel.side, y, c.curve.start);
             const FittedLine line = line_of(x, y, over.range);
             if (std::isnan(line.slope)) continue;
             // forces per mm, not per 100 mm
-            const bool of_force = of.unit == "N" && over.by == By::travel;
+            const bool of_force = output.unit == "N" && over.by == By::travel;
             const double value = at_rest(scale.factor * line.slope * (of_force ? 1 : over.per));
             range.from = std::min(range.from, line.from), range.to = std::max(range.to, line.to);
-            row.unit = fmt::format("{}/{}", of.unit, of_force ? "mm" : over.per_unit);
-            for (std::size_t w = 0; w < wheels.size() && !of.of_all; ++w)
-                if (wheels[w].name == of.wheel.name) row.values[w] = value;
+            row.unit = fmt::format("{}/{}", output.unit, of_force ? "mm" : over.per_unit);
+            for (std::size_t w = 0; w < wheels.size() && !output.of_all; ++w)
+                if (wheels[w].name == output.wheel.name) row.values[w] = value;
             sum += value, ++count;
         }
         if (count > 0) row.mean = sum / count, rows.push_back(std::move(row));

@@ -19,8 +19,8 @@ std::vector<std::string> words_in(std::string name) {
 
 std::optional<std::pair<std::string, std::size_t>> wheel_of(const std::string& owner,
                                                             const std::vector<Wheel>& wheels) {
-    std::optional<std::size_t> found;
-    if (wheels.size() == 1) found = 0;
+    std::optional<std::size_t> wheel;
+    if (wheels.size() == 1) wheel = 0;
     std::string others;
     for (const auto& word : words_in(owner)) {
         std::vector<std::size_t> with;
@@ -32,35 +32,35 @@ std::optional<std::pair<std::string, std::size_t>> wheel_of(const std::string& o
             others += (others.empty() ? "" : " ") + word;
             continue;
         }
-        if (found && *found != with[0]) return std::nullopt;
-        found = with[0];
+        if (wheel && *wheel != with[0]) return std::nullopt;
+        wheel = with[0];
     }
-    if (!found) return std::nullopt;
-    return std::pair{others, *found};
+    if (!wheel) return std::nullopt;
+    return std::pair{others, *wheel};
 }
 
 std::vector<FoundOutput> outputs_of(const SceneAnalyses& scene, const std::string& quantity) {
     const auto& channels = scene.comparison.channels;
     const auto& wheels = scene.model.wheels;
-    std::vector<FoundOutput> found;
+    std::vector<FoundOutput> outputs;
     const auto add = [&](const std::string& name, const Wheel& wheel, bool of_all) {
         if (const int c = compare::find_channel(channels, name); c >= 0)
-            found.push_back({.channel = name,
-                             .unit = symbol(channels[static_cast<std::size_t>(c)].unit),
-                             .wheel = wheel,
-                             .of_all = of_all});
+            outputs.push_back({.channel = name,
+                               .unit = symbol(channels[static_cast<std::size_t>(c)].unit),
+                               .wheel = wheel,
+                               .of_all = of_all});
     };
     for (const auto& wheel : wheels) add(output_of(wheel, quantity), wheel, false);
-    if (found.empty()) add(quantity, wheels.empty() ? Wheel{} : wheels[0], true);
-    if (!found.empty() || wheels.empty()) return found;
+    if (outputs.empty()) add(quantity, wheels.empty() ? Wheel{} : wheels[0], true);
+    if (!outputs.empty() || wheels.empty()) return outputs;
     for (const auto& channel : channels) {
         if (!compare::is_figure(channel, quantity)) continue;
         const std::string owner = channel.name.substr(0, channel.name.rfind('.'));
         const auto of = wheel_of(owner, wheels);
         add(channel.name, wheels[of ? of->second : 0], !of);
-        found.back().element = of ? of->first : as_words(owner);
+        outputs.back().element = of ? of->first : as_words(owner);
     }
-    return found;
+    return outputs;
 }
 
 }  // namespace elastocheck::reports

@@ -18,9 +18,10 @@ using compare::Over;
 // A quantity of each wheel, once where the wheels agree.
 Table at_stations(const SceneAnalyses& scene, const Case& c, const std::string& caption,
                   const std::vector<Quantity>& quantities) {
-    std::vector<std::size_t> at = thinned(c.curve.a.size(), 9);
-    if (std::ranges::find(at, c.curve.start) == at.end() && c.curve.start < c.curve.a.size())
-        at.insert(std::ranges::lower_bound(at, c.curve.start), c.curve.start);
+    std::vector<std::size_t> chosen = thinned(c.curve.a.size(), 9);
+    if (std::ranges::find(chosen, c.curve.start) == chosen.end() &&
+        c.curve.start < c.curve.a.size())
+        chosen.insert(std::ranges::lower_bound(chosen, c.curve.start), c.curve.start);
     std::vector<compare::ColumnOf<std::size_t>> columns;
     const auto add = [&](const std::string& name, std::vector<double> values) {
         columns.push_back(
@@ -29,9 +30,9 @@ Table at_stations(const SceneAnalyses& scene, const Case& c, const std::string& 
     };
     if (!c.sweep.lifts()) add(c.sweep.parameter, c.curve.a);  // else by travel
     for (const auto& quantity : quantities) {
-        const auto found = outputs_of(scene, quantity.name);
+        const auto outputs = outputs_of(scene, quantity.name);
         std::vector<std::vector<double>> values;
-        for (const auto& of : found) {
+        for (const auto& of : outputs) {
             values.push_back(c.curve.channel(of.channel));
             const Scale scale = scale_of(quantity, of.wheel.side, values.back(), c.curve.start);
             for (double& value : values.back()) value = scale(value);
@@ -41,13 +42,13 @@ Table at_stations(const SceneAnalyses& scene, const Case& c, const std::string& 
                 return std::isnan(a) ? std::isnan(b) : std::abs(a - b) <= 1e-9 + 1e-4 * std::abs(a);
             });
         for (std::size_t k = 0; k < (agree ? 1 : values.size()); ++k) {
-            const std::string whose = found[k].of_all || agree || found[k].wheel.name.empty()
+            const std::string whose = outputs[k].of_all || agree || outputs[k].wheel.name.empty()
                                           ? ""
-                                          : " " + found[k].wheel.name;
-            add(fmt::format("{}{} [{}]", label_of(quantity), whose, found[k].unit), values[k]);
+                                          : " " + outputs[k].wheel.name;
+            add(fmt::format("{}{} [{}]", label_of(quantity), whose, outputs[k].unit), values[k]);
         }
     }
-    Table table = compare::table("", columns, at);
+    Table table = compare::table("", columns, chosen);
     table.caption = caption;
     return table;
 }

@@ -1,5 +1,4 @@
 // Sections: figures over the travel of each wheel; over the roll of an axle.
-#include <algorithm>
 
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/measured.hpp"
