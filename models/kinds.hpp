@@ -5,7 +5,6 @@
 // belong to the legs.
 #pragma once
 
-#include <optional>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -16,8 +15,8 @@
 
 namespace elastocheck {
 
-// ---- Members whose C++ type does not say what they are. T is the type of the number, const or
-// not.
+// ---- Members whose C++ type does not say what they are. T is the type of the number,
+// const or not.
 
 template <class T>
 struct Length {

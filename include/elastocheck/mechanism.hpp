@@ -63,10 +63,11 @@ struct Revolute {
     Point i, j;
     Direction axis_i, axis_j;
 };
+// The axes of the cross, perpendicular.
 struct Universal {
     Point i, j;
     Direction axis_i, axis_j;
-};  // the two axes of the cross, perpendicular
+};
 struct Cylindrical {
     Point i, j;
     Direction axis_i, axis_j;
@@ -79,23 +80,26 @@ struct Planar {
     Point i, j;
     Direction normal_i, normal_j;
 };
+// x, y: the same two perpendicular directions on each body.
 struct Fixed {
     Point i, j;
     Direction x_i, y_i, x_j, y_j;
-};  // x, y: the same two perpendicular directions on each
+};
 struct Distance {
     Point i, j;
-    double length = 0;
-};  // [m] > 0
+    double length = 0;  // [m] > 0
+};
+// i stays in the plane at `offset` from j.
 struct InPlane {
     Point i, j;
     Direction normal_j;
     double offset = 0;  // of the plane from j along its normal [m]
-};                      // i stays in the plane
+};
+// i stays on the line through j.
 struct InLine {
     Point i, j;
     Direction axis_j;
-};  // i stays on the line through j
+};
 struct Perpendicular {
     Direction i, j;
 };
@@ -123,9 +127,11 @@ struct Joint {
 // energy; all forces follow from the energy.
 
 // Laws of one deformation x.
+
+// u(x) = ½ k x²
 struct LinearRate {
     double k = 0;  // [N/m] or [N·m/rad] ≥ 0
-};                 // u(x) = ½ k x²
+};
 
 // Force over a deformation, a piecewise cubic polynomial:
 //
@@ -137,20 +143,23 @@ struct LinearRate {
 // table and where a stop closes.
 struct Curve {
     std::vector<double> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
-    std::vector<std::array<double, 4>>
-        pieces;                 // c [N, N/m, ...] of the piece before the first knot, about it,
-                                // then of the piece behind each knot, about that knot
+    // c [N, N/m, ...] of the piece before the first knot, about it, then of the piece behind each
+    // knot, about that knot
+    std::vector<std::array<double, 4>> pieces;
     bool known_outside = true;  // false: undefined beyond the end knots, and a branch ends there
 };
 using ScalarLaw = std::variant<LinearRate, Curve>;
 
 // Laws of six deformations e = (d, θ).
+
+// u(e) = ½ eᵀ K e;  K = diag(K_T', K_R') is eqs. (8)-(9)
 struct LinearStiffness {
     Matrix6 K = Matrix6::Zero();  // symmetric, positive semidefinite, [N/m  N; N  N·m/rad]
-};                                // u(e) = ½ eᵀ K e;  K = diag(K_T', K_R') is eqs. (8)-(9)
+};
+// u(e) = Σ u_k(e_k), x y z of d, x y z of θ
 struct PerAxis {
     std::array<ScalarLaw, 6> axis;
-};  // u(e) = Σ u_k(e_k), x y z of d, x y z of θ
+};
 using SpatialLaw = std::variant<LinearStiffness, PerAxis>;
 
 // Two points:  U = u(ℓ - ℓ₀),  ℓ = |p_j - p_i|

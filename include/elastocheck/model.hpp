@@ -16,26 +16,32 @@ namespace elastocheck {
 
 // The four basic constraints (Nikravesh 1988), and one more for a driven angle, as data. Each leg
 // has its own equations for them.
+
+// p_i = p_j                     3 rows
 struct CoincidentPoints {
     Point i, j;
-};  // p_i = p_j                     3 rows
+};
+// n_j · (p_i - p_j) = offset    1 row
 struct PointInPlane {
     Point i, j;
     Direction normal_j;
     double offset = 0;  // [m]
-};                      // n_j · (p_i - p_j) = offset    1 row
+};
+// u_i · u_j = 0                 1 row
 struct PerpendicularDirections {
     Direction i, j;
-};  // u_i · u_j = 0                 1 row
+};
+// |p_i - p_j| = length          1 row
 struct DistanceBetween {
     Point i, j;
     double length = 0;
-};  // |p_i - p_j| = length          1 row
+};
 
+// u_i · (cos α y_j - sin α x_j) = 0,  α = angle   1 row
 struct DirectionAtAngle {
     Direction i, j, y_j;  // x_j = j, perpendicular to y_j on the same body; u_i lies in their plane
     double angle = 0;     // [rad]
-};                        // u_i · (cos α y_j - sin α x_j) = 0,  α = angle   1 row
+};
 
 using ConstraintKind = std::variant<CoincidentPoints, PointInPlane, PerpendicularDirections,
                                     DistanceBetween, DirectionAtAngle>;

@@ -123,19 +123,23 @@ struct Number {
 // of every branch. As many conditions as adjustments. Solved first (compare/comparison/trim.hpp);
 // the branches start from there.
 
+// Of the centre, up from the design position [m].
 struct WheelTravel {
     int wheel = 0;
-};  // of the centre, up from the design position [m]
+};
+// [rad]
 struct WheelToe {
     int wheel = 0;
-};  // [rad]
+};
+// [rad]
 struct WheelCamber {
     int wheel = 0;
-};  // [rad]
+};
+// Position relative to that at the design position [m].
 struct ProbeCoordinate {
     int probe = 0;
     int axis = 2;  // 0 x, 1 y, 2 z
-};                 // position relative to that at the design position [m]
+};
 using ConditionKind = std::variant<WheelTravel, WheelToe, WheelCamber, ProbeCoordinate>;
 
 struct Trim {

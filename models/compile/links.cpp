@@ -2,7 +2,6 @@
 //
 // Only its two joints act on such a body. Their forces are equal and opposite, along the line
 // between the balls, so the link only keeps the distance of the balls.
-#include <algorithm>
 #include <optional>
 #include <set>
 

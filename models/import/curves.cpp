@@ -49,9 +49,9 @@ double secant(const Rows& rows, std::size_t k) {
 
 }  // namespace
 
-// Akima's slope at a point is a weighted mean of the two adjacent secants. The weight of each is
-// the difference of the two secants on the other side. Beyond the ends the secants are extrapolated
-// linearly.
+// Akima's slope at a point is a weighted mean of the two adjacent secants. The weight of
+// each is the difference of the two secants on the other side. Beyond the ends the secants
+// are extrapolated linearly.
 Apart off_akima(const Rows& rows, Between ours) {
     const std::size_t n = rows.size();
     if (n < 2) return {};

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "models/kinds.hpp"
-#include "models/overloaded.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/settings.hpp"
 

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <functional>
 #include <map>
-#include <set>
 #include <vector>
 
 #include "models/reader/document/characters.hpp"
@@ -90,10 +88,11 @@ struct Edit {
 // Takes the comment of an earlier edited() off a line whose values end before it. Its entries for
 // other paths: "PATH was VALUE, ...".
 std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
-    const std::size_t at = line.rfind("  # ");
-    if (at == line.npos || static_cast<std::size_t>(edits.front().value->column) > at) return "";
+    const std::size_t comment = line.rfind("  # ");
+    if (comment == line.npos || static_cast<std::size_t>(edits.front().value->column) > comment)
+        return "";
     std::string kept;
-    for (std::size_t from = at + 4; from < line.size();) {
+    for (std::size_t from = comment + 4; from < line.size();) {
         const std::size_t end = std::min(line.find(", ", from), line.size());
         const std::string entry = line.substr(from, end - from);
         const std::size_t was = entry.find(" was ");
@@ -105,12 +104,12 @@ std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
             kept += (kept.empty() ? "" : ", ") + entry;
         from = end + 2;
     }
-    line.erase(at);
+    line.erase(comment);
     return kept;
 }
 
-// The line with the values replaced, the old ones in a comment at its end. `edits` from right to
-// left.
+// The line with the values replaced, the old ones in a comment at its end. `edits` from
+// right to left.
 std::string edited(std::string line, const std::vector<Edit>& edits, const std::string& file) {
     std::string end;
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) {

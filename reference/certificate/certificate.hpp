@@ -9,7 +9,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"

@@ -106,10 +106,10 @@ double shrinks(const Contraction& rest, VectorXd v) {
     return least;
 }
 
-// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes; 0
-// if none does. Any Y will do: that of ỹ first, and where it fails the inverse at the middle of the
-// Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a ratio of
-// 0.85.
+// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes;
+// 0 if none does. Any Y will do: that of ỹ first, and where it fails the inverse at the middle
+// of the Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a
+// ratio of 0.85.
 double alone(const Problem& problem, const Approximate& approximate, double a,
              const VectorXd& small) {
     const VectorXd& centre = approximate.y;

@@ -52,8 +52,8 @@ OnCurve on_curve(const Problem& problem) {
     return {std::move(found.y), std::move(found.Y), found.settled};
 }
 
-// Secant method for da/dσ = 0 (`slope`), steps in σ. The point and tangent of the problem are
-// updated.
+// Secant method for da/dσ = 0 (`slope`), steps in σ. The point and tangent of the
+// problem are updated.
 constexpr double first_step = 1e-4, small_step = 1e-10, longest_step = 0.2;
 OnCurve turning_point(Problem& problem) {
     double slope = 0, step = 0;
@@ -161,8 +161,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     if (!check_border(problem, top.y, top.y[n - 1]).sound)
         return open(
             "a held motion or constraint is not idle or redundant at the limit point, is loaded, "
-            "or "
-            "has a gap");
+            "or has a gap");
 
     problem.y_t = top.y;
     for (double delta = 1e-9; delta < 1e-3; delta *= 4) {

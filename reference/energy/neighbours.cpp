@@ -1,7 +1,6 @@
 #include "reference/energy/neighbours.hpp"
 
 #include <limits>
-#include <stdexcept>
 
 #include "reference/energy/constraints/reactions.hpp"
 #include "reference/energy/state_tangent.hpp"
@@ -96,7 +95,8 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
         const TangentSolution solution = solve_tangent(
             tangent, change.b, change.Phi.isZero(0) ? VectorXd() : change.Phi, stiffest * rounding);
         if (solution.outcome != Outcome::converged) {
-            result.outcome = solution.outcome, result.detail = solution.what;
+            result.outcome = solution.outcome;
+            result.detail = solution.what;
             continue;
         }
         for (const Neighbour& k : stencil) result.states.push_back(solved(*k.model, tangent, here));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -78,9 +77,9 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         throw std::invalid_argument("the model has parts that are inactive on branch '" +
                                     branch.name + "', or the branch has two sides");
     EquilibriumPath result;
-    if (const auto what = without_potential(model, branch)) {
+    if (const auto culprit = without_potential(model, branch)) {
         result.outcome = Outcome::not_conservative;
-        result.detail = fmt::format("branch '{}': {}", branch.name, *what);
+        result.detail = fmt::format("branch '{}': {}", branch.name, *culprit);
         return result;
     }
     if (const double operations = cost_of(model, values.size()).operations();

@@ -88,7 +88,7 @@ Programme Conversion::programme(const std::string& text) {
         first.unknown = "too many functions of TIME";
         return result;
     }
-    const auto at = [&](double time) {
+    const auto value_at = [&](double time) {
         const Value value = function(text, time);
         const bool is_same = value.linear == first.linear && value.curves == first.curves;
         if (!value.is_known() && first.is_known()) first = value;
@@ -97,7 +97,7 @@ Programme Conversion::programme(const std::string& text) {
         return value.constant;
     };
     for (std::size_t k = 1; k < times.size() && first.is_known(); ++k)
-        result.path.push_back(at(times[k]));
+        result.path.push_back(value_at(times[k]));
     if (!first.is_known()) return result;
     const auto extremum = [&](double sign, auto found) {
         const auto k = static_cast<std::size_t>(found - result.path.begin());
@@ -105,7 +105,7 @@ Programme Conversion::programme(const std::string& text) {
                best = *found;
         for (int n = 0; n < 50 && first.is_known(); ++n) {
             const double a = low + 0.381966 * (high - low), b = high - 0.381966 * (high - low);
-            const double f_a = at(a), f_b = at(b);
+            const double f_a = value_at(a), f_b = value_at(b);
             best = sign * std::max({sign * best, sign * f_a, sign * f_b});
             (sign * f_a > sign * f_b ? high : low) = sign * f_a > sign * f_b ? b : a;
         }
@@ -144,7 +144,7 @@ void note_without_effect(Conversion& c, const Statement& s) {
 void sort_out(Conversion& c) {
     for (const Statement& s : c.data.statements) {
         const Role role = role_of(s.keyword);
-        const reader::Value* what = entry(dataset_table("without_equivalent"), s.keyword);
+        const reader::Value* equivalent = entry(dataset_table("without_equivalent"), s.keyword);
         if (role == Role::without_effect)
             note_without_effect(c, s);
         else if (role == Role::if_used)
@@ -156,7 +156,8 @@ void sort_out(Conversion& c) {
                    "friction also acts at rest, and a scene has no friction (--drop "
                    "dynamics leaves it out)");
         else if (role == Role::missing)
-            c.miss(s, "{}a scene has no equivalent", what ? what->text + ", for which " : "");
+            c.miss(s, "{}a scene has no equivalent",
+                   equivalent ? equivalent->text + ", for which " : "");
     }
 }
 

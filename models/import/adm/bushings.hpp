@@ -26,8 +26,8 @@ struct SixLaws {
 void put_bushing(Conversion& c, const Statement& s, const Marker& I, int part_j, const Frame& J,
                  const SixLaws& laws);
 
-// Converts a stiffness matrix to units of the scene, by blocks: force/length, force, force ·
-// length.
+// Converts a stiffness matrix to units of the scene, by blocks: force/length, force,
+// force · length.
 Matrix6 in_scene_units(Matrix6 K, const Units& units);
 Vector6 wrench_in_scene_units(Vector6 F, const Units& units);
 

@@ -355,8 +355,8 @@ class Parser {
         return only(term, p[0]);
     }
 
-    // DIM(a, b) = max(a - b, 0) of a displacement and a constant: a contact of rate 1 without
-    // damping.
+    // DIM(a, b) = max(a - b, 0) of a displacement and a constant: a contact of rate
+    // 1 without damping.
     static Value penetration(const std::vector<Value>& p) {
         const Value one = constant(1);
         Value value = p[0].is_constant() ? contact(p[1], p[0], one, one)

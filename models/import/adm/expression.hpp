@@ -9,15 +9,14 @@
 #include <compare>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace elastocheck::importer::adm {
 
-// DX(i, j, rm), ...: displacement of marker i relative to j, in the axes of rm. j or rm 0: global
-// frame.
+// DX(i, j, rm), ...: displacement of marker i relative to j, in the axes of rm. j or rm
+// 0: global frame.
 struct Measure {
     enum class Kind { DM, DX, DY, DZ, AX, AY, AZ } kind = Kind::DM;
     int i = 0, j = 0, rm = 0;

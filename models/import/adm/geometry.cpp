@@ -28,8 +28,8 @@ double size_of(const reader::Value& table, std::string_view name) {
     return si;
 }
 
-// The size of a unit, whose name may be abbreviated; if the statement does not have it, that of the
-// system.
+// The size of a unit, whose name may be abbreviated; if the statement does not have it, that
+// of the system.
 double unit(const Statement& s, std::string_view argument, const reader::Value* system) {
     if (!s.has(argument)) return system && argument != "TIME" ? size_of(*system, argument) : 1;
     const std::string word = s.word(argument);

@@ -223,21 +223,21 @@ std::optional<Displacement> displacement(Conversion& c, const Statement& s) {
 }
 
 // `drawn`: the file's displacement at the design position [length of the scene, rad].
-void drive(Conversion& c, const Statement& s, const std::string& joint, const Displacement& by,
+void drive(Conversion& c, const Statement& s, const std::string& joint, const Displacement& motion,
            double scale, double drawn) {
     const bool is_angle = s.has("JOINT") && s.has("ROTATIONAL");
-    const double start = by.path[0] * scale;
+    const double start = motion.path[0] * scale;
     double offset = 0;  // from the file's displacement to that from the design position
-    if (!by.from_design) {
+    if (!motion.from_design) {
         offset = -drawn;  // of equivalent angles the closest to zero
         if (is_angle) offset = std::remainder(start + offset, 2 * std::numbers::pi) - start;
         if (std::abs(start + offset) <= 1e-9 * (is_angle ? 1 : c.geometry.size))
             offset = -start;  // the motion begins at the design position
     }
     Drive drive{.quantity = "joints." + joint, .from = s.place()};
-    for (const double x : by.path) drive.path.push_back(x * scale + offset);
-    drive.least = by.least * scale + offset;
-    drive.most = by.most * scale + offset;
+    for (const double x : motion.path) drive.path.push_back(x * scale + offset);
+    drive.least = motion.least * scale + offset;
+    drive.most = motion.most * scale + offset;
     c.drives.push_back(std::move(drive));
     c.count("MOTION");
 }
@@ -248,7 +248,7 @@ void hold(Conversion& c, std::size_t entry) {
 }
 
 void convert_motion_of_joint(Conversion& c, const Statement& s,
-                             const std::optional<Displacement>& by) {
+                             const std::optional<Displacement>& motion) {
     const int id = s.id_of("JOINT");
     const auto found = c.joints.find(id);
     if (found == c.joints.end()) {
@@ -258,7 +258,7 @@ void convert_motion_of_joint(Conversion& c, const Statement& s,
             s.fail("there is no JOINT/{}", id);
         return c.miss(s, "JOINT/{} is not in the scene", id);
     }
-    if (!by) return;
+    if (!motion) return;
     const WrittenJoint& joint = found->second;
     const JointConversion ends{c, s, c.marker(s, joint.i), c.marker(s, joint.j)};
     const bool rotates = s.has("ROTATIONAL");
@@ -266,14 +266,14 @@ void convert_motion_of_joint(Conversion& c, const Statement& s,
     std::string name = c.draft.joints[joint.entry].name;
     if (rotates && (joint.kind == "REVOLUTE" || joint.kind == "CYLINDRICAL")) {
         hold(c, joint.entry);
-        drive(c, s, name, *by, 1, turn_of(ends.I, ends.J));
+        drive(c, s, name, *motion, 1, turn_of(ends.I, ends.J));
     } else if (!rotates && joint.kind == "TRANSLATIONAL") {
         hold(c, joint.entry);
-        drive(c, s, name, *by, length, along);
+        drive(c, s, name, *motion, length, along);
     } else if (!rotates && joint.kind == "CYLINDRICAL") {
         name = c.name(c.joint_names, s);
         ends.in_plane(name, ends.J.axis(2));
-        drive(c, s, name, *by, length, along);
+        drive(c, s, name, *motion, length, along);
     } else {
         s.fail("{} of a {} joint, which does not have this coordinate",
                rotates ? "ROTATIONAL" : "TRANSLATIONAL", joint.kind);
@@ -282,9 +282,9 @@ void convert_motion_of_joint(Conversion& c, const Statement& s,
 
 void convert_motion(Conversion& c, const Statement& s) {
     if (c.drives.size() >= most_motions) s.fail("more than {} motions", most_motions);
-    const auto by = displacement(c, s);
+    const auto motion = displacement(c, s);
     if (!s.has("ROTATIONAL")) s.has("TRANSLATIONAL");
-    if (s.has("JOINT")) return convert_motion_of_joint(c, s, by);
+    if (s.has("JOINT")) return convert_motion_of_joint(c, s, motion);
     const Marker &I = c.marker(s, "I"), &J = c.marker(s, "J");
     int axis = -1;
     for (int k = 0; k < 3; ++k)
@@ -293,11 +293,11 @@ void convert_motion(Conversion& c, const Statement& s) {
         return c.miss(s,
                       "a motion of an angle between two markers; only the angle of a joint can "
                       "be driven");
-    if (!by || !c.is_between_two(s, I, J)) return;
+    if (!motion || !c.is_between_two(s, I, J)) return;
     const JointConversion ends{c, s, I, J};
     const std::string name = c.name(c.joint_names, s);
     ends.in_plane(name, J.axis(axis));
-    drive(c, s, name, *by, c.geometry.units.length, J.axis(axis).dot(ends.apart()));
+    drive(c, s, name, *motion, c.geometry.units.length, J.axis(axis).dot(ends.apart()));
 }
 
 // COUPLER: Σ scale · displacement = 0 for two or three joints. A scene has no such joint. If

@@ -236,8 +236,8 @@ struct Scanner {
         return rest.substr(0, n);
     }
 
-    // Whether another argument begins here, after a comma or on a new line of a complete
-    // expression.
+    // Whether another argument begins here, after a comma or on a new line of
+    // a complete expression.
     bool is_argument(std::string_view rest) const {
         skip(rest, ",\n");
         bool assigns = false;

@@ -55,8 +55,8 @@ void half_leaf(Suspension& s, const Words& words) {
     s.joint_or_bushing("revolute", {name + ".pitch*", name + "*", half}, p,
                        frame_along(-Vector3d::UnitY(), Vector3d::UnitZ()),
                        s.optional(in + "Leafspring Bushing Data"));
-    // Moment about y on the leaf whose far end then pushes the chassis up with half the preload: arm ×
-    // force.
+    // Moment about y on the leaf whose far end then pushes the chassis up with half the preload:
+    // arm × force.
     s.torsion({name + ".vertical*", name + "*", half}, p, Vector3d::UnitY(),
               share * vertical * square, -0.5 * preload * arm.x());
     if (preload != 0 && s.side > 0 && half != "front_leaf*")
@@ -107,15 +107,15 @@ struct Generic {
     Suspension& s;
     std::set<std::string> sided = {}, shared = {};
 
-    std::string body(const Cursor& at) const {
+    std::string body(const Cursor& cursor) const {
         std::string name;
         int side = s.side;
-        if (at.is_list()) {
-            const auto pair = at.list(2, "words, a body and its side");
+        if (cursor.is_list()) {
+            const auto pair = cursor.list(2, "words, a body and its side");
             name = pair[0].text("a body");
             side = pair[1].one_of("a side", {"Left", "Right"}) == 0 ? 1 : -1;
         } else {
-            name = at.text("a body");
+            name = cursor.text("a body");
         }
         if (name == "Steering") return "steering link";
         if (name == "Chassis" || name == "Subchassis") return "ground";
@@ -124,8 +124,8 @@ struct Generic {
         std::vector<std::string> known{"Chassis", "Subchassis", "Steering"};
         known.insert(known.end(), sided.begin(), sided.end());
         known.insert(known.end(), shared.begin(), shared.end());
-        at.fail(fmt::format("{} is not a body of this suspension{}", at.found(),
-                            reader::did_you_mean(name, known, "there are")));
+        cursor.fail(fmt::format("{} is not a body of this suspension{}", cursor.found(),
+                                reader::did_you_mean(name, known, "there are")));
     }
 
     static bool is_mirrored(const Cursor& entry) {
@@ -178,22 +178,22 @@ struct Generic {
     void add_joint(const Part& part) const {
         const Cursor type = part.entry.require("Type");
         const std::string name = type.text("a type of joint"), i = part.body1(), j = part.body2();
-        const FilePoint at = part.at("Position");
+        const FilePoint position = part.at("Position");
         const auto rotated = part.entry.optional("Rotation"),
                    data = part.entry.optional("Bushing Data");
         const Matrix3d A = rotated ? rotation_on_side(s, *rotated) : no_turn;
-        const auto found = std::ranges::find_if(chrono_joints, [&](const ChronoJoint& joint) {
+        const auto kind = std::ranges::find_if(chrono_joints, [&](const ChronoJoint& joint) {
             return name == joint.name || name == joint.capitals;
         });
-        if (found == std::end(chrono_joints))
+        if (kind == std::end(chrono_joints))
             type.fail(fmt::format("{} is not a supported joint of Chrono", type.found()));
-        if (!found->type)
+        if (!kind->type)
             type.fail(
                 "Chrono reads this as a lock, probably not intended; write Lock, or change the "
                 "joint");
-        if (found->may_be_bushing)
-            return s.joint_or_bushing(found->type, {part.name, i, j}, at, A, data);
-        const bool is_lock = found->name == "Lock";
+        if (kind->may_be_bushing)
+            return s.joint_or_bushing(kind->type, {part.name, i, j}, position, A, data);
+        const bool is_lock = kind->name == "Lock";
         if (data) {
             s.ignore(*data, is_lock ? "a bushing instead of a lock"
                                     : "Chrono ignores the bushing of this joint; the scene has the "
@@ -201,8 +201,8 @@ struct Generic {
             if (is_lock) s.draft().notes.miss(part.from, "a bushing instead of a lock");
         }
         std::vector<Vector3d> along;
-        if (found->axis >= 0) along = {A.col(found->axis)};
-        s.joint(found->type, {part.name, i, j}, at, along);
+        if (kind->axis >= 0) along = {A.col(kind->axis)};
+        s.joint(kind->type, {part.name, i, j}, position, along);
     }
 };
 
@@ -234,7 +234,7 @@ void generic(Suspension& s) {
 // frame; "or bushing": of the last field where it is given.
 void joint_step(Suspension& s, const std::string& verb, const Words& w) {
     const std::string type = verb.substr(0, verb.find(' '));
-    const FilePoint at = s.point(w.at(3));
+    const FilePoint place = s.point(w.at(3));
     std::vector<Vector3d> along;
     const bool may_be_bushing = verb.ends_with(" or bushing"), held = w.back() == "held",
                has_frame = verb.ends_with(" along");
@@ -245,9 +245,9 @@ void joint_step(Suspension& s, const std::string& verb, const Words& w) {
                                : no_turn;
     if (has_frame) along = {frame.col(0), frame.col(1)};
     if (may_be_bushing)
-        s.joint_or_bushing(type, {w[0], w[1], w[2]}, at, frame, s.optional(w.back()));
+        s.joint_or_bushing(type, {w[0], w[1], w[2]}, place, frame, s.optional(w.back()));
     else
-        s.joint(type, {w[0], w[1], w[2]}, at, along, held);
+        s.joint(type, {w[0], w[1], w[2]}, place, along, held);
 }
 
 // A warning if two vectors are not perpendicular.

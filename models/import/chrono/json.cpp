@@ -9,8 +9,8 @@
 namespace elastocheck::importer::chrono {
 namespace {
 
-// Blanks comments, which JSON does not have; lines keep their numbers. YAML has no line that ends in CR
-// alone.
+// Blanks comments, which JSON does not have; lines keep their numbers. YAML has no line that
+// ends in CR alone.
 std::string without_comments(std::string_view text) {
     std::string result(text);
     const auto at = [&](std::size_t k) { return k < text.size() ? text[k] : '\n'; };

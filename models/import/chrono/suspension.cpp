@@ -145,8 +145,8 @@ void visit_scalars(const reader::Value& value,
     for (const auto& item : value.items) visit_scalars(item, visit);
 }
 
-// A field of an object that was not read, reported at the outermost level at which nothing was
-// read.
+// A field of an object that was not read, reported at the outermost level at which
+// nothing was read.
 struct Unread {
     const reader::Value *object, *value;
     std::string path, key;
@@ -251,18 +251,18 @@ const std::map<std::string_view, std::vector<const char*>> directions_of{
 
 }  // namespace
 
-void Suspension::joint(const std::string& type, const Between& part, const FilePoint& at,
+void Suspension::joint(const std::string& type, const Between& part, const FilePoint& place,
                        const std::vector<Vector3d>& along, bool held) {
     Fields fields;
     fields.add("type", type).add("bodies", pair(part.i, part.j));
-    if (type != "parallel") fields.add("at", hardpoint(part.name, at));
+    if (type != "parallel") fields.add("at", hardpoint(part.name, place));
     std::vector<Vector3d> units;
     for (const Vector3d& v : along) units.push_back(v.normalized());
     if (units.size() == 2) {  // the second is made exactly perpendicular
         const double cosine = units[0].dot(units[1]);
         if (std::abs(cosine) > 1e-9)
             draft_.notes.warn(
-                at.from,
+                place.from,
                 fmt::format("the axes of the universal joint deviate from the right angle by "
                             "{:.2g} deg; the scene has a corrected second axis",
                             std::asin(std::min(std::abs(cosine), 1.0)) * 180 / std::numbers::pi));
@@ -271,7 +271,7 @@ void Suspension::joint(const std::string& type, const Between& part, const FileP
     for (std::size_t k = 0; k < units.size(); ++k)
         fields.add(directions_of.at(type).at(k), direction(units[k]));
     if (held) fields.add("held", "true");
-    draft_.joints.push_back({joint_names_.take(on_side(part.name)), fields.braced(), at.from});
+    draft_.joints.push_back({joint_names_.take(on_side(part.name)), fields.braced(), place.from});
     draft_.notes.count("joint");
 }
 
@@ -287,14 +287,15 @@ void Suspension::distance(const std::string& name, const std::string& i, const F
 // A bushing with its frame fixed in body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both
 // along its axes. F is isotropic, so it acts along the line of both points. T has an energy if
 // K_rot is isotropic. Otherwise, as in place of a revolute, it is not conjugate, as in Chrono.
-void Suspension::joint_or_bushing(const std::string& type, const Between& part, const FilePoint& at,
-                                  const Matrix3d& frame, const std::optional<Cursor>& data) {
+void Suspension::joint_or_bushing(const std::string& type, const Between& part,
+                                  const FilePoint& place, const Matrix3d& frame,
+                                  const std::optional<Cursor>& data) {
     const bool revolves = type == "revolute", is_universal = type == "universal";
     if (!data) {
         std::vector<Vector3d> along;
         if (revolves) along = {frame.col(2)};
         if (is_universal) along = {frame.col(0), frame.col(1)};
-        return joint(type, part, at, along);
+        return joint(type, part, place, along);
     }
     const double linear = data->require("Stiffness Linear").number(),
                  rotational = data->require("Stiffness Rotational").number();
@@ -309,7 +310,7 @@ void Suspension::joint_or_bushing(const std::string& type, const Between& part, 
         return is_fixed ? rotational : free;
     };
     Fields fields;
-    fields.add("bodies", pair(part.j, part.i)).add("at", hardpoint(part.name, at));
+    fields.add("bodies", pair(part.j, part.i)).add("at", hardpoint(part.name, place));
     const bool is_round = rate(0) == rate(1) && rate(1) == rate(2);
     if (!is_round)
         fields.add("frame", fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)),
@@ -318,7 +319,8 @@ void Suspension::joint_or_bushing(const std::string& type, const Between& part, 
         .add("rotational_rates",
              fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
     if (!is_round) fields.add("formulation", "{conjugate: false}");
-    draft_.bushings.push_back({element_names_.take(on_side(part.name)), fields.braced(), at.from});
+    draft_.bushings.push_back(
+        {element_names_.take(on_side(part.name)), fields.braced(), place.from});
     draft_.notes.count("bushing");
 }
 
@@ -558,7 +560,7 @@ void Suspension::spindle(const std::string& carrier) {
     const std::string name = on_side("spindle*");
     const FilePoint centre = point("Spindle/COM");
     body(name, "Spindle", centre);
-    const std::string at = hardpoint(name, centre);
+    const std::string point = hardpoint(name, centre);
     joint("fixed", {"wheel_bearing*", name, carrier}, centre);
     const double toe = number_or_zero(file_, "Toe Angle (deg)") * std::numbers::pi / 180,
                  camber = number_or_zero(file_, "Camber Angle (deg)") * std::numbers::pi / 180;
@@ -569,7 +571,7 @@ void Suspension::spindle(const std::string& carrier) {
     draft_.wheels.push_back({called,
                              Fields{}
                                  .add("body", name)
-                                 .add("centre", at)
+                                 .add("centre", point)
                                  .add("spin_axis", direction(axis * static_cast<double>(side)))
                                  .add("side", called)
                                  .braced(),

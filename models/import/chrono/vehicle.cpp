@@ -97,26 +97,26 @@ struct AxleSteering {
 };
 
 AxleSteering steering_of(const Cursor& root, const Cursor& axle, DataFolder& data, Draft& draft) {
-    AxleSteering found;
+    AxleSteering steering;
     const auto index = axle.optional("Steering Index");
-    if (!index) return found;
+    if (!index) return steering;
     const auto all = root.require("Steering Subsystems").items();
     const double k = index->number();
     if (!(k >= 0) || k != std::floor(k) || !(k < static_cast<double>(all.size())))
         index->fail(fmt::format("{} is not a steering subsystem; there are {}, counted from 0",
                                 index->found(), all.size()));
-    found.subsystem = all[static_cast<std::size_t>(k)];
-    found.file = data.read(found.subsystem->require("Input File"));
-    const Cursor named = found.file->root.require("Template");
+    steering.subsystem = all[static_cast<std::size_t>(k)];
+    steering.file = data.read(steering.subsystem->require("Input File"));
+    const Cursor named = steering.file->root.require("Template");
     const auto& known = templates_section("steerings");
-    found.is_known = entry(known, named.text("a template"));
-    if (!found.is_known)
+    steering.is_known = entry(known, named.text("a template"));
+    if (!steering.is_known)
         draft.notes.miss(
-            {named.value->line, named.path, found.file->name},
+            {named.value->line, named.path, steering.file->name},
             fmt::format("{} is not a supported steering; known: {}; without it the tie rods are "
                         "on ground",
                         named.found(), fmt::join(known.keys, ", ")));
-    return found;
+    return steering;
 }
 
 // The anti-roll bar of an axle, on a suspension that the scene mirrors; false if there is none that a

@@ -264,19 +264,19 @@ class ChronoWriter {
         if (curve && curve->knots.size() < 2)
             return miss("element '" + elastic.name + "'",
                         "its law is not a table and has no entry");
-        json& one = entry(root, "TSDAs", elastic.name, spring.i.body, spring.j.body);
-        one["Point1"] = coordinates(drawn(spring.i));
-        one["Point2"] = coordinates(drawn(spring.j));
-        one["Free Length"] = spring.free_length;
-        stops_of(one, spring);
+        json& tsda = entry(root, "TSDAs", elastic.name, spring.i.body, spring.j.body);
+        tsda["Point1"] = coordinates(drawn(spring.i));
+        tsda["Point2"] = coordinates(drawn(spring.j));
+        tsda["Free Length"] = spring.free_length;
+        stops_of(tsda, spring);
         if (!curve) {
-            one["Spring Coefficient"] = std::get<LinearRate>(spring.law).k;
+            tsda["Spring Coefficient"] = std::get<LinearRate>(spring.law).k;
             return;
         }
         json rows = json::array();
         for (std::size_t k = 0; k < curve->knots.size(); ++k)
             rows.push_back({curve->knots[k], curve->pieces[k + 1][0]});
-        one["Spring Curve Data"] = rows;
+        tsda["Spring Curve Data"] = rows;
         result_.notes.warn({0, "element '" + elastic.name + "'"},
                            is_straight(*curve)
                                ? "Chrono keeps the force constant beyond the ends of a table, a "
@@ -344,12 +344,13 @@ class ChronoWriter {
     // Bushings that Chrono can represent: one frame, isotropic in displacement, with one rotational
     // rate about z and one across.
     void write(json& root, const Elastic& elastic, const Bushing& b) {
-        const std::string what = "element '" + elastic.name + "'";
+        const std::string element_words = "element '" + elastic.name + "'";
         const Matrix6* stiffness = matrix_of(b.law);
         const Matrix3d A = b.i.A_local.toRotationMatrix();
         if (elastic.written_as == WrittenAs::torsion_spring) {
             if (!stiffness || !b.preload.isZero(0) || !b.undeformed.isZero(0))
-                return miss(what, "a torsion spring with a curve, a preload or a free angle");
+                return miss(element_words,
+                            "a torsion spring with a curve, a preload or a free angle");
             json& one = entry(root, "RSDAs", elastic.name, b.i.body, b.j.body);
             one["Position"] = coordinates(drawn(b.i.body, b.i.s_local));
             one["Axis"] = coordinates(A.col(2));
@@ -360,13 +361,13 @@ class ChronoWriter {
         if (!stiffness || !stiffness->isDiagonal(0) || !b.preload.isZero(0) ||
             !b.undeformed.isZero(0) ||
             (drawn(b.i.body, b.i.s_local) - drawn(b.j.body, b.j.s_local)).norm() > 1e-12)
-            return miss(what,
+            return miss(element_words,
                         "Chrono's bushing has one frame, rates along its axes and no preload");
         const Vector6 k = stiffness->diagonal();
         const bool round = k[3] == k[4] && k[4] == k[5];
         if (k[0] != k[1] || k[1] != k[2] || k[3] != k[4] ||
             !(b.formulation == chrono_bushing || (round && b.formulation == Formulation{})))
-            return miss(what,
+            return miss(element_words,
                         "Chrono's bushing has one rate for all translations and two for rotations, "
                         "about z and across it; this one differs");
         json& one = joint(entry(root, "Joints", elastic.name, b.j.body, b.i.body), "Revolute",

@@ -1,7 +1,6 @@
 // Makes a mechanism of named points: recognises the role of each by the words of its name.
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "mechanism_embedded.hpp"  // generated: text of mechanisms.yaml

@@ -61,7 +61,7 @@ RateTable read_rate_table(const std::string& file) {
             axis_of[c] = {static_cast<std::size_t>(axis),
                           unit_of_rate(head.cells[c], axis >= 3, file, head.line)};
         else
-            fail(file, head.line, "", "{} is no column of a table of rates; allowed: role, {}",
+            fail(file, head.line, "", "{} is not a column of a table of rates; allowed: role, {}",
                  reader::quote(head.cells[c]), fmt::join(rate_axes, ", "));
     }
     if (role == SheetRow::most_cells) fail(file, head.line, "role", "missing");

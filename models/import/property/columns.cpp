@@ -220,18 +220,18 @@ std::string prefix_of(const std::string& heading) {
 
 // The coordinates of each of several groups of columns, called as the row above says.
 std::vector<Triple> grouped(const Sheet& sheet, std::size_t head,
-                            const std::array<std::vector<std::size_t>, 4>& found) {
+                            const std::array<std::vector<std::size_t>, 4>& places) {
     std::vector<Triple> triples;
-    if (head == 0 || found[1].size() != found[2].size() || found[1].size() != found[3].size())
+    if (head == 0 || places[1].size() != places[2].size() || places[1].size() != places[3].size())
         return {};
-    for (std::size_t n = 0; n < found[1].size(); ++n) {
-        const auto x = found[1][n], before = n == 0 ? 0 : found[3][n - 1] + 1;
+    for (std::size_t n = 0; n < places[1].size(); ++n) {
+        const auto x = places[1][n], before = n == 0 ? 0 : places[3][n - 1] + 1;
         std::size_t at = x + 1;
         while (at > before && sheet.rows[head - 1].at(at - 1).empty()) --at;
         if (at == before) return {};
         const std::string prefix = prefix_of(std::string(sheet.rows[head - 1].at(at - 1)));
         if (std::ranges::find(triples, prefix, &Triple::prefix) != triples.end()) return {};
-        triples.push_back({prefix, {x, found[2][n], found[3][n]}});
+        triples.push_back({prefix, {x, places[2][n], places[3][n]}});
     }
     return triples;
 }
@@ -239,29 +239,29 @@ std::vector<Triple> grouped(const Sheet& sheet, std::size_t head,
 Found by_headings(const Sheet& sheet, const std::string& file) {
     std::vector<std::string> missing{"name", "x", "y", "z"};
     for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
-        auto found = recognised(sheet.rows[r]);
-        const bool has_places = !found[1].empty() && !found[2].empty() && !found[3].empty();
-        if (found[0].empty() && has_places && r > 0) found[0] = recognised(sheet.rows[r - 1])[0];
-        if (found[0].empty() && has_places) {
-            found[0] = unnamed_columns(sheet, r);
-            if (found[0].size() > 1) found[0].clear();
+        auto head = recognised(sheet.rows[r]);
+        const bool has_places = !head[1].empty() && !head[2].empty() && !head[3].empty();
+        if (head[0].empty() && has_places && r > 0) head[0] = recognised(sheet.rows[r - 1])[0];
+        if (head[0].empty() && has_places) {
+            head[0] = unnamed_columns(sheet, r);
+            if (head[0].size() > 1) head[0].clear();
         }
         std::vector<std::string> lacks;
         for (std::size_t k = 0; k < 4; ++k)
-            if (found[k].empty()) lacks.emplace_back(k == 0 ? "name" : axis_names[k - 1]);
+            if (head[k].empty()) lacks.emplace_back(k == 0 ? "name" : axis_names[k - 1]);
         if (!lacks.empty()) {
             if (lacks.size() < missing.size()) missing = lacks;
             continue;
         }
         Found result;
-        if (found[1].size() > 1) result.columns.triples = grouped(sheet, r, found);
+        if (head[1].size() > 1) result.columns.triples = grouped(sheet, r, head);
         for (std::size_t k = 0; k < 4; ++k)
-            if (found[k].size() > 1 && (k == 0 || result.columns.triples.empty()))
+            if (head[k].size() > 1 && (k == 0 || result.columns.triples.empty()))
                 refuse(sheet, file,
                        fmt::format("two columns of {}", std::array{"names", "x", "y", "z"}[k]));
-        result.columns.name = found[0][0];
+        result.columns.name = head[0][0];
         if (result.columns.triples.empty())
-            result.columns.triples = {{"", {found[1][0], found[2][0], found[3][0]}}};
+            result.columns.triples = {{"", {head[1][0], head[2][0], head[3][0]}}};
         result.head = r;
         return result;
     }
@@ -308,18 +308,18 @@ Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
     std::map<std::size_t, std::string> used;
     std::map<std::string, Triple> triples;  // by the prefix of their names
     for (const auto& chosen : map) {
-        const std::size_t at = resolved(sheet, file, chosen, found.head);
-        if (const auto [other, is_new] = used.emplace(at, chosen.key); !is_new)
+        const std::size_t first_row = resolved(sheet, file, chosen, found.head);
+        if (const auto [other, is_new] = used.emplace(first_row, chosen.key); !is_new)
             fail(file, 0, "--columns", "{} and {} are the same column {}", other->second,
-                 chosen.key, letters_of(at));
+                 chosen.key, letters_of(first_row));
         const auto dot = chosen.key.find('.');
         const std::string prefix = dot == chosen.key.npos ? "" : chosen.key.substr(0, dot) + "_";
         if (chosen.key == "name")
-            found.columns.name = at;
+            found.columns.name = first_row;
         else if (chosen.key == "side")
-            found.columns.side = at;
+            found.columns.side = first_row;
         else
-            triples[prefix].at[static_cast<std::size_t>(chosen.key.back() - 'x')] = at;
+            triples[prefix].at[static_cast<std::size_t>(chosen.key.back() - 'x')] = first_row;
     }
     for (auto& [prefix, triple] : triples) found.columns.triples.push_back({prefix, triple.at});
     return found;
@@ -394,7 +394,8 @@ void find_unit(const Sheet& sheet, const std::string& file, std::size_t head,
                      columns.unit, unit);
             if (!option.empty() && option != unit)
                 fail(file, line, axis_names[k], "in {} {}; --unit says {}", unit, from, option);
-            columns.unit = unit, columns.unit_from = from;
+            columns.unit = unit;
+            columns.unit_from = from;
         }
     if (!option.empty())
         columns.unit = option, columns.unit_from = "by --unit";

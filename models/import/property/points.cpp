@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <optional>
 
 #include "models/import/import.hpp"
 #include "models/import/property/columns.hpp"

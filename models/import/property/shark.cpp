@@ -68,18 +68,19 @@ std::vector<NamedPoint> names_of(const std::vector<SharkLine>& lines, std::size_
 }
 
 // A name for each place, of which there are as many.
-std::vector<NamedPoint> saved_points(const std::vector<SharkLine>& lines, std::size_t& at,
+std::vector<NamedPoint> saved_points(const std::vector<SharkLine>& lines, std::size_t& next,
                                      std::vector<NamedPoint> names, const std::string& file) {
-    const SharkLine& head = lines[at++];
+    const SharkLine& head = lines[next++];
     std::size_t count = 0;
-    while (at < lines.size() && !lines[at].is_place() && lines[at].numbers.size() == 1) ++at;
-    for (; at < lines.size() && lines[at].is_place(); ++at, ++count) {
+    while (next < lines.size() && !lines[next].is_place() && lines[next].numbers.size() == 1)
+        ++next;
+    for (; next < lines.size() && lines[next].is_place(); ++next, ++count) {
         if (count == names.size())
-            fail(file, lines[at].number, "",
+            fail(file, lines[next].number, "",
                  "a point without a name: TEMP_SETTINGS has {} names for {}", names.size(),
                  reader::quote(head.text));
-        names[count].line = lines[at].number;
-        std::ranges::copy(lines[at].numbers, names[count].at.begin());
+        names[count].line = lines[next].number;
+        std::ranges::copy(lines[next].numbers, names[count].at.begin());
     }
     if (count < names.size())
         fail(file, head.number, "",
@@ -93,23 +94,23 @@ std::vector<SharkEnd> saved(const std::vector<SharkLine>& lines, const std::stri
                             Draft& draft) {
     std::vector<SharkEnd> ends;
     std::vector<NamedPoint> names;
-    for (std::size_t at = 0; at < lines.size();) {
-        if (lines[at].text == "TEMP_SETTINGS") {
-            if (const auto type = at + 2; type < lines.size() && lines[type].is_text()) {
+    for (std::size_t next = 0; next < lines.size();) {
+        if (lines[next].text == "TEMP_SETTINGS") {
+            if (const auto type = next + 2; type < lines.size() && lines[type].is_text()) {
                 const std::string made = mechanism_called(lines[type].text);
                 draft.remarks.push_back(fmt::format(
                     "Type of suspension in the file: {}{}.", reader::shown(lines[type].text),
                     made.empty() ? ""
                                  : fmt::format(" (import --as {} makes its mechanism)", made)));
             }
-            names = names_of(lines, ++at);
-        } else if (const auto end = end_in(lines[at])) {
+            names = names_of(lines, ++next);
+        } else if (const auto end = end_in(lines[next])) {
             if (names.empty())
-                fail(file, lines[at].number, "",
+                fail(file, lines[next].number, "",
                      "points without names: no TEMP_SETTINGS with names before this line");
-            ends.push_back({*end, saved_points(lines, at, std::exchange(names, {}), file)});
+            ends.push_back({*end, saved_points(lines, next, std::exchange(names, {}), file)});
         } else {
-            ++at;
+            ++next;
         }
     }
     return ends;

@@ -1,7 +1,5 @@
 #include "models/import/property/spreadsheet.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -15,30 +13,30 @@ namespace {
 struct Splitter {
     std::string_view text;
     char separator;
-    std::size_t at = 0;
+    std::size_t place = 0;
     int line = 1;
     int wrong_line = 0;  // of a quote that does not end, or of too many cells
     const char* wrong = nullptr;
 
-    bool ends_line() const { return text[at] == '\n' || text[at] == '\r'; }
+    bool ends_line() const { return text[place] == '\n' || text[place] == '\r'; }
     void pass_line_end() {
-        if (text[at] == '\r' && at + 1 < text.size() && text[at + 1] == '\n') ++at;
-        ++at, ++line;
+        if (text[place] == '\r' && place + 1 < text.size() && text[place + 1] == '\n') ++place;
+        ++place, ++line;
     }
 
     // From the quote to behind the one that ends it; "" is a quote within.
     std::string quoted() {
         const int begin = line;
         std::string cell;
-        for (++at; at < text.size();) {
-            if (text[at] == '"') {
-                if (++at == text.size() || text[at] != '"') return cell;
-                cell += text[at++];
+        for (++place; place < text.size();) {
+            if (text[place] == '"') {
+                if (++place == text.size() || text[place] != '"') return cell;
+                cell += text[place++];
             } else if (ends_line()) {
                 cell += ' ';
                 pass_line_end();
             } else {
-                cell += text[at++];
+                cell += text[place++];
             }
         }
         if (wrong == nullptr) wrong_line = begin, wrong = "the quote in this line does not end";
@@ -46,11 +44,13 @@ struct Splitter {
     }
 
     std::string cell() {
-        while (at < text.size() && text[at] != separator && (text[at] == ' ' || text[at] == '\t'))
-            ++at;
+        while (place < text.size() && text[place] != separator &&
+               (text[place] == ' ' || text[place] == '\t'))
+            ++place;
         std::string cell;
-        if (at < text.size() && text[at] == '"') cell = quoted();
-        while (at < text.size() && text[at] != separator && !ends_line()) cell += text[at++];
+        if (place < text.size() && text[place] == '"') cell = quoted();
+        while (place < text.size() && text[place] != separator && !ends_line())
+            cell += text[place++];
         return std::string(reader::trimmed(cell));
     }
 
@@ -60,12 +60,12 @@ struct Splitter {
             row.cells.push_back(cell());
             if (row.cells.size() > SheetRow::most_cells && wrong == nullptr)
                 wrong_line = row.line, wrong = "more than 10000 cells";
-            if (at == text.size() || wrong != nullptr) return row;
+            if (place == text.size() || wrong != nullptr) return row;
             if (ends_line()) {
                 pass_line_end();
                 return row;
             }
-            ++at;
+            ++place;
         }
     }
 };
@@ -79,12 +79,13 @@ struct Trial {
 Trial split(std::string_view text, char separator, int first_line) {
     Trial trial{.sheet = {separator, {}}};
     Splitter splitter{.text = text, .separator = separator, .line = first_line};
-    while (splitter.at < text.size() && splitter.wrong == nullptr) {
+    while (splitter.place < text.size() && splitter.wrong == nullptr) {
         SheetRow row = splitter.row();
         if (!std::ranges::all_of(row.cells, &std::string::empty))
             trial.sheet.rows.push_back(std::move(row));
     }
-    trial.wrong_line = splitter.wrong_line, trial.wrong = splitter.wrong;
+    trial.wrong_line = splitter.wrong_line;
+    trial.wrong = splitter.wrong;
     return trial;
 }
 

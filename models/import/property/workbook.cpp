@@ -1,5 +1,4 @@
 // The cells of a workbook (.xlsx, ISO/IEC 29500) as text of a table.
-#include <fmt/format.h>
 #include <minizip/unzip.h>
 
 #include <algorithm>

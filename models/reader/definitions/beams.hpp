@@ -45,7 +45,6 @@
 // segment is unstable at N = (12 + √192) EI_z/L² = 25.9 EI_z/L².
 #pragma once
 
-#include "elastocheck/scene.hpp"
 #include "models/reader/definitions/definitions.hpp"
 #include "models/reader/document/cursor.hpp"
 

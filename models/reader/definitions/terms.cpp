@@ -9,7 +9,7 @@
 
 namespace elastocheck::reader {
 
-std::vector<Term> terms(const Cursor& field, const std::string& what) {
+std::vector<Term> terms(const Cursor& field, const std::string& quantity) {
     std::vector<Term> terms;
     if (field.value->kind == Value::Kind::map) {
         for (std::size_t k = 0; k < field.value->keys.size(); ++k) {
@@ -18,13 +18,13 @@ std::vector<Term> terms(const Cursor& field, const std::string& what) {
         }
     } else {
         for (const Cursor& item : field.is_list() ? field.items() : std::vector<Cursor>{field}) {
-            const std::string& name = item.text("the name of " + what);
+            const std::string& name = item.text("the name of " + quantity);
             if (std::ranges::any_of(terms, [&](const Term& term) { return term.name == name; }))
                 item.fail(fmt::format("{} is listed twice", quote(name)));
             terms.push_back({name, item});
         }
     }
-    if (terms.empty()) field.fail(fmt::format("empty; {} is needed", what));
+    if (terms.empty()) field.fail(fmt::format("empty; {} is needed", quantity));
     return terms;
 }
 

@@ -43,18 +43,18 @@ Vector3 centre_of(const Wheel& wheel, const std::vector<Body>& bodies) {
 
 }  // namespace
 
-std::optional<Elastic> read_at_wheel(const std::string& name, const Cursor& at,
+std::optional<Elastic> read_at_wheel(const std::string& name, const Cursor& cursor,
                                      const Definitions& defs, const std::vector<Wheel>& wheels) {
-    const auto given = at.optional("at_wheel");
+    const auto given = cursor.optional("at_wheel");
     if (!given) return std::nullopt;
-    at.only_keys({"at_wheel", "rate", "preload"});
+    cursor.only_keys({"at_wheel", "rate", "preload"});
     const bool is_bar = given->is_list();
     const Wheel& wheel = is_bar ? *ends_of_bar(*given, wheels)[1] : wheel_called(*given, wheels);
     const BodyId on = is_bar ? defs.body_ids.at(name) : ground;
     LinearStiffness law;
-    law.K(2, 2) = rate(at.require("rate"), defs.units.rate);
+    law.K(2, 2) = rate(cursor.require("rate"), defs.units.rate);
     Vector6 preload = Vector6::Zero();
-    if (const auto field = at.optional("preload"))
+    if (const auto field = cursor.optional("preload"))
         preload[2] = defs.units.force.si(field->number(defs.units.force.name));
     const Marker centre{wheel.body, wheel.centre_local};
     return Elastic{

@@ -51,8 +51,7 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
         } else {
             result.not_driven[name] = fmt::format(
                 "a {} joint, which cannot be driven; allowed: the length of a distance, the offset "
-                "of an "
-                "in_plane, the displacement of a translational, the angle of a revolute or "
+                "of an in_plane, the displacement of a translational, the angle of a revolute or "
                 "cylindrical joint",
                 type_of(joint.kind));
         }

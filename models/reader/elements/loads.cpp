@@ -5,7 +5,6 @@
 // A force at the contact patch of a wheel that rolls acts on the wheel. If it has a component along
 // x, its torque about the spin axis is taken by the brake: on the carrier, or with `torque: ground`
 // by a brake or differential on the car, through a half shaft.
-#include <fmt/format.h>
 
 #include <algorithm>
 

@@ -1,8 +1,6 @@
 // Reads a trim: adjustments, conditions, and loads.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "models/kinds.hpp"
 #include "models/reader/definitions/look_up.hpp"
 #include "models/reader/definitions/terms.hpp"

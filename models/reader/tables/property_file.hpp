@@ -9,7 +9,6 @@
 //   NAME = value             a number, a word, or text in single quotes, optionally with blanks
 #pragma once
 
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>

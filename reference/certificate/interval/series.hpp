@@ -2,8 +2,6 @@
 // truncation bound for each derivative.
 #pragma once
 
-#include <numbers>
-
 #include "reference/certificate/interval/numbers.hpp"
 
 namespace elastocheck::reference::certificate {

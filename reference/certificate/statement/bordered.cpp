@@ -317,19 +317,19 @@ template <class S>
 std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& values) {
     const Index n = problem.n(), k = problem.border.count(), size = problem.size();
     std::vector<S> J(static_cast<std::size_t>(size * size), constant<S>(0.));
-    const auto at = [&](Index i, Index j) -> S& {
+    const auto entry = [&](Index i, Index j) -> S& {
         return J[static_cast<std::size_t>(i * size + j)];
     };
     for (Index i = 0; i < n; ++i) {
-        for (Index j = 0; j < n; ++j) at(i, j) = values.J[static_cast<std::size_t>(i * n + j)];
+        for (Index j = 0; j < n; ++j) entry(i, j) = values.J[static_cast<std::size_t>(i * n + j)];
         for (Index j = 0; j < k; ++j) {
-            at(i, n + j) = constant<S>(problem.border.U(i, j));
-            at(n + j, i) = constant<S>(problem.border.g(i, j));
+            entry(i, n + j) = constant<S>(problem.border.U(i, j));
+            entry(n + j, i) = constant<S>(problem.border.g(i, j));
         }
-        if (problem.a_is_unknown) at(i, size - 1) = values.E_a[static_cast<std::size_t>(i)];
+        if (problem.a_is_unknown) entry(i, size - 1) = values.E_a[static_cast<std::size_t>(i)];
     }
     for (Index i = 0; problem.a_is_unknown && i < size; ++i)
-        at(size - 1, i) = constant<S>(problem.t[i]);
+        entry(size - 1, i) = constant<S>(problem.t[i]);
     return J;
 }
 

@@ -8,7 +8,6 @@
 // Unknowns y = (z, μ, a).
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "reference/certificate/statement/system.hpp"

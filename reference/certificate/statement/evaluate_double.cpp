@@ -21,15 +21,15 @@ Geometry geometry(const System& system, const std::vector<double>& z, double a) 
 Eigen::MatrixXd deformation_slopes(const System& system, std::size_t element,
                                    const std::vector<double>& z, double a) {
     using T = Dual<double, 15>;
-    const Assembly<double> at{system, z, a, {}};
+    const Assembly<double> assembly{system, z, a, {}};
     const ElementPath& path = system.elements[element];
     Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(6, 7 * system.bodies);
     std::visit(
         [&](const auto& kind) {
             const Slots slots{kind.i.body, kind.j.body};
-            const auto i = at.template frame<T>(slots.i, slots.at_i()),
-                       j = at.template frame<T>(slots.j, slots.at_j());
-            const std::array<T, 6> e = at.deformations_at(kind, path, i, j, true);
+            const auto i = assembly.template frame<T>(slots.i, slots.at_i()),
+                       j = assembly.template frame<T>(slots.j, slots.at_j());
+            const std::array<T, 6> e = assembly.deformations_at(kind, path, i, j, true);
             for (std::size_t k = 0; k < 6; ++k)
                 for (std::size_t q = 0; q < 7; ++q) {
                     const auto row = static_cast<Eigen::Index>(k),

@@ -75,7 +75,8 @@ Balance sparse_balance(const Model& model, const Prescribed& prescribed, const S
         left_over(scaled(values.Phi_q, D, S),
                   S.cwiseProduct(potential(model, prescribed, chart).gradient) / scales.energy());
     Balance result;
-    result.lambda = std::move(lambda), result.left = std::move(left);
+    result.lambda = std::move(lambda);
+    result.left = std::move(left);
     result.Phi = D.cwiseProduct(values.Phi);
     return result;
 }

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/QR>
-#include <span>
 
 #include "reference/energy/constraints/constraints.hpp"
 #include "reference/energy/constraints/scales.hpp"

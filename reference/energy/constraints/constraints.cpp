@@ -5,7 +5,6 @@
 
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
-#include "reference/energy/potential/rotation.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {

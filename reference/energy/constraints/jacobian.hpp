@@ -19,7 +19,7 @@ struct Slope {
 };
 
 struct Jacobian {
-    int rows = 0, columns = 0;  // in the order of the rows; entries of the same body and row add up
+    int rows = 0, columns = 0;
     std::vector<Slope> slopes;  // in the order of the rows; of the same body and row they add up
 };
 

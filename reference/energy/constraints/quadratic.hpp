@@ -9,10 +9,10 @@
 //   λ ← λ + ρ (J Δx - c),                c = -(Φ + J x)
 //
 // Where K = H, a step leaves r = μ Δx and c = -Δλ/ρ: it converges fast where μ is far below the
-// stiffnesses that count and ρ far above them. The unsymmetric stiffness A of loads without potential,
-// K = H + A, stays outside S. Redundant rows need no care: λ stays in the range of J. By Sylvester's
-// law D has as many negative entries as there are motions along the constraints on which the energy
-// falls.
+// stiffnesses that count and ρ far above them. The unsymmetric stiffness A of loads without
+// potential, K = H + A, stays outside S. Redundant rows need no care: λ stays in the range of J.
+// By Sylvester's law D has as many negative entries as there are motions along the constraints
+// on which the energy falls.
 #pragma once
 
 #include <Eigen/SparseCholesky>

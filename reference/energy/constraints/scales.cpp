@@ -40,9 +40,9 @@ std::vector<Vector3d> attachment_points(const Model& model, const Course& course
     return points;
 }
 
-// Largest distance between any two of the points. By the triangle inequality it is at most the sum
-// of their distances from a third point; testing from the outermost points inwards leaves few
-// pairs.
+// Largest distance between any two of the points. By the triangle inequality it is at most
+// the sum of their distances from a third point; testing from the outermost points inwards
+// leaves few pairs.
 double extent_of(const std::vector<Vector3d>& points) {
     Eigen::AlignedBox3d box;
     for (const auto& p : points) box.extend(p);

@@ -43,9 +43,9 @@ using Eigen::VectorXd;
 // the whole span.
 constexpr int halvings = 26;
 constexpr double resolution = 1e-9;  // of the parameter: smallest step
-// Smallest step for laws that are almost flat at their start, which looks like a limit point until
-// steps are shorter than the flat part. For other laws it would only make limit points more
-// expensive.
+// Smallest step for laws that are almost flat at their start, which looks like a limit
+// point until steps are shorter than the flat part. For other laws it would only make limit
+// points more expensive.
 constexpr double finest = 1e-12;
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 // of the span: instabilities that appear and vanish within this length are not searched for
@@ -56,9 +56,9 @@ constexpr double negligible = 1e-6;    // of L or 1 rad
 constexpr double idle_push = 1e-8;     // of F or F·L: smallest load on an idle mode
 constexpr double spent = 0.01;         // of its first stiffness: the mode will soon be unstable
 
-// A small gradient does not bound the error along a soft mode. Newton corrections are applied until
-// the last one is at most `last_correction`; after `corrections` of them at most `known` is
-// accepted.
+// A small gradient does not bound the error along a soft mode. Newton corrections are applied
+// until the last one is at most `last_correction`; after `corrections` of them at most
+// `known` is accepted.
 constexpr double last_correction = 1e-10, known = 1e-9;  // of L or 1 rad
 constexpr int corrections = 4;
 
@@ -136,8 +136,8 @@ bool idle_mode_loaded(const Path& path, const State& from, double a) {
     return false;
 }
 
-// Whether the softest mode that resists at the start of the branch has lost almost all of its
-// stiffness.
+// Whether the softest mode that resists at the start of the branch has lost almost all
+// of its stiffness.
 bool is_spent(const Modes& first, const Modes& now) {
     const auto softest = first.idle_motions().cols();
     return softest < first.count() && now.stiffness[softest] <= spent * first.stiffness[softest];
@@ -226,8 +226,8 @@ Attempt step(const Path& path, const Continuation& continuation, double a, const
     return attempt;
 }
 
-// Next value towards `to`: limited by the stride, by the range of the tangent and by the predicted
-// stability.
+// Next value towards `to`: limited by the stride, by the range of the tangent and by
+// the predicted stability.
 double next_value(const Path& path, const Continuation& continuation, const VectorXd& t,
                   double to) {
     const double rest = to - continuation.state.a;

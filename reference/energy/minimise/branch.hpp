@@ -61,8 +61,8 @@ Continuation start_continuation(const Path& path, const State& state);
 // Poses, balance, Hessian and modes at parameter a; the poses need not be an equilibrium.
 State state_at(const Path& path, double a, const std::vector<Pose>& poses);
 
-// Whether the state satisfies the first-order conditions of the constrained minimum, to
-// options.tolerance.
+// Whether the state satisfies the first-order conditions of the constrained
+// minimum, to options.tolerance.
 bool is_stationary(const Path& path, const State& state);
 
 // Minimises at parameter a from `start`, chart after chart, until stationary. Idle motions of `near`,

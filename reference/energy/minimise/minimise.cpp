@@ -179,23 +179,23 @@ Minimisation minimise(const Path& path, const State& centre, const MatrixXd& idl
                       int evaluation_limit) {
     const Model& model = path.model;
     const Scales& scales = path.scales;
-    const Balance& at = centre.at;
+    const Balance& balance_at_centre = centre.at;
     const Prescribed prescribed = elastocheck::reference::energy::at(path.course, centre.a);
-    const int rank = static_cast<int>(at.independent.size());
+    const int rank = static_cast<int>(balance_at_centre.independent.size());
     const MatrixXd H_held = centre.H + holding * idle * idle.transpose();
-    const Modes modes = idle.cols() > 0 ? modes_of(at, H_held) : centre.modes;
-    const MatrixXd T = round_coordinates(at, H_held, modes);
+    const Modes modes = idle.cols() > 0 ? modes_of(balance_at_centre, H_held) : centre.modes;
+    const MatrixXd T = round_coordinates(balance_at_centre, H_held, modes);
     const int n = static_cast<int>(T.cols());
     Problem p{.model = model,
               .prescribed = prescribed,
               .scales = scales,
-              .at = at,
+              .at = balance_at_centre,
               .tolerance = path.options.tolerance,
               .evaluation_limit = evaluation_limit,
               .modes = modes,
               .idle = idle,
               .T_t = T.transpose(),
-              .lambda = at.lambda,
+              .lambda = balance_at_centre.lambda,
               .D = scales.rows(model),
               .row_scale = VectorXd::Ones(rank),
               .chart = chart_about(centre.poses),
@@ -210,7 +210,9 @@ Minimisation minimise(const Path& path, const State& centre, const MatrixXd& idl
     p.opt = opt.get();
     for (int i = 0; i < rank; ++i)
         p.row_scale[i] =
-            1 / (T.transpose() * at.J_t.col(at.independent[static_cast<std::size_t>(i)])).norm();
+            1 / (T.transpose() * balance_at_centre.J_t.col(
+                                     balance_at_centre.independent[static_cast<std::size_t>(i)]))
+                    .norm();
     nlopt_set_min_objective(opt.get(), objective, &p);
     const std::vector<double> no_tolerance(static_cast<std::size_t>(rank), 0.0);
     if (rank > 0)

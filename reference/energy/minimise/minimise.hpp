@@ -1,5 +1,5 @@
-// Constrained minimisation in one chart: V(x) → min subject to Φ(x) = 0, by SLSQP (Kraft 1988) of
-// NLopt.
+// Constrained minimisation in one chart: V(x) → min subject to Φ(x) = 0, by SLSQP (Kraft
+// 1988) of NLopt.
 #pragma once
 
 #include "reference/energy/minimise/branch.hpp"

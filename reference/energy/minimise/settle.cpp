@@ -40,7 +40,9 @@ Course settling_course(const Model& model, const Prescribed& held) {
     }
     drawn.offset += change.offset;
     const Prescribed less = sum(nothing_prescribed(model), -1, held);
-    change.forces = less.forces, change.moments = less.moments, change.brakes = less.brakes;
+    change.forces = less.forces;
+    change.moments = less.moments;
+    change.brakes = less.brakes;
     change.gap = constraints(model, drawn, design).Phi;
     change.preload = -stresses(model, held, design);
     return {held, change};

@@ -24,8 +24,8 @@ struct Piece {
 
     double force(double t) const { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
     double slope(double t) const { return c[1] + t * (2 * c[2] + t * 3 * c[3]); }
-    // ∫ f from t to t + h, by the Taylor coefficients of f at t: each term is a power of h, without
-    // cancellation.
+    // ∫ f from t to t + h, by the Taylor coefficients of f at t: each term is a power of
+    // h, without cancellation.
     double work(double t, double h) const {
         return h *
                (force(t) + h * (slope(t) / 2 + h * ((c[2] + 3 * c[3] * t) / 3 + h * (c[3] / 4))));

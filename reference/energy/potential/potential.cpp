@@ -1,8 +1,5 @@
 #include "reference/energy/potential/potential.hpp"
 
-#include <cmath>
-#include <numbers>
-
 #include "models/overloaded.hpp"
 #include "reference/energy/potential/laws.hpp"
 #include "reference/energy/potential/relative_rotation.hpp"
@@ -23,8 +20,8 @@ using Eigen::VectorXd;
 // rotation by π - this, the sign of the axis, on which the logarithm depends.
 constexpr double closest_to_the_end = 1e-3;
 
-// Geometry of one element in its chart: its deformation and the derivatives with respect to the
-// poses.
+// Geometry of one element in its chart: its deformation and the derivatives with respect
+// to the poses.
 template <int N>
 struct Deformation {
     BodyId i, j;

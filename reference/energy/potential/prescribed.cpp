@@ -15,8 +15,8 @@ void add(Prescribed& to, const LoadKind& load, double factor) {
                               if (moment.body != ground)
                                   to.moments.push_back({moment.body, factor * moment.m});
                           },
-                          // Models with followers are not solved, and their forces are not judged:
-                          // conservative.hpp.
+                          // Models with followers are not solved, and their forces are
+                          // not judged: conservative.hpp.
                           [](const FollowerForce&) {}, [](const FollowerMoment&) {},
                           [&](const BrakeForce& brake) {
                               if (brake.body != ground)

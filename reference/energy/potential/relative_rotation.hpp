@@ -5,8 +5,6 @@
 // Changes since the centre of the chart are computed without differences of two numbers.
 #pragma once
 
-#include <vector>
-
 #include "elastocheck/mechanism.hpp"
 
 namespace elastocheck::reference::energy {
