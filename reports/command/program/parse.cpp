@@ -77,7 +77,8 @@ int explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** 
             }
         }
     }
-    print_error("elastocheck: {}\nSee elastocheck --help.\n", message);
+    print_error("elastocheck: {}\nSee elastocheck {}--help.\n", message,
+                in_command ? scope->get_name() + " " : "");
     return bad_input;
 }
 
