@@ -273,7 +273,8 @@ Difference difference(const BranchSide& side, const std::vector<Channel>& channe
             // magnifies errors
             if (!channels[c].kinematic() || channels[c].unit == Unit::percent) continue;
             const bool angle = channels[c].unit == Unit::deg;
-            const double off = std::abs(of_x[c] - of_y[c]);
+            // undefined of both: a turning circle straight ahead
+            const double off = of_x[c] == of_y[c] ? 0 : std::abs(of_x[c] - of_y[c]);
             double& most = angle ? worst.deg : worst.mm;
             if (std::isnan(most) || off <= most) continue;
             most = off;
