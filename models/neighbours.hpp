@@ -39,10 +39,12 @@ struct NeighbourStates {
     bool settled = true;  // every chord method has met (of the equilibrium leg)
 };
 
-// Its largest number of steps, and the motion of the last but one as a share of that of the first:
-// the reactions follow the motion by one step.
+// Its largest number of steps, and the change of motion and reactions in the last but one as a share of
+// that in the first. Reactions follow the motion by one step, and may need more where the first one meets
+// the motion: a joint driven to half a turn.
 inline constexpr int chord_steps = 10;
 inline constexpr double chord_met = 1e-9;
+inline constexpr double chord_reactions = 1e-11;  // of a change, in shares of the reactions
 inline constexpr double chord_rounding = 1e-14;  // of a motion, in shares of the model's size
 
 // Σ |w|: the rounding of G is amplified by it.

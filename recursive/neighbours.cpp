@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "recursive/diagnosis/analysis.hpp"
+#include "recursive/linear_response.hpp"
 #include "recursive/response_system.hpp"
 
 namespace elastocheck::recursive {
@@ -91,7 +92,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
         for (const Neighbour& k : stencil) {
             State<double> q = s.q;
             Vector<double> lambda = s.lambda;
-            double first = 0;
+            double first = 0, first_reactions = 0;
             bool met = false, last = false;
             for (int step = 0; step < chord_steps && !last; ++step) {
                 last = met;
@@ -102,9 +103,11 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                 (void)solve_response(s, Judged::none);
                 advance(q, s.work.x.head(s.n()));
                 lambda += s.work.x.tail(s.m());
-                const double size = std::sqrt(size_of_solution(s));
-                if (step == 0) first = size;
-                met = size <= chord_met * first;
+                const double size = std::sqrt(size_of_solution(s)),
+                             reactions = s.work.x.tail(s.m()).norm();
+                if (step == 0) first = size, first_reactions = reactions;
+                met = size <= chord_met * first &&
+                      reactions <= chord_met * first_reactions + chord_reactions * lambda.norm();
             }
             Equilibrium& there = result.states.emplace_back(state);
             const auto inputs = inputs_at<double>(*k.model, k.model->branches.front(), state.load);

@@ -39,7 +39,7 @@ Equilibrium solved(const Model& model, const StateTangent& tangent, const Condit
     constexpr double not_judged = std::numeric_limits<double>::infinity();
     std::vector<Pose> at = tangent.state.poses;
     VectorXd lambda = tangent.lambda;
-    double first = 0;
+    double first = 0, first_reactions = 0;
     bool has_met = false, last = false;
     for (int step = 0; step < chord_steps && !last; ++step) {
         last = has_met;
@@ -48,11 +48,13 @@ Equilibrium solved(const Model& model, const StateTangent& tangent, const Condit
         const TangentSolution solution =
             solve_tangent(tangent, there.b - here.b, there.Phi - here.Phi, not_judged);
         if (solution.outcome != Outcome::converged) break;
-        lambda += multiplier_rates(tangent, solution);
+        const VectorXd dlambda = multiplier_rates(tangent, solution);
+        lambda += dlambda;
         move_to(chart, solution.x);
         at = poses(chart);
-        if (step == 0) first = solution.x.norm();
-        has_met = solution.x.norm() <= chord_met * first;
+        if (step == 0) first = solution.x.norm(), first_reactions = dlambda.norm();
+        has_met = solution.x.norm() <= chord_met * first &&
+                  dlambda.norm() <= chord_met * first_reactions + chord_reactions * lambda.norm();
     }
     const Chart chart = chart_about(at);
     const ConstraintValues values = constraints(

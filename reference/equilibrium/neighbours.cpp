@@ -51,7 +51,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
         constexpr double not_judged = std::numeric_limits<double>::infinity();
         for (const System& system : systems) {
             Eigen::VectorXd x = tangent.x;
-            double first = 0, size = 0;
+            double first = 0, first_reactions = 0, size = 0;
             bool met = false, last = false;
             for (int step = 0; step < chord_steps && !last; ++step) {
                 last = met;
@@ -60,8 +60,11 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                 if (by.outcome != Outcome::converged) break;
                 x = moved(system, x, by.dx);
                 size = pose_size(system, by.dx);
-                if (step == 0) first = size;
-                met = size <= chord_met * first;
+                const auto m = system.constraint_rows;
+                const double reactions = by.dx.tail(m).norm();
+                if (step == 0) first = size, first_reactions = reactions;
+                met = size <= chord_met * first &&
+                      reactions <= chord_met * first_reactions + chord_reactions * x.tail(m).norm();
             }
             result.settled = result.settled && (met || size <= chord_rounding);
             result.states.push_back(state_of(system, tangent.loading, x));
