@@ -1,5 +1,7 @@
 #include "recursive/response_system.hpp"
 
+#include "recursive/linear_response.hpp"
+
 #include <cmath>
 #include <limits>
 

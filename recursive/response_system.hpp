@@ -6,12 +6,7 @@
 
 namespace elastocheck::recursive {
 
-// Elimination orders of both matrices at one state; empty for those of the analysis. Neighbouring
-// states have similar matrices: with the orders of one the other needs no search for its own, which
-// costs more than the factorisation.
-struct ResponseOrders {
-    Elimination with_K, with_tangent;
-};
+struct ResponseOrders;  // linear_response.hpp
 
 // Assembles and factorises the matrix of (24) at s.q and the present inputs: with K of (19), or with
 // the consistent tangent in its place, for which λ is computed first with K:

@@ -10,6 +10,7 @@
 
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/diagnosis/motion.hpp"
+#include "recursive/linear_response.hpp"
 #include "recursive/response_system.hpp"
 #include "recursive/stepping/stepping_state.hpp"
 

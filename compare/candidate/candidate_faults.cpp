@@ -35,6 +35,7 @@
 
 #include "compare/candidate/candidate.hpp"
 #include "compare/deviation/tolerance.hpp"
+#include "models/eigen/dense.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -132,7 +133,7 @@ int numbers_in(const Beside& b, double left) {
                 for (Eigen::Index j = 0; j < count; ++j)
                     powers(k, j) =
                         std::pow((b.at[first + static_cast<std::size_t>(k)] - middle) / half, j);
-            const Eigen::VectorXd off = v - powers * powers.colPivHouseholderQr().solve(v);
+            const Eigen::VectorXd off = v - powers * solve_by_qr(powers, v);
             if (off.cwiseAbs().maxCoeff() <= left) break;
         }
         numbers += count;

@@ -11,6 +11,7 @@
 #include "compare/comparison/trim_once.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/trim.hpp"
+#include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::compare {
@@ -81,7 +82,7 @@ void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Correcti
         const Eigen::Index k = history.dP.cols();
         history.dP.conservativeResize(P.size(), k + 1), history.dP.col(k) = P - history.P;
         history.dr.conservativeResize(P.size(), k + 1), history.dr.col(k) = r - history.r;
-        next -= (history.dP + history.dr) * history.dr.colPivHouseholderQr().solve(r);
+        next -= (history.dP + history.dr) * solve_by_qr(history.dr, r);
     }
     history.P = P;
     history.r = r;

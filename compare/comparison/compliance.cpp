@@ -10,6 +10,7 @@
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/branch.hpp"
+#include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 #include "recursive/linear_response.hpp"
 #include "reference/energy/linear_response.hpp"
@@ -158,7 +159,7 @@ std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& al
     for (std::size_t w = 0; w < wheels; ++w)
         C.col(static_cast<Eigen::Index>(w)) = z.col(static_cast<Eigen::Index>(lifted_at(w)));
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(C);
-    if (!(lu.rcond() > well_posed)) return {};
+    if (!(rcond_of(lu) > well_posed)) return {};
     const auto pushed = [&](Motions motions, const Eigen::VectorXd& F) {
         for (std::size_t w = 0; w < wheels; ++w)
             for (std::size_t b = 0; b < motions.size(); ++b) {
@@ -169,8 +170,9 @@ std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& al
     };
     std::vector<Motions> held;
     for (std::size_t k = 0; k < all.size(); ++k)
-        held.push_back(pushed(all[k], lu.solve(-z.col(static_cast<Eigen::Index>(k)))));
-    const Eigen::MatrixXd lifts = lu.inverse();
+        held.push_back(
+            pushed(all[k], lu.solve(Eigen::VectorXd(-z.col(static_cast<Eigen::Index>(k))))));
+    const Eigen::MatrixXd lifts = inverse_of(lu);
     for (std::size_t w = 0; w < wheels; ++w)
         held.insert(held.begin() + static_cast<std::ptrdiff_t>(each * wheels + w),
                     pushed(Motions(model.bodies.size()), lifts.col(static_cast<Eigen::Index>(w))));

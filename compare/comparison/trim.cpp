@@ -16,6 +16,7 @@
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
+#include "models/eigen/dense.hpp"
 #include "models/overloaded.hpp"
 #include "models/structure.hpp"
 #include "recursive/diagnosis/analysis.hpp"
@@ -237,14 +238,14 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
                                listed(taking_part(trim.adjust, VectorXd::Ones(J.cols()))));
         scaled.row(k).normalize();
     }
-    const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const VectorXd s = svd.singularValues();
+    const Svd svd = svd_of(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const VectorXd& s = svd.values;
     if (s[s.size() - 1] > known * s[0]) return {};
     return fmt::format(
         "ambiguous: {} change only together, whatever {} do; a condition that separates these is "
         "missing",
-        listed(taking_part(trim.until, svd.matrixU().rightCols<1>())),
-        listed(taking_part(trim.adjust, svd.matrixV().rightCols<1>())));
+        listed(taking_part(trim.until, svd.U.rightCols<1>())),
+        listed(taking_part(trim.adjust, svd.V.rightCols<1>())));
 }
 
 // ---- Result as plain data and as text.
@@ -336,7 +337,7 @@ void iterate_from(const TrimStart& start, const TrimProblem& problem, TrimIterat
     it.J = start.J;
     it.here = settle(problem, it.p, problem.solver);
     for (; it.here.outcome == Outcome::converged && it.here.missed.norm() > met; ++it.iterations) {
-        const VectorXd s = it.J.colPivHouseholderQr().solve(-it.here.missed);
+        const VectorXd s = solve_by_qr(it.J, -it.here.missed);
         TrimAttempt next = settle(problem, it.moved(s), problem.solver);
         if (next.outcome != Outcome::converged ||
             !(next.missed.norm() < contraction * it.here.missed.norm()))
@@ -390,7 +391,7 @@ std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimI
             break;
         }
         if (!(it.here.missed.norm() > met) || it.iterations == max_iterations) break;
-        const VectorXd dp = it.h.cwiseProduct(J->colPivHouseholderQr().solve(-it.here.missed));
+        const VectorXd dp = it.h.cwiseProduct(solve_by_qr(*J, -it.here.missed));
         if (!step_nearer(problem, dp, it)) break;
     }
     return std::nullopt;

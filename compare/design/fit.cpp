@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include "compare/design/least_squares.hpp"
+#include "models/eigen/dense.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -65,13 +66,13 @@ double robust_factor(const VectorXd& u, Index n) {
 // the others. J [values × numbers]: ∂u/∂x.
 void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measured, Fitted& fitted) {
     const Index n = J.cols();
-    const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeFullV);
+    const Svd svd = svd_of(J, Eigen::ComputeFullV);
     VectorXd& S = fitted.singular_values = VectorXd::Zero(n);
-    S.head(svd.singularValues().size()) = svd.singularValues();
+    S.head(svd.values.size()) = svd.values;
     const Index determined = (S.array() > least_singular * S[0]).count();
-    fitted.undetermined = svd.matrixV().rightCols(n - determined);
+    fitted.undetermined = svd.V.rightCols(n - determined);
     const VectorXd variance =
-        (svd.matrixV().leftCols(determined) * S.head(determined).cwiseInverse().asDiagonal())
+        (svd.V.leftCols(determined) * S.head(determined).cwiseInverse().asDiagonal())
             .rowwise()
             .squaredNorm();
     const double factor = measured.robust && fitted.freedom > 0 ? robust_factor(u, determined) : 1;

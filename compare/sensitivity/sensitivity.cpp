@@ -17,6 +17,7 @@
 #include "compare/outputs/rates.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
+#include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 
@@ -300,9 +301,12 @@ Adjusting adjusting(const Rates& conditions, Index numbers) {
     const Index n = conditions.at.rows();
     const MatrixXd J = conditions.at.middleCols(numbers, n);
     if (!J.allFinite()) return {MatrixXd::Constant(n, numbers, nan), MatrixXd::Zero(n, numbers)};
-    const MatrixXd inverse = J.inverse(), dx = -inverse * conditions.at.leftCols(numbers);
-    return {dx, inverse.cwiseAbs() * (conditions.rounding.leftCols(numbers) +
-                                      conditions.rounding.middleCols(numbers, n) * dx.cwiseAbs())};
+    const MatrixXd inverse = inverse_of(Eigen::PartialPivLU<MatrixXd>(J)),
+                   dx = -matrix_product(inverse, conditions.at.leftCols(numbers));
+    return {dx, matrix_product(
+                    inverse.cwiseAbs(),
+                    conditions.rounding.leftCols(numbers) +
+                        matrix_product(conditions.rounding.middleCols(numbers, n), dx.cwiseAbs()))};
 }
 
 // `all`: numbers, adjustments, then perhaps the parameter. A number that moves no adjustment takes

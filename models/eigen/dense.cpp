@@ -23,11 +23,33 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A) {
     return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(A).pseudoInverse();
 }
 
+Eigen::MatrixXd inverse_of(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) { return lu.inverse(); }
+double rcond_of(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) { return lu.rcond(); }
+Eigen::VectorXcd eigenvalues_of(const Eigen::MatrixXd& A) { return A.eigenvalues(); }
+Svd svd_of(const Eigen::MatrixXd& A, unsigned parts) {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, parts);
+    Svd result{svd.singularValues(), {}, {}};
+    if (svd.computeU()) result.U = svd.matrixU();
+    if (svd.computeV()) result.V = svd.matrixV();
+    return result;
+}
+Eigen::VectorXd solve_by_qr(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+    return Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(A).solve(b);
+}
+Eigen::MatrixXd matrix_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) { return A * B; }
+Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+    return A.transpose() * B;
+}
+Eigen::MatrixXd congruence(const Eigen::MatrixXd& K, const Eigen::MatrixXd& Z) {
+    return matrix_product(transposed_product(Z, K), Z);
+}
+
 }  // namespace elastocheck
 
 namespace Eigen {
 
 template class HouseholderQR<MatrixXd>;
+template void HouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 template class ColPivHouseholderQR<MatrixXd>;
 template class CompleteOrthogonalDecomposition<MatrixXd>;
 template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,

@@ -20,12 +20,27 @@ Eigen::VectorXd transposed_times_vector(const Reflections& Q, Eigen::VectorXd b)
 // As a square matrix.
 Eigen::MatrixXd matrix_Q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
+Eigen::MatrixXd inverse_of(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu);
+// Solution of A x = b by least squares with column-pivoted QR, of any A.
+Eigen::VectorXd solve_by_qr(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+double rcond_of(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu);  // in the 1-norm, estimated
+Eigen::VectorXcd eigenvalues_of(const Eigen::MatrixXd& A);
+struct Svd {
+    Eigen::VectorXd values;  // singular values, descending
+    Eigen::MatrixXd U, V;    // those of the parts asked for
+};
+Svd svd_of(const Eigen::MatrixXd& A, unsigned parts);  // Eigen::ComputeFullU, ...
+// Products of matrices, which cost a second wherever a factor is an expression.
+Eigen::MatrixXd matrix_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);      // A B
+Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);  // Aᵀ B
+Eigen::MatrixXd congruence(const Eigen::MatrixXd& K, const Eigen::MatrixXd& Z);          // Zᵀ K Z
 
 }  // namespace elastocheck
 
 namespace Eigen {
 
 extern template class HouseholderQR<MatrixXd>;
+extern template void HouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 extern template class ColPivHouseholderQR<MatrixXd>;
 extern template class CompleteOrthogonalDecomposition<MatrixXd>;
 extern template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,

@@ -2,6 +2,8 @@
 
 #include <complex>
 
+#include "models/eigen/dense.hpp"
+
 namespace elastocheck::recursive::series {
 
 double parameter(const SteppingState& s, Drive drive) {
@@ -115,7 +117,7 @@ Singularity nearest_singularity(const SteppingState& s, const Coefficients<doubl
         b.segment((k - from) * n, n) = y.col(k);
     }
     if (!A.allFinite() || !(b.norm() > 0)) return none;
-    const Eigen::Vector2d fit = A.completeOrthogonalDecomposition().solve(b);
+    const Eigen::VectorXd fit = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(A).solve(b);
     const std::complex<double> root = std::sqrt(std::complex<double>(fit[0] * fit[0] / 4 + fit[1]));
     std::complex<double> z = fit[0] / 2 + root;
     if (std::abs(fit[0] / 2 - root) > std::abs(z)) z = fit[0] / 2 - root;

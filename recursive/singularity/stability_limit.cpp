@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "models/eigen/dense.hpp"
 #include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive {
@@ -66,7 +67,7 @@ double largest(SteppingState& s, const SaddleMatrix<double>& G) {
         if (V.isZero(0)) return 0;
         U = V;
     }
-    return std::max(0., H.eigenvalues().real().maxCoeff());
+    return std::max(0., eigenvalues_of(H).real().maxCoeff());
 }
 
 }  // namespace

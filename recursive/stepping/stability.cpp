@@ -129,7 +129,7 @@ ReducedStiffness reduced(const SteppingState& s) {
         qr.compute(Phi_T);
         Z = matrix_Q(qr).rightCols(n - qr.rank());
     }
-    return {Z, Z.transpose() * K * Z};
+    return {Z, congruence(K, Z)};
 }
 
 // The motion of least stiffness: an eigenvector of the symmetric part of ZᵀKZ.

@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "models/eigen/dense.hpp"
+
 namespace elastocheck::recursive::detail {
 
 void orthonormalise(const Vector<double>& weight, Matrix<double>& U) {
@@ -29,7 +31,7 @@ LeastStiffness min_of(const Eigen::MatrixXd& H) {
     if (H.size() == 0 || !H.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), true};
     const Eigen::MatrixXd S = (H + H.transpose()) / 2;
     const double size = H.norm(), skew = (H - S).norm();
-    if (!(skew <= may_matter * size)) return {1 / H.eigenvalues().cwiseAbs().maxCoeff(), false};
+    if (!(skew <= may_matter * size)) return {1 / eigenvalues_of(H).cwiseAbs().maxCoeff(), false};
     const Eigen::VectorXd theta =
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S, Eigen::EigenvaluesOnly).eigenvalues();
     const bool negative = theta[0] < -std::max(rounding * size, 2 * skew);

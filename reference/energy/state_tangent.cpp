@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "models/branch.hpp"
+#include "models/eigen/dense.hpp"
 #include "reference/energy/minimise/cost.hpp"
 #include "reference/energy/potential/conservative.hpp"
 
@@ -67,7 +68,7 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     t.K = t.state.H + load_stiffness(t.prescribed, t.scales, state.poses);
     t.Z = t.state.modes.Z(Eigen::all, t.state.modes.resisting());
     t.idle = t.state.modes.idle_motions();
-    if (t.Z.cols() > 0) t.W.compute(t.Z.transpose() * t.K * t.Z);
+    if (t.Z.cols() > 0) t.W.compute(congruence(t.K, t.Z));
     return t;
 }
 

@@ -136,7 +136,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         if (C.cols() > 0 && C.allFinite()) {
             Eigen::ColPivHouseholderQR<MatrixXd> qr;
             qr.setThreshold(1e-9);  // for columns of size one: dependent rows
-            left_over -= C * qr.compute(C).solve(left_over).eval();
+            const VectorXd whole = left_over, along = qr.compute(C).solve(whole);
+            left_over -= C * along;
         }
         raise(worst.force, Vector3d(left_over.head<3>()));
         raise(worst.moment, Vector3d(system.length * left_over.tail<3>()));

@@ -4,6 +4,7 @@
 
 #include "compare/outputs/catalogue/motions.hpp"
 #include "compare/outputs/deformation.hpp"
+#include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::compare {
@@ -28,12 +29,12 @@ double in_roll(const Subject& x, double (Subject::*angle)(const Motions&) const)
 
 // The solution of A P = b, of coincident lines the nearest; none of parallel ones.
 std::optional<Vector2d> crossing(const Eigen::Matrix2d& A, const Vector2d& b, double track) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> lines;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> lines;
     lines.setThreshold(1e-9);
-    lines.compute(A);
-    const Vector2d P = lines.solve(b);
+    lines.compute(Eigen::MatrixXd(A));
+    const Eigen::VectorXd right = b, P = lines.solve(right);
     if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= nowhere)) return std::nullopt;
-    return P;
+    return Vector2d(P);
 }
 // Instant centre in front view: the patch of a wheel moves perpendicularly to the line through its
 // instant centre. The roll centre lies on that line: for an axle in roll at the intersection of both

@@ -162,10 +162,9 @@ Modes modes_of(const Balance& conditions, const MatrixXd& H) {
     Modes modes;
     if (conditions.along.cols() == 0) return {conditions.along, VectorXd(0), 0};
     const bool free = conditions.independent.empty();  // `along` is then the unit matrix
-    const MatrixXd reduced =
-        free ? H : MatrixXd(conditions.along.transpose() * H * conditions.along);
+    const MatrixXd reduced = free ? H : congruence(H, conditions.along);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
-    modes.Z = free ? eigen.eigenvectors() : MatrixXd(conditions.along * eigen.eigenvectors());
+    modes.Z = free ? eigen.eigenvectors() : matrix_product(conditions.along, eigen.eigenvectors());
     modes.stiffness = eigen.eigenvalues();
     modes.idle_limit = idle_limit(modes.stiffness.cwiseAbs().maxCoeff());
     return modes;

@@ -3,6 +3,8 @@
 #include <Eigen/SPQRSupport>
 #include <limits>
 
+#include "models/eigen/dense.hpp"
+
 namespace elastocheck::reference::energy {
 
 using Eigen::MatrixXd;
@@ -38,7 +40,8 @@ VectorXd shortest(const Eigen::SPQR<Long>& qr, const VectorXd& lambda) {
     null.topRows(rank) = -R_2;
     null.bottomRows(redundant).setIdentity();
     null = (qr.colsPermutation() * null).eval();
-    return lambda - null * null.householderQr().solve(lambda);
+    const VectorXd along = Eigen::HouseholderQR<MatrixXd>(null).solve(lambda);
+    return lambda - null * along;
 }
 
 }  // namespace

@@ -95,15 +95,17 @@ Modes Quadratic::softest(const Modes& near) const {
         for (int i = 0; i < subspaces; ++i) {
             before = w;
             const MatrixXd Q = orthonormal(factor_.solve(X)), J_Q = J_ * Q;
-            const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(Q.transpose() * (H_ * Q) +
-                                                                rho_ * J_Q.transpose() * J_Q);
-            X = Q * eigen.eigenvectors();
+            MatrixXd reduced = transposed_product(Q, H_ * Q);
+            reduced += rho_ * transposed_product(J_Q, J_Q);
+            const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
+            X = matrix_product(Q, eigen.eigenvectors());
             w = eigen.eigenvalues().head(known);
             if (((w - before).array().abs() <= settled * w.array().abs() + mu_).all()) break;
         }
         const MatrixXd Q = along(X.leftCols(known));
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(Q.transpose() * (H_ * Q));
-        modes.Z = Q * eigen.eigenvectors();
+        const MatrixXd reduced = transposed_product(Q, H_ * Q);
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
+        modes.Z = matrix_product(Q, eigen.eigenvectors());
         modes.stiffness = eigen.eigenvalues();
         modes.falling_besides = static_cast<int>(falling - (w.array() < 0).count());
         if (known == n || !modes.idle(static_cast<int>(known) - 1)) return modes;

@@ -26,6 +26,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 #include "reference/energy/minimise/cost.hpp"
 #include "reference/energy/minimise/descent.hpp"
@@ -105,8 +106,8 @@ VectorXd newton_increment(const State& state, const std::optional<MatrixXd>& A, 
     const MatrixXd Z = state.modes.Z(Eigen::all, resisting);
     const VectorXd g = Z.transpose() * b;
     if (!A) return -Z * g.cwiseQuotient(state.modes.stiffness(resisting));
-    const MatrixXd K = state.H + *A, Z_K = Z.transpose() * K, reduced = Z_K * Z;
-    return -Z * VectorXd(reduced.partialPivLu().solve(g));
+    const MatrixXd reduced = congruence(state.H + *A, Z);
+    return -Z * VectorXd(Eigen::PartialPivLU<MatrixXd>(reduced).solve(g));
 }
 
 bool is_near(const VectorXd& actual, const VectorXd& expected) {

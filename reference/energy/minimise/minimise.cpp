@@ -60,7 +60,8 @@ MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& mo
     const MatrixXd Y = row_space(at);
     const auto rank = Y.cols();
     MatrixXd T(H.rows(), rank + Z.cols());
-    T.leftCols(rank) = Y - Z * (W.cwiseInverse().asDiagonal() * ((H * Z).transpose() * Y));
+    const MatrixXd coupling = transposed_product(matrix_product(H, Z), Y);
+    T.leftCols(rank) = Y - matrix_product(Z, W.cwiseInverse().asDiagonal() * coupling);
     const MatrixXd H_T = H * T.leftCols(rank);
     for (Eigen::Index i = 0; i < rank; ++i) {
         const double stiffness = std::abs(T.col(i).dot(H_T.col(i)));

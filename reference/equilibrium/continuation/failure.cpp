@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
+#include "models/eigen/dense.hpp"
 #include "reference/equilibrium/continuation/continuation.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -119,12 +120,11 @@ std::string softest_motion(const System& system, const Linearisation& linearised
     Eigen::MatrixXd Z = Eigen::MatrixXd::Identity(n, n);
     if (m > 0) {
         constexpr double dependent = 1e-9;  // of the largest singular value
-        Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.bottomLeftCorner(m, n), Eigen::ComputeFullV);
-        svd.setThreshold(dependent);
-        Z = svd.matrixV().rightCols(n - svd.rank()).eval();
+        const Svd svd = svd_of(J.bottomLeftCorner(m, n), Eigen::ComputeFullV);
+        Z = svd.V.rightCols(n - (svd.values.array() > dependent * svd.values[0]).count());
     }
     const Eigen::MatrixXd K = -J.topLeftCorner(n, n);
-    const Eigen::MatrixXd M = Z.transpose() * ((K + K.transpose()) / 2) * Z;
+    const Eigen::MatrixXd M = congruence((K + K.transpose()) / 2, Z);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(M);
     const VectorXd motion = Z * solver.eigenvectors().col(0);
     VectorXd turns = motion, moves = motion;

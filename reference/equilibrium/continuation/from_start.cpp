@@ -144,7 +144,7 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
     }
     if (Z.cols() == 0) return {};
     const MatrixXd K = -MatrixXd(slopes.J.topLeftCorner(n, n)),
-                   M = Z.transpose() * (K + K.transpose()) / 2 * Z;
+                   M = congruence((K + K.transpose()) / 2, Z);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(M);
     const double idle = idle_eigenvalue * modes.eigenvalues().cwiseAbs().maxCoeff();
     std::vector<std::vector<Pose>> list;

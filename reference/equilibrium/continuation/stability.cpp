@@ -70,8 +70,7 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
         const MatrixXd Phi_q_t = dense.bottomLeftCorner(m, n).transpose();
         Z = times_matrix(Eigen::ColPivHouseholderQR<MatrixXd>(Phi_q_t).householderQ(), Z);
     }
-    const MatrixXd M = -Z.transpose() * (dense.topLeftCorner(n, n) * Z),
-                   S = (M + M.transpose()) / 2;
+    const MatrixXd M = -congruence(dense.topLeftCorner(n, n), Z), S = (M + M.transpose()) / 2;
     const double size = dense.topLeftCorner(n, n).cwiseAbs().maxCoeff();
     if (!M.allFinite()) return std::nullopt;
     Eigen::VectorXcd mu;

@@ -103,11 +103,11 @@ Sparse without_angles(const Sparse& A, const Sparse& columns) {
     if (all_null) return columns;
     MatrixXd V = times_matrix(Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ(),
                               MatrixXd::Identity(columns.rows(), columns.cols()));
-    const Eigen::JacobiSVD<MatrixXd> svd(V.topRows(of_bodies(A)), Eigen::ComputeThinV);
-    V *= svd.matrixV();
+    const Svd svd = svd_of(V.topRows(of_bodies(A)), Eigen::ComputeThinV);
+    V = matrix_product(V, svd.V);
     std::vector<Index> kept;
     for (Index k = 0; k < V.cols(); ++k) {
-        const double part = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
+        const double part = k < svd.values.size() ? svd.values[k] : 0;
         if (!(part > min_angle && part < largest_angle && (A * V.col(k)).norm() > zero_tolerance))
             kept.push_back(k);
     }
