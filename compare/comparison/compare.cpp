@@ -188,12 +188,13 @@ double bound_of(Unit unit, const Bounds& bounds) {
 }
 
 // Allowed difference of rates: a share of the largest on the branch, at least of a thousandth of
-// their unit.
-double bound_of_characteristic(const std::vector<double>& values) {
+// their unit; of a place at least that of positions.
+double bound_of_characteristic(const Channel& channel, const std::vector<double>& values,
+                               const Bounds& bounds) {
     constexpr double share = 1e-6;
     double largest = 1e-3;
     for (const double value : values) largest = std::max(largest, std::abs(value));
-    return share * largest;
+    return std::max(share * largest, is_place(channel) ? bounds.length : 0);
 }
 
 int count(const Reading& reading, const std::vector<bool>& determined) {
@@ -364,7 +365,8 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
         if (!branch.determined[c]) continue;
         const double difference = reading.channels[c].max,
                      bound = channels[c].kind() == ChannelKind::characteristic
-                                 ? bound_of_characteristic(equilibrium.curve.channel(c))
+                                 ? bound_of_characteristic(
+                                       channels[c], equilibrium.curve.channel(c), branch.bounds)
                                  : bound_of(channels[c].unit, branch.bounds);
         if (const double part = share(difference, bound); !(part <= 1))
             disagreements.add(

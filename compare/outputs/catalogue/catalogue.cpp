@@ -205,6 +205,10 @@ bool is_swing_arm(const Channel& channel) {
     const Entry* entry = entry_of(channel);
     return entry != nullptr && entry->is.swing_arm;
 }
+bool is_place(const Channel& channel) {
+    const Entry* entry = entry_of(channel);
+    return entry != nullptr && entry->is.place;
+}
 
 bool reads_steering_axis(const Channel& channel) {
     const Entry* entry = entry_of(channel);

@@ -93,6 +93,7 @@ struct Properties {
     const char* set = "";        // of another definition: definition_sets()
     bool main = false;           // judged and compared first
     bool swing_arm = false;      // endless where two links are parallel: compared by its reciprocal
+    bool place = false;          // of a point, zero by symmetry: references agree as on positions
     bool reads_free = false;     // WheelResponse::free, beside every rate in N/mm and on tyres
     bool quotient = false;       // may be undefined without `undefined`
     bool at_rest = false;        // of the alignment of a car at rest
@@ -183,8 +184,9 @@ double value_of(const Model& model, const Catalogued& what, const Equilibrium& s
                 const WheelResponse& response);
 // Whether it reads WheelResponse::free.
 bool needs_free(const Channel& channel);
-// Whether it is compared by its reciprocal; whether it is a figure of the steering axis.
+// Whether it is compared by its reciprocal; as a position; whether it is a figure of the steering axis.
 bool is_swing_arm(const Channel& channel);
+bool is_place(const Channel& channel);
 bool reads_steering_axis(const Channel& channel);
 
 // Names of figures that are read for what they are.

@@ -182,6 +182,7 @@ const Entry of_roll[] = {
               return centre ? centre->x() : undefined;
           },
           {.elsewhere = "migration of the roll centre in roll",
+           .place = true,
            .live = {.roll = 5},
            .cause = "roll",
            .drawn = {{Over::roll, 6, "Lateral position of the roll centre",
