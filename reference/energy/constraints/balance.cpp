@@ -68,15 +68,17 @@ Balance balance(const Model& model, const Prescribed& prescribed, const Scales& 
 }
 
 Balance sparse_balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                       const Chart& chart) {
+                       const Chart& chart, const VectorXd& lambda) {
     const VectorXd S = scales.coordinates(coordinates(model)), D = scales.rows(model);
     const ConstraintValues values = constraints(model, prescribed, chart);
-    auto [left, lambda] =
-        left_over(scaled(values.Phi_q, D, S),
-                  S.cwiseProduct(potential(model, prescribed, chart).gradient) / scales.energy());
+    const Jacobian J = scaled(values.Phi_q, D, S);
+    const VectorXd g =
+        S.cwiseProduct(potential(model, prescribed, chart).gradient) / scales.energy();
+    LeftOver rest =
+        lambda.size() > 0 ? LeftOver{g + transposed_times(J, lambda), lambda} : left_over(J, g);
     Balance result;
-    result.lambda = std::move(lambda);
-    result.left = std::move(left);
+    result.lambda = std::move(rest.lambda);
+    result.left = std::move(rest.left);
     result.Phi = D.cwiseProduct(values.Phi);
     return result;
 }

@@ -29,8 +29,9 @@ Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd&
                 const ConstraintValues& values);
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart);
+// Of these multipliers, at the cost of a product; of the least-squares ones where there are none.
 Balance sparse_balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                       const Chart& chart);
+                       const Chart& chart, const Eigen::VectorXd& lambda = {});
 // Orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank].
 Eigen::MatrixXd row_space(const Balance& conditions);
 // Shortest least-squares solution ξ of ∂DΦ/∂ξ ξ = Φ.

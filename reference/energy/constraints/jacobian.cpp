@@ -1,5 +1,6 @@
 #include "reference/energy/constraints/jacobian.hpp"
 
+#include <Eigen/QR>
 #include <Eigen/SPQRSupport>
 #include <limits>
 
@@ -24,6 +25,8 @@ Sparse sparse_transposed(const Jacobian& Phi_q) {
 }
 
 namespace {
+
+constexpr int dense_columns = 90;  // of Φ_q: up to here a dense QR takes less time than SPQR
 
 using Long = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
 
@@ -86,6 +89,13 @@ LeftOver left_over(const Jacobian& Phi_q, const VectorXd& g) {
     if (!g.allFinite() || !J_t.coeffs().allFinite()) {
         constexpr double nan = std::numeric_limits<double>::quiet_NaN();
         return {VectorXd::Constant(g.size(), nan), VectorXd::Constant(Phi_q.rows, nan)};
+    }
+    if (Phi_q.columns <= dense_columns) {
+        Eigen::CompleteOrthogonalDecomposition<MatrixXd> dense;
+        dense.setThreshold(rank_threshold);
+        dense.compute(J_t.toDense());
+        const VectorXd minus_g = -g, lambda = dense.solve(minus_g);
+        return {g + J_t * lambda, lambda};
     }
     Eigen::SPQR<Long> qr;
     qr.setPivotThreshold(rank_threshold);

@@ -37,8 +37,8 @@ Sparse sparse_transposed(const Jacobian& Phi_q);  // likewise
 
 // The projection of g onto the orthogonal complement of the row space of Φ_q, and the least-squares
 // multipliers that leave it, of minimum norm where not unique: left = g + Φ_qᵀ λ. By Householder
-// transformations of Φ_qᵀ as a sparse matrix, at the cost of its fill-in, which for chains and trees
-// is proportional to the number of bodies. Rows of Φ_q are of order one.
+// transformations of Φ_qᵀ, of a large one as a sparse matrix at the cost of its fill-in, which for
+// chains and trees is proportional to the number of bodies. Rows of Φ_q are of order one.
 struct LeftOver {
     Eigen::VectorXd left, lambda;
 };

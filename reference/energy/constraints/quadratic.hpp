@@ -22,7 +22,7 @@
 namespace elastocheck::reference::energy {
 
 // Models with more coordinates are solved sparsely (descent.hpp); all built-in scenes have fewer.
-inline constexpr int dense_coordinates = 90;
+inline constexpr int dense_coordinates = 60;
 bool is_large(const Model& model);
 
 class Quadratic {

@@ -211,7 +211,7 @@ VectorXd predicted(const Path& path, const Continuation& continuation, const Vec
 Attempt step(const Path& path, const Continuation& continuation, double a, const VectorXd& expected,
              const VectorXd& start) {
     const State& from = continuation.state;
-    Attempt attempt = minimum_from(path, a, moved(path, from.poses, start), from.modes);
+    Attempt attempt = minimum_from(path, a, moved(path, from.poses, start), from);
     const State& to = attempt.state;
     if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
     const VectorXd actual = resisted_increment(path, from, to);
@@ -263,11 +263,13 @@ void count_state(const Path& path) {
 
 }  // namespace
 
-State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses) {
+State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses,
+                      const VectorXd& lambda) {
     count_state(path);
     const Prescribed prescribed = at(path.course, a);
     const Chart chart = chart_about(poses);
-    State state{a, poses, sparse_balance(path.model, prescribed, path.scales, chart), {}, {}};
+    State state{
+        a, poses, sparse_balance(path.model, prescribed, path.scales, chart, lambda), {}, {}};
     const Jacobian Phi_q = constraints(path.model, prescribed, chart).Phi_q;
     state.quadratic = std::make_shared<Quadratic>(
         scaled(hessian_blocks(path.model, prescribed, path.scales, poses, state.at.lambda),
@@ -356,10 +358,10 @@ Attempt corrected(const Path& path, State state) {
 }  // namespace
 
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
-                     const Modes& near) {
+                     const State& near) {
     if (is_large(path.model)) return descend(path, a, start, near);
     const Options& options = path.options;
-    const MatrixXd idle = near.idle_motions();
+    const MatrixXd idle = near.modes.idle_motions();
     const Prescribed prescribed = at(path.course, a);
     const int per_chart =
         std::max(10, options.evaluation_limit / std::max(1, options.recentre_limit));

@@ -66,19 +66,20 @@ State state_at(const Path& path, double a, const std::vector<Pose>& poses);
 bool is_stationary(const Path& path, const State& state);
 
 // Minimises at parameter a from `start`, chart after chart, until stationary. Idle motions of `near`,
-// the modes of the last equilibrium, are held (minimise.hpp).
+// the last equilibrium, are held (minimise.hpp).
 struct Attempt {
     State state;
     std::optional<Failure> failure;
 };
-Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const Modes& near);
+Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start, const State& near);
 
 // Poses after the increment ξ from `from`.
 std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const Eigen::VectorXd& xi);
 
 State dense_state_at(const Path& path, double a, const std::vector<Pose>& poses);
-// The same without modes, for a large model.
-State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses);
+// The same without modes, for a large model. Multipliers as of sparse_balance().
+State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses,
+                      const Eigen::VectorXd& lambda = {});
 
 // Newton correction ξ for a projected gradient `left` and a constraint residual Φ [6nb], without
 // idle motion.

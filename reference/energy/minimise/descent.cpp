@@ -28,37 +28,44 @@ double rise(const Path& path, const State& from, const VectorXd& x) {
            0.5 * (D.cwiseProduct(values.Phi).squaredNorm() - from.at.Phi.squaredNorm());
 }
 
-VectorXd shortened(const Path& path, const State& from, VectorXd x) {
+double share_of(const Path& path, const State& from, const VectorXd& x) {
     const double slope = from.at.left.dot(x) - from.at.Phi.squaredNorm();
-    if (!(slope < 0) || largest(x) <= quadratic_step) return x;
     double part = 1;
+    if (!(slope < 0) || largest(x) <= quadratic_step) return part;
     for (int i = 0; i < shortenings; ++i, part *= 0.5)
         if (rise(path, from, part * x) <= share_of_fall * part * slope) break;
-    return part * x;
+    return part;
 }
 
 }  // namespace
 
-Attempt descend(const Path& path, double a, const std::vector<Pose>& start, const Modes& near) {
-    const Eigen::MatrixXd idle = near.idle_motions();
-    State state = sparse_state_at(path, a, start);
+Attempt descend(const Path& path, double a, const std::vector<Pose>& start, const State& near) {
+    const Eigen::MatrixXd idle = near.modes.idle_motions();
+    State state = sparse_state_at(path, a, start, near.at.lambda);
     double before = std::numeric_limits<double>::infinity();
     for (int i = 0; i < path.options.recentre_limit; ++i) {
         path.counts.iterations += 1;
-        const VectorXd x = state.quadratic->least(state.at.left, state.at.Phi, idle).x;
+        const auto [x, lambda, _] = state.quadratic->least(state.at.left, state.at.Phi, idle);
         const double far = largest(x);
         if (!std::isfinite(far))
             return {state, Failure{Outcome::not_finite, "a number is not finite"}};
         const bool stalled = far <= known_step && far > 0.5 * before;
-        if ((far <= last_step || stalled) && is_stationary(path, state)) {
-            state.modes = state.quadratic->softest(near);
-            state.poses = moved(path, state.poses, x);
-            return {std::move(state), {}};
+        if (far <= last_step || stalled) {
+            State last = state;  // with the multipliers of minimum norm
+            last.poses = moved(path, state.poses, x);
+            last.at = sparse_balance(path.model, at(path.course, a), path.scales,
+                                     chart_about(last.poses));
+            if (is_stationary(path, last)) {
+                last.modes = state.quadratic->softest(near.modes);
+                return {std::move(last), {}};
+            }
         }
         before = far;
-        state = sparse_state_at(path, a, moved(path, state.poses, shortened(path, state, x)));
+        const double part = share_of(path, state, x);
+        state = sparse_state_at(path, a, moved(path, state.poses, part * x),
+                                state.at.lambda + part * lambda);
     }
-    state.modes = near;
+    state.modes = near.modes;
     return {state,
             Failure{Outcome::iteration_limit,
                     fmt::format("the minimum is determined only to {:.1g} of the model's size",

@@ -89,7 +89,7 @@ std::string joint_of_row(const Model& model, int row) {
 std::optional<Failure> follow(const Path& settling, State& state) {
     state = state_at(settling, 1, design_poses(settling.model));
     if (!is_stationary(settling, state)) {
-        const Attempt closed = minimum_from(settling, 1, state.poses, state.modes);
+        const Attempt closed = minimum_from(settling, 1, state.poses, state);
         if (closed.failure) return closed.failure;
         state = closed.state;
     }
