@@ -10,8 +10,8 @@
 
 namespace elastocheck::recursive {
 
-Analysis analyse(const Model& model) {
-    if (const auto c = far_centre(model)) return analyse(centred(model, *c));
+Analysis analyse(const Model& model, const EliminationOrder& like) {
+    if (const auto c = far_centre(model)) return analyse(centred(model, *c), like);
     Analysis result;
     result.diagnosis = diagnose(model);
     if (std::isnan(result.diagnosis.constraint_error)) return result;
@@ -30,7 +30,7 @@ Analysis analyse(const Model& model) {
     for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(L);
     assemble<double>(model, inputs, q, system.M, Phi);
     analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space,
-            pattern(model), loops(model));
+            pattern(model), loops(model), like);
 
     assemble_constraints<double>(model, inputs, q, system.M, Phi);
     add_consistent_tangent<double>(model, undriven, inputs, q, Vector<double>::Zero(m), system.M);

@@ -10,11 +10,11 @@
 
 namespace elastocheck::recursive {
 
-// Elimination orders of both matrices at one state; empty for those of the analysis. Neighbouring
+// Elimination orders of both matrices at one state; null for those of the analysis. Neighbouring
 // states have similar matrices: with the orders of one the other needs no search for its own, which
 // costs more than the factorisation.
 struct ResponseOrders {
-    Elimination with_K, with_tangent;
+    EliminationOrder with_K, with_tangent;
 };
 
 // Of a model for its responses at many states; the orders are those of the last state.

@@ -62,13 +62,11 @@ void leave_out_idle_motion(SteppingState& s) {
 }
 
 // Factorises at (s.q, s.lambda), first in `order`.
-Outcome factorise_in(SteppingState& s, Elimination& order) {
+Outcome factorise_in(SteppingState& s, EliminationOrder& order) {
     SparseLU<double>& lu = s.system.lu;
-    const bool known = !order.row.empty();
-    if (known) take_order(lu, order);
-    const int before = lu.orders;
+    if (order) take_order(lu, order);
     const Outcome outcome = factorise_at(s, s.q, s.lambda);
-    if (!known || lu.orders != before) order = lu.order;
+    order = lu.order;
     return outcome;
 }
 

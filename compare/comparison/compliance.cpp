@@ -184,13 +184,33 @@ std::string failure_text(const Response& response) {
            (response.detail.empty() ? "" : ": " + response.detail);
 }
 
+// Begins with the elimination orders of a similar model, as far as the matrices have one pattern.
+recursive::ResponseAnalysis analysis_like(const std::optional<recursive::ResponseAnalysis>& before,
+                                          const Model& model) {
+    const recursive::EliminationOrder order = before ? before->analysis.system.lu.order : nullptr;
+    recursive::ResponseAnalysis made{recursive::analyse(model, order)};
+    if (before && order->pattern == made.analysis.system.lu.order->pattern)
+        made.orders = before->orders;
+    return made;
+}
+
 }  // namespace
+
+Analyses like(const Analyses& other) {
+    Analyses made;
+    made.one_factorisation = other.one_factorisation;
+    for (const auto cache : {&Analyses::free, &Analyses::jacked, &Analyses::tied}) {
+        const auto& [last, before_it, equilibrium] = other.*cache;
+        (made.*cache).before = last ? last : before_it;
+    }
+    return made;
+}
 
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
                          ResponseCache& cache) {
     const auto recursion = [&](const recursive::Method& method) {
-        if (!cache.recursion) cache.recursion.emplace(recursive::analyse(model));
+        if (!cache.recursion) cache.recursion = analysis_like(cache.before, model);
         return recursive::linear_response(model, branch, state, disturbances, method,
                                           *cache.recursion);
     };
@@ -213,7 +233,8 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     const ResponseCase freed_case = freed(side, state);
     // The references refine their answers, so that those at the patch of a wheel that does not roll
     // may be summed. The recursion does not: its sums would differ from its own answers by 1e-10.
-    const bool refines = solver.leg == Leg::equilibrium || solver.leg == Leg::energy,
+    const bool refines = analyses.one_factorisation || solver.leg == Leg::equilibrium ||
+                         solver.leg == Leg::energy,
                with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);
     const auto wrenches = causes_at(side.model, state, with_patches);
     const std::size_t first = freed_case.model.joints.size();

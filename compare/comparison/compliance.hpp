@@ -14,6 +14,7 @@
 // the wheel turns. The tangent therefore equals that of the branch except for the removed supports.
 // A leg that refines its answers gives those of the jacked model by the forces of the jacks on the
 // free one, from one factorisation; only where these forces are not determined is it solved itself.
+// The recursion does so where it is asked to (Analyses): such answers differ from its own by 1e-10.
 #pragma once
 
 #include <memory>
@@ -37,13 +38,17 @@ namespace elastocheck::compare {
 // state, but for the elimination orders, which are those of the last one: they change rounding.
 struct ResponseCache {
     std::optional<recursive::ResponseAnalysis> recursion;
+    std::optional<recursive::ResponseAnalysis> before;  // of a similar model: its orders go first
     std::shared_ptr<const reference::equilibrium::Orders> equilibrium;
 };
 struct Analyses {
     ResponseCache free, jacked, tied;
     std::optional<std::vector<int>> dependent_rows;  // of diagnosis.hpp, likewise
     std::optional<WheelResponse> response;           // at the state of the last row_of()
+    bool one_factorisation = false;                  // by the recursion too: see below
 };
+// None yet, with the elimination orders of those of a similar model.
+Analyses like(const Analyses& other);
 
 // Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix
 // that its method factorises. `steering`: position in Model::joints, or -1. `analyses` belong to

@@ -466,9 +466,10 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     structure(problem.side.model, parts);
     const bool is_similar = start != nullptr && start->structure == parts;
     if (solver == Leg::series) {
-        problem.analysis =
-            std::make_shared<recursive::Analysis>(recursive::analyse(problem.side.model));
-        if (is_similar) problem.analysis->settled = start->settled;
+        const auto last = is_similar ? start->settled : nullptr;
+        problem.analysis = std::make_shared<recursive::Analysis>(
+            recursive::analyse(problem.side.model, last ? last->system.lu.order : nullptr));
+        problem.analysis->settled = last;
     }
     TrimRecord& record = result.record.emplace();
     const auto give_up = [&](const TrimAttempt& attempt, const std::string& where) {

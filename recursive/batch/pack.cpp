@@ -49,7 +49,7 @@ void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int at) {
 Pack::Pack(const Model& model, const Analysis& analysis, const BatchOptions& batch_options)
     : design(analysis),
       options(batch_options),
-      lu(reserve_factors(analysis.system.lu.order)),
+      lu(reserve_factors(*analysis.system.lu.order)),
       rhs(lu.size(), 0),
       solution(lu.size(), 0) {
     const SaddlePoint<double>& system = design.system;

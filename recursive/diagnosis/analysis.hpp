@@ -47,6 +47,7 @@ struct Analysis {
 };
 
 // Analyses the model. A model far from the origin is first moved to its centre (recentre.hpp).
-Analysis analyse(const Model& model);
+// `like`: the elimination order of a similar model, which spares the search for one.
+Analysis analyse(const Model& model, const EliminationOrder& like = nullptr);
 
 }  // namespace elastocheck::recursive

@@ -23,6 +23,7 @@ struct Pattern {
     std::vector<int> row;    // of each entry
 
     std::size_t entries() const { return row.size(); }
+    bool operator==(const Pattern&) const = default;
 };
 // Number of the entry (i, j); -1 where the pattern has none.
 inline int entry_at(const Pattern& pattern, int i, int j) {

@@ -159,7 +159,7 @@ double log_of_scaling(const SaddlePoint<double>& system) {
 }  // namespace
 
 void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<double>& null_space,
-             const Pattern& inner, const std::vector<int>& loop) {
+             const Pattern& inner, const std::vector<int>& loop, const EliminationOrder& like) {
     const int N = system.n + system.m;
     system.scale = equilibration(system.M);
     system.largest = {system.M.values.begin(), system.M.values.end()};
@@ -189,7 +189,7 @@ void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<do
     system.rhs.setZero(N + system.borders());
     system.solution.setZero(N + system.borders());
     set_border(system);
-    analyse_scaled(system.lu, pattern, system.M.values.data());
+    analyse_scaled(system.lu, pattern, system.M.values.data(), like);
 }
 
 void rescale(SaddlePoint<double>& system) {
@@ -199,7 +199,7 @@ void rescale(SaddlePoint<double>& system) {
         largest_entries.values[e] = system.largest[e] =
             std::max(system.largest[e], std::abs(largest_entries.values[e]));
     system.scale = equilibration(largest_entries);
-    set_scaling(system, system.lu.order.pattern);
+    set_scaling(system, system.lu.order->pattern);
     system.log_scale += log_of_scaling(system) - old_log;
 }
 

@@ -127,10 +127,11 @@ void set_border(SaddlePoint<Real>& system) {
 }
 
 // Fixes the scaling from the matrix now in M, the held directions in the columns of `null_space`
-// [(n+m) × d] (`idle` modes first, then redundant combinations), and the elimination order. `inner`
-// is the pattern of M, `loop` the loop of joints of every row of Φ.
+// [(n+m) × d] (`idle` modes first, then redundant combinations), and the elimination order: `like`,
+// where that fits. `inner` is the pattern of M, `loop` the loop of joints of every row of Φ.
 void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<double>& null_space,
-             const Pattern& inner, const std::vector<int>& loop);
+             const Pattern& inner, const std::vector<int>& loop,
+             const EliminationOrder& like = nullptr);
 
 // Fixes the scaling again, from the larger of each entry of M now and before: the geometric stiffness
 // of a large λ may exceed the stiffness at λ = 0 by any factor, and pivots in a scaling for the one

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <span>
 
@@ -27,7 +28,8 @@
 
 namespace elastocheck::recursive {
 
-// Elimination order, and the places of L and U in one array: their rows one after the other.
+// Elimination order, and the places of L and U in one array: their rows one after the other. Shared by
+// the matrices that are eliminated in it.
 struct Elimination {
     struct Run {  // adjacent columns of a row, and the place of the first
         int column, length, at;
@@ -50,9 +52,11 @@ struct Elimination {
     int parity = 1;            // sign of the product of the permutations `row` and `col`: +1 or -1
 };
 
+using EliminationOrder = std::shared_ptr<const Elimination>;
+
 template <class Real>
 struct SparseLU {
-    Elimination order;
+    EliminationOrder order = std::make_shared<const Elimination>();
     std::vector<int> source;           // of every entry of the pattern: its position in the values
     std::vector<Real> factor;          // ... and what these are multiplied by
     std::size_t values = 0;            // number of values
@@ -62,12 +66,11 @@ struct SparseLU {
     std::vector<Real> known, unknown;  // workspace of solve_unit, zero between calls:
     std::vector<int> reached;          // the non-zeros found so far
     std::vector<char> queued;          // 1: queued
-    PivotSearch<Real> search;
-    int orders = 0;       // number of orders chosen by this object
-    int orientation = 0;  // sign of the determinant of the last matrix factorised
+    int orders = 0;                    // number of orders chosen by this object
+    int orientation = 0;               // sign of the determinant of the last matrix factorised
 
     double largest_multiplier = 100;  // limit above which a new order is chosen
-    std::size_t size() const { return static_cast<std::size_t>(order.pattern.size); }
+    std::size_t size() const { return static_cast<std::size_t>(order->pattern.size); }
 };
 
 // Allocates the workspace of elimination and solution.
@@ -77,7 +80,7 @@ void reserve(SparseLU<Real>& lu) {
     for (auto* list : {&lu.inverse, &lu.y, &lu.known, &lu.unknown}) list->assign(n, 0);
     lu.queued.assign(n, 0);
     lu.reached.reserve(2 * n);
-    lu.LU.assign(lu.order.column.size(), 0);
+    lu.LU.assign(lu.order->column.size(), 0);
 }
 
 // Sign of a permutation: +1 if even, -1 if odd.
@@ -155,14 +158,14 @@ inline void lay_out_row(Elimination& order, int i, std::vector<int>& columns,
     }
 }
 
-// Stores the rows of L and U for the pivots found by `search`.
+// Stores the rows of L and U for the pivots of a search.
 template <class Real>
-void lay_out(SparseLU<Real>& lu) {
+void lay_out(SparseLU<Real>& lu, const PivotSearch<Real>& found) {
     const std::size_t n = lu.size();
     const auto at = [](int k) { return static_cast<std::size_t>(k); };
-    Elimination& order = lu.order;
-    const Pattern& pattern = order.pattern;
-    const PivotSearch<Real>& found = lu.search;
+    const auto laid_out = std::make_shared<Elimination>();
+    Elimination& order = *laid_out;
+    const Pattern& pattern = order.pattern = lu.order->pattern;
     order.row = found.row;
     order.col = found.col;
     order.row_of.resize(n);
@@ -184,10 +187,7 @@ void lay_out(SparseLU<Real>& lu) {
                 put(order.row_of[at(pattern.row[at(e)])], order.col_of[j], e);
     });
     order.to.resize(pattern.entries());
-    for (auto* list : {&order.column, &order.pivot, &order.target}) list->clear();
     for (auto* list : {&order.first, &order.first_right, &order.first_below}) list->assign(1, 0);
-    order.right.clear();
-    order.below.clear();
     std::vector<int> place(n), columns;
     std::vector<std::vector<int>> targets(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -214,6 +214,7 @@ void lay_out(SparseLU<Real>& lu) {
     order.parity = parity(order.row, lu.queued) * parity(order.col, lu.queued);
     std::fill(lu.queued.begin(), lu.queued.end(), 0);
     lu.LU.assign(order.column.size(), 0);
+    lu.order = laid_out;
 }
 
 // Chooses the elimination order from `values`.
@@ -223,29 +224,36 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
     std::vector<Real> entries;
     for (std::size_t e = 0; e < lu.source.size(); ++e)
         entries.push_back(values[lu.source[e]] * lu.factor[e]);
-    search_pivots(lu.search, lu.order.pattern, entries.data());
-    lay_out(lu);
+    PivotSearch<Real> search;
+    search_pivots(search, lu.order->pattern, entries.data());
+    lay_out(lu, search);
 }
 
 // Goes on in another order for the same pattern; not factorised.
 template <class Real>
-void take_order(SparseLU<Real>& lu, const Elimination& order) {
+void take_order(SparseLU<Real>& lu, const EliminationOrder& order) {
     lu.order = order;
-    lu.LU.assign(order.column.size(), 0);
+    lu.LU.assign(order->column.size(), 0);
 }
 
-// Prepares for matrices of this pattern, with the elimination order chosen from `values`. The caller
-// has set `source` and `factor`.
+// Prepares for matrices of this pattern, with the elimination order `like`, if that is of the same
+// pattern, else with one chosen from `values`. The caller has set `source` and `factor`.
 template <class Real>
-void analyse_scaled(SparseLU<Real>& lu, const Pattern& pattern, const Real* values) {
-    lu.order = {};
-    lu.order.pattern = pattern;
+void analyse_scaled(SparseLU<Real>& lu, const Pattern& pattern, const Real* values,
+                    const EliminationOrder& like = nullptr) {
+    const bool known = like != nullptr && like->pattern == pattern;
+    lu.order = like;
+    if (!known) {
+        const auto order = std::make_shared<Elimination>();
+        order->pattern = pattern;
+        lu.order = order;
+    }
     lu.values = 0;
     for (const int at : lu.source)
         lu.values = std::max(lu.values, static_cast<std::size_t>(at) + 1);
     lu.orders = 0;
     reserve(lu);
-    choose_order(lu, values);
+    if (!known) choose_order(lu, values);
 }
 // ... for values in the order of the pattern.
 template <class Real>
@@ -304,7 +312,7 @@ inline void subtract(Real* LU, const Elimination::Below* below, const int* targe
 template <class Real>
 Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
     const std::size_t n = lu.size(), entries = lu.source.size();
-    const Elimination& order = lu.order;
+    const Elimination& order = *lu.order;
     Real* const LU = lu.LU.data();
     largest = 0;
     lu.orientation = 0;
@@ -375,8 +383,8 @@ Real factorise(SparseLU<Real>& lu, const Real* values) {
 template <class Real>
 Real back_substituted(const SparseLU<Real>& lu, std::size_t k, Real y, const Real* x) {
     const Real* const LU = lu.LU.data();
-    const int* const column = lu.order.column.data();
-    for (int at = lu.order.pivot[k] + 1; at < lu.order.first[k + 1]; ++at)
+    const int* const column = lu.order->column.data();
+    for (int at = lu.order->pivot[k] + 1; at < lu.order->first[k + 1]; ++at)
         y -= LU[at] * x[column[at]];
     return y * lu.inverse[k];
 }
@@ -385,7 +393,7 @@ Real back_substituted(const SparseLU<Real>& lu, std::size_t k, Real y, const Rea
 template <class Real>
 void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
     const std::size_t n = lu.size();
-    const Elimination& order = lu.order;
+    const Elimination& order = *lu.order;
     Real* const y = lu.y.data();
     const Real* const LU = lu.LU.data();
     const int* const column = order.column.data();
@@ -403,7 +411,7 @@ void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
 // non-zeros (a motion of one body).
 template <class Real>
 void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x) {
-    const Elimination& order = lu.order;
+    const Elimination& order = *lu.order;
     const Real rounding = 4 * std::numeric_limits<Real>::epsilon();
     const auto n = static_cast<int>(lu.size());
     // local pointers: a store to `queued`, of characters, might change any other

@@ -181,7 +181,7 @@ struct SteppingState {
         kinks.sides.assign(kinks.curves.size(), 0);
         kinks.sides_ahead = kinks.sides;
         kinks.along.resize(kinks.curves.size());
-        check_followers(analysis.system.lu.order.pattern);
+        check_followers(analysis.system.lu.order->pattern);
     }
     int n() const { return system.n; }
     int m() const { return system.m; }

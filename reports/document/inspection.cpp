@@ -70,7 +70,7 @@ void add_size(Result& result, const Model& model, const recursive::Diagnosis& d)
 // Cost of a step: the matrix with the border of idle modes and redundant rows, and its factors.
 void add_cost(Result& result, const Model& model) {
     const recursive::SaddlePoint<double> system = recursive::analyse(model).system;
-    const recursive::Elimination& order = system.lu.order;
+    const recursive::Elimination& order = *system.lu.order;
     const auto entries = static_cast<double>(order.pattern.entries()),
                factors = static_cast<double>(order.nonzeros);
     add(result, {.columns = {number("unknowns"), number("with what is held"), number("entries"),

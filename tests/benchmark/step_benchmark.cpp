@@ -77,7 +77,7 @@ bool compare(const std::string& name, const Scene& scene, int steps) {
         return all;
     };
     std::vector<double> values = entries();
-    Klu klu(s.system.lu.order.pattern, values);
+    Klu klu(s.system.lu.order->pattern, values);
     std::vector<double> b(s.system.lu.size()), x(b.size());
     bool good = true;
     for (int k = 1; k <= steps; ++k) {

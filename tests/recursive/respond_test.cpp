@@ -74,7 +74,7 @@ TEST(Respond, PivotOrdersAreReusedAtTheNextState) {
     const auto path = solve(way.model, way.branch, {.method = rung("series"), .steps = 8});
     ASSERT_EQ(path.points.size(), 9u);
     ResponseAnalysis kept{analyse(way.model)};
-    const auto orders = [&] { return kept.orders.with_tangent.row; };
+    const auto orders = [&] { return kept.orders.with_tangent; };
     int searches = 0;
     for (const Equilibrium& state : path.points) {
         const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
@@ -87,6 +87,16 @@ TEST(Respond, PivotOrdersAreReusedAtTheNextState) {
     }
     EXPECT_GE(searches, 1) << "the first state leaves its own";
     EXPECT_LE(searches, 3);
+}
+
+TEST(Respond, OrderOfASimilarModelSparesTheSearch) {
+    const Model model = way_of("double_wishbone", "vertical", 1).model,
+                other = way_of("front_axle", "vertical", 1).model;
+    const auto own = analyse(model).system.lu.order;
+    EXPECT_EQ(analyse(model, own).system.lu.order, own);
+    EXPECT_EQ(analyse(model, own).system.lu.orders, 0);
+    EXPECT_EQ(analyse(model, analyse(other).system.lu.order).system.lu.order->row, own->row)
+        << "that of another structure is not used";
 }
 
 TEST(Respond, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
