@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <list>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
+#include "models/structure.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/path.hpp"
 #include "reports/document/drawing.hpp"
@@ -58,13 +58,6 @@ struct Rows {
     }
 };
 
-// Analyses of a model, which depend on its joints, elements and bodies, not on its loads: shared by
-// the branches on which the same parts are active.
-struct Shared {
-    std::vector<std::string> parts;  // names of the active joints and elements
-    std::shared_ptr<const recursive::Analysis> analysis;
-    compare::Analyses responses = {};
-};
 std::vector<std::string> parts_of(const Model& model) {
     std::vector<std::string> names;
     for (const auto& constraint : model.constraints)
@@ -74,29 +67,57 @@ std::vector<std::string> parts_of(const Model& model) {
     return names;
 }
 
+// Channels that are read at a point, and their places among all.
+struct Reading {
+    std::vector<Channel> channels;
+    std::vector<std::size_t> place;
+
+    template <class Chosen>
+    Reading(const std::vector<Channel>& all, const Chosen& chosen) {
+        for (std::size_t c = 0; c < all.size(); ++c)
+            if (chosen(all[c])) channels.push_back(all[c]), place.push_back(c);
+    }
+    std::vector<double> placed(const std::vector<double>& values, std::size_t count) const {
+        std::vector<double> all(count, not_computed);
+        for (std::size_t k = 0; k < place.size(); ++k) all[place[k]] = values[k];
+        return all;
+    }
+};
+bool is_characteristic(const Channel& channel) {
+    return channel.kind() == compare::ChannelKind::characteristic;
+}
+
 struct Solver {
     const Model& model;
-    const std::vector<Channel>& channels;
+    std::size_t count;          // of channels
     std::vector<Point> points;  // of the drawing
-    std::size_t rates = 0;      // position of the first characteristic in `channels`
+    Reading all, everywhere, motions;
+    std::optional<std::vector<double>> at = {};  // where all are read, else `everywhere`
 
-    struct Wanted {
-        bool characteristics = false, geometry = false;  // of the drawing
-    };
-    // Adds the rows of all sides.
+    const Reading& reading(const Branch& branch, double a) const {
+        if (!at) return all;
+        const double here = compare::parameter_in(compare::unit_of(branch.unit), a);
+        const bool among = std::ranges::any_of(*at, [&](double there) {
+            return std::abs(here - there) <= 1e-9 * std::max(1.0, std::abs(here));
+        });
+        return among ? all : everywhere;
+    }
+    // Adds the rows of all sides: by the series with the geometry of the drawing, by the published
+    // method without it and without characteristics.
     EquilibriumPath solve_branch(const Branch& branch,
                                  const std::vector<compare::BranchSide>& sides,
-                                 const compare::SolverSettings& solver, const Wanted& wanted,
-                                 compare::Analyses& analyses, Rows& rows) const {
-        const std::span<const Channel> read =
-            std::span(channels).first(wanted.characteristics ? channels.size() : rates);
+                                 const compare::SolverSettings& solver, compare::Analyses& analyses,
+                                 Rows& rows) const {
         const compare::Unit unit = compare::unit_of(branch.unit);
+        const bool drawn = solver.leg == compare::Leg::series;
         return compare::solve_branch(
             sides, solver,
             [&](const Equilibrium& state) {
-                compare::Row row = row_of(model, read, sides.front(), solver, state, analyses);
-                row.values.resize(channels.size(), not_computed);
-                if (!wanted.geometry) return row;
+                const Reading& read = drawn ? reading(branch, state.load) : motions;
+                compare::Row row =
+                    row_of(model, read.channels, sides.front(), solver, state, analyses);
+                row.values = read.placed(row.values, count);
+                if (!drawn) return row;
                 for (const Point& point : points)
                     for (const double x : compare::position(state.poses, point))
                         row.values.push_back(1e3 * x);
@@ -122,38 +143,65 @@ json outcome_json(const EquilibriumPath& path) {
     return {{"outcome", name(path.outcome)}, {"detail", path.detail}};
 }
 
-// With the settled start, which all branches of the same active parts have.
-std::shared_ptr<const recursive::Analysis> analysis_of(const compare::BranchSide& side) {
-    auto analysis = std::make_shared<recursive::Analysis>(recursive::analyse(side.model));
-    recursive::series::keep_start(side.model, side.branch, {}, *analysis);
-    return analysis;
-}
+}  // namespace
 
-json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& branch,
-                 const Request& request, bool full, std::vector<double>& numbers) {
+// Analyses of a model, which depend on its joints, elements and bodies, not on its loads: shared by
+// the branches on which the same parts are active.
+struct Shared {
+    std::vector<std::string> parts;  // names of the active joints and elements
+    std::shared_ptr<const recursive::Analysis> analysis;
+    compare::Analyses responses = {};
+};
+
+namespace {
+
+// Those of one solve, and of the last one of a similar model, if it may begin with them.
+struct Sharing {
+    std::vector<std::shared_ptr<Shared>> now = {};
+    std::vector<std::shared_ptr<const Shared>> last = {};
+    bool one_factorisation = false;
+
+    // With the settled start, which all branches of the same active parts have.
+    Shared& of(const compare::BranchSide& side) {
+        const auto parts = parts_of(side.model);
+        const auto same = [&](const auto& shared) { return shared->parts == parts; };
+        if (const auto known = std::ranges::find_if(now, same); known != now.end()) return **known;
+        const auto before = std::ranges::find_if(last, same);
+        const Shared* like = before == last.end() ? nullptr : before->get();
+        auto analysis = std::make_shared<recursive::Analysis>(recursive::analyse(
+            side.model, like == nullptr ? nullptr : like->analysis->system.lu.order));
+        if (like != nullptr) analysis->settled = like->analysis->settled;
+        recursive::series::keep_start(side.model, side.branch, {}, *analysis);
+        Shared made{parts, std::move(analysis)};
+        if (like != nullptr) made.responses = compare::like(like->responses);
+        made.responses.one_factorisation = one_factorisation;
+        now.push_back(std::make_shared<Shared>(std::move(made)));
+        return *now.back();
+    }
+};
+
+json branch_json(const Solver& solver, Sharing& sharing, const Branch& branch,
+                 const Request& request, std::vector<double>& numbers) {
     auto sides = compare::sides_of(solver.model, branch, request.points);
-    const auto parts = parts_of(sides.front().model);
-    auto known = std::ranges::find(shared, parts, &Shared::parts);
-    if (known == shared.end()) known = shared.insert(known, {parts, analysis_of(sides.front())});
-    for (auto& side : sides) side.analysis = known->analysis;
+    Shared& shared = sharing.of(sides.front());
+    for (auto& side : sides) side.analysis = shared.analysis;
     Rows rows;
-    const EquilibriumPath path = solver.solve_branch(branch, sides, {.leg = compare::Leg::series},
-                                                     {full, true}, known->responses, rows);
+    const EquilibriumPath path =
+        solver.solve_branch(branch, sides, {.leg = compare::Leg::series}, shared.responses, rows);
     json result = {{"name", branch.name}, {"unit", symbol(compare::unit_of(branch.unit))}};
     result.update(outcome_json(path));
-    result["idle"] = recursive::describe_idle_modes(known->analysis->diagnosis);
+    result["idle"] = recursive::describe_idle_modes(shared.analysis->diagnosis);
     result["points"] = rows.rows.size();
     result["at"] = rows.append_to(numbers);
     const auto start = std::ranges::min_element(
         rows.rows, {}, [](const auto& row) { return std::abs(row.first); });
     result["start"] = start - rows.rows.begin();
     result["published"] = nullptr;
-    if (!full || !request.published) return result;
+    if (!request.published) return result;
     const int refine = std::max(1, (branch.steps + request.points / 2) / request.points);
     Rows fast;
-    const EquilibriumPath published =
-        solver.solve_branch(branch, sides, {.leg = compare::Leg::recursive, .refine = refine}, {},
-                            known->responses, fast);
+    const EquilibriumPath published = solver.solve_branch(
+        branch, sides, {.leg = compare::Leg::recursive, .refine = refine}, shared.responses, fast);
     json& part = result["published"] = outcome_json(published);
     part["steps"] = refine * request.points;
     part["points"] = fast.rows.size();
@@ -265,19 +313,31 @@ Answer solve(Session& session, const Request& request) {
     for (const Channel& channel : channels) answer.head["channels"].push_back(channel.name);
     const auto drawing = reports::drawing_of(trimmed.scene, model, {});
     answer.head["drawing"] = reports::drawing_json(drawing);
-    const auto first_rate =
-        std::ranges::find(channels, compare::ChannelKind::characteristic, &Channel::kind);
-    const Solver solver{model, channels, drawn_points(model, drawing),
-                        static_cast<std::size_t>(first_rate - channels.begin())};
-    std::list<Shared> shared;
+    const auto& shown = request.shown;
+    Solver solver{model,
+                  channels.size(),
+                  drawn_points(model, drawing),
+                  Reading(channels, [](const Channel&) { return true; }),
+                  Reading(channels,
+                          [&](const Channel& c) {
+                              return !is_characteristic(c) ||
+                                     (shown && std::ranges::find(shown->everywhere, c.name) !=
+                                                   shown->everywhere.end());
+                          }),
+                  Reading(channels, [](const Channel& c) { return !is_characteristic(c); })};
+    if (shown) solver.at = shown->at;
+    std::vector<int> parts;
+    structure(model, parts);
+    Sharing sharing{.one_factorisation = shown.has_value()};
+    if (shown && parts == session.structure) sharing.last = session.shared;
     answer.head["branches"] = json::array();
-    for (std::size_t b = 0; b < model.branches.size(); ++b) {
-        const Branch& branch = model.branches[b];
+    for (const Branch& branch : model.branches) {
         if (!request.only.empty() && branch.name != request.only) continue;
-        const bool full = b < request.full.size() && request.full[b];
         answer.head["branches"].push_back(
-            branch_json(solver, shared, branch, request, full, answer.numbers));
+            branch_json(solver, sharing, branch, request, answer.numbers));
     }
+    session.structure = std::move(parts);
+    session.shared.assign(sharing.now.begin(), sharing.now.end());
     return answer;
 }
 
@@ -308,11 +368,18 @@ Request request_of(std::string_view text) {
         require(read["published"].is_boolean());
         request.published = read["published"].get<bool>();
     }
-    if (read.contains("full")) {
-        require(read["full"].is_array());
-        for (const json& value : read["full"]) {
-            require(value.is_boolean());
-            request.full.push_back(value.get<bool>());
+    if (read.contains("shown")) {
+        const json& given = read["shown"];
+        require(given.is_object() && given.contains("everywhere") && given.contains("at") &&
+                given["everywhere"].is_array() && given["at"].is_array());
+        auto& shown = request.shown.emplace();
+        for (const json& name : given["everywhere"]) {
+            require(name.is_string());
+            shown.everywhere.push_back(name.get<std::string>());
+        }
+        for (const json& a : given["at"]) {
+            require(a.is_number());
+            shown.at.push_back(a.get<double>());
         }
     }
     return request;

@@ -16,11 +16,15 @@
 namespace elastocheck::live {
 
 struct Prepared;  // prepared.hpp
+struct Shared;    // engine.cpp
 
 struct Session {
     std::string text, name;  // of the scene, and of its file for messages
     std::optional<reader::ParsedScene> parsed;
-    compare::TrimStart trim;                  // of the last solve, from which the next one starts
+    compare::TrimStart trim;  // of the last solve, from which the next one starts
+    // of the last solve: structure of its model, analyses of the models of its branches
+    std::vector<int> structure = {};
+    std::vector<std::shared_ptr<const Shared>> shared = {};
     std::shared_ptr<Prepared> prepared = {};  // for calls about the same numbers
 };
 
@@ -36,14 +40,22 @@ nlohmann::ordered_json open(Session& session, std::string_view text, const std::
                             const reader::Folder& folder = std::nullopt);
 
 struct Request {
+    // What is on the screen while a number is moved.
+    struct Shown {
+        std::vector<std::string> everywhere;  // characteristics that are read at every point
+        std::vector<double> at;  // parameters [unit of the branch] at which all of them are
+    };
     std::vector<Setting> settings;
-    int points = 40;         // equal increments of the parameter over a branch, > 0
-    std::vector<bool> full;  // per branch: whether characteristics are computed too; missing: not
-    bool published = false;  // whether the published method is computed on those branches too
-    std::string only;        // name of a branch: the others are not solved; empty: all are
+    int points = 40;             // equal increments of the parameter over a branch, > 0
+    std::optional<Shown> shown;  // no more is computed; absent: everything is
+    bool published = false;      // whether the published method is computed too
+    std::string only;            // name of a branch: the others are not solved; empty: all are
 };
 
 // Trims and solves all branches by the power series. Throws SceneError, std::invalid_argument.
+// With `shown` it begins with what the last solve leaves, if the models differ in their numbers only:
+// elimination orders, and the settled start; and the response of a wheel on a jack follows from that
+// of the free wheel, which changes it by 1e-10.
 // `head`:
 //   trouble   why there is no result: a trim that is not reached; else absent
 //   trim      adjusted: name, by, unit, makes; null without a trim
@@ -63,8 +75,8 @@ Answer solve(Session& session, const Request& request);
 // The scene's text with these values (rewrite_scene()).
 std::string rewrite(const Session& session, const std::vector<Setting>& settings);
 
-// {"settings": [[path, value], ...], "points": 40, "full": [true, false, ...], "published": false,
-// "only": "travel"}; throws std::invalid_argument for anything else.
+// {"settings": [[path, value], ...], "points": 40, "shown": {"everywhere": [name, ...], "at": [0]},
+// "published": false, "only": "travel"}; throws std::invalid_argument for anything else.
 Request request_of(std::string_view json);
 
 }  // namespace elastocheck::live

@@ -23,7 +23,6 @@ int main(int count, char** words) {
                                     std::filesystem::path(words[1]).parent_path());
         live::Request request;
         for (int k = 2; k < count; ++k) request.settings.push_back(parse_setting(words[k]));
-        request.full.assign(result["open"]["branches"].size(), true);
         request.published = true;
         const live::Answer answer = live::solve(session, request);
         result["head"] = answer.head;

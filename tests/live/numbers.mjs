@@ -24,7 +24,7 @@ const compare = (name, settings) => {
   let opened, solved;
   try {
     opened = ask('open', {source: readFileSync(path.join(folder, name), 'utf8'), name: 'scene.yaml'});
-    solved = ask('solve', {request: {settings, points: 40, full: opened.head.branches.map(() => true), published: true}});
+    solved = ask('solve', {request: {settings, points: 40, published: true}});
   } catch (error) {
     check(there.error === error.message, `${name}: "${error.message}" is not "${there.error}"`);
     return;
@@ -92,6 +92,36 @@ compare('double_wishbone.yaml', [['points.tie_rod_inner.z', '0.006'], ['springs.
 compare('mcpherson.yaml', [['points.tie_rod_inner.z', 'low']]);
 compare('mcpherson.yaml', [['points.nowhere.z', '1']]);
 
+// While a number is moved: what is shown is that of a solve by itself, and nothing else is computed.
+let moved = 0, dragged = 0;
+const drag = (name, number, from, only) => {
+  const source = readFileSync(path.join(folder, name), 'utf8'), {head} = ask('open', {source, name: 'scene.yaml'});
+  const rates = head.channels.filter(c => c.kind === 'characteristic').map(c => c.name), everywhere = rates.filter((_, k) => k % 5 === 0);
+  const solve = (k, shown) => ask('solve', {request: {settings: [[number, String(from + 1e-3 * k)]], points: 10, only, shown}});
+  const moves = [1, 4, -2, 3].map(k => [k, solve(k, {everywhere, at: [0]})]);
+  for (const [k, {head: {channels, branches: [branch]}, numbers}] of moves) {
+    ask('open', {source, name: 'scene.yaml'});
+    const alone = solve(k).numbers, wide = alone.length / branch.points;
+    check(numbers.length === alone.length, `${name}: another count of numbers while moved`);
+    const scaleOf = c => Math.max(1, ...Array.from({length: branch.points}, (_, p) => Math.abs(alone[p * wide + 1 + c])).filter(Number.isFinite));
+    channels.forEach((channel, c) => {
+      const scale = scaleOf(c), kept = !rates.includes(channel) || everywhere.includes(channel);
+      for (let p = 0; p < branch.points; ++p) {
+        const is = numbers[p * wide + 1 + c], by = alone[p * wide + 1 + c];
+        if (!kept && numbers[p * wide] !== 0) { check(Number.isNaN(is), `${name}: ${channel} is computed where it is not shown`); continue; }
+        ++moved;
+        if (is === by || (Number.isNaN(is) && Number.isNaN(by))) continue;
+        const off = Math.abs(is - by) / scale;
+        dragged = Math.max(dragged, off);
+        check(off <= 1e-8, `${name}: ${channel} ${numbers[p * wide]} while moved: ${is} ${by}`);
+      }
+    });
+  }
+};
+drag('double_wishbone.yaml', 'points.tie_rod_inner.z', .001, 'travel');
+drag('front_axle.yaml', 'points.upper_ball_left.z', 0.243, 'opposite');
+drag('mcpherson.yaml', 'points.tie_rod_inner.z', -.015, 'jounce');
+
 // Errors end in a message, and the next call works.
 const scene = readFileSync(path.join(folder, 'double_wishbone.yaml'), 'utf8');
 const says = (source, part) => {
@@ -106,7 +136,7 @@ says('elastocheck: 1\nname: x\nunits: {length: mile}\n', ':3: units.length');
 says('a: \u0000', 'plain text');
 says(scene.replace('rate: 95e3', 'rate: -1'), 'springs.coil.rate');
 says('x'.repeat((1 << 20) + 1), 'larger than 1 MiB');
-for (const request of [{settings: 1}, {settings: [['a']]}, {settings: [], points: 0}, {settings: [], points: 1.5}, {settings: [], full: 'all'}, {settings: [], published: 1}])
+for (const request of [{settings: 1}, {settings: [['a']]}, {settings: [], points: 0}, {settings: [], points: 1.5}, {settings: [], shown: 'all'}, {settings: [], shown: {everywhere: [1], at: []}}, {settings: [], published: 1}])
   try { ask('solve', {request}); check(false, `accepted: ${JSON.stringify(request)}`); } catch (error) { check(error.kind === 'input', error.message); }
 check(ask('solve', {request: {settings: [], points: 8}}).head.branches.length === 7, 'the scene opened last is solved after errors');
 // All points of a branch are proved, in ascending order. Requests that are none are refused.
@@ -122,8 +152,9 @@ for (const [given, part] of [[{}, 'as wishes.hpp'], [{vary: [], want: []}, 'at l
 const text = ask('rewrite', {request: {settings: [['points.tie_rod_inner.z', '0.006']]}}).text;
 check(text.includes('tie_rod_inner: [-0.279, 0.596, 0.006]') && text.includes('# Front suspension with double wishbones'), 'rewritten text');
 
+console.log(`${moved} numbers while a number is moved, largest difference ${dragged.toExponential(1)}`);
 console.log(`${matrices} entries of compliance matrices, ${proved} points proved`);
 console.log(`${scenes.length} scenes, ${compared} numbers compared, ${identical} identical, largest difference ${worst.toExponential(1)} of the largest of its unit (${where})`);
 for (const [kind, [off, at]] of Object.entries(worsts)) console.log(`  ${kind}: ${off.toExponential(1)}  ${at}`);
 for (const failure of failures.slice(0, 20)) console.error(failure);
-if (failures.length || compared < 10000 || matrices < 500 || proved < 50) { console.error(`${failures.length} failures`); process.exit(1); }
+if (failures.length || compared < 10000 || matrices < 500 || proved < 50 || moved < 1000) { console.error(`${failures.length} failures`); process.exit(1); }

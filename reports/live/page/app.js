@@ -1,7 +1,8 @@
 // ---- The page: what is drawn when, its tools, and its start
 import {$, make, shown, trouble, write, writeAttributes} from './base.js';
 import {
-  begin, openScene, settle, showBranch, showStation, state, stationOf, stepBack
+  begin, openScene, settle, showBranch, showFailure, showPublished, showStation, state,
+  stationOf, stepBack, takeSettings
 } from './state.js';
 import {openIn, solvers, startSolvers} from './solver.js';
 import {changed, drawStatus, requestOf, restSoon} from './solve.js';
@@ -117,7 +118,7 @@ const openText = async (source, file, files, work) => {
 export const tryOpen = async (source, file, files, work) => {
   try { await openText(source, file, files, work); } catch (error) {
     trouble(error.message);
-    if (!state.info) Object.assign(state, {failure: error});
+    if (!state.info) showFailure(error);
     drawStatus();
   }
 };
@@ -135,10 +136,10 @@ export const edit = change_ => {
   settle();
   changed();
 };
-$('reset').onclick = () => edit(() => state.settings.clear());
+$('reset').onclick = () => edit(() => takeSettings([]));
 $('preset').onchange = () => { choosePreset(); listEffects(); restSoon(); };
 $('published').onchange = () => {
-  state.published = $('published').checked;
+  showPublished($('published').checked);
   document.querySelector('.legend').classList.toggle('plain', !state.published);
   changed();
 };
@@ -173,7 +174,7 @@ const start = async () => {
     await warmUp();
   } catch (error) {
     if (state.info) return;
-    state.failure = error;
+    showFailure(error);
     draw();
   }
 };

@@ -1,7 +1,8 @@
 // ---- Curves: one chart for each chosen output of the shown branch, or of every branch
 import {$, make, show, shown, sketch} from './base.js';
 import {
-  isChanged, reference, referenceName, shownBranches, state, stationIn
+  aimAt, isChanged, isMoving, reference, referenceName, showCurves, shownBranches, state,
+  stationIn, toggleLarge
 } from './state.js';
 import {proofStrip} from './proof.js';
 import {drawNotes, stopsOf} from './notes.js';
@@ -36,6 +37,18 @@ export const curvesOf = branch => {
     defaults.set(of, defaultCurves(base ? state.base : state.now, of));
   const names = state.curves ?? defaults.get(of);
   return state.branch === '' && !state.curves ? names.slice(0, 3) : names;
+};
+// What a solve computes while a number is moved: the curves, and at the positions of drawing and
+// tables all.
+export const whatIsShown = () => {
+  const {now} = state, list = isMoving() && now ? shownBranches() : [];
+  if (!list.length) return undefined;
+  const places = [...list, now.branches[0]].filter(b => b.points);
+  return {
+    everywhere: list.flatMap(curvesOf).flatMap(
+      key => (state.figures.get(key) ?? []).map(c => c.name)),
+    at: [state.station ?? 0, ...places.map(b => now.a(b, b.start))],
+  };
 };
 const ticks = (low, high, count) => {
   const rough = (high - low) / count, size = 10 ** Math.floor(Math.log10(rough));
@@ -263,19 +276,19 @@ const editTarget = (name, branchName) => {
           (e, i) =>
               e.setAttribute('aria-invalid', String(Number.isNaN(ends[i]) || ends[0] > ends[1])));
       if (ends.some(Number.isNaN) || ends[0] > ends[1]) return;
-      ends.some(Number.isFinite) ? state.targets.set(key, ends) : state.targets.delete(key);
+      aimAt(key, ends.some(Number.isFinite) ? ends : null);
       drawCharts();
     };
   });
   form.querySelector('button').onclick = () => {
-    state.targets.delete(key);
+    aimAt(key, null);
     form.hidden = true;
     drawCharts();
   };
   entries[0].focus();
 };
 const enlarge = key => {
-  state.large = state.large === key ? '' : key;
+  toggleLarge(key);
   drawCharts();
 };
 // Whether a parameter is an end of the branch as the scene gives it.
@@ -346,7 +359,7 @@ const presets = {
 const keysOf = channels => [...state.figures].filter(
   ([, list]) => list.some(c => channels.includes(c))).map(([key]) => key);
 const chooseCurves = list => {
-  state.curves = list.length ? list : null;
+  showCurves(list);
   drawCharts();
 };
 export const makeChoice = () => {

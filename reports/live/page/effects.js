@@ -3,7 +3,7 @@
 // done.
 import {$, make, shown, signed, trouble, written} from './base.js';
 import {Run} from './run.js';
-import {begin, numberOf, put, settle, stationOf, state} from './state.js';
+import {begin, keepEffects, numberOf, put, settle, state, stationOf} from './state.js';
 import {solvers} from './solver.js';
 import {changed, requestOf, restSoon} from './solve.js';
 import {images, mm, paths} from './points.js';
@@ -26,14 +26,13 @@ export const listEffects = () => {
 // A figure at a parameter of a branch with other settings; NaN where it has none.
 const valueWith = async (settings, branch, name, a) => {
   const run = new Run([...settings]);
-  // Characteristics are not computed for a figure that is none.
-  const more = state.channel.get(name).kind === 'characteristic' ? {} : {full: []};
+  const more = {shown: {everywhere: [name], at: []}};
   run.take(await solvers.back.ask('solve', {request: requestOf(settings, branch, more)}));
   return run.valueAt(run.branches[0], name, run.exact(run.branches[0], a));
 };
 export const clearEffects = () => {
   if (state.effects === null && $('effects').hidden) return;
-  state.effects = null;
+  keepEffects(null);
   $('effects').hidden = true;
   drawHandles(axesOf());
 };
@@ -67,7 +66,7 @@ export const measureEffects = async more => {
   if (!name || !state.now) return;
   const [branch, k] = stationOf(state.now), effects = await effectsOn(name, branch, k, more);
   if (!effects) return;
-  state.effects = effects;
+  keepEffects(effects);
   showEffects(name, branch, state.now.a(branch, k), state.now.valueAt(branch, name, k));
   drawHandles(axesOf());
 };

@@ -2,7 +2,7 @@
 // the shown curves
 import {$, make, trouble, wholePage} from './base.js';
 import {keyOf} from './run.js';
-import {reference, referenceName, shownBranches, state} from './state.js';
+import {markSaved, reference, referenceName, shownBranches, state} from './state.js';
 import {solvers} from './solver.js';
 import {curvesOf} from './charts.js';
 import {workOf} from './variants.js';
@@ -22,7 +22,7 @@ $('save').onclick = async () => {
       throw new Error(`not saved, since it is not a scene:\n${failure.message}`);
     const {text} = await solvers.back.ask('rewrite', {request: {settings}});
     window.live.saved = text;
-    state.saved = keyOf(settings);
+    markSaved(keyOf(settings));
     save(text, `${stem()}_varied.yaml`);
   } catch (error) { trouble(error.message); }
 };
@@ -33,7 +33,7 @@ $('save-page').onclick = () => {
   const scene = JSON.stringify({text, name, files, work: workOf()}).replaceAll('<', '\\u003c');
   window.live.saved = `<!doctype html>\n${head}${scene}${tail}`;
   save(window.live.saved, `${stem()}.html`, 'text/html');
-  state.saved = keyOf(state.settings);
+  markSaved(keyOf(state.settings));
 };
 export const quoted = word =>
     /^[\w./=+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;

@@ -2,10 +2,10 @@
 // right button: is shifted), the wheel and two fingers zoom. The page scrolls over the drawing
 // until it is pressed.
 import {$} from './base.js';
-import {abandon, begin, settle, state} from './state.js';
+import {abandon, begin, hold, letGoOfAll, settle, state, toggleInGroup} from './state.js';
 import {axesOf, draw3d, drawHandles, linkAt, view, zoomView, panView} from './view.js';
-import {coordinatesOf, groupOf, movePoints, toggleInGroup} from './points.js';
-import {changed} from './solve.js';
+import {coordinatesOf, groupOf, movePoints} from './points.js';
+import {changed, showChange, solveSoon} from './solve.js';
 import {choose} from './numbers.js';
 
 const pointers = new Map();  // pressed: id -> [x, y] in pixels of the window
@@ -47,10 +47,20 @@ const activate = on => $('drawing').classList.toggle('active', on);
 // Ends what the pointers do; a drag stays where it is, or goes back.
 export const release = (back = false) => {
   const dragged = state.held?.name;
-  state.held = null;
+  hold(null);
   if (!dragged) return;
   back ? abandon() : settle();
   changed();
+};
+// Of handles that overlap the nearest.
+const handleAt = ({target, clientX, clientY}) => {
+  if (!target.closest('.handle')) return null;
+  const away = handle => {
+    const {x, y, width, height} = handle.querySelector('.hit').getBoundingClientRect();
+    return Math.hypot(x + width / 2 - clientX, y + height / 2 - clientY);
+  };
+  return document.elementsFromPoint(clientX, clientY).map(e => e.closest('.handle'))
+    .filter(Boolean).reduce((best, h) => away(h) < away(best) ? h : best);
 };
 const press = event => {
   if (event.button > 2) return;
@@ -58,7 +68,7 @@ const press = event => {
   pointers.set(event.pointerId, [event.clientX, event.clientY]);
   $('drawing').setPointerCapture(event.pointerId);
   if (pointers.size > 1) { release(); return; }
-  const handle = event.target.closest('.handle'), {clientX: x, clientY: y} = event;
+  const handle = handleAt(event), {clientX: x, clientY: y} = event;
   if (handle && !event.button) {
     const {name} = handle.dataset;
     handle.focus({preventScroll: true});
@@ -67,10 +77,10 @@ const press = event => {
       drawHandles(axesOf());
     }
     choose(name);
-    state.held = {name, group: groupOf(name).map(n => [n, coordinatesOf(n)]), x, y};
+    hold({name, group: groupOf(name).map(n => [n, coordinatesOf(n)]), x, y});
     begin();
   } else
-    state.held = {turn: !event.button && !event.shiftKey, x, y, yaw: view.yaw, pitch: view.pitch};
+    hold({turn: !event.button && !event.shiftKey, x, y, yaw: view.yaw, pitch: view.pitch});
   event.preventDefault();
 };
 const turn3d = (held, dx, dy) => {
@@ -83,9 +93,20 @@ const pinch = (event, before) => {
         to = [event.clientX, event.clientY];
   zoomView((apart(to, other) || 1) / (apart(before, other) || 1), ...inDrawing(other));
 };
-const moveGroup = (group, by) => {
-  movePoints(group.map(([name, from]) => [name, add(from, 1, by)]));
-  changed();
+const moveGroup = (group, by) => movePoints(group.map(([name, from]) => [name, add(from, 1, by)]));
+// Moves what is held to the pointer; `ahead`: it is not drawn there yet.
+const follow = (held, event) => {
+  const by = movedBy(held, event.clientX - held.x, event.clientY - held.y, event.shiftKey);
+  if (by.every((v, k) => v === (held.by?.[k] ?? 0))) return;
+  held.by = by;
+  held.ahead = true;
+  moveGroup(held.group, by);
+  solveSoon();
+};
+// As soon as the pointer has moved; the page gets its other moves with the next frame.
+const moveAhead = event => {
+  if (pointers.size === 1 && pointers.has(event.pointerId) && state.held?.name)
+    follow(state.held, event);
 };
 const move = event => {
   const before = pointers.get(event.pointerId), {held} = state;
@@ -93,10 +114,9 @@ const move = event => {
   pointers.set(event.pointerId, [event.clientX, event.clientY]);
   if (pointers.size === 2) pinch(event, before);
   else if (held?.name) {
-    const by = movedBy(held, event.clientX - held.x, event.clientY - held.y, event.shiftKey);
-    if (by.every((v, k) => v === (held.by?.[k] ?? 0))) return;
-    held.by = by;
-    moveGroup(held.group, by);
+    follow(held, event);
+    if (held.ahead) showChange();
+    held.ahead = false;
     return;
   } else if (held?.turn) turn3d(held, event.clientX - held.x, event.clientY - held.y);
   else if (held) panView(event.clientX - before[0], event.clientY - before[1]);
@@ -114,6 +134,7 @@ const nudgeBy = (name, [x, y], fine) => {
   moveGroup(groupOf(name).map(n => [n, coordinatesOf(n)]),
     [0, 1, 2].map(i => i === k ? Math.sign(fit(k)) * step : 0));
   settle();
+  changed();
 };
 const pressKey = event => {
   const handle = event.target.closest('.handle');
@@ -128,6 +149,7 @@ export const makeHand = () => {
   const svg = $('drawing');
   svg.addEventListener('pointerdown', press);
   svg.addEventListener('pointermove', move);
+  svg.addEventListener('pointerrawupdate', moveAhead);
   for (const end of ['pointerup', 'pointercancel'])
     svg.addEventListener(end, event => {
       pointers.delete(event.pointerId);
@@ -155,6 +177,6 @@ export const makeHand = () => {
 };
 // A scene is opened: nothing is held any more.
 export const letGo = () => {
-  state.held = state.before = null;
+  letGoOfAll();
   pointers.clear();
 };

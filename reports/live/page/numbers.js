@@ -1,8 +1,8 @@
 // ---- The list of numbers, and the entry of the chosen hardpoint
 import {$, make, pageUnit, show, shown, sketch, written} from './base.js';
-import {begin, put, settle, state} from './state.js';
+import {begin, choosePoint, dropSettings, put, settle, state, toggleInGroup} from './state.js';
 import {changed} from './solve.js';
-import {images, isLocked, linksAt, paths, toggleInGroup, toggleLock} from './points.js';
+import {images, isLocked, linksAt, paths, toggleLock} from './points.js';
 import {axesOf, drawHandles} from './view.js';
 
 export const rowsOf = new Map();  // path -> [row, ...]
@@ -25,15 +25,16 @@ const sliderOf = (number, filled) => {
     max: number.value + .5 * size,
     step: size / 200
   });
-  slider.onpointerdown = begin;
-  slider.onkeydown = event => { if (event.key.startsWith('Arrow')) begin(); };
   slider.oninput = () => {
     begin();
     put(number.path, written(+slider.value));
     filled();
     changed();
   };
-  slider.onchange = settle;
+  slider.onchange = () => {
+    settle();
+    changed();
+  };
   return slider;
 };
 const numberRow = (number, words, slides) => {
@@ -138,11 +139,11 @@ export const choose = name => {
   if (state.point === name && !$('point').hidden) { drawLinks(); return; }
   for (const [path, rows] of rowsOf)
     rowsOf.set(path, rows.filter(row => !$('point').contains(row)));
-  state.point = name;
+  choosePoint(name);
   const back = make('button', {type: 'button'}, 'As opened');
   back.onclick = () => {
     begin();
-    for (const p of paths(name)) state.settings.delete(p);
+    dropSettings(paths(name));
     settle();
     changed();
   };

@@ -1,7 +1,7 @@
 // ---- Hardpoints: their coordinates in mm; those of the other side of a mirrored axle; groups
 // that move together; lengths that a drag keeps.
 import {pageUnit, written} from './base.js';
-import {numberOf, put, state} from './state.js';
+import {numberOf, put, state, toggleLength} from './state.js';
 
 // Points of the other side have no numbers of their own: name -> the point that they mirror.
 export const images = new Map();
@@ -35,10 +35,6 @@ export const groupOf = name => {
   const list = state.group.includes(name) ? [name, ...state.group] : [name];
   return list.filter((n, k) => list.findIndex(other => twinOf(other) === twinOf(n)) === k);
 };
-export const toggleInGroup = name => {
-  state.group = state.group.includes(name) ? state.group.filter(n => n !== name)
-    : [...state.group, name];
-};
 
 // ---- Links between hardpoints, and lengths that stay
 export const linksAt = name => {
@@ -52,10 +48,8 @@ export const linksAt = name => {
 };
 const keyOfLock = (a, b) => [twinOf(a), twinOf(b)].sort().join('|');
 export const isLocked = (a, b) => state.locks.has(keyOfLock(a, b));
-export const toggleLock = (a, b) => {
-  const key = keyOfLock(a, b);
-  if (!state.locks.delete(key)) state.locks.set(key, apart(coordinatesOf(a), coordinatesOf(b)));
-};
+export const toggleLock = (a, b) =>
+  toggleLength(keyOfLock(a, b), apart(coordinatesOf(a), coordinatesOf(b)));
 // Moves points [[name, coordinates], ...]; one end of a locked length goes to the nearest place at
 // that length from the other end.
 export const movePoints = places => {

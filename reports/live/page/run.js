@@ -8,8 +8,8 @@ export class Run {
     this.branches = [];
     this.place = new Map();  // of the outputs
   }
-  // Takes the branches of an answer that are not here yet.
-  take({head, numbers}) {
+  // Takes the branches of an answer that are not here yet, or of which not all was computed.
+  take({head, numbers}, whole = true) {
     if (head.trouble) throw Object.assign(new Error(head.trouble), {kind: 'trim'});
     const {branches, ...more} = head;
     if (!this.drawing) {
@@ -19,8 +19,11 @@ export class Run {
       const {points: {length: points}, wheels: {length: wheels}} = head.drawing;
       this.wide = 1 + this.count + 3 * (points + wheels + (wheels ? 4 * wheels + 1 : 0));
     }
-    for (const branch of branches)
-      if (!this.branch(branch.name)) this.branches.push({...branch, numbers});
+    for (const branch of branches) {
+      const old = this.branch(branch.name);
+      if (!old) this.branches.push({...branch, numbers, whole});
+      else if (whole && !old.whole) Object.assign(old, branch, {numbers, whole});
+    }
     return this;
   }
   branch(name) { return this.branches.find(b => b.name === name); }

@@ -3,94 +3,102 @@
 import {$, write, writeAttributes} from './base.js';
 import {Run, keyOf} from './run.js';
 import {
-  demandSolve, isSolved, keptRuns, reference, showFailure,
-  showRun, startSolve, state
+  demandSolve, isMoving, isSolved, keptRuns, reference, setBusy, showFailure, showRun,
+  startSolve, state
 } from './state.js';
 import {solvers} from './solver.js';
 import {draw, drawChange} from './app.js';
 import {dropProofs, prove} from './proof.js';
 import {measureEffects} from './effects.js';
+import {whatIsShown} from './charts.js';
 import {storeWork} from './variants.js';
 
 export const allPoints = 40;
-export const requestOf = (settings, only, more = {}) => ({
-  settings: [...settings],
-  points: allPoints,
-  only,
-  full: state.info.branches.map(() => true),
-  ...more
-});
+export const requestOf = (settings, only, more = {}) =>
+  ({settings: [...settings], points: allPoints, only, ...more});
 window.live = {
   draws: [],
   state
 };  // for tests: seconds of every solve, and from the change to the picture
 
-export const solveInto = async (run, solver, only) => {
+// Of a branch or all: everything, or what is shown while a number is moved.
+export const solveInto = async (run, solver, only, shown_) => {
   const {info} = state, place = b => info.branches.findIndex(entry => entry.name === b.name);
-  const answer =
-      await solver.ask('solve', {request: requestOf(run.settings, only, {published: run.fast})});
+  const request = requestOf(run.settings, only, {published: run.fast, shown: shown_});
+  const answer = await solver.ask('solve', {request});
   run.seconds ??= answer.seconds;
-  run.take(answer).branches.sort((a, b) => place(a) - place(b));
+  run.take(answer, !shown_).branches.sort((a, b) => place(a) - place(b));
 };
-// Whether a run has what is shown: a branch, or all.
-const has = (run, only) => only === '' ? run.branches.length === state.info.branches.length
-  : run.branch(only) !== undefined;
+// Whether a run has what is shown, a branch or all: as far as it is drawn now.
+const has = (run, only) => {
+  const list = only === '' ? run.branches : run.branches.filter(b => b.name === only);
+  return list.length === (only === '' ? state.info.branches.length : 1) &&
+    list.every(b => b.whole || isMoving());
+};
 
 // The worker begins before the page draws what is moved.
-export const changed = () => {
+export const solveSoon = () => {
   demandSolve();
   pump();
+};
+export const showChange = () => {
   if (!isSolved()) dropProofs();
   drawChange();
+};
+export const changed = () => {
+  solveSoon();
+  showChange();
 };
 // A hidden page gets no frames.
 const nextFrame = () =>
   new Promise(resolve => { requestAnimationFrame(resolve); setTimeout(resolve, 100); });
-export const pump = async () => {
-  if (state.busy) return;
-  state.busy = true;
-  while (state.due) await solveNewest();
-  state.busy = false;
-  rest();
-};
 const newest = () => {
   const {published, now} = state, settings = [...state.settings], key = keyOf(settings);
   return [...keptRuns(), now].find(run => run?.key === key && run.fast === published) ??
       new Run(settings, published);
 };
-const solveNewest = async (again = true) => {
+// Asks for the newest numbers; what is solved already is drawn with the next frame.
+const askNewest = () => {
   const asked = startSolve(), {info, branch} = state, base = reference(), run = newest();
   showWaiting();
-  try {
-    const old = run === base || has(base, branch) ? null : solveInto(base, solvers.back, branch);
-    // The page is painted while the worker solves, or now.
-    await (has(run, branch) ? nextFrame() : solveInto(run, solvers.front, branch));
-    await old;
-    if (info !== state.info) return;
-    showRun(run);
-    const begun = performance.now();
-    draw();
-    const done = performance.now();
-    window.live.ready ||= done;
-    window.live.draws.push(
-        {solve: run.seconds, draw: (done - begun) / 1e3, all: (done - asked) / 1e3});
-  } catch (error) {
-    if (info !== state.info) return;
-    if (error.kind === 'stopped' && again && !state.due) {
-      demandSolve();
-      await solveNewest(false);
-      return;
-    }
-    showFailure(error);
-    draw();
-  } finally {
+  const old = run === base || has(base, branch) ? null : solveInto(base, solvers.back, branch);
+  const solved = has(run, branch) ? nextFrame()
+    : solveInto(run, solvers.front, branch, whatIsShown());
+  return {asked, info, run, solved: Promise.all([solved, old])};
+};
+const present = ({asked, info, run}, error) => {
+  if (info !== state.info) return;
+  error ? showFailure(error) : showRun(run);
+  const begun = performance.now();
+  draw();
+  const done = performance.now();
+  if (error) return;
+  window.live.ready ||= done;
+  window.live.draws.push(
+      {solve: run.seconds, draw: (done - begun) / 1e3, all: (done - asked) / 1e3});
+};
+// The worker goes on with newer numbers while the page draws. A solver that stopped is asked once
+// more.
+export const pump = async () => {
+  if (state.busy || !state.due) return;
+  setBusy(true);
+  for (let turn_ = askNewest(), again = true; turn_;) {
+    const error = await turn_.solved.then(() => null, reason => reason);
     endWaiting();
+    const retry = error?.kind === 'stopped' && again && turn_.info === state.info;
+    if (retry) demandSolve();
+    const next = state.due ? askNewest() : null;
+    again = !retry;
+    if (!retry) present(turn_, error);
     drawStatus();
+    turn_ = next;
   }
+  setBusy(false);
+  rest();
 };
 
 // ---- At rest: nothing is moved and nothing is to be solved for it
-export const resting = () => !state.busy && !state.due && !state.held?.name;
+export const resting = () => !state.busy && !state.due && !isMoving();
 export const isIdle = () => !state.busy && !state.due && !restingNow;  // nothing is being solved
 let restingNow = 0, turn = 0, retried = 0;
 export const rest = async () => {
@@ -103,7 +111,7 @@ export const rest = async () => {
     for (const run of new Set(runs))
       for (const {name} of info.branches) {
         if (!more()) return;
-        if (run.branch(name)) continue;
+        if (run.branch(name)?.whole) continue;
         await solveInto(run, solvers.back, name);
         if (more()) draw();
       }

@@ -67,6 +67,17 @@ export const showStation = (branch, a) => {
   const k = state.now.near(branch, a);
   state.station = k === branch.start ? null : state.now.a(branch, k);
 };
+export const showPublished = on => { state.published = on; };
+export const showGuides = on => { state.guides = on; };
+export const showCurves = keys => { state.curves = keys.length ? keys : null; };
+export const toggleLarge = key => { state.large = state.large === key ? '' : key; };
+export const choosePoint = name => { state.point = name; };
+// null: no band
+export const aimAt = (key, ends) =>
+  ends ? state.targets.set(key, ends) : state.targets.delete(key);
+export const keepEffects = effects => { state.effects = effects; };
+export const keepPreview = preview => { state.preview = preview; };
+export const compareWith = name => { state.compared = name; };
 export const isSolved = () => state.now !== null && state.now.key === keyOf(state.settings) &&
   state.now.fast === state.published;
 export const isChanged = () => state.now.key !== reference().key;
@@ -79,6 +90,21 @@ export const numberOf = path =>
 export const put = (path, text) => {
   if (state.of.get(path).value === +text && text.trim() !== '') state.settings.delete(path);
   else state.settings.set(path, text);
+};
+
+export const takeSettings = settings => { state.settings = new Map(settings); };
+export const dropSettings = paths => paths.forEach(path => state.settings.delete(path));
+export const markSaved = key => { state.saved = key; };
+// What the pointer holds: a hardpoint by its name, or the view.
+export const hold = held => { state.held = held; };
+export const letGoOfAll = () => Object.assign(state, {held: null, before: null});
+export const toggleInGroup = name => {
+  state.group = state.group.includes(name) ? state.group.filter(n => n !== name)
+    : [...state.group, name];
+};
+// Keeps a length, or no longer.
+export const toggleLength = (key, length) => {
+  if (!state.locks.delete(key)) state.locks.set(key, length);
 };
 
 // ---- Variants: kept beside the scene as A, B and C
@@ -101,6 +127,7 @@ export const settle = () => {
   state.undo.push(before);
   state.redo = [];
 };
+export const isMoving = () => state.before !== null;
 // Back to what was before begin().
 export const abandon = () => {
   if (state.before) state.settings = new Map(state.before);
@@ -123,6 +150,7 @@ export const demandSolve = () => {
   state.since ||= performance.now();
   Object.assign(state, {due: true, failure: null});
 };
+export const setBusy = busy => { state.busy = busy; };
 export const showRun = run => Object.assign(
     state, {now: run, failure: null, solves: Math.max(state.solves, run.id ??= state.solves + 1)});
 export const showFailure = ({message, kind}) => Object.assign(state, {failure: {message, kind}});

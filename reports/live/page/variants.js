@@ -3,7 +3,8 @@
 import {$, make, write} from './base.js';
 import {Run, keyOf} from './run.js';
 import {
-  dropVariant, isChanged, isSolved, keepVariant, referenceName, state
+  compareWith, dropVariant, isChanged, isSolved, keepVariant, markSaved, referenceName, state,
+  takeSettings
 } from './state.js';
 import {draw, edit} from './app.js';
 import {changed} from './solve.js';
@@ -13,7 +14,7 @@ const changesOf = settings =>
 const chipOf = ({name, run}) => {
   const back = make('button', {type: 'button', title: `Return to ${name}`}, name);
   const drop = make('button', {type: 'button', 'aria-label': `Drop ${name}`}, '×');
-  back.onclick = () => edit(() => { state.settings = new Map(run.settings); });
+  back.onclick = () => edit(() => takeSettings(run.settings));
   drop.onclick = () => { dropVariant(name); changed(); };
   const words = ` ${changesOf(run.settings)} `;
   return make(
@@ -43,12 +44,12 @@ $('keep').onclick = keepNow;
 // What is on the screen is what is compared with from now on: the scene as opened, or a variant.
 $('refer').onclick = () => {
   if (state.settings.size) keepNow();
-  state.compared = state.variants.find(v => v.run.key === state.now.key)?.name ?? '';
+  compareWith(state.variants.find(v => v.run.key === state.now.key)?.name ?? '');
   $('compare').dataset.names = '?';
   changed();
 };
 $('compare').onchange = () => {
-  state.compared = $('compare').value;
+  compareWith($('compare').value);
   changed();
 };
 
@@ -73,7 +74,7 @@ const stored = () => {
 const take = work => {
   for (const list of work.variants)
     if (state.variants.every(v => v.run.key !== keyOf(list))) keepVariant(new Run(list));
-  edit(() => { state.settings = new Map(work.settings); });
+  edit(() => takeSettings(work.settings));
 };
 const isOfScene = work => work?.source === state.source &&
   [...work.variants, work.settings].every(list => list.every(([path]) => state.of.has(path)));
@@ -84,7 +85,7 @@ export const restoreWork = inFile => {
   $('restore').hidden = !isOfScene(work) || inFile !== undefined;
   if (isOfScene(inFile)) {
     take(inFile);
-    state.saved = keyOf(state.settings);
+    markSaved(keyOf(state.settings));
   }
   if ($('restore').hidden) return;
   $('restore').textContent = `Restore the work of last time (${changesOf(work.settings)})`;

@@ -1,7 +1,7 @@
 // ---- The drawing: orthographic, of the shown station, with the suspension as opened in pale
 // lines
 import {$, make, show, shown, sketch, writeAttributes} from './base.js';
-import {isChanged, reference, stationInReference, stationOf, state} from './state.js';
+import {isChanged, reference, showGuides, state, stationInReference, stationOf} from './state.js';
 import {coordinatesOf, findImages, isMoved, movable} from './points.js';
 import {guides} from './guides.js';
 
@@ -181,7 +181,7 @@ export const makeView = () => {
     button.onclick = () => { [view.yaw, view.pitch] = views[name]; view.name = name; draw3d(); };
     $('views').append(button);
   }
-  $('guides').onchange = () => { state.guides = $('guides').checked; draw3d(); };
+  $('guides').onchange = () => { showGuides($('guides').checked); draw3d(); };
   $('fit').onclick = () => { if (state.now) { fitView(state.now); draw3d(); } };
   new ResizeObserver(() => { measureView(); draw3d(); }).observe($('suspension'));
 };

@@ -2,7 +2,7 @@
 // solve-for` (reports/live/wishes.hpp), from the numbers as they are now.
 import {$, make, pageUnit, shown, signed, written} from './base.js';
 import {Run, keyOf} from './run.js';
-import {begin, numberOf, put, settle, stationOf, state} from './state.js';
+import {begin, keepPreview, numberOf, put, settle, state, stationOf} from './state.js';
 import {solvers} from './solver.js';
 import {changed, resting, solveInto} from './solve.js';
 import {effectsOn} from './effects.js';
@@ -128,12 +128,12 @@ const previewWish = async numbers => {
   const run = new Run([...settings], state.published), from = keyOf(state.settings);
   await solveInto(run, solvers.back, state.branch);
   if (from !== keyOf(state.settings)) return;
-  state.preview = {name: 'preview', run, numbers, from};
+  keepPreview({name: 'preview', run, numbers, from});
   draw();
 };
 // A preview is of the numbers from which it was found.
 export const drawPreview = () => {
-  if (state.preview && state.preview.from !== keyOf(state.settings)) state.preview = null;
+  if (state.preview && state.preview.from !== keyOf(state.settings)) keepPreview(null);
   $('wish-take').hidden = $('wish-drop').hidden = $('preview-name').hidden = !state.preview;
 };
 const takeWish = () => {
@@ -235,5 +235,5 @@ $('want-more').onclick = () => state.now && addShownWant();
 $('vary-more').onclick = () => state.now && addMostEffect();
 $('wish-go').onclick = () => state.now && grantWishes();
 $('wish-take').onclick = takeWish;
-$('wish-drop').onclick = () => { state.preview = null; draw(); };
+$('wish-drop').onclick = () => { keepPreview(null); draw(); };
 $('wishes').addEventListener('input', wishLine);
