@@ -49,13 +49,16 @@ struct Largest {
     Pickup pickup;
     double force = 0, moment = 0;
     std::string force_in{}, moment_in{};  // names of the cases
-    bool shared = false;
+    bool shared = false, solved = true;
+    double given(double load) const { return shared || !solved ? nan : load; }
 };
 
 std::vector<Largest> largest(const PickupLoads& loads) {
     std::vector<Largest> list;
     for (std::size_t k = 0; k < loads.pickups.size(); ++k) {
         Largest& most = list.emplace_back(Largest{.pickup = loads.pickups[k]});
+        most.solved =
+            std::ranges::any_of(loads.cases, [](const SolvedCase& c) { return !c.loads.empty(); });
         for (const auto& solved : loads.cases) {
             if (solved.loads.empty()) continue;
             const Vector6& w = solved.loads[k].in_ground_axes;
@@ -79,15 +82,42 @@ std::vector<ColumnOf<Largest>> largest_columns() {
         {"body", words, [](const Largest& l) { return l.pickup.body; }, "what the load acts on"},
         {"connection", words, [](const Largest& l) { return l.pickup.connection; },
          "the joint or element that exerts it"},
-        {"x", three, coordinate(0), "of the point as drawn, vehicle axes", "mm"},
-        {"y", three, coordinate(1), "likewise", "mm"},
-        {"z", three, coordinate(2), "likewise", "mm"},
-        {"force", whole, [](const Largest& l) { return l.shared ? nan : l.force; },
+        {"x", place, coordinate(0), "of the point as drawn, vehicle axes", "mm"},
+        {"y", place, coordinate(1), "likewise", "mm"},
+        {"z", place, coordinate(2), "likewise", "mm"},
+        {"force", whole, [](const Largest& l) { return l.given(l.force); },
          "largest over the cases", "N"},
         {"force in", words, [](const Largest& l) { return l.force_in; }, "its case"},
-        {"moment", three, [](const Largest& l) { return l.shared ? nan : l.moment; },
+        {"moment", four, [](const Largest& l) { return l.given(l.moment); },
          "largest over the cases, about the point", "N·m"},
         {"moment in", words, [](const Largest& l) { return l.moment_in; }, "its case"}};
+}
+
+// A case and a pickup point, for readers.
+struct LoadInCase {
+    const Pickup* pickup;
+    const SolvedCase* solved;
+    const Vector6* load;
+};
+
+std::vector<LoadInCase> by_case(const PickupLoads& loads) {
+    std::vector<LoadInCase> list;
+    for (const auto& solved : loads.cases)
+        for (std::size_t k = 0; k < solved.loads.size(); ++k)
+            list.push_back({&loads.pickups[k], &solved, &solved.loads[k].in_ground_axes});
+    return list;
+}
+
+std::vector<ColumnOf<LoadInCase>> case_columns() {
+    std::vector<ColumnOf<LoadInCase>> columns{
+        {"case", Digits::words, [](const LoadInCase& l) { return l.solved->name; }},
+        {"body", Digits::words, [](const LoadInCase& l) { return l.pickup->body; }},
+        {"connection", Digits::words, [](const LoadInCase& l) { return l.pickup->connection; }}};
+    for (int c = 0; c < 6; ++c)
+        columns.push_back(
+            {components[static_cast<std::size_t>(c)], c < 3 ? Digits::whole : Digits::four,
+             [c](const LoadInCase& l) { return (*l.load)[c]; }, "", c < 3 ? "N" : "N·m"});
+    return columns;
 }
 
 // Joints whose share no load determines, in words.
@@ -109,7 +139,13 @@ Verdict verdict_of(const PickupLoads& loads) {
             verdict.reasons.push_back(fmt::format("case '{}': {}", solved.name, why));
         };
         if (solved.loads.empty()) {
-            refuse(fmt::format("{}: {}", name(solved.outcome), solved.detail));
+            refuse(fmt::format("{}: {}{}", name(solved.outcome), solved.detail,
+                               solved.outcome == Outcome::loaded_idle_mode
+                                   ? "; a spring or the travel of the wheel has to hold it"
+                               : solved.outcome == Outcome::limit_point
+                                   ? "; the loads as drawn: with rates of springs at which they "
+                                     "hardly move"
+                                   : ""));
             continue;
         }
         imbalance = worse(imbalance, solved.imbalance);
@@ -146,6 +182,12 @@ Result result_of(const PickupLoads& loads) {
     const auto list = largest(loads);
     result.tables.push_back(table("pickups", largest_columns(), list));
     result.tables.back().caption = "largest loads on each body, in vehicle axes";
+    constexpr std::size_t most_rows = 1000;  // for readers
+    if (const auto rows = by_case(loads); rows.size() <= most_rows) {
+        result.tables.push_back(table("", case_columns(), rows));
+        result.tables.back().caption = "loads by cases, in vehicle axes";
+        result.tables.back().detail = true;
+    }
     result.tables.push_back(table("loads", load_columns(loads.pickups), loads.cases));
     if (const std::string names = shared_joints(list); !names.empty())
         result.notes.push_back(fmt::format(

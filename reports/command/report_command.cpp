@@ -16,6 +16,7 @@
 #include "compare/comparison/compare_with.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/jobs/jobs.hpp"
+#include "compare/loads/loads.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/solves.hpp"
@@ -28,6 +29,7 @@
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/gradients_of.hpp"
 #include "reports/command/options/limits.hpp"
+#include "reports/command/options/load_cases.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/command/program/command.hpp"
@@ -96,6 +98,7 @@ struct ReportRequest {
     Settings settings;
     std::string folder;
     std::string measured;        // CSV
+    std::string loads;           // CSV of load cases
     CandidateRequest candidate;  // external solver, for one scene
     std::string tolerance = "0.01mm,0.001deg,1%";
     std::vector<std::string> branches;  // the others are left out
@@ -271,6 +274,10 @@ SceneAnalyses solve_scene(const std::string& file, const ReportRequest& request,
             read_measurement(read_whole(request.measured, largest_measurement), request.measured,
                              loaded.model, map_of(request.candidate), request.branches);
     select_branches(loaded.scene, loaded.model, request.branches);
+    std::vector<compare::LoadCase> cases;
+    if (!request.loads.empty())
+        cases = read_load_cases(read_whole(request.loads), request.loads, loaded.scene);
+    const Scene with_cases = compare::with_cases(loaded.scene, cases);
     SceneAnalyses scene = analyses_of(loaded, file);
     scene.only = request.only;
     scene.quick = request.quick;
@@ -285,6 +292,8 @@ SceneAnalyses solve_scene(const std::string& file, const ReportRequest& request,
     options.progress = compare::part(progress_of_scene, 0, after_legs);
     add_comparison(scene, compare::compare(model, options, loaded.definitions));
     if (!request.measured.empty()) add_measured(scene, measurement);
+    if (!cases.empty())
+        scene.loads = result_of(compare::pickup_loads(compile(with_cases, Detail::everything)));
     if (!request.quick && request.only != "evidence")
         add_effects(scene, loaded, file, request.settings, threads);
     const auto tolerance =
@@ -340,6 +349,8 @@ int write(const ReportRequest& request, const std::string& reproduce) {
     if (request.scenes.empty()) throw std::invalid_argument("report: needs scene files");
     if (!request.measured.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
+    if (!request.loads.empty() && request.scenes.size() != 1)
+        throw std::invalid_argument("report: --loads belongs to one scene; give one");
     if (!request.measured.empty() && request.candidate.wanted() && !request.candidate.map.empty())
         throw std::invalid_argument(
             "report: --map: is of --candidate or of --measured; give one of them");
@@ -396,6 +407,13 @@ int write(const ReportRequest& request, const std::string& reproduce) {
             if (judgement.verdict == compare::Grade::not_judged && code == fine)
                 code = could_not_judge;
         }
+    // so does that of load cases
+    for (const auto& scene : report.scenes)
+        if (scene.loads && scene.loads->verdict.grade != compare::Grade::pass) {
+            if (code == fine) code = could_not_judge;
+            for (const auto& reason : scene.loads->verdict.reasons)
+                print_error("{}: {}\n", request.loads, reason);
+        }
     for (const auto& answer : answers)
         if (!answer.conclusive) {
             code = could_not_judge;
@@ -432,6 +450,9 @@ const Command report_command{
                            "required accuracy (default: 0.01mm,0.001deg,1%)");
         as_file(command.add_option("--measured", request->measured,
                                    "CSV of measured curves, for comparison"));
+        as_file(command.add_option("--loads", request->loads,
+                                   "CSV of load cases, as for `loads`: the largest loads at every "
+                                   "joint and element of every body, as a section"));
         command.add_option("--branch", request->branches, "only these branches of the scene");
         as_word(command.add_option("--only", request->only,
                                    "one part of the page: kinematics and compliance (without "

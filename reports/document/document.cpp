@@ -315,6 +315,7 @@ json results_json(const SceneAnalyses& s) {
     }
     if (s.effects) results.push_back(json_of(result_of(*s.effects)));
     if (s.measured) results.push_back(json_of(result_of(*s.measured, s.comparison)));
+    if (s.loads) results.push_back(json_of(*s.loads));
     for (const auto& [candidate, sentence] : s.candidates)
         results.push_back(json_of(result_of(candidate, s.comparison)));
     if (s.against) results.push_back(json_of(result_of(*s.against)));

@@ -65,9 +65,10 @@ struct SceneAnalyses {
     std::optional<compare::Assessment> judgement{};
     std::optional<Measured> measured{};
     std::vector<JudgedCandidate> candidates{};
-    std::optional<Against> against{};  // a variant, of which this is the base
-    std::string only{};                // kc, evidence; empty: both
-    bool quick = false;                // proved at the ends alone
+    std::optional<compare::Result> loads{};  // at the pickup points, under cases
+    std::optional<Against> against{};        // a variant, of which this is the base
+    std::string only{};                      // kc, evidence; empty: both
+    bool quick = false;                      // proved at the ends alone
 
     bool conclusive() const { return reasons.empty(); }
 };

@@ -25,6 +25,7 @@ std::optional<Section> curves_section(const SceneAnalyses& scene);
 std::optional<Section> gradients_section(const SceneAnalyses& scene);
 std::optional<Section> rates_section(const SceneAnalyses& scene);
 std::optional<Section> forces_section(const SceneAnalyses& scene);
+std::optional<Section> loads_section(const SceneAnalyses& scene);
 std::optional<Section> measured_section(const SceneAnalyses& scene);
 std::optional<Section> methods_section(const SceneAnalyses& scene);
 std::optional<Section> change_section(const SceneAnalyses& scene);

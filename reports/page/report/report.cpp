@@ -271,6 +271,7 @@ Answer answer(const SceneAnalyses& scene) {
                 .mark = scene.conclusive() ? "judged" : "not judged",
                 .conclusive = scene.conclusive(),
                 .reasons = scene.reasons};
+    if (scene.loads) made.sentence += " Load cases: " + scene.loads->verdict.sentence;
     if (const std::string methods = method_sentence(scene); !methods.empty())
         made.sentence += " " + methods;
     for (const auto& [candidate, sentence] : scene.candidates)

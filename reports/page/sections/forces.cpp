@@ -1,4 +1,5 @@
-// Section: largest forces of bushings, springs and links in their own axes; a beam is one element.
+// Sections: largest forces of bushings, springs and links in their own axes, a beam being one element;
+// loads at the pickup points under cases.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -116,6 +117,20 @@ std::optional<Section> forces_section(const SceneAnalyses& scene) {
     Table table = compare::table("", columns, largest);
     table.caption = "Largest force and moment of each element over all points of the branches";
     section.tables.push_back(std::move(table));
+    return section;
+}
+
+std::optional<Section> loads_section(const SceneAnalyses& scene) {
+    if (!scene.loads) return std::nullopt;
+    const auto& [grade, sentence, reasons, compared, requested] = scene.loads->verdict;
+    const bool confirmed = grade == compare::Grade::pass;
+    Section section{.id = "loads",
+                    .title = "Loads at the pickup points",
+                    .part = Part::behaviour,
+                    .mark = confirmed ? Mark::none : Mark::open,
+                    .tables = scene.loads->tables};
+    section.words = {{"sentence", sentence}, {"reasons", reasons}, {"notes", scene.loads->notes}};
+    std::erase_if(section.tables, [](const Table& table) { return page_columns(table).empty(); });
     return section;
 }
 
