@@ -23,7 +23,10 @@
 //
 //   m (2 left / range)^(numbers - fitted)
 //
-// and is accepted only if this is at most a hundredth.
+// and is accepted only if this is at most a hundredth. Where nothing is fitted, the level of the column
+// is one of the numbers, with its size for the range. Another definition as it stands is as simple as
+// the figure: m counts such definitions alone. A column that is written with few decimals may be off
+// by half of its last one.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -105,6 +108,16 @@ Values less(Values a, const Values& b) {
     for (std::size_t k = 0; k < a.size(); ++k) a[k] -= b[k];
     return a;
 }
+// Half of the last decimal with which a column is written; 0 of one with more than six.
+double rounding(const Values& v) {
+    double unit = 1;
+    for (int decimals = 0; decimals <= 6; ++decimals, unit /= 10)
+        if (std::ranges::all_of(
+                v, [&](double x) { return std::abs(x / unit - std::round(x / unit)) < 1e-6; }))
+            return unit / 2;
+    return 0;
+}
+double level(const Values& v) { return std::max(off(v, Values(v.size(), 0)), span(v)); }
 double dot(const Values& a, const Values& b) {
     double sum = 0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
@@ -148,7 +161,9 @@ bool is_accident(const Beside& b, double left, int fitted, int tried) {
     const double range = span(b.candidate);
     if (!(range > 0)) return true;
     const int free = numbers_in(b, left) - fitted;
-    return !(tried * std::pow(std::min(1., 2 * left / range), free) <= by_accident);
+    const double each = std::min(1., 2 * left / range),
+                 of_level = fitted == 0 && free > 0 ? range / level(b.candidate) : 1;
+    return !(tried * of_level * std::pow(each, free) <= by_accident);
 }
 
 const char* unit_word(double factor) {
@@ -196,7 +211,7 @@ std::optional<Explanation> wrong_from(const Beside& b) {
 
 // All other definitions of the figure that make the column right, within `allowed`, each by the
 // simplest transformation that does.
-std::optional<Explanation> by_definitions(const Beside& b, double allowed, int tried) {
+std::optional<Explanation> by_definitions(const Beside& b, double allowed, int others) {
     struct Fit {
         std::string name;
         double left = 0;
@@ -212,7 +227,7 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed, int t
         std::optional<Fit> fit;
         const auto try_it = [&](const std::string& as, const Values& reading, bool needs_movement,
                                 int fitted) {
-            ++tried;
+            const int tried = as == name ? static_cast<int>(b.definitions.size()) : ++others;
             const double left = off(v, reading);
             const bool moves = left <= of_column * span(v);
             if (!fit && left <= allowed && (moves || !needs_movement) &&
@@ -257,9 +272,8 @@ std::optional<Explanation> explain(const Beside& b) {
         std::min(explained * deviation,
                  std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, of_movement * movement));
     std::optional<Explanation> accepted;
-    // A factor alone has to reproduce the level of the column; with an offset or from
-    // r_0 its range.
-    const double level = std::max(off(v, Values(v.size(), 0)), span(v));
+    // A factor alone has to reproduce the level of the column; with an offset or from r_0 its
+    // range.
     int tests = 0;
     // Tests v = `transformed`; the first explanation that makes the column right is accepted.
     const auto try_it = [&](Explanation explanation, const Values& transformed,
@@ -269,7 +283,7 @@ std::optional<Explanation> explain(const Beside& b) {
         explanation.column = b.column;
         const bool scaled =
             explanation.kind == Kind::factor || explanation.kind == Kind::factor_and_offset;
-        if (scaled && !(explanation.left <= of_column * (is_level ? level : span(v)))) return;
+        if (scaled && !(explanation.left <= of_column * (is_level ? level(v) : span(v)))) return;
         if (!accepted && explanation.left <= allowed &&
             !is_accident(b, explanation.left, fitted, tests))
             accepted = explanation;
@@ -320,7 +334,8 @@ std::optional<Explanation> explain(const Beside& b) {
                 accepted
                     ? much_better * accepted->left
                     // the figure may not move at all where another definition of it does
-                    : std::max(allowed, std::min(explained * deviation, of_movement * span(v))),
+                    : std::max(allowed, std::min(explained * deviation,
+                                                 std::max(of_movement * span(v), rounding(v)))),
                 tests))
             accepted = other;
     if (!accepted) accepted = wrong_from(b);

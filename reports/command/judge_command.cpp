@@ -39,6 +39,7 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
                          .written = delivery.wants_document()});
     const int steps = request.steps > 0 ? request.steps : steps_of(model);
     const auto outputs = outputs_of(request.candidate, request.scene, {steps});
+    check_tables(outputs, request.candidate, loaded);
     compare::Options options;
     options.times = false;
     options.recursion.steps = request.steps;

@@ -254,9 +254,10 @@ void add_effects(SceneAnalyses& scene, const LoadedScene& loaded, const std::str
     scene.effects = std::move(effects);
 }
 
-void add_candidates(SceneAnalyses& scene, const LoadedScene& loaded, const std::string& file,
-                    const ReportRequest& request, const compare::Tolerance& tolerance) {
-    for (const auto& output : outputs_of(request.candidate, file, {steps_of(scene.model)})) {
+void add_candidates(SceneAnalyses& scene, const LoadedScene& loaded,
+                    const std::vector<CandidateOutput>& outputs, const ReportRequest& request,
+                    const compare::Tolerance& tolerance) {
+    for (const auto& output : outputs) {
         auto judgement = judged(output, request.candidate, loaded, scene.comparison, tolerance,
                                 request.has_tolerance());
         std::string verdict = result_of(judgement, scene.comparison).verdict.sentence;
@@ -274,6 +275,8 @@ SceneAnalyses solve_scene(const std::string& file, const ReportRequest& request,
             read_measurement(read_whole(request.measured, largest_measurement), request.measured,
                              loaded.model, map_of(request.candidate), request.branches);
     select_branches(loaded.scene, loaded.model, request.branches);
+    const auto outputs = outputs_of(request.candidate, file, {steps_of(loaded.model)});
+    check_tables(outputs, request.candidate, loaded);
     std::vector<compare::LoadCase> cases;
     if (!request.loads.empty())
         cases = read_load_cases(read_whole(request.loads), request.loads, loaded.scene);
@@ -305,7 +308,7 @@ SceneAnalyses solve_scene(const std::string& file, const ReportRequest& request,
                                            compare::part(progress_of_scene, after_legs, 0.35));
         add_studies(scene, tolerance, threads, compare::part(progress_of_scene, 0.35, 1));
     }
-    if (request.candidate.wanted()) add_candidates(scene, loaded, file, request, tolerance);
+    add_candidates(scene, loaded, outputs, request, tolerance);
     scene.judgement = compare::assess(model, scene.comparison, tolerance, request.has_tolerance());
     if (!scene.conclusive()) {
         scene.judgement->verdict = compare::Grade::not_judged;

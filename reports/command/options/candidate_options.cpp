@@ -10,6 +10,7 @@
 #include "reports/files/files.hpp"
 #include "reports/files/subprocess.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/given/state_file.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -124,6 +125,16 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
     }
     progress("");
     return list;
+}
+
+void check_tables(const std::vector<CandidateOutput>& outputs, const CandidateRequest& request,
+                  const LoadedScene& loaded) {
+    compare::Comparison unsolved;
+    unsolved.channels = requested_channels(loaded, {});
+    for (const auto& output : outputs)
+        if (!output.of_command && !holds_states(output.content))
+            (void)read_candidate({output.name, output.file, output.content}, loaded.scene,
+                                 loaded.model, unsolved, map_of(request));
 }
 
 compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,

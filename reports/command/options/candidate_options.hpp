@@ -43,6 +43,10 @@ void check(const CandidateRequest& request, const Settings& settings);
 std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const std::string& scene,
                                         const std::vector<int>& steps);
 
+// Throws SheetError for the table of a file that cannot be read, before anything is solved.
+void check_tables(const std::vector<CandidateOutput>& outputs, const CandidateRequest& request,
+                  const LoadedScene& loaded);
+
 // A failed command or an unreadable output of it gives a judgement `could not judge`; an unreadable
 // file is bad input and throws SheetError.
 compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
