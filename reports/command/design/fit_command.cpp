@@ -211,7 +211,7 @@ compare::FittedScene fitted(const FitRequest& request, const LoadedScene& loaded
 
 // Exit code 0: the data determine all numbers; 3: not all, or there is no fit.
 int fit(const FitRequest& request, const Delivery& delivery) {
-    check_may_write_scene(request.output);
+    check_may_write_scene(request.scene, request.output, request.settings);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const compare::FittedScene all = fitted(request, loaded);
     const int code = deliver_result(delivery, document_of(loaded, request.scene), result_of(all));

@@ -349,7 +349,7 @@ compare::CertifyStudy certificate(const Scene& scene, const std::vector<Figure>&
 // they cannot be met; 3: a figure has no value, or the result is not confirmed, not proved
 // or not converged.
 int optimise(const OptimiseRequest& request, const Delivery& delivery) {
-    check_may_write_scene(request.output);
+    check_may_write_scene(request.scene, request.output, request.settings);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     GoalsFile file = read_goals(request.file, loaded);
     set_scene(file.varied, request.scene, request.settings);

@@ -33,7 +33,7 @@ void add_wish(compare::SolvedFor& solved, const std::string& word, const Model& 
 // Exit code 0: the wishes are met and confirmed; 1: they cannot be met; 3: a leg has no values or
 // does not confirm them.
 int solve_for(const SolveForRequest& request, const Delivery& delivery) {
-    check_may_write_scene(request.output);
+    check_may_write_scene(request.scene, request.output, request.settings);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     compare::Varied varied = parse_varied(request.vary, loaded.scene);
     for (Index k = 0; k < varied.start.size(); ++k)

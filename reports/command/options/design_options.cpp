@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
@@ -133,8 +134,14 @@ compare::Figure parse_figure(const std::string& word, const Model& model) {
                                  symbol(unit))};
 }
 
-void check_may_write_scene(const std::string& output) {
-    if (!output.empty()) check_may_write(output, changed_scene);
+void check_may_write_scene(const std::string& scene, const std::string& output,
+                           const Settings& settings) {
+    if (output.empty()) return;
+    check_may_write(output, changed_scene);
+    const auto folder = std::filesystem::path(output).parent_path();
+    if (folder == std::filesystem::path(scene).parent_path()) return;
+    (void)read_scene(scene, settings);
+    (void)reader::ParsedScene(read_whole(scene), output, folder).read(settings);
 }
 
 void write_changed_scene(const std::string& scene, const std::string& output,

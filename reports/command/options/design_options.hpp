@@ -26,8 +26,10 @@ double parse_number(std::string_view word);  // throws likewise
 // parameter, in N, N·m, mm or deg. Throws likewise.
 compare::Figure parse_figure(const std::string& word, const Model& model);
 
-// Throws FileError if the output may not be written; nothing of an empty name.
-void check_may_write_scene(const std::string& output);
+// Throws FileError if the output may not be written, and SceneError for a scene that cannot be read in
+// its folder, as where the tables are not beside it; nothing of an empty name.
+void check_may_write_scene(const std::string& scene, const std::string& output,
+                           const Settings& settings);
 // Writes the text of `scene` with the changed numbers, and reads it. `first_line` becomes a comment
 // at its head.
 void write_changed_scene(const std::string& scene, const std::string& output,
