@@ -43,6 +43,8 @@ void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
                 const std::function<void(const Cells&, int)>& row) {
     if (csv.starts_with("\xFF\xFE") || csv.starts_with("\xFE\xFF"))
         fail_at(file, 0, "is UTF-16; save it as CSV in UTF-8");
+    if (file.ends_with(".yaml") || file.ends_with(".yml"))
+        fail_at(file, 0, "is YAML; expected a table, CSV with the names of its columns first");
     std::size_t columns = 0, rows = 0;
     for (reader::CsvLines lines(csv); lines.next();) {
         const int number = lines.number();

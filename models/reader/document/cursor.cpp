@@ -55,6 +55,18 @@ std::string Cursor::found() const {
     return "";
 }
 
+namespace {
+// What a file is whose first fields are not those of what was asked for.
+std::string kind_of_file(const std::string& field) {
+    for (const auto& [of, kind] : {std::pair{"elastocheck", "a scene"},
+                                   {"elastocheck_study", "a study, for `elastocheck study`"},
+                                   {"vary", "goals, for `elastocheck optimise`"},
+                                   {"columns", "a map, for --map"}})
+        if (field == of) return fmt::format(": the file is {}", kind);
+    return {};
+}
+}  // namespace
+
 void Cursor::only_keys(const std::vector<std::string>& allowed) const {
     if (value->kind != Value::Kind::map)
         fail(fmt::format("expected a map with the fields {}, found {}", listed(allowed), found()));
@@ -62,7 +74,8 @@ void Cursor::only_keys(const std::vector<std::string>& allowed) const {
         const std::string& key = value->keys[k];
         if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
         at(value->items[k], path)
-            .fail(fmt::format("unknown field {}{}", quote(key),
+            .fail(fmt::format("unknown field {}{}{}", quote(key),
+                              path.empty() ? kind_of_file(key) : "",
                               did_you_mean(key, allowed, "allowed")));
     }
 }
