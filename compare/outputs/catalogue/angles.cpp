@@ -215,8 +215,8 @@ const Entry of_wheel[] = {
           "(up)",
           "", wheel_travel,
           {.elsewhere = "wheel travel, bump",
-           .rig = "travel, wheel travel, jounce, wheel vertical displacement, wheel centre z "
-                  "displacement, wheel center z displacement"}),
+           .rig = "travel, wheel travel, bump travel, jounce, wheel vertical displacement, "
+                  "wheel centre z displacement, wheel center z displacement"}),
 };
 
 const Entry of_patch[] = {
