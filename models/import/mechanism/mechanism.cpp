@@ -312,8 +312,12 @@ struct Maker {
             if (const Entry& e = draft.points.entries()[k]; e.from.line == 0)
                 written.add(draft.points.positions()[k], e.name, e.from);
         draft.points = std::move(written);
+        // a point that is mirrored has its role on either side
         for (const PlacedPoint& point : points)
-            if (!point.has_role) draft.notes.leave_out("without a role", point.from);
+            if (std::ranges::none_of(roles, [&](const Role& role) {
+                    return role.point->from.line == point.from.line;
+                }))
+                draft.notes.leave_out("without a role", point.from);
     }
 
     void write_wheel(const std::string& side, const std::string& more) {

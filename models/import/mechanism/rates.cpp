@@ -182,6 +182,9 @@ void add_rates(const std::string& file, Draft& draft) {
     Softener softener{table, draft};
     for (const Entry& joint : draft.joints) softener.soften(joint);
     softener.add_springs();
+    if (const auto spring = table.find("spring");
+        spring != table.end() && !(spring->second.k[2] > 0))
+        fail(file, spring->second.line, "spring", "no rate; expected it in the column z");
     draft.joints = std::move(softener.joints);
     if (!draft.dampers.empty()) softener.roles.emplace_back("spring");
     for (const auto& [role, row] : table)

@@ -164,11 +164,20 @@ std::vector<std::string> words_in(std::string_view name) {
 }
 
 // Two points whose names differ in a pair of opposites lie as these words say; else the axes are
-// wrong. With y as the distance from the middle both are on one side, which is a warning.
+// wrong. With y as the distance from the middle both are on one side, which is a warning. Of "front" and
+// "rear" most pairs do: the outer ends of two links may lie the other way.
 void check_opposites(const std::vector<NamedPoint>& points, const std::array<double, 3>& along,
                      const std::string& file) {
+    const auto refuse = [&](const NamedPoint& first, const char* lies, const NamedPoint& second) {
+        fail(file, first.line, first.name,
+             "lies {} {} (line {}) in the axes of --axes; choose the axes in which it does not, or "
+             "rename the points",
+             lies, second.name, second.line);
+    };
     std::map<std::vector<std::string>, const NamedPoint*> by_words;
     for (const auto& point : points) by_words[words_in(point.name)] = &point;
+    const NamedPoint *front = nullptr, *rear = nullptr;  // the first such pair that does not
+    int wrong = 0;                                       // such pairs, less those that do
     for (const auto& [words, first] : by_words)
         for (std::size_t k = 0; k < words.size(); ++k)
             for (const auto& [word, axis] : opposites) {
@@ -179,13 +188,13 @@ void check_opposites(const std::vector<NamedPoint>& points, const std::array<dou
                 if (second == by_words.end()) continue;
                 const auto at = static_cast<std::size_t>(axis);
                 const double a = along[at] * first->at[at], b = along[at] * second->second->at[at];
-                if (axis == 1 ? a < 0 && b > 0 : a < b)
-                    fail(file, first->line, first->name,
-                         "lies {} {} (line {}) in the axes of --axes; choose "
-                         "the axes in which it does not, or rename the points",
-                         axis == 1 ? "to the right of" : "behind", second->second->name,
-                         second->second->line);
+                const bool of_links = word[0] == "front";
+                if (of_links) wrong += a < b ? 1 : -1;
+                if (of_links && a < b && front == nullptr) front = first, rear = second->second;
+                if (!of_links && (axis == 1 ? a < 0 && b > 0 : a < b))
+                    refuse(*first, axis == 1 ? "to the right of" : "behind", *second->second);
             }
+    if (front != nullptr && wrong >= 0) refuse(*front, "behind", *rear);
 }
 
 }  // namespace
