@@ -59,6 +59,7 @@ std::string moving_along(const Model& model, const Eigen::VectorXd& motion, doub
 std::string softest_motion(const Model& model, const Branch& branch, const Equilibrium& state,
                            bool moves_output) {
     constexpr double no_motion = 1e-6;  // of an eigenvector of length one
+    constexpr double rounding = 1e-12;  // of the largest eigenvalue
     const Analysis analysis = analyse(model);
     SteppingState s(model, branch, analysis);
     const Eigen::MatrixXd M = scaled_matrix(s, state);
@@ -67,16 +68,19 @@ std::string softest_motion(const Model& model, const Branch& branch, const Equil
     std::vector<Eigen::Index> order(static_cast<std::size_t>(M.rows()));
     std::iota(order.begin(), order.end(), Eigen::Index{0});
     std::ranges::sort(order, {}, [&](Eigen::Index k) { return std::abs(solver.eigenvalues()[k]); });
-    // idle motions and redundant rows come first
+    // idle motions and redundant rows come first; a motion that is idle as drawn may be soft here
     const auto held = static_cast<std::size_t>(analysis.diagnosis.null_space.cols());
-    for (std::size_t k = std::min(held, order.size()); k < order.size(); ++k) {
+    const double zero = rounding * solver.eigenvalues().cwiseAbs().maxCoeff();
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k < held && std::abs(solver.eigenvalues()[order[k]]) <= zero) continue;
         const Eigen::VectorXd motion =
             solver.eigenvectors().col(order[k]).head(s.n()).cwiseQuotient(
                 s.system.weight.head(s.n()));
         if (!(motion.norm() > no_motion)) continue;
         const IdleMode mode = motion_of(model, state.poses, motion.normalized(), s.setup.length);
         if (!moves_output || !mode.outputs.empty())
-            return mode.description + moving_along(model, motion, s.setup.length, mode.body);
+            return mode.description + moving_along(model, motion, s.setup.length, mode.body) +
+                   (k < held ? ", which nothing resists as drawn" : "");
     }
     return {};
 }

@@ -71,7 +71,9 @@ struct Figure {
     std::string description{};  // alternative text
     std::string x{}, y{};       // axes with units
     bool log_x = false, log_y = false;
-    double y_low = std::numeric_limits<double>::quiet_NaN(), y_high = y_low;  // NaN: from the data
+    // NaN: from the data
+    double y_low = std::numeric_limits<double>::quiet_NaN(),
+           y_high = std::numeric_limits<double>::quiet_NaN();
     double height = 1;  // relative to the default height
     std::vector<Series> series{};
     std::vector<Series> legend{};  // instead of the titles of the series

@@ -324,7 +324,8 @@ void draw_entry(Svg& svg, const Entry& entry, PaperPoint at) {
 Svg draw_plot(const Figure& figure) {
     Svg svg{width, static_cast<int>(std::lround(height * figure.height))};
     svg.letter = letter;
-    const double right = width - 20, bottom = svg.height - (figure.log_x ? 47 : 43);
+    double right = width - 20;
+    const double bottom = svg.height - (figure.log_x ? 47 : 43);
     const auto end = [&](double value) { return figure.log_y ? std::log10(value) : value; };
     const Range all = coordinates(figure, 1, figure.log_y);
     const bool free = !figure.log_y && std::isnan(figure.y_low) && std::isnan(figure.y_high);
@@ -350,6 +351,7 @@ Svg draw_plot(const Figure& figure) {
     Axis x;
     for (double most = figure.log_x ? 7 : (right - left) / 34;; --most) {
         x = ticked(figure.log_x, coordinates(figure, 0, figure.log_x), NAN, NAN, most);
+        right = width - std::max(20.0, widest(x) / 2 + 1);  // the last label stands below the end
         if (most < 3 || widest(x) + 4 < (right - left) / static_cast<double>(x.ticks.size() - 1))
             break;
     }

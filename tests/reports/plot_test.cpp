@@ -8,6 +8,8 @@
 #include <cmath>
 #include <regex>
 
+#include "reports/text/labels.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -44,6 +46,19 @@ TEST(Plot, TicksAreRoundAndEncloseTheData) {
               (std::vector<std::string>{"20",  "40",  "60",  "80",  "100", "120", "140", "160",
                                         "180", "200", "−80", "−60", "−40", "−20", "0",   "20",
                                         "40",  "60",  "80",  "y",   "x",   "s"}));
+}
+
+TEST(Plot, LastLabelOfTheAbscissaIsWithinTheImage) {
+    for (const double end : {1e-5, 0.00015, 40., 1234567.}) {
+        const Svg svg = draw(line({{-end, 0}, {end, 1}}));
+        const std::regex text("<text[^>]* x=\"([-0-9.]+)\"[^>]*\"middle\"[^>]*>([^<]*)</text>");
+        int labels = 0;
+        for (std::sregex_iterator at(svg.elements.begin(), svg.elements.end(), text), none;
+             at != none; ++at, ++labels)
+            EXPECT_LE(std::stod((*at)[1]) + text_width((*at)[2].str(), svg.letter) / 2, svg.width)
+                << (*at)[2];
+        EXPECT_GE(labels, 3);
+    }
 }
 
 TEST(Plot, LogarithmicTicksArePowersOfTen) {
