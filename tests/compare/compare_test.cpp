@@ -127,18 +127,6 @@ TEST(Compare, RecursionErrorIsLargerAlongThePathThanAcrossIt) {
 
 // ---- Inconclusive comparisons
 
-TEST(Compare, LegThatDoesNotConvergeMakesItInconclusive) {
-    Scene scene = support::scene("two_spring_arch");
-    scene.branches[0].to = -300;  // the limit is at -211.5 N
-    const auto comparison = compare(compile(scene));
-    EXPECT_FALSE(comparison.conclusive());
-    ASSERT_FALSE(comparison.branches[0].inconclusive.empty());
-    const std::string all =
-        fmt::format("{}", fmt::join(comparison.branches[0].inconclusive.texts(), "; "));
-    EXPECT_NE(all.find("equilibrium leg: limit point"), std::string::npos) << all;
-    EXPECT_TRUE(comparison.branches[1].inconclusive.empty());
-}
-
 TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
     Options options;
     options.agreement.length = 0;  // no two solvers agree to the last bit
@@ -482,27 +470,6 @@ TEST(BranchSides, TwoSidesAreJoinedIntoOneCurve) {
     EXPECT_TRUE(comparison.conclusive());
     EXPECT_EQ(comparison.branches[0].deviation.equal_parameter.channels[0].compared, 61);
     EXPECT_EQ(comparison.branches[0].deviation.equal_abscissa.not_compared, "");
-}
-
-TEST(BranchSides, FailureOnOneSideNamesTheSide) {
-    Scene scene = support::scene("two_spring_arch");
-    scene.branches.resize(1);
-    scene.branches[0].from = -300;  // the limit is at -211.5 N
-    scene.branches[0].to = 300;
-    scene.branches[0].steps = 60;
-    const auto found = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
-    EXPECT_EQ(found.outcome, Outcome::limit_point);
-    EXPECT_TRUE(found.detail.starts_with(scene.branches[0].name + " to -300 N: ")) << found.detail;
-    EXPECT_EQ(found.curve.a.back(), 300);
-    EXPECT_LT(found.curve.a.front(), -150);
-    EXPECT_GT(found.curve.a.front(), -212);
-    EXPECT_EQ(found.curve.a[found.curve.start], 0);
-    // The failure of one side is not hidden by the success of the other.
-    std::swap(scene.branches[0].from, scene.branches[0].to);
-    const auto second = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
-    EXPECT_EQ(second.outcome, Outcome::limit_point);
-    EXPECT_TRUE(second.detail.starts_with(scene.branches[0].name + " to -300 N: "))
-        << second.detail;
 }
 
 TEST(BranchSides, AnyMonotonicChannelCanBeTheAbscissa) {

@@ -275,21 +275,6 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Axles,
                                                {"opposite", "roll", "lateral", "aligning"}}),
                          [](const auto& sides) { return std::string(sides.param.scene); });
 
-// A track bar is on one side: it moves the axle sideways by the deviation of its arc from
-// a straight line, which is zero at 80 mm of jounce, where its slope is that of the
-// design height, reversed.
-TEST(Scenes, TheTrackBarMovesTheSolidAxleSideways) {
-    const Model model = compile(trimmed("solid_axle"));
-    const auto y = solve_branch(model, "travel", Leg::equilibrium, 2)["left.wheel_centre_y"];
-    const Eigen::Vector3d bar(0, 1.220, -0.040);  // [m] from the chassis to the axle
-    for (const std::size_t end : {0u, 2u}) {
-        const double height = bar.z() + (end == 0 ? -0.08 : 0.08);
-        const double arc = 1e3 * (std::sqrt(bar.squaredNorm() - height * height) - bar.y());
-        EXPECT_NEAR(y[end] - y[1], arc,
-                    0.1 + 0.15 * std::abs(arc));  // the converging lower links resist it
-    }
-}
-
 // ---- Pure kinematics.
 
 // and with rubber
@@ -335,80 +320,6 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Rigid,
                          testing::Values(std::pair{"mcpherson_rigid", "mcpherson_strut"},
                                          std::pair{"double_wishbone_rigid", "double_wishbone"}),
                          [](const auto& pair) { return std::string(pair.param.second); });
-
-// ---- Closed forms of special elements; the solutions are in the head comments of the scenes.
-
-constexpr Leg all_legs[] = {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series};
-
-TEST(Scenes, TyreAndSuspensionActInSeries) {
-    const Model model = compile(support::scene("tyre_on_road"));
-    const double k_w = 30, k_t = 200;  // [N/mm]
-    const std::pair<const char*, double> branches[] = {
-        {"road", k_t / (k_w + k_t)}, {"wheel", 1 / k_w}, {"standing", 1 / (k_w + k_t)}};
-    for (const Leg leg : all_legs)
-        for (const auto& [branch, rate] : branches) {
-            const Walk moved = solve_branch(model, branch, leg);
-            const auto travel = moved["travel"];
-            for (std::size_t k = 0; k < travel.size(); ++k)
-                EXPECT_NEAR(travel[k], rate * moved.curve.a[k], 1e-8) << name(leg) << " " << branch;
-            EXPECT_GE(std::abs(travel.back()), 8) << "[mm] " << branch;
-        }
-}
-
-TEST(Scenes, FollowerForceRotatesItsBarInProportion) {
-    const Model model = compile(support::scene("follower"));
-    for (const Leg leg : {Leg::equilibrium, Leg::series})
-        for (const char* branch : {"up", "down"}) {
-            const Walk turned = solve_branch(model, branch, leg);
-            for (std::size_t k = 0; k < turned.curve.a.size(); ++k) {
-                const double angle = turned.curve.a[k] * 0.5 / 400;
-                EXPECT_NEAR(turned["tip_x"][k], 500 * std::cos(angle), 1e-9) << name(leg);
-                EXPECT_NEAR(turned["tip_z"][k], 500 * std::sin(angle), 1e-9) << name(leg);
-            }
-            EXPECT_NEAR(std::abs(turned.curve.a.back()), 600, 0);
-        }
-}
-
-TEST(Scenes, ProjectedAngleBushingRotatesByTheMomentAlone) {
-    const Model model = compile(support::scene("bushing_by_small_angles"));
-    for (const Leg leg : {Leg::equilibrium, Leg::series})
-        for (const char* branch : {"pull", "push"}) {
-            const Walk turned = solve_branch(model, branch, leg);
-            for (std::size_t k = 0; k < turned.curve.a.size(); ++k) {
-                const double F = turned.curve.a[k];
-                const Eigen::Matrix2d A = Eigen::Rotation2Dd(0.02 * F / 250).toRotationMatrix();
-                const Eigen::Vector2d d = 1e3 * F * A *
-                                          Eigen::Vector2d(1 / 1e5, 1 / 3e5).asDiagonal() *
-                                          A.transpose() * Eigen::Vector2d(0.8, 0.6);
-                EXPECT_NEAR(turned["centre_x"][k], 100 + d.x(), 1e-9) << name(leg) << " " << F;
-                EXPECT_NEAR(turned["centre_y"][k], 200 + d.y(), 1e-9) << name(leg) << " " << F;
-                EXPECT_NEAR(turned["centre_z"][k], 300, 1e-9) << name(leg) << " " << F;
-            }
-        }
-}
-
-// ---- The paper's example.
-
-TEST(Scenes, PapersExampleHasItsSizeAndToe) {
-    const Model model = compile(support::scene("mcpherson"));
-    EXPECT_EQ(model.bodies.size(), 3u);
-    EXPECT_EQ(model.elastics.size(), 4u);
-    double up = 0, down = 0;
-    for (const char* branch : {"jounce", "rebound"}) {
-        const Walk moved = solve_branch(model, branch, Leg::equilibrium, 60);
-        const auto z = moved["wheel_centre_z"], toe = moved["toe"];
-        for (std::size_t k = 0; k < z.size(); ++k) {
-            const double travel = z[k] + 26;
-            up = std::max(up, travel);
-            down = std::min(down, travel);
-            if (std::abs(travel) <= 80) {
-                EXPECT_LE(std::abs(toe[k]), 0.5) << travel << " mm";
-            }
-        }
-    }
-    EXPECT_GE(up, 80);
-    EXPECT_LE(down, -80);
-}
 
 }  // namespace
 }  // namespace elastocheck::compare

@@ -48,29 +48,6 @@ TEST(SecondReference, IsTheSeriesUnderAFollowerLoad) {
     EXPECT_GT(found.compared, 100);
 }
 
-TEST(SecondReference, IsTheSeriesForAFormulationWithoutEnergy) {
-    Scene scene = support::scene("chrono_mcpherson");
-    scene.branches.resize(1);
-    scene.branches[0].steps = 20;
-    for (auto& elastic : scene.elastics)
-        if (auto* bushing = std::get_if<Bushing>(&elastic.kind))
-            bushing->formulation.offset_moment = false;
-    const Comparison found = compare(compile(scene));
-    EXPECT_EQ(found.branches[0].second, Leg::series);
-    EXPECT_TRUE(found.conclusive()) << (found.branches[0].inconclusive.empty()
-                                            ? ""
-                                            : found.branches[0].inconclusive.worst.front().what);
-}
-
-TEST(SecondReference, IsTheEnergyLegWhereAnEnergyExists) {
-    Scene scene = support::scene("pinned_bar");
-    scene.branches.resize(1);
-    const Comparison found = compare(compile(scene));
-    EXPECT_EQ(found.branches[0].second, Leg::energy);
-    EXPECT_TRUE(found.branches[0].why_not_energy.empty());
-    EXPECT_EQ(found.branches[0].runs.size(), 3u);
-}
-
 TEST(SecondReference, DisagreementWithTheSeriesIsReported) {
     const Model model = compile(follower());
     Comparison found = compare(model);

@@ -1,10 +1,9 @@
-// Beams of a scene file: Timoshenko stiffness, node positions, and error messages.
+// Beams of a scene file: Timoshenko stiffness and mirrors; sections and nodes are in fixtures/cantilever.facts.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "elastocheck/read_scene.hpp"
 #include "tests/models/fixtures.hpp"
@@ -16,21 +15,14 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double pi = std::numbers::pi;
-
 // A cantilever along x and then along y, with a body at its end.
-std::string cantilever(const std::string& beam,
-                       const std::string& units = "length: m, angle: rad, force: N") {
-    const std::string text =
-        replaced(fixture("cantilever"), "length: m, angle: rad, force: N", units);
+std::string cantilever(const std::string& beam) {
+    const std::string text = fixture("cantilever");
     const auto begin = text.find("through:");
     return replaced(text, text.substr(begin, text.find('}', begin) - begin), beam);
 }
 const std::string section = "E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13";
 
-const Bushing& segment(const Scene& scene, std::size_t k) {
-    return std::get<Bushing>(scene.elastics.at(k).kind);
-}
 Matrix6 K_of(const Bushing& b) { return std::get<LinearStiffness>(b.law).K; }
 
 // e = B (Δr_i, Δπ_i, Δr_j, Δπ_j) for small motions:
@@ -124,88 +116,6 @@ TEST(Beam, StiffnessDoesNotDependOnTheNumberOfSegments) {
         const double fore = tip_motion(scene, Vector6::Unit(0))[0];
         EXPECT_NEAR(fore, b * b * b / (3 * EI_z) + a / EA + b * b * a / EI_z, 1e-9) << n;
     }
-}
-
-TEST(Beam, DiameterGivesTheRoundSection) {
-    const Scene rod =
-        parse_scene(cantilever("through: [root, bend], segments: 1, E: 2000, G: 800, diameter: 20",
-                               "length: mm, angle: deg, force: kN"),
-                    "b.yaml");
-    const double L = 3e-3, E = 2000e9, G = 800e9, D = 20e-3;
-    Vector6 k;
-    const double I = pi * std::pow(D, 4) / 64, A = pi * D * D / 4;
-    k << E * A / L, 12 * E * I / std::pow(L, 3), 12 * E * I / std::pow(L, 3), 2 * G * I / L,
-        E * I / L, E * I / L;
-    EXPECT_LE(((K_of(segment(rod, 0)).diagonal() - k).array() / k.array()).abs().maxCoeff(), 1e-14);
-
-    const auto text = [](const std::string& wall) {
-        return cantilever("through: [root, bend], segments: 1, E: 2, G: 8, diameter: 0.02" + wall);
-    };
-    const Matrix6 tube = K_of(segment(parse_scene(text(", wall: 0.002"), "b.yaml"), 0));
-    EXPECT_NEAR(tube(0, 0) / (2 * pi / 4 * (0.02 * 0.02 - 0.016 * 0.016) / 3), 1, 1e-13);
-    EXPECT_NEAR(tube(3, 3) / (8 * pi / 32 * (std::pow(0.02, 4) - std::pow(0.016, 4)) / 3), 1,
-                1e-13);
-    const Matrix6 solid = K_of(segment(parse_scene(text(""), "b.yaml"), 0));
-    const Matrix6 thick = K_of(segment(parse_scene(text(", wall: 0.01"), "b.yaml"), 0));
-    EXPECT_LE((solid - thick).cwiseAbs().maxCoeff(), 1e-12 * solid.maxCoeff());
-}
-
-TEST(Beam, UnitsOfTheSectionAreThoseOfTheScene) {
-    const Scene mm = parse_scene(
-        cantilever(
-            "through: [root, bend], segments: 1, E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13, up: z",
-            "length: mm, angle: deg, force: kN"),
-        "b.yaml");
-    const double E = 2e9, G = 3e9, L = 3e-3;
-    const Vector6 k = K_of(segment(mm, 0)).diagonal();
-    EXPECT_NEAR(k[0] / (E * 5e-6 / L), 1, 1e-14);
-    EXPECT_NEAR(k[3] / (G * 13e-12 / L), 1, 1e-14);
-    EXPECT_NEAR(k[4] / (E * 7e-12 / L), 1, 1e-14);
-    bool noted = false;
-    for (const Number& number : mm.numbers)
-        if (number.path == "beams.bar.I_y") noted = number.unit == "mm⁴" && number.value == 7;
-    EXPECT_TRUE(noted);
-}
-
-TEST(Beam, SegmentsAreDistributedByLengthWithAtLeastOnePerLeg) {
-    const auto nodes = [](int n) {
-        const Scene scene =
-            parse_scene(cantilever(fmt::format(
-                            "through: [root, bend, tip], segments: {}, {}, up: z", n, section)),
-                        "b.yaml");
-        std::string places;
-        for (std::size_t b = 1; b < scene.bodies.size(); ++b)
-            places += fmt::format("{} {:.4g},{:.4g}  ", scene.bodies[b].name,
-                                  scene.bodies[b].design.r.x(), scene.bodies[b].design.r.y());
-        return places;
-    };
-    EXPECT_EQ(nodes(2), "bar.1 3,0  ");
-    EXPECT_EQ(nodes(3), "bar.1 1.5,0  bar.2 3,0  ");
-    EXPECT_EQ(nodes(5), "bar.1 1,0  bar.2 2,0  bar.3 3,0  bar.4 3,1  ");
-}
-
-TEST(Beam, NodeCanBeUsedAsABody) {
-    const std::string text =
-        cantilever("through: [root, bend, tip], segments: 5, " + section + ", up: z") +
-        "bushings: {clamp: {bodies: [bar.bend, ground], at: bend, rates: [1, 1, 1]}, "
-        "other: {bodies: [bar.1, bar.4], "
-        "at: bend, rates: [1, 1, 1]}}\n";
-    const Scene scene = parse_scene(text, "b.yaml");
-    const auto& clamp = std::get<Bushing>(scene.elastics.at(0).kind);
-    EXPECT_EQ(scene.bodies.at(static_cast<std::size_t>(clamp.i.body)).name, "bar.3");
-    EXPECT_LE(clamp.i.s_local.norm(), 1e-15);
-    const auto& other = std::get<Bushing>(scene.elastics.at(1).kind);
-    EXPECT_EQ(scene.bodies.at(static_cast<std::size_t>(other.j.body)).name, "bar.4");
-}
-
-TEST(Beam, RingStartsAndEndsOnTheSameBody) {
-    const Scene scene = parse_scene(
-        replaced(
-            cantilever("through: [root, bend, tip, root], segments: 9, " + section + ", up: z"),
-            "[ground, tip]", "[tip, tip]"),
-        "b.yaml");
-    EXPECT_EQ(scene.elastics.size(), 9U);
-    EXPECT_EQ(segment(scene, 0).i.body, segment(scene, 8).j.body);
 }
 
 // ---- Mirrors.

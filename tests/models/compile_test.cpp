@@ -150,41 +150,6 @@ TEST(Compile, OmissionsOfTheShippedScenesAreAsListed) {
     }
 }
 
-TEST(Compile, PartsWithoutConnectionToAnOutputAreOmitted) {
-    Scene scene = bodies(4);
-    ball(scene, "ab", 1, 0);
-    spring(scene, "b_ground", 1, ground, 1e3, 50);
-    ball(scene, "cd", 3, 2);
-    spring(scene, "d_ground", 3, ground, 1e3, 50);  // preloaded, but far from any output
-    scene.static_loads = {push("weight", 3)};
-    scene.branches = {branch("up", {push("load", 1), push("elsewhere", 2)})};
-    const Model model = compile(scene);
-    EXPECT_EQ(kept(model), "ab");
-    EXPECT_EQ(omitted(model), (std::map<std::string, std::string>{
-                                  {"body 'c'", unconnected},
-                                  {"body 'd'", unconnected},
-                                  {"joint 'cd'", with_its_body},
-                                  {"element 'd_ground'", with_its_body},
-                                  {"load 'weight'", "its body is left out"},
-                                  {"load 'elsewhere'", "its body is left out (branch 'up')"}}));
-    EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
-}
-
-TEST(Compile, ZeroElementIsNoConnection) {
-    Scene scene = bodies(3);
-    spring(scene, "ab", 0, 1, 0);
-    bushing(scene, "ac", 0, 2, 0);
-    spring(scene, "b_ground", 1, ground, 1e3);
-    const Model model = compile(scene);
-    EXPECT_EQ(kept(model), "a");
-    EXPECT_EQ(omitted(model), (std::map<std::string, std::string>{
-                                  {"body 'b'", unconnected},
-                                  {"body 'c'", unconnected},
-                                  {"element 'ab'", "its rates and preload are zero"},
-                                  {"element 'ac'", "its rates and preload are zero"},
-                                  {"element 'b_ground'", with_its_body}}));
-}
-
 TEST(Compile, FreeChainIsOmittedFromItsLooseEndInwards) {
     for (int count = 2; count <= 26; ++count) {
         const Model model = compile(chain(count));
@@ -275,19 +240,6 @@ TEST(Compile, LoadedFollowerAndLinkAreKept) {
         give(link, 1, 0);
         EXPECT_EQ(kept(compile(link)), "ab") << "for " << name;
     }
-}
-
-TEST(Compile, UnloadedFollowerIsOmitted) {
-    Scene scene = chain(2);
-    scene.static_loads = {push("nothing", 1, 0)};
-    scene.branches = {branch("up", {push("load", 0), twist("none", 1, 0)})};
-    const Model model = compile(scene);
-    EXPECT_EQ(kept(model), "a");
-    const auto reasons = omitted(model);
-    EXPECT_EQ(reasons.at("load 'nothing'"), "it is zero");
-    EXPECT_EQ(reasons.at("load 'none'"), "it is zero (branch 'up')");
-    EXPECT_EQ(model.static_loads.size(), 0U);
-    EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
 TEST(Compile, ThousandsOfBodiesAreCompiledQuickly) {

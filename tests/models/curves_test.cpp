@@ -145,14 +145,6 @@ void expect_equal(const Curve& a, const std::function<double(double)>& b, double
 
 const std::string one_sided = "table: [[0, 0], [10, 900], [20, 4000], [35, 4000], [50, 9500]]";
 
-TEST(Curve, ValuesAreConvertedToSi) {
-    const Curve curve = curve_of("table: [[-50, -900], [0, 0], [50, 1400]]");
-    EXPECT_EQ(curve.knots, (std::vector<double>{-0.05, 0, 0.05}));
-    EXPECT_EQ(force(curve, -0.05), -900);
-    EXPECT_EQ(force(curve, 0.05), 1400);
-    EXPECT_TRUE(curve.known_outside);
-}
-
 TEST(Curve, ExtrapolationHasTheSlopeOfTheEnd) {
     const Curve curve = curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: linear");
     for (const double x : {0.05, 0.2, 3.0}) {
@@ -355,18 +347,6 @@ TEST(CurveFile, UnreadableFileIsRejectedAtItsLineInTheScene) {
 
 double design_force(const AxialSpring& spring) {
     return force(spring.law, 0.4 - spring.free_length);
-}
-
-TEST(SpringCurve, DeflectionCountsFromTheFreeLengthOrTheDesignLength) {
-    const std::string curve = "curve: {table: [[-50, -900], [0, 10], [50, 1400]]}";
-    EXPECT_DOUBLE_EQ(element<AxialSpring>(laws(spring_with(curve)), "coil").free_length, 0.4);
-    EXPECT_DOUBLE_EQ(design_force(element<AxialSpring>(laws(spring_with(curve)), "coil")), 10);
-    EXPECT_EQ(
-        element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil").free_length,
-        0.45);
-    EXPECT_NEAR(
-        design_force(element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil")),
-        -900, 1e-9);
 }
 
 TEST(SpringCurve, PreloadDeterminesTheDeflectionAtDesign) {

@@ -53,28 +53,29 @@ inline void add_law(SceneNumbers& n, const std::string& name, const ScalarLaw& l
     n.add(name + ".known_outside", curve.known_outside);
 }
 
-// All members of a joint, an element or a load, numbered in their order.
+// All members of a joint, an element or a load: points, markers and directions i, j, k ... in their
+// order, the others by their names.
 template <class K>
 void add_members(SceneNumbers& n, const K& kind, const std::string& of = "") {
-    int count = 0;
-    const auto next = [&] { return of + std::to_string(count++); };
+    char last = 'i';
+    const auto next = [&] { return of + last++; };
     n.add(of + "kind", static_cast<double>(kind.index()));
     each_member(kind,
-                overloaded{[&](const BodyId& body) { n.add(next(), body); },
+                overloaded{[&](const BodyId& body) { n.add(of + "on", body); },
                            [&](const Point& p) { n.add(next(), p); },
                            [&](const Direction& u) { n.add(next(), u); },
                            [&](const Marker& m) { n.add(next(), m); },
-                           [&](Length<const double> x) { n.add(next(), x.value); },
-                           [&](PlaneAngle<const double> x) { n.add(next(), x.value); },
-                           [&](ForceAndMoment<const Vector6> x) { n.add(next(), x.value); },
-                           [&](Deformation<const Vector6> x) { n.add(next(), x.value); },
-                           [&](LoadVector<const Eigen::Vector3d> x) { n.add(next(), x.value); },
-                           [&](const ScalarLaw& law) { add_law(n, next(), law); },
+                           [&](Length<const double> x) { n.add(of + "length", x.value); },
+                           [&](PlaneAngle<const double> x) { n.add(of + "angle", x.value); },
+                           [&](ForceAndMoment<const Vector6> x) { n.add("preload", x.value); },
+                           [&](Deformation<const Vector6> x) { n.add("undeformed", x.value); },
+                           [&](LoadVector<const Eigen::Vector3d> x) { n.add(of + "is", x.value); },
+                           [&](const ScalarLaw& law) { add_law(n, "law", law); },
                            [&](const SpatialLaw& law) {
-                               if (const Matrix6* all = matrix_of(law)) n.add(next(), *all);
+                               if (const Matrix6* all = matrix_of(law)) n.add("law", *all);
                                if (const PerAxis* axes = axes_of(law))
-                                   for (const ScalarLaw& axis : axes->axis)
-                                       add_law(n, next(), axis);
+                                   for (std::size_t k = 0; k < 6; ++k)
+                                       add_law(n, fmt::format("law_{}", k), axes->axis[k]);
                            },
                            [&](const Formulation& f) {
                                n.add("frame", static_cast<double>(f.frame));
@@ -103,7 +104,9 @@ inline void add_driver(SceneNumbers& n, const Driver& driver) {
     n.add("rate", driver.rate);
 }
 
-inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
+// Of a scene or a model.
+template <class S>
+std::vector<std::pair<std::string, double>> numbers(const S& scene) {
     SceneNumbers n;
     for (const auto& body : scene.bodies) {
         n.where = "body " + body.name;
@@ -112,12 +115,20 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
     }
     for (const auto& joint : scene.joints) {
         n.where = "joint " + joint.name;
-        add_members(n, joint.kind);
+        if constexpr (requires { joint.kind; }) {
+            add_members(n, joint.kind);
+        } else {
+            n.add("i", joint.i);
+            n.add("j", joint.j);
+            n.add("at", joint.at);
+        }
         n.add("only_where_driven", joint.active_only_where_driven);
     }
     for (const auto& elastic : scene.elastics) {
         n.where = "element " + elastic.name;
         add_members(n, elastic.kind);
+        n.add("only_where_driven", elastic.active_only_where_driven);
+        n.add("written_as", static_cast<double>(elastic.written_as));
     }
     n.where = "static loads";
     for (const auto& load : scene.static_loads) add_load(n, load);
@@ -133,9 +144,10 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.where = "wheel " + wheel.name;
         n.add("body", wheel.body);
         n.add("centre", wheel.centre_local);
-        n.add("contact", wheel.contact.s_local);
+        n.add("contact", wheel.contact);
         n.add("spin_axis", wheel.spin_axis_local);
         n.add("side", wheel.side);
+        n.add("tyre_rate", wheel.tyre_rate);
         if (!wheel.steering_axis) continue;
         n.add("steering_axis.lower", wheel.steering_axis->lower);
         n.add("steering_axis.upper", wheel.steering_axis->upper);
@@ -149,6 +161,26 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.add("i", damper.i);
         n.add("j", damper.j);
     }
+    if constexpr (requires { scene.trim; })
+        if (const auto& trim = scene.trim) {
+            n.where = "trim";
+            for (const auto& one : trim->adjust) {
+                add_driver(n, {one.what, 0, one.per_unit});
+                n.add("unit", static_cast<double>(one.unit));
+            }
+            for (const auto& one : trim->until) {
+                n.add("condition", static_cast<double>(one.what.index()));
+                std::visit(
+                    [&](const auto& what) {
+                        if constexpr (requires { what.axis; })
+                            n.add("axis", what.axis);
+                        else
+                            n.add("wheel", what.wheel);
+                    },
+                    one.what);
+                if (one.value) n.add("value", *one.value);
+            }
+        }
     if (const auto& vehicle = scene.vehicle) {
         n.where = "vehicle";
         n.add("wheelbase", vehicle->wheelbase);

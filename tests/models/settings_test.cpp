@@ -46,35 +46,6 @@ TEST(Settings, EqualTheSameValuesWrittenInTheFile) {
     }
 }
 
-TEST(Settings, HardpointMovesEveryReferenceToItOnce) {
-    const Scene moved = with({{"points.front.z", "12"}});
-    EXPECT_EQ(moved.bodies[1].design.r, Eigen::Vector3d(0.1, 0, 0.012));
-    EXPECT_EQ(std::get<Spherical>(moved.joints[0].kind).i.s_local, Eigen::Vector3d(0.1, 0, 0.012));
-    EXPECT_EQ(std::get<Spherical>(moved.joints[0].kind).j.s_local, Eigen::Vector3d::Zero());
-    EXPECT_EQ(std::get<AxialSpring>(moved.elastics[0].kind).i.s_local, Eigen::Vector3d::Zero());
-    EXPECT_DOUBLE_EQ(std::get<Distance>(moved.joints[2].kind).length,
-                     Eigen::Vector3d(0.1, -0.1, 0.012).norm());
-}
-
-TEST(Settings, NamesMayHaveDots) {
-    const std::string text = replaced(
-        replaced(replaced(bench_scene, "  coil:", "  coil.left:"), "springs:\n",
-                 "springs:\n  coil: {bodies: [hub, ground], from: front, to: side, rate: 1}\n"),
-        "  tip:", "  t.i.p:");
-    EXPECT_EQ(
-        std::get<LinearRate>(
-            std::get<AxialSpring>(with({{"springs.coil.left.rate", "5"}}, text).elastics[1].kind)
-                .law)
-            .k,
-        5000);
-    EXPECT_EQ(
-        std::get<LinearRate>(
-            std::get<AxialSpring>(with({{"springs.coil.rate", "6"}}, text).elastics[0].kind).law)
-            .k,
-        6000);
-    EXPECT_NO_THROW(with({{"probes.t.i.p.at", "side"}}, text));
-}
-
 // Each listed number can be set to its own value, and to another value that then appears
 // in the scene.
 TEST(Settings, EveryListedNumberCanBeSet) {
@@ -94,29 +65,6 @@ TEST(Settings, EveryListedNumberCanBeSet) {
         EXPECT_EQ(read_scene(file, {&half, 1}).numbers.front().value,
                   0.5 * scene.numbers.front().value + 1e-3);
     }
-}
-
-TEST(Numbers, HaveNamesAndUnits) {
-    const Scene scene = with({{"points.top.z", "101"}});
-    const auto number = [&](const std::string& path) {
-        const auto found = std::ranges::find(scene.numbers, path, &Number::path);
-        return found == scene.numbers.end() ? "none"
-                                            : fmt::format("{} {}", found->value, found->unit);
-    };
-    EXPECT_EQ(number("points.top.z"), "101 mm");
-    EXPECT_EQ(number("springs.coil.rate"), "30 N/mm");
-    EXPECT_EQ(number("springs.coil.preload"), "300 N");
-    EXPECT_EQ(number("bushings.mount.rotational_rates.y"), "4 N·mm/deg");
-    EXPECT_EQ(number("bushings.block.stiffness.1.5"), "5 N/deg");
-    EXPECT_EQ(number("bushings.block.stiffness.4.4"), "50 N·mm/deg");
-    EXPECT_EQ(number("static_loads.weight.force.z"), "-300 N");
-    EXPECT_EQ(number("loads.push.force.z"), "1 ");
-    EXPECT_EQ(number("branches.up.to"), "1000 N");
-    EXPECT_EQ(number("branches.up.steps"), "10 ");
-    std::vector<std::string> paths;
-    for (const Number& n : scene.numbers) paths.push_back(n.path);
-    std::ranges::sort(paths);
-    EXPECT_EQ(std::ranges::adjacent_find(paths), paths.end()) << "one number, one name";
 }
 
 TEST(Settings, ValueIsOneLineOfPlainText) {

@@ -1,4 +1,5 @@
-// Driven branches and loss of stability, by every method of the recursion.
+// Driven branches and loss of stability, by methods of the recursion; more outcomes of every method are
+// in tests/reports/claims/outcomes.claims.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,23 +99,6 @@ TEST(Driver, PublishedJackForceConvergesToTheLimitOfTheFormulation) {
         }
 }
 
-// ---- Regression scenes.
-
-TEST(Found, EndOfABranchIsReportedAtAnyNumberOfSteps) {
-    for (const char* name :
-         {"adaptive-segfault-arch", "adaptive-segfault-five-links", "arch-past-its-limit",
-          "straight-column-one-body", "straight-column-two-bodies"}) {
-        const Model model = found(name);
-        for (const char* method : {"tangent", "chord", "midpoint", "adaptive"})
-            for (const int steps : {5, 20, 200}) {
-                const auto path =
-                    solve(model, model.branches[0], {.method = rung(method), .steps = steps});
-                EXPECT_NE(path.outcome, Outcome::converged)
-                    << name << " " << method << " " << steps;
-            }
-    }
-}
-
 // ---- Stability lost inside a branch and regained before its end.
 
 // The body of found/bubble.yaml, between two springs that are compressed as it moves through the
@@ -154,40 +138,6 @@ TEST(Watch, StableBranchHasNoEvent) {
             const Model model = bubble(k_y, to);
             EXPECT_FALSE(watch(model, model.branches[0], analyse(model))) << k_y << " " << to;
         }
-}
-
-TEST(Start, UnstableStartIsReportedByEveryMethod) {
-    for (const bool unstable : {false, true})
-        for (const bool at_rest : {false, true}) {
-            const Model model =
-                at_rest
-                    ? model_of("squeezed_block",
-                               {setting("springs.left.preload", unstable ? 55 : 45),
-                                setting("springs.right.preload", unstable ? 55 : 45)})
-                    : model_of("upright_bars",
-                               {setting("static_loads.weight.force.z", unstable ? -2100 : -1900)});
-            const Branch& branch = model.branches[0];
-            // at rest the start is judged with the model, once for all branches
-            EXPECT_EQ(analyse(model).at_rest, at_rest);
-            EXPECT_EQ(analyse(model).start.unstable, at_rest && unstable);
-            for (const Method& method : methods) {
-                const auto path = solve(model, branch, {.method = method});
-                EXPECT_EQ(path.outcome, unstable ? Outcome::singular : Outcome::converged)
-                    << method.name << ": " << path.detail;
-                EXPECT_EQ(path.points.empty(), unstable) << method.name;
-                EXPECT_EQ(
-                    path.detail.find("the equilibrium that settles at 0") != std::string::npos,
-                    unstable)
-                    << method.name << ": " << path.detail;
-            }
-        }
-}
-
-// What is soft beside stiff elements, and a thrust that follows, which has no energy, are
-// not called unstable.
-TEST(Start, SoftStartOrFollowerLoadIsNotReportedUnstable) {
-    for (const char* scene : {"soft_beside_stiff", "ziegler"})
-        expect_of_every_method(model_of(scene), {Outcome::converged});
 }
 
 }  // namespace

@@ -229,6 +229,8 @@ TEST(Large, LoopsAreTheBiconnectedComponentsOfTheJointGraph) {
             EXPECT_NE(of(alone), of(other)) << alone << " " << other;
     EXPECT_NE(of("ga"), of("cd"));
     EXPECT_NE(of("bc"), of("fg"));
+    // a row without moving bodies forms a loop of its own
+    for (const int row : loops(model_of("fixed_link"))) EXPECT_GE(row, 0);
 }
 
 }  // namespace

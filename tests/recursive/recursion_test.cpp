@@ -1,4 +1,4 @@
-// The recursion, eqs. (25)-(29): its limit, its order of convergence, and its outcomes.
+// The recursion, eqs. (25)-(29): its limit and its order of convergence.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -6,7 +6,6 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/pattern.hpp"
 #include "tests/recursive/walks.hpp"
@@ -177,72 +176,6 @@ TEST(Recursion, BalancedSceneStartsFromItsReactionsAndAnotherSettlesFirst) {
             EXPECT_EQ(path.counts.factorisations, 21);
         }
     }
-}
-
-// ---- One test per outcome
-
-TEST(Outcome, PreloadRotatedOntoAnIdleModeIsReportedByEveryMethod) {
-    Model model = model_of("constant_force");
-    Curve& pull = std::get<Curve>(std::get<AxialSpring>(model.elastics.at(0).kind).law);
-    for (auto& piece : pull.pieces) piece = {};
-    ASSERT_EQ(diagnose(model).idle.size(), 1u);
-    expect_of_every_method(model, {Outcome::converged});
-    for (auto& piece : pull.pieces) piece[0] = 20;
-    expect_of_every_method(model, {Outcome::loaded_idle_mode, Outcome::singular});
-}
-
-// A bushing with free play along a rail connects a block to a cart, which is driven along the rail.
-Model free_play(double to) {
-    Model model = model_of("free_play");
-    PerAxis law;
-    law.axis.fill(LinearRate{0});
-    law.axis[0] = Curve{{-0.05, 0.05}, {{{0, 1e4, 0, 0}}, {{0, 0, 0, 0}}, {{0, 1e4, 0, 0}}}};
-    std::get<Bushing>(model.elastics.at(1).kind).law = law;
-    model.branches[0].to = to;
-    return model;
-}
-TEST(Outcome, UnloadedFreePlayIsIdleUntilItCloses) {
-    const Model open = free_play(40), closes = free_play(100);
-    ASSERT_EQ(diagnose(open).idle.size(), 1u);
-    for (const auto& method : methods) {
-        const auto path = solve(open, open.branches[0], {.method = method});
-        ASSERT_EQ(path.outcome, Outcome::converged) << method.name << ": " << path.detail;
-        EXPECT_NEAR(path.points.back().poses[1].r.x(), 0.04, 1e-9) << method.name;
-        EXPECT_NEAR(path.points.back().poses[0].r.x(), 0, 1e-12) << method.name;
-    }
-    // Beyond the free play the block follows. The diagnosis as drawn cannot show that; every method
-    // reports it, also with few steps.
-    for (const auto& method : methods)
-        for (const int steps : {1, 2, 50}) {
-            const auto path = solve(closes, closes.branches[0], {.method = method, .steps = steps});
-            EXPECT_EQ(path.outcome, Outcome::singular) << method.name << ": " << path.detail;
-            EXPECT_NE(path.detail.find("no longer is"), std::string::npos)
-                << method.name << path.detail;
-        }
-}
-TEST(Outcome, LoadedFreePlayIsALoadedIdleMode) {
-    Model model = free_play(10);
-    std::get<DeadForce>(std::get<Load>(model.branches[0].drivers[0].what).kind).at.body = 0;
-    expect_of_every_method(model, {Outcome::loaded_idle_mode});
-}
-
-TEST(Outcome, NonconservativeForceOnAnIdleModeIsReportedByEveryMethod) {
-    // No rate about the marker's x, Cardan angles: after a rotation about z by θ_z, a motion about
-    // B e_x does not change the other two angles. But the moment (0, M'_y, M'_z) in the axes of i
-    // has a component along it.
-    const Model model = model_of("cardan_bar");
-    ASSERT_EQ(diagnose(model).idle.size(), 1u);
-    for (const auto& method : methods)
-        EXPECT_NE(solve(model, model.branches[0], {.method = method}).outcome, Outcome::converged)
-            << method.name;
-}
-
-TEST(Outcome, IdleModeThatGainsStiffnessIsReported) {
-    const Model model = model_of("dead_centre");
-    ASSERT_EQ(diagnose(model).idle.size(), 1u);
-    const auto path = solve(model, model.branches[0]);
-    EXPECT_EQ(path.outcome, Outcome::singular);
-    EXPECT_NE(path.detail.find("no longer is"), std::string::npos) << path.detail;
 }
 
 TEST(Outcome, NamesAreDistinct) {

@@ -44,17 +44,6 @@ inline Model model_of(const std::string& name, const std::vector<Setting>& setti
     return compile(support::scene_of("recursive/scenes/" + name, settings), detail);
 }
 
-// Outcome of every method on the first branch: one of `expected`, with `words` in its detail.
-inline void expect_of_every_method(const Model& model, std::initializer_list<Outcome> expected,
-                                   const char* words = "") {
-    for (const auto& method : methods) {
-        const auto path = solve(model, model.branches[0], {.method = method});
-        EXPECT_NE(std::ranges::find(expected, path.outcome), expected.end())
-            << method.name << ": " << name(path.outcome) << " " << path.detail;
-        EXPECT_NE(path.detail.find(words), std::string::npos) << method.name << path.detail;
-    }
-}
-
 // Bodies that an idle mode moves: their position along it is arbitrary.
 inline std::vector<bool> idle_bodies(const Model& model, const Diagnosis& diagnosis) {
     std::vector<bool> idle(model.bodies.size(), false);

@@ -2,7 +2,7 @@
 //
 //   # a claim                begins; its lines run in a new folder
 //   $ elastocheck new x      a line of shell; $S is models/scenes, $C the folder of the
-//                            claims, $E the program with the environment as it is
+//                            claims, $T that of the tests, $E the program with the environment as it is
 //   exit 2                   exit code of each of the lines of shell above; without this line 0
 //   out part, no out part    of standard output; `no out` alone: nothing
 //   err part, no err part    of standard error, likewise
@@ -157,7 +157,7 @@ TEST_P(Claims, Hold) {
     const Folder folder;
     const std::string begin =
         "cd " + folder.path.string() + " && S=" + scenes +
-        " && C=" ELASTOCHECK_CLAIMS " && E=" ELASTOCHECK_COMMAND
+        " && C=" ELASTOCHECK_CLAIMS " && T=$C/../.. && E=" ELASTOCHECK_COMMAND
         " && elastocheck() { env -u CI -u GITHUB_ACTIONS -u GITHUB_STEP_SUMMARY $E \"$@\"; } && { ";
     for (const Step& step : GetParam().steps)
         for (const auto& line : step.shell) {
@@ -207,6 +207,7 @@ ELASTOCHECK_CLAIMS_IN(Gate, "gate");
 ELASTOCHECK_CLAIMS_IN(Safety, "safety");
 ELASTOCHECK_CLAIMS_IN(Live, "live");
 ELASTOCHECK_CLAIMS_IN(Ended, "ended");
+ELASTOCHECK_CLAIMS_IN(Outcomes, "outcomes");
 
 }  // namespace
 }  // namespace elastocheck
