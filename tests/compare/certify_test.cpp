@@ -35,13 +35,6 @@ TEST(Certify, EverySideOfEveryBranchIsProvedForEachReference) {
     }
 }
 
-TEST(Certify, StatesOfThePublishedRecursionAreExcluded) {
-    CertifyOptions options = by(Leg::recursive);
-    const CertifyStudy study = certify(compile(support::scene("mcpherson")), options);
-    EXPECT_TRUE(study.excluded());
-    EXPECT_FALSE(study.conclusive());
-}
-
 TEST(Certify, NothingProvedIsNotConclusive) { EXPECT_FALSE(CertifyStudy{}.conclusive()); }
 
 TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {

@@ -117,7 +117,6 @@ std::map<std::string, std::string> omitted(const Model& model) {
     return reasons;
 }
 
-const std::string unconnected = "no output is connected to it";
 const std::string follower =
     "it is attached to one other body only and has no load, no preload and no output";
 const std::string with_its_body = "a body that it connects is left out";
@@ -161,56 +160,12 @@ TEST(Compile, FreeChainIsOmittedFromItsLooseEndInwards) {
     }
 }
 
-// A reason to keep the body b, whose neighbour n is.
+// A reason to keep the body b, whose neighbour n is, that no file states; others are in fixtures/chain.facts.
 struct Reason {
     const char* name;
     void (*give)(Scene&, BodyId b, BodyId n);
 };
 const Reason reasons_to_stay[] = {
-    {"a load", [](Scene& s, BodyId b, BodyId) { s.branches = {branch("up", {push("p", b)})}; }},
-    {"a moment", [](Scene& s, BodyId b, BodyId) { s.branches = {branch("up", {twist("t", b)})}; }},
-    {"a load in the second branch",
-     [](Scene& s, BodyId b, BodyId) {
-         s.branches = {branch("one", {push("q", 0)}), branch("two", {push("p", b)})};
-     }},
-    {"a static load", [](Scene& s, BodyId b, BodyId) { s.static_loads = {push("p", b)}; }},
-    {"a static moment", [](Scene& s, BodyId b, BodyId) { s.static_loads = {twist("t", b)}; }},
-    {"a probe",
-     [](Scene& s, BodyId b, BodyId) {
-         s.probes.push_back({"p", {b}});
-     }},
-    {"the wheel", [](Scene& s, BodyId b, BodyId) { s.wheels.emplace_back().body = b; }},
-    {"the lower end of a steering axis",
-     [](Scene& s, BodyId b, BodyId) {
-         s.wheels.emplace_back().body = 0;
-         s.wheels.back().contact.body = 0;
-         s.wheels.back().steering_axis = SteeringAxis{{b}, {ground}};
-     }},
-    {"the upper end of a steering axis",
-     [](Scene& s, BodyId b, BodyId) {
-         s.wheels.emplace_back().body = 0;
-         s.wheels.back().contact.body = 0;
-         s.wheels.back().steering_axis = SteeringAxis{{0}, {b}};
-     }},
-    {"the first end of a damper",
-     [](Scene& s, BodyId b, BodyId) {
-         s.dampers.push_back({"d", {b}, {ground}});
-     }},
-    {"the second end of a damper",
-     [](Scene& s, BodyId b, BodyId) {
-         s.dampers.push_back({"d", {0}, {b}});
-     }},
-    {"a joint to ground", [](Scene& s, BodyId b, BodyId) { hinge(s, "held", b, ground); }},
-    {"a spring to ground", [](Scene& s, BodyId b, BodyId) { spring(s, "held", b, ground, 1e3); }},
-    {"a joint to another body", [](Scene& s, BodyId b, BodyId) { hinge(s, "loop", b, 0); }},
-    {"a preloaded spring",
-     [](Scene& s, BodyId b, BodyId n) { spring(s, "coil", b, n, 1e3, 1e-3); }},
-    {"a spring in tension",
-     [](Scene& s, BodyId b, BodyId n) { spring(s, "coil", n, b, 1e3, -1e-3); }},
-    {"a bushing with a preload",
-     [](Scene& s, BodyId b, BodyId n) { bushing(s, "rubber", b, n, 1e3).preload[4] = 1e-9; }},
-    {"a bushing of nothing but preload",
-     [](Scene& s, BodyId b, BodyId n) { bushing(s, "rubber", b, n, 0).preload[0] = 1; }},
     {"a bushing between points apart",
      [](Scene& s, BodyId b, BodyId n) { bushing(s, "rubber", n, b, 1e3).j.s_local.y() += 1e-9; }},
     {"a bushing between frames apart",
