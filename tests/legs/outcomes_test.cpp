@@ -464,28 +464,5 @@ TEST_P(Outcomes, SpringThroughZeroLengthIsFollowedOrReported) {
     }
 }
 
-// Of two settled states one is unstable under the static moments.
-TEST_P(Outcomes, StableOneOfTwoSettledStatesIsFound) {
-    const auto path = solve(leg(), found("two-settled-states"), 20);
-    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    EXPECT_NEAR(path.points.back().poses[0].r.x(), -0.4106611, 1e-6);
-}
-
-TEST_P(Outcomes, SeveralKnotsAtTheStartDoNotEndTheBranch) {
-    for (const char* name : {"tiny-forces", "knots-at-the-start"}) {
-        const auto path = solve(leg(), found(name), 20);
-        EXPECT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
-    }
-}
-
-// The load is perpendicular to a direction fifteen decades softer than others to nine digits: the
-// rest moves the tip by 2.8e-7 m.
-TEST_P(Outcomes, MuchSofterMotionIsFollowedOrReported) {
-    const auto path = solve(leg(), found("soft-beside-stiff"), 4);
-    if (path.outcome == Outcome::converged) {
-        EXPECT_NEAR(path.points.back().poses[0].r.norm(), 2.838e-7, 1e-9);
-    }
-}
-
 }  // namespace
 }  // namespace elastocheck::legs
