@@ -25,7 +25,6 @@ Method rung(const char* name) { return *find_method(name); }
 
 // ---- A mechanism without elasticity, driven through a full turn: models/scenes/slider_crank.yaml.
 
-
 OneWay slider_crank() { return one_ways(compile(support::scene("slider_crank"))).front(); }
 double worst_slider(const EquilibriumPath& path) {
     constexpr double r = 0.06, l = 0.15;
