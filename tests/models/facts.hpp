@@ -23,6 +23,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -147,6 +148,9 @@ inline void expect_facts(
         refusal = error.what();
     }
     const Facts as_read(scene);
+    std::set<std::string> paths;
+    for (const Number& number : scene.numbers)
+        EXPECT_TRUE(paths.insert(number.path).second) << number.path << " is the name of two";
     if (claim.settings.empty())
         for (const Number& number : scene.numbers) {
             const auto again = read(edited(valid, claim), {setting(number.path, number.value)});

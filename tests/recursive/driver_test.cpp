@@ -126,5 +126,17 @@ TEST(Watch, StableBranchHasNoEvent) {
         }
 }
 
+// At rest the start is judged with the model, once for all branches.
+TEST(Start, SceneAtRestIsJudgedWithItsModel) {
+    for (const int preload : {45, 55}) {
+        const auto found =
+            analyse(model_of("squeezed_block", {setting("springs.left.preload", preload),
+                                                setting("springs.right.preload", preload)}));
+        EXPECT_TRUE(found.at_rest);
+        EXPECT_EQ(found.start.unstable, preload > 50);
+    }
+    EXPECT_FALSE(analyse(model_of("upright_bars")).at_rest);
+}
+
 }  // namespace
 }  // namespace elastocheck::recursive
