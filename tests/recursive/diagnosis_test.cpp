@@ -15,6 +15,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/pattern.hpp"
 #include "recursive/linear_algebra/saddle_point.hpp"
