@@ -1,143 +1,17 @@
 // `elastocheck loads`: loads at every pickup point under load cases, for stress analysis.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <stdexcept>
 
 #include "compare/loads/loads.hpp"
 #include "elastocheck/compile.hpp"
-#include "elastocheck/scene.hpp"
-#include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
+#include "reports/command/options/load_cases.hpp"
 #include "reports/command/program/command.hpp"
-#include "reports/files/csv_table.hpp"
 #include "reports/files/files.hpp"
-#include "reports/given/headings.hpp"
 #include "reports/render/render.hpp"
 
 namespace elastocheck::reports {
 namespace {
-
-using compare::CaseInput;
-using compare::Unit;
-using Kind = CaseInput::Kind;
-
-constexpr std::size_t most_cases = 10000;
-
-// A column that a scene may have.
-struct Known {
-    std::string name;
-    CaseInput input;
-    Unit unit;  // base unit, of which `si` makes SI
-    double si = 1;
-};
-
-std::vector<Known> known_columns(const Scene& scene) {
-    std::vector<Known> list;
-    const auto along_axes = [&](const std::string& stem, Kind kind, std::size_t of, Unit unit) {
-        for (int axis = 0; axis < 3; ++axis)
-            list.push_back({fmt::format("{}_{}", stem, "xyz"[axis]), {kind, of, axis}, unit});
-    };
-    for (std::size_t w = 0; w < scene.wheels.size(); ++w) {
-        const std::string of = scene.wheels[w].name.empty() ? "" : scene.wheels[w].name + ".";
-        along_axes(of + "patch_force", Kind::patch_force, w, Unit::newton);
-        along_axes(of + "centre_force", Kind::centre_force, w, Unit::newton);
-        along_axes(of + "moment", Kind::wheel_moment, w, Unit::newton_metre);
-        list.push_back({of + "travel", {Kind::travel, w, 2}, Unit::mm, 1e-3});
-    }
-    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-        along_axes(scene.bodies[b].name + ".force", Kind::body_force, b, Unit::newton);
-    along_axes("acceleration", Kind::acceleration, 0, Unit::none);
-    return list;
-}
-
-struct CaseColumn {
-    bool is_name = false;
-    CaseInput input{};
-    double factor = 1;  // of a cell to SI
-    std::string heading{};
-};
-
-CaseColumn column_of(std::string_view heading, const std::vector<Known>& known,
-                     const std::string& file, int line) {
-    const auto [name, unit] = split_heading(heading);
-    if (name == "case") return {.is_name = true, .heading = name};
-    const auto column = std::ranges::find(known, name, &Known::name);
-    if (column == known.end()) {
-        std::vector<std::string> names{"case"};
-        for (const auto& one : known) names.push_back(one.name);
-        fail_at(file, line,
-                fmt::format("there is no input {}{}", reader::quote(name),
-                            reader::did_you_mean(name, names, "allowed")));
-    }
-    if (column->input.kind == Kind::acceleration) {
-        if (!unit.empty() && unit != "g")
-            fail_at(
-                file, line,
-                fmt::format("{}: {} is not a unit of it; allowed: g", name, reader::quote(unit)));
-        return {.input = column->input, .heading = name};
-    }
-    const auto factor = factor_of(unit, column->unit);
-    if (!factor)
-        fail_at(file, line,
-                fmt::format("{}: {} is not a unit of it; allowed: {}", name, reader::quote(unit),
-                            allowed_units(column->unit)));
-    return {.input = column->input, .factor = *factor * column->si, .heading = name};
-}
-
-// Columns, with a unit as in other tables ("left.patch_force_z [kN]", "travel_mm"); an empty cell is no
-// input, and of a scene with one wheel without a name WHEEL. is left out:
-//
-//   case                            name of the case, once each
-//   WHEEL.patch_force_x, _y, _z     force of the road on the tyre [N]: the whole, in place of a static
-//                                   load; along x a brake on the carrier takes its torque
-//   WHEEL.centre_force_x, _y, _z    force at the wheel centre [N]
-//   WHEEL.moment_x, _y, _z          moment on the wheel carrier [N·m]
-//   WHEEL.travel                    height of the wheel centre above the design position, held [mm]
-//   BODY.force_x, _y, _z            force at the centre of mass of a body [N]
-//   acceleration_x, _y, _z [g]      of the vehicle, in parts of the scene's gravity
-//
-// Throws SheetError.
-std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::string& file,
-                                               const Scene& scene) {
-    const auto known = known_columns(scene);
-    std::vector<CaseColumn> columns;
-    std::vector<compare::LoadCase> cases;
-    const auto head = [&](const Cells& cells, int line) {
-        for (const auto cell : cells) {
-            columns.push_back(column_of(cell, known, file, line));
-            if (std::ranges::count(columns, columns.back().heading, &CaseColumn::heading) > 1)
-                fail_at(file, line,
-                        fmt::format("two columns {}", reader::quote(columns.back().heading)));
-        }
-        if (std::ranges::none_of(columns, &CaseColumn::is_name))
-            fail_at(file, line, "column 'case' is missing, with the name of each case");
-    };
-    const auto row = [&](const Cells& cells, int line) {
-        compare::LoadCase load_case;
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            if (columns[c].is_name) {
-                load_case.name = cells[c];
-                continue;
-            }
-            const double value = number_in(cells[c], file, line, columns[c].heading);
-            if (std::isnan(value)) continue;
-            load_case.inputs.push_back(columns[c].input);
-            load_case.inputs.back().value = columns[c].factor * value;
-        }
-        if (load_case.name.empty()) fail_at(file, line, "case: empty; allowed: a name");
-        if (std::ranges::find(cases, load_case.name, &compare::LoadCase::name) != cases.end())
-            fail_at(file, line,
-                    fmt::format("case: {} stands there twice", reader::quote(load_case.name)));
-        cases.push_back(std::move(load_case));
-    };
-    read_sheet(csv, file, most_cases, head, row);
-    return cases;
-}
 
 // `folder` is the CSV file.
 struct LoadsRequest : SceneRequest {

@@ -1,0 +1,29 @@
+// Load cases from a CSV file: a row a case, a column an input.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/loads/loads.hpp"
+#include "elastocheck/scene.hpp"
+
+namespace elastocheck::reports {
+
+// Columns, with a unit as in other tables ("left.patch_force_z [kN]", "travel_mm"); an empty cell is no
+// input, and of a scene with one wheel without a name WHEEL. is left out:
+//
+//   case                            name of the case, once each
+//   WHEEL.patch_force_x, _y, _z     force of the road on the tyre [N]: the whole, in place of a static
+//                                   load; along x a brake on the carrier takes its torque
+//   WHEEL.centre_force_x, _y, _z    force at the wheel centre [N]
+//   WHEEL.moment_x, _y, _z          moment on the wheel carrier [N·m]
+//   WHEEL.travel                    height of the wheel centre above the design position, held [mm]
+//   BODY.force_x, _y, _z            force at the centre of mass of a body [N]
+//   acceleration_x, _y, _z [g]      of the vehicle, in parts of the scene's gravity
+//
+// Throws SheetError.
+std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::string& file,
+                                               const Scene& scene);
+
+}  // namespace elastocheck::reports
