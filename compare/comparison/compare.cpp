@@ -476,15 +476,21 @@ LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::O
                {.leg = leg, .recursion = recursion}, true);
 }
 
+std::vector<Channel> compared_channels(const Model& model, const std::vector<Channel>& also) {
+    auto list = channels(model);
+    std::ranges::move(characteristics(model), std::back_inserter(list));
+    std::ranges::copy(also, std::back_inserter(list));
+    std::ranges::move(sums(model), std::back_inserter(list));
+    return list;
+}
+
 Comparison compare(const Model& model, const Options& options) {
     return compare(model, options, {});
 }
 
 Comparison compare(const Model& model, const Options& options, const std::vector<Channel>& also) {
     Comparison result;
-    result.channels = channels(model);
-    std::ranges::move(characteristics(model), std::back_inserter(result.channels));
-    std::ranges::copy(also, std::back_inserter(result.channels));
+    result.channels = compared_channels(model, also);
     const int requested =
         options.abscissa.empty() ? -1 : find_channel(result.channels, options.abscissa);
     if (requested < 0 && !options.abscissa.empty())
@@ -494,7 +500,6 @@ Comparison compare(const Model& model, const Options& options, const std::vector
     std::vector<std::vector<BranchSide>> sides;
     for (const auto& branch : model.branches)
         sides.push_back(sides_of(model, branch, options.recursion.steps));
-    std::ranges::move(sums(model), std::back_inserter(result.channels));
 
     const auto solve = [&](std::size_t k, const SolverSettings& solver) {
         return run(model, result.channels, model.branches[k], sides[k], solver, options.times);

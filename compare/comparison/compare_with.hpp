@@ -7,6 +7,8 @@
 
 namespace elastocheck::compare {
 
+// Outputs of a comparison: channels(), characteristics(), those given, sums().
+std::vector<Channel> compared_channels(const Model& model, const std::vector<Channel>& also);
 // compare() with these outputs after channels() and characteristics().
 Comparison compare(const Model& model, const Options& options, const std::vector<Channel>& also);
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "compare/comparison/compare_with.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/subprocess.hpp"
 #include "reports/files/terminal.hpp"
@@ -130,7 +131,7 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
 void check_tables(const std::vector<CandidateOutput>& outputs, const CandidateRequest& request,
                   const LoadedScene& loaded) {
     compare::Comparison unsolved;
-    unsolved.channels = requested_channels(loaded, {});
+    unsolved.channels = compare::compared_channels(loaded.model, loaded.definitions);
     for (const auto& output : outputs)
         if (!output.of_command && !holds_states(output.content))
             (void)read_candidate({output.name, output.file, output.content}, loaded.scene,
