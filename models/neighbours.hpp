@@ -45,7 +45,7 @@ struct NeighbourStates {
 inline constexpr int chord_steps = 10;
 inline constexpr double chord_met = 1e-9;
 inline constexpr double chord_reactions = 1e-11;  // of a change, in shares of the reactions
-inline constexpr double chord_rounding = 1e-14;  // of a motion, in shares of the model's size
+inline constexpr double chord_rounding = 1e-14;   // of a motion, in shares of the model's size
 
 // Σ |w|: the rounding of G is amplified by it.
 inline double amplification(const Neighbours& stencil) {
