@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <set>
+#include <span>
 
 #include "compare/jobs/jobs.hpp"
 #include "reference/certificate/proved_box.hpp"
@@ -24,21 +26,42 @@ std::string solver_of(const SolverSettings& solver) {
                                         : name(solver.leg);
 }
 
-CertifiedSide certify_side(const BranchSide& side, SolverSettings solver,
-                           const CertifyOptions& options,
-                           std::vector<certificate::ProvedBox>& known) {
-    CertifiedSide result;
+// A solver along a side of a branch, and what is proved of its points.
+struct SolvedSide {
+    const BranchSide& side;
+    SolverSettings solver;
+    EquilibriumPath path = {};
+    std::vector<certificate::Certificate> points = {};
+    CertifiedSide result = {};
+};
+
+void solve(SolvedSide& solved, int points) {
+    const BranchSide& side = solved.side;
+    solved.solver.every = std::max(1, side.branch.steps / points);
+    solved.path = solve_branch(side, solved.solver);
+    solved.points.resize(solved.path.points.size());
+    CertifiedSide& result = solved.result;
     result.branch = side.name;
     result.unit = unit_of(side.branch.unit);
     result.to = in_unit(result.unit) * side.branch.to;
-    result.solver = solver_of(solver);
-    solver.every = std::max(1, side.branch.steps / options.points);
-    const EquilibriumPath path = solve_branch(side, solver);
-    result.outcome = path.outcome;
-    result.detail = path.detail;
-    for (const Equilibrium& state : path.points)
-        add(result.tally, state.load, result.unit,
-            certificate::certify(side.model, side.branch, state, in_si(options.tolerance), known));
+    result.solver = solver_of(solved.solver);
+    result.outcome = solved.path.outcome;
+    result.detail = solved.path.detail;
+}
+
+// The points of all solvers at one parameter: a box of one serves the others.
+void certify_at(double a, std::span<SolvedSide> solvers, const certificate::Tolerance& tolerance) {
+    std::vector<certificate::ProvedBox> known;
+    for (SolvedSide& solved : solvers)
+        for (std::size_t k = 0; k < solved.points.size(); ++k)
+            if (const Equilibrium& state = solved.path.points[k]; state.load == a)
+                solved.points[k] = certificate::certify(solved.side.model, solved.side.branch,
+                                                        state, tolerance, known);
+}
+
+void certify_path(SolvedSide& solved, const CertifyOptions& options) {
+    const auto& [side, solver, path, points, _] = solved;
+    CertifiedSide& result = solved.result;
     if (options.curves && solver.leg == Leg::equilibrium && path.points.size() > 1)
         result.curve = certificate::certify_branch(side.model, side.branch, path.points,
                                                    in_si(options.tolerance));
@@ -47,7 +70,6 @@ CertifiedSide certify_side(const BranchSide& side, SolverSettings solver,
     if (path.outcome == Outcome::limit_point && !path.points.empty())
         result.limit =
             certificate::certify_limit_point(side.model, side.branch, path.points.back(), anywhere);
-    return result;
 }
 
 }  // namespace
@@ -70,16 +92,39 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     std::vector<BranchSide> sides;
     for (const Branch& branch : model.branches)
         std::ranges::move(sides_of(model, branch), std::back_inserter(sides));
-    study.sides.resize(sides.size() * solvers.size());
+    std::vector<SolvedSide> all;  // the solvers of a side one after the other
+    for (const BranchSide& side : sides)
+        for (const SolverSettings& solver : solvers) all.push_back({side, solver});
+    constexpr double solving = 0.1;  // share of the work
     std::vector<Job> jobs;
-    for (std::size_t w = 0; w < sides.size(); ++w)
-        jobs.push_back({fmt::format("{}: proving what the solvers find", sides[w].name), [&, w] {
-                            std::vector<certificate::ProvedBox> known;
-                            for (std::size_t s = 0; s < solvers.size(); ++s)
-                                study.sides[w * solvers.size() + s] =
-                                    certify_side(sides[w], solvers[s], options, known);
-                        }});
-    run_jobs(jobs, options.threads, options.progress);
+    for (SolvedSide& solved : all)
+        jobs.push_back(
+            {fmt::format("{}: solving", solved.side.name), [&] { solve(solved, options.points); }});
+    run_jobs(jobs, options.threads, part(options.progress, 0, solving));
+
+    certificate::Tolerance tolerance = in_si(options.tolerance);
+    tolerance.most_unknowns = certificate::max_unknowns_of_points;
+    jobs.clear();
+    for (SolvedSide& solved : all)
+        jobs.push_back({fmt::format("{}: proving the curve", solved.side.name),
+                        [&] { certify_path(solved, options); }});
+    for (std::size_t first = 0; first < all.size(); first += solvers.size()) {
+        const auto of_side = std::span(all).subspan(first, solvers.size());
+        std::set<double> parameters;
+        for (const SolvedSide& solved : of_side)
+            for (const Equilibrium& state : solved.path.points)
+                if (std::isfinite(state.load)) parameters.insert(state.load);
+        for (const double a : parameters)
+            jobs.push_back({fmt::format("{}: proving points", of_side.front().side.name),
+                            [&tolerance, a, of_side] { certify_at(a, of_side, tolerance); }});
+    }
+    run_jobs(jobs, options.threads, part(options.progress, solving, 1));
+    for (SolvedSide& solved : all) {
+        for (std::size_t k = 0; k < solved.points.size(); ++k)
+            add(solved.result.tally, solved.path.points[k].load, solved.result.unit,
+                solved.points[k]);
+        study.sides.push_back(std::move(solved.result));
+    }
     return study;
 }
 
@@ -101,7 +146,8 @@ bool CertifyStudy::conclusive() const {
                if (is_not_applicable(side.outcome)) return true;
                const bool ended = side.outcome == Outcome::converged ||
                                   (side.limit && side.limit->state == ProofState::proved);
-               const bool one_curve = !side.curve || side.curve->state == ProofState::proved;
+               const bool one_curve =
+                   !side.curve || !side.curve->tried || side.curve->state == ProofState::proved;
                return ended && one_curve && side.tally.points > 0 &&
                       side.tally.proved == side.tally.points;
            });

@@ -56,7 +56,8 @@ struct CertifyStudy {
     int points() const;
     int proved() const;
     bool excluded() const;  // some point is proved wrong
-    // Every solver reached the end or a proved limit point, and every point and curve is proved.
+    // Every solver reached the end or a proved limit point, and every point and every curve that is
+    // tried is proved.
     bool conclusive() const;
 };
 

@@ -73,7 +73,10 @@ std::vector<ColumnOf<CertifiedSide>> certified_columns() {
          "bound of the wrench that holds idle modes in the proved equilibria", "N, N·m"},
         {"gap", hidden, [](const Side& s) { return bound(s, 1e3 * s.tally.gap); },
          "bound of the gap of redundant constraints in them", "mm, rad"},
-        {"curve", words, [](const Side& s) { return s.curve ? name(s.curve->state) : ""; },
+        {"curve", words,
+         [](const Side& s) {
+             return !s.curve ? "" : s.curve->tried ? name(s.curve->state) : "not tried";
+         },
          "whether one connected curve of equilibria from start to end is proved"},
         {"curve pieces", whole, [](const Side& s) { return s.curve ? s.curve->pieces : nan; },
          "of the tube around the path", "", "pieces"},

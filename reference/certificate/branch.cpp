@@ -129,7 +129,7 @@ struct NodeSolver {
         if (!solution.settled) return node;
         node.y = std::move(solution.y);
         const Values<double> values = evaluate(bordered, doubles(node.y), a, Slopes::yes);
-        node.Y = inverse(square(values.J, bordered.size()));
+        node.Y = inverse(factors(middle(values.J)));
         VectorXd right(bordered.size());
         right << -Eigen::Map<const VectorXd>(values.E_a.data(), bordered.n()),
             border.g.transpose() * guess.slope;
@@ -202,6 +202,14 @@ Jet<n> parameter(const Piece& piece, const Interval& S) {
     return expanded<n>({(a0 + a1) * half, (a1 - a0) * half, 0., 0., 0., 0.}, S);
 }
 
+// The coefficient k of each entry.
+template <int n>
+SparseRows<Interval> coefficient(const SparseRows<Jet<n>>& J, std::size_t k) {
+    SparseRows<Interval> part{{}, J.start};
+    for (const auto& [row, column, value] : J.entries)
+        part.entries.push_back({row, column, value.c[k]});
+    return part;
+}
 // Taylor coefficients of `evaluate` about s = 0, the last one over all s.
 template <int n, class Evaluate>
 std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
@@ -300,7 +308,7 @@ void enclose(const NodeSolver& solver, Node& node) {
         VectorXd r = passing(step(Y, E), rest);
         if (r.size() == 0)
             // at a corner, where the inverse at ỹ belongs to one side
-            Y = inverse(middle(J, Y.rows()));
+            Y = inverse(factors(middle(J)));
         else if ((r.array() <= room.array()).all())
             node.box = std::move(r);
         else
@@ -323,13 +331,15 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
     if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
     // Range of the tube over which F' is evaluated.
     const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
+    const auto slopes = [&](const Interval& S) {
+        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
+                        Slopes::yes)
+            .J;
+    };
+    const auto about = slopes(Interval(0)), over = slopes(Interval(-1, 1));
     std::vector<Split> J;
-    for (const auto& part : coefficients<J_order>([&](const Interval& S) {
-             return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
-                             Slopes::yes)
-                 .J;
-         })) {
-        J.push_back(split(part, problem.size()));
+    for (std::size_t k = 0; k <= J_order; ++k) {
+        J.push_back(split(coefficient(k < J_order ? about : over, k)));
         if (!J.back().finite) return false;
     }
     const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
@@ -363,7 +373,7 @@ bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& joi
     VectorXd room = joint;
     for (int trial = 0; trial < 4; ++trial) {
         const auto J = slopes(room);
-        const MatrixXd Y = inverse(middle(J, problem.size()));
+        const MatrixXd Y = inverse(factors(middle(J)));
         if (!Y.allFinite()) return false;
         const VectorXd first = step({Y}, F, problem.n()).cwiseMax(joint);
         if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
@@ -516,7 +526,10 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     };
     if (states.size() < 2) return open("a path between states needs two of them");
     const System system = make_system(model, branch, Corners::separated);
-    if (const auto why = why_not_tried(system); !why.empty()) return open(why);
+    if (const auto why = why_not_tried(system, max_unknowns); !why.empty()) {
+        tube.tried = false;
+        return open(why);
+    }
     std::vector<StateAt> mapped;
     for (const auto& state : states) mapped.push_back(state_at(system, state));
     tube.from = tube.to = states.front().load;

@@ -1,6 +1,6 @@
 // Certifies a point. The tolerance fixes the claim before anything is computed; then
 //
-//   Newton's method in doubles    from the state to ỹ, and Y ≈ F'(ỹ)⁻¹
+//   Newton's method in doubles    from the state to ỹ, and factors of F'(ỹ), for Y ≈ F'(ỹ)⁻¹
 //   smallest box that passes      [y] = ỹ ± r, |Y F(ỹ)| + |I - Y F'([y])| r < r: contains one zero,
 //                                 at a bounded distance from the state
 //   large box that passes         contains no other zero
@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <random>
 
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/krawczyk.hpp"
@@ -38,36 +39,42 @@ using Eigen::VectorXd;
 struct Box {
     bool proved = false;
     VectorXd r;
-    std::vector<Interval> J;  // Jacobian over the box
+    SparseRows<Interval> J;  // Jacobian over the box
+    Eigen::MatrixXd Y;       // not of a large system
+    double alone = 0;        // t of the large box without another equilibrium
 };
 // Searches r with |Y F(ỹ)| + |I - Y F'(ỹ ± r)| r < r, from r = 1.5 |Y F(ỹ)| on (`defect`). If a box
 // does not pass, the next one is larger, with Y the inverse of the middle of its Jacobian: across
 // the knot of a stop that differs from the inverse at ỹ. `least` keeps
 // r above 0, as the strict inequality needs.
-Box smallest(const Problem& problem, Approximate& approximate, double a) {
-    constexpr int trials = 8;
+Box smallest(const Problem& problem, const Approximate& approximate, double a) {
+    constexpr int trials = 8, iterations = 4;
     constexpr double least = 1e-20;
-    const auto F = evaluate(problem, thin(approximate.y), Interval(a), Slopes::no).E;
+    const Residual F = residual(problem, thin(approximate.y), Interval(a));
     Box result;
-    VectorXd defect = step(approximate.Y, F);
+    result.Y = inverse(approximate.J);
+    VectorXd defect = step(result.Y, F);
     if (!defect.allFinite()) return result;
     result.r = (1.5 * defect).cwiseMax(least);
     for (int trial = 0; trial < trials && !result.proved; ++trial) {
         result.J = evaluate(problem, box(approximate.y, result.r), Interval(a), Slopes::yes).J;
         if (trial > 0) {
-            approximate.Y = inverse(middle(result.J, problem.size()));
-            defect = step(approximate.Y, F);
+            result.Y = inverse(factors(middle(result.J)));
+            defect = step(result.Y, F);
             if (!defect.allFinite()) return result;
         }
-        const Contraction rest = contraction(approximate.Y, result.J);
+        const Contraction rest = contraction(result.Y, result.J);
         if (!rest.finite) return result;
         // First by fixed-point iteration, which suffices where F' hardly changes; then by
         // a linear solve.
         VectorXd r;
         if (trial == 0) {
-            r = (defect * 1.01).cwiseMax(least);
-            for (int k = 0; k < 3; ++k) r = ((defect + rest(r)) * 1.01).cwiseMax(least);
-            if (!all_less((defect + rest(r)) * (1 + 1e-14), r)) r = {};
+            VectorXd from = result.r;
+            for (int k = 0; k < iterations && r.size() == 0; ++k) {
+                const VectorXd to = (defect + rest(from)) * (1 + 1e-14);
+                if (all_less(to, from)) r = from;
+                from = (1.01 * to).cwiseMax(least);
+            }
         } else {
             r = passing(defect, rest);
         }
@@ -92,49 +99,67 @@ Box smallest(const Problem& problem, Approximate& approximate, double a) {
 // with the reactions of [y*] in the columns of the poses, and y = y* where I - Y S is a
 // contraction: |I - Y S| v < v for some v > 0.
 //
-// Smallest max_i (|I - Y S| v)_i / v_i found by power iteration; below 1 the box contracts.
-double shrinks(const Contraction& rest, VectorXd v) {
+// Smallest max_i (|I - Y S| v)_i / v_i found by power iteration from v on, which it leaves behind:
+// where I - Y S is another multiple of about the same matrix, it is a start as good. Below 1 the box
+// contracts.
+double shrinks(const Contraction& rest, VectorXd& v) {
     constexpr int iterations = 12;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; rest.finite && k < iterations; ++k) {
         const VectorXd w = rest(v);
         if (!w.allFinite()) break;
+        const double last = least;
         least = std::min(least, (w.array() / v.array()).maxCoeff() * (1 + 1e-14));
-        if (least < 0.9 && k > 2) break;
+        if (least < 0.9 || (k > 1 && least > 0.9 * last)) break;
         v = w.cwiseMax(1e-9 * v);
     }
     return least;
 }
 
-// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes;
-// 0 if none does. Any Y will do: that of ỹ first, and where it fails the inverse at the middle
-// of the Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a
-// ratio of 0.85.
-double alone(const Problem& problem, const Approximate& approximate, double a,
-             const VectorXd& small) {
-    const VectorXd& centre = approximate.y;
+// Jacobian over the box of origins within t L and quaternions within t of ỹ.
+struct LargeBox {
+    VectorXd r;
+    SparseRows<Interval> J;
+};
+struct Sizes {
+    const VectorXd& small;  // r of the box of y*
+    double t;
+};
+LargeBox large_box(const Problem& problem, const VectorXd& centre, double a, const Sizes& sizes) {
     const System& system = problem.system;
+    LargeBox large{sizes.small, {}};
+    for (int b = 0; b < system.bodies; ++b) {
+        large.r.segment<3>(system.pose(b)).setConstant(sizes.t * system.length);
+        large.r.segment<4>(system.pose(b) + 3).setConstant(sizes.t);
+    }
+    large.r = large.r.cwiseMax(sizes.small);  // p* ∈ [p]
+    std::vector<Interval> y = box(centre, large.r);
+    if (!system.separated.empty()) {
+        const auto x = deformations(system, {y.begin(), y.begin() + system.n()}, Interval(a));
+        for (std::size_t k = 0; k < system.separated.size(); ++k)
+            y[static_cast<std::size_t>(system.deformation(k))] =
+                x[system.separated[k].element][system.separated[k].axis];
+    }
+    large.J = evaluate(problem, y, Interval(a), Slopes::yes).J;
+    return large;
+}
+
+// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes; 0
+// if none does. Any Y will do: that of ỹ first, and where it fails the inverse at the middle of the
+// Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a ratio of
+// 0.85.
+double alone(const Problem& problem, const VectorXd& centre, double a, const Box& smallest) {
+    const VectorXd& small = smallest.r;
     constexpr int trials = 8;
     constexpr double largest = 0.05, enough = 0.6, aim = 0.85, corner = 0.2;
     double t = 2e-3, proved_t = 0, failed_t = std::numeric_limits<double>::infinity();
+    VectorXd v;
     for (int trial = 0; trial < trials; ++trial) {
-        VectorXd r = small;
-        for (int b = 0; b < system.bodies; ++b) {
-            r.segment<3>(system.pose(b)).setConstant(t * system.length);
-            r.segment<4>(system.pose(b) + 3).setConstant(t);
-        }
-        r = r.cwiseMax(small);  // p* ∈ [p]
-        std::vector<Interval> y = box(centre, r);
-        if (!system.separated.empty()) {
-            const auto x = deformations(system, {y.begin(), y.begin() + system.n()}, Interval(a));
-            for (std::size_t k = 0; k < system.separated.size(); ++k)
-                y[static_cast<std::size_t>(system.deformation(k))] =
-                    x[system.separated[k].element][system.separated[k].axis];
-        }
-        const auto J = evaluate(problem, y, Interval(a), Slopes::yes).J;
-        double ratio = shrinks(contraction(approximate.Y, J), r);
-        if (!(ratio < 1))
-            ratio = shrinks(contraction(inverse(middle(J, problem.size())), J), std::move(r));
+        const LargeBox large = large_box(problem, centre, a, {small, t});
+        const SparseRows<Interval>& J = large.J;
+        if (v.size() == 0) v = large.r;
+        double ratio = shrinks(contraction(smallest.Y, J), v);
+        if (!(ratio < 1)) ratio = shrinks(contraction(inverse(factors(middle(J))), J), v);
         if (ratio < 1) {
             proved_t = std::max(proved_t, t);
             t = std::min({largest, t * aim / std::max(ratio, 1e-3), 0.7 * failed_t});
@@ -151,6 +176,81 @@ double alone(const Problem& problem, const Approximate& approximate, double a,
         }
     }
     return proved_t;
+}
+
+// ---- A system too large to keep its inverse
+
+// A radius that should pass, from solutions alone: |Y F| is not known before Y is. Y times random
+// signs of the rounding of F is about its root mean square.
+VectorXd foreseen(const Factors& factors, const Residual& F) {
+    constexpr int samples = 8;
+    constexpr double larger = 256;
+    std::minstd_rand random;
+    const auto sign = [&] { return random() % 2 == 0 ? 1. : -1.; };
+    const Index n = factors.size();
+    VectorXd f(n), squares = VectorXd::Zero(n);
+    for (Index i = 0; i < n; ++i) f[i] = mid(F.E[static_cast<std::size_t>(i)]);
+    for (int k = 0; k < samples; ++k) {
+        VectorXd lost(n), rho = F.laws.rho;
+        for (Index i = 0; i < n; ++i) lost[i] = sign() * rad(F.E[static_cast<std::size_t>(i)]);
+        for (double& part : rho) part *= sign();
+        for (const auto& [row, column, action] : F.laws.D) lost[row] += mid(action) * rho[column];
+        squares += factors.solve(lost).cwiseAbs2();
+    }
+    return larger * (factors.solve(f).cwiseAbs() + (squares / samples).cwiseSqrt());
+}
+
+// v > 0 for large boxes: poses alike, and reactions that 1e-4 of a pose needs.
+VectorXd alike(const System& system, const SparseMatrix& M, Index size) {
+    const Index poses = 7 * system.bodies;
+    double stiffest = 0;
+    for (Index column = 0; column < poses; ++column)
+        for (SparseMatrix::InnerIterator at(M, column); at; ++at)
+            if (at.row() < 6 * system.bodies) stiffest = std::max(stiffest, std::abs(at.value()));
+    VectorXd v = VectorXd::Constant(size, 1e-4 * std::max(stiffest, 1.));
+    v.head(poses).setOnes();
+    for (int b = 0; b < system.bodies; ++b) v.segment<3>(system.pose(b)).setConstant(system.length);
+    return v;
+}
+
+// Both boxes in one pass over the rows of Y: the smaller one by the inequality, and of many larger
+// ones the largest that contracts.
+Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
+    constexpr int trials = 5, larger_boxes = 14;
+    constexpr double least = 1e-20, largest = 2e-3, shorter = 0.25;
+    const VectorXd& centre = approximate.y;
+    const Residual F = residual(problem, thin(centre), Interval(a));
+    Box result;
+    result.r = foreseen(approximate.J, F).cwiseMax(least);
+    for (int trial = 0; trial < trials && result.r.allFinite(); ++trial) {
+        result.J = evaluate(problem, box(centre, result.r), Interval(a), Slopes::yes).J;
+        std::vector<Split> J{split(result.J)};
+        if (!J.front().finite) return result;
+        std::vector<double> sizes;
+        for (int k = 0; k < larger_boxes; ++k) {
+            const double t = largest * std::pow(shorter, k);
+            Split over = split(large_box(problem, centre, a, {result.r, t}).J);
+            if (!over.finite) continue;
+            J.push_back(recentred(over, J.front().M));
+            sizes.push_back(t);
+        }
+        const VectorXd v = alike(problem.system, J.front().M, problem.size());
+        Eigen::MatrixXd r = v.replicate(1, std::ssize(J));
+        r.col(0) = result.r;
+        const OverRows rows = over_rows(approximate.J, F, J, r);
+        const VectorXd image = (rows.defect + rows.rest.col(0)) * (1 + 1e-14);
+        if (!image.allFinite()) return result;
+        if (!all_less(image, result.r)) {
+            result.r = (1.5 * image).cwiseMax(result.r);
+            continue;
+        }
+        for (std::size_t k = sizes.size(); k-- > 0;)
+            if (all_less(rows.rest.col(static_cast<Index>(k) + 1), v)) result.alone = sizes[k];
+        result.r = image.cwiseMax(least);
+        result.proved = true;
+        return result;
+    }
+    return result;
 }
 
 // The part of that box around the state.
@@ -181,9 +281,12 @@ Extent unique_around(const StateAt& mapped, const VectorXd& y, double t) {
 bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     const System& system = mapped.system;
     const double load = mapped.state.load;
-    const Problem problem{
-        system, border_at(system, mapped.z, load, loose_zero_tolerance), mapped.z, false, {}, {}};
-    const Index n = system.n(), k = problem.border.count();
+    const Index n = system.n();
+    // Any y will do, so a large system goes without a border.
+    Border border = n > max_unknowns ? Border{Eigen::MatrixXd(n, 0), Eigen::MatrixXd(n, 0)}
+                                     : border_at(system, mapped.z, load, loose_zero_tolerance);
+    const Problem problem{system, std::move(border), mapped.z, false, {}, {}};
+    const Index k = problem.border.count();
     const VectorXd delta = radii(mapped, tolerance);
     if (!delta.head(7 * system.bodies).allFinite()) return false;
     const auto around_state = box(mapped.z, delta);
@@ -192,27 +295,39 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     VectorXd y = VectorXd::Zero(n + k);
     y.head(n) = mapped.z;
     const Interval a = load;
-    const Eigen::MatrixXd Y =
-        inverse(square(evaluate(problem, doubles(y), load, Slopes::yes).J, n + k));
-    if (!Y.allFinite()) return false;
+    const Factors jacobian = factors(middle(evaluate(problem, doubles(y), load, Slopes::yes).J));
     const auto E = evaluate(system, thin(mapped.z), a, Slopes::no).E;
     const auto J = evaluate(system, around_state, a, Slopes::yes).J;
+    const SparseMatrix slopes_of_E = middle(J);
+    const VectorXd finite_delta = delta.cwiseMin(1e300);
     const VectorXd epsilon = rounding_of_equations(system, mapped.z, load);
-    for (Index row = 0; row < n + k; ++row) {
+    VectorXd middle_of_E(n);
+    for (Index i = 0; i < n; ++i) middle_of_E[i] = mid(E[static_cast<std::size_t>(i)]);
+    // The inequality for one y, in intervals.
+    const auto shows = [&](const auto& weights) {
         Interval left, right;
         std::vector<Interval> slopes(static_cast<std::size_t>(n));
         for (Index i = 0; i < n; ++i) {
-            const Interval weight = Y(row, i);
+            const Interval weight = weights[i];
             if (is_zero(weight)) continue;
-            const auto at_i = static_cast<std::size_t>(i);
-            left += weight * (E[at_i] + Interval(-epsilon[i], epsilon[i]));
-            for (Index j = 0; j < n; ++j)
-                slopes[static_cast<std::size_t>(j)] +=
-                    weight * J[at_i * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)];
+            left += weight * (E[static_cast<std::size_t>(i)] + Interval(-epsilon[i], epsilon[i]));
+            for (const auto& [row, column, slope] : J.row(i))
+                slopes[static_cast<std::size_t>(column)] += weight * slope;
         }
         for (Index j = 0; j < n; ++j)
             right += Interval(mag(slopes[static_cast<std::size_t>(j)])) * Interval(delta[j]);
-        if (mig(left) > right.hi) return true;
+        return mig(left) > right.hi;
+    };
+    constexpr Index at_a_time = 64;
+    for (Index from = 0; from < n + k; from += at_a_time) {
+        const Eigen::MatrixXd Y =
+            jacobian.rows_of_inverse(from, std::min(at_a_time, n + k - from)).leftCols(n);
+        if (!Y.allFinite()) return false;
+        // Rounded, for the rows that are worth the intervals.
+        const VectorXd left = (Y * middle_of_E).cwiseAbs(),
+                       right = product(Y, slopes_of_E).cwiseAbs() * finite_delta;
+        for (Index row = 0; row < Y.rows(); ++row)
+            if (left[row] > 0.5 * right[row] && shows(Y.row(row))) return true;
     }
     return false;
 }
@@ -296,15 +411,23 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         return certificate;
     };
     if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
-    if (const auto why = why_not_tried(system); !why.empty()) return open(why);
+    if (const auto why = why_not_tried(system, tolerance.most_unknowns); !why.empty())
+        return open(why);
     if (const ProvedBox* near = box_at(known, system, state.load))
         if (auto decided = by_known_box(*near, mapped, tolerance)) return *std::move(decided);
 
     auto [problem, approximate, there] = equilibrium_near(system, mapped.z, state.load);
     const Interval a = state.load;
+    if (problem.border.too_large)
+        return open(
+            fmt::format("not tried: {} unknowns, with idle motions, redundant joints or a "
+                        "stiffness close to singular",
+                        system.n()));
 
     if (approximate.settled && approximate.y.allFinite()) {
-        const Box smallest_box = smallest(problem, approximate, state.load);
+        const bool large = problem.size() > max_unknowns;
+        const Box smallest_box = large ? by_rows(problem, approximate, state.load)
+                                       : smallest(problem, approximate, state.load);
         if (smallest_box.proved) {
             const VectorXd& r = smallest_box.r;
             const auto enclosure = box(approximate.y, r);
@@ -320,7 +443,8 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.state = ProofState::proved;
-                const double t = alone(problem, approximate, state.load, r);
+                const double t = large ? smallest_box.alone
+                                       : alone(problem, approximate.y, state.load, smallest_box);
                 certificate.unique = unique_around(mapped, approximate.y, t);
                 certificate.stable = stable(problem, z, smallest_box.J);
                 certificate.detail = statement(system, problem.border, held, "state");

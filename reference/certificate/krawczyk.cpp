@@ -12,13 +12,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using SparseMatrix = Eigen::SparseMatrix<double>;
 
 constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
 // Upper bound of an exact sum of n nonnegative numbers from the computed one, including the few
 // operations around it; underflow loses less than the least normal number per term.
-VectorXd raised(const VectorXd& sum, Index n) {
+template <class X = VectorXd>
+X raised(const X& sum, Index n) {
     const double by = 1 + 4 * static_cast<double>(n + 8) * unit;
     return (sum * by).array() + static_cast<double>(n + 1) * std::numeric_limits<double>::min();
 }
@@ -30,24 +30,25 @@ double gamma(Index p) {
 
 }  // namespace
 
-VectorXd above(const MatrixXd& A, const VectorXd& x) { return raised(A * x, A.cols()); }
-VectorXd above(const SparseMatrix& A, const VectorXd& x) { return raised(A * x, A.cols()); }
-
-VectorXd Contraction::operator()(const VectorXd& r) const {
-    return raised(above(rest, r) + above(Y, above(R, r)) + gamma * above(Y, above(M, r)), 4);
+VectorXd above(const MatrixXd& A, const VectorXd& x) { return raised<VectorXd>(A * x, A.cols()); }
+MatrixXd above_each(const MatrixXd& A, const MatrixXd& x) {
+    return raised<MatrixXd>(A * x, A.cols());
+}
+VectorXd above(const SparseMatrix& A, const VectorXd& x) {
+    return raised<VectorXd>(A * x, A.cols());
 }
 
-Split split(const std::vector<Interval>& J, Index n) {
+Split split(const SparseRows<Interval>& J) {
     Split of;
+    const auto n = static_cast<Index>(J.start.size()) - 1;
     std::vector<Eigen::Triplet<double>> M, R;
     std::vector<Index> entries(static_cast<std::size_t>(n));  // of each column
-    for (Index k = 0; k < n * n; ++k) {
-        const Interval& entry = J[static_cast<std::size_t>(k)];
+    for (const auto& [row, column, entry] : J.entries) {
         if (is_zero(entry)) continue;
         if (!bounded(entry)) return of;
-        M.emplace_back(k / n, k % n, mid(entry));
-        if (const double radius = rad(entry); radius > 0) R.emplace_back(k / n, k % n, radius);
-        ++entries[static_cast<std::size_t>(k % n)];
+        M.emplace_back(row, column, mid(entry));
+        if (const double radius = rad(entry); radius > 0) R.emplace_back(row, column, radius);
+        ++entries[static_cast<std::size_t>(column)];
     }
     of.M.resize(n, n), of.R.resize(n, n);
     of.M.setFromTriplets(M.begin(), M.end());
@@ -65,18 +66,32 @@ MatrixXd product(const MatrixXd& Y, const SparseMatrix& M) {
     return sum;
 }
 
-Contraction contraction(const MatrixXd& inverse, const std::vector<Interval>& J) {
-    const Index n = inverse.rows();
+namespace {
+
+// |I - fl(Y M)|, for the rows of Y from `from` on.
+MatrixXd rest_of(Index from, const MatrixXd& Y, const SparseMatrix& M) {
+    MatrixXd rest = -product(Y, M);
+    rest.diagonal(from).array() += 1;
+    return rest.cwiseAbs();
+}
+
+}  // namespace
+
+Contraction contraction(const MatrixXd& inverse, const SparseRows<Interval>& J) {
     Contraction of;
-    Split parts = split(J, n);
+    Split parts = split(J);
     if (!parts.finite) return of;
-    of.rest = (MatrixXd::Identity(n, n) - product(inverse, parts.M)).cwiseAbs();
+    of.rest = rest_of(0, inverse, parts.M);
     of.Y = inverse.cwiseAbs();
     of.M = parts.M.cwiseAbs();
     of.R = std::move(parts.R);
     of.gamma = parts.gamma;
     of.finite = std::isfinite(of.rest.sum() + of.Y.sum() + of.R.sum());  // none is negative
     return of;
+}
+
+VectorXd Contraction::operator()(const VectorXd& r) const {
+    return raised<VectorXd>(above(rest, r) + above(Y, above(R, r) + gamma * above(M, r)), 4);
 }
 
 VectorXd passing(const VectorXd& first, const Contraction& rest) {
@@ -90,18 +105,81 @@ VectorXd passing(const VectorXd& first, const Contraction& rest) {
                                                                                      : VectorXd();
 }
 
-VectorXd step(const MatrixXd& Y, const std::vector<Interval>& F) {
-    const Index n = Y.rows();
-    VectorXd f(n), radius(n);
+namespace {
+
+// Everything of F that |Y F| needs: |Y f| + |Y D| ρ + |Y| lost.
+struct Parts {
+    VectorXd f, rho, lost;
+    SparseMatrix D;
+    bool finite = false;
+};
+Parts parts_of(const std::vector<Interval>& F, const Laws& laws) {
+    const auto n = static_cast<Index>(F.size());
+    Parts of{VectorXd(n), laws.rho, VectorXd(n), SparseMatrix(n, laws.rho.size())};
     for (Index k = 0; k < n; ++k) {
         const Interval& entry = F[static_cast<std::size_t>(k)];
-        if (!bounded(entry)) return VectorXd::Constant(n, std::numeric_limits<double>::infinity());
-        f[k] = mid(entry);
-        radius[k] = rad(entry);
+        if (!bounded(entry)) return of;
+        of.f[k] = mid(entry);
+        of.lost[k] = rad(entry);
     }
-    const MatrixXd size = Y.cwiseAbs();
-    const VectorXd lost = gamma(n + 2) * above(size, f.cwiseAbs()) + above(size, radius);
-    return raised((Y * f).cwiseAbs() + lost, 4);
+    std::vector<Eigen::Triplet<double>> D, radius;
+    for (const auto& [row, column, entry] : laws.D) {
+        if (!bounded(entry)) return of;
+        D.emplace_back(row, column, mid(entry));
+        radius.emplace_back(row, column, rad(entry));
+    }
+    of.D.setFromTriplets(D.begin(), D.end());
+    SparseMatrix R(n, of.rho.size());
+    R.setFromTriplets(radius.begin(), radius.end());
+    const SparseMatrix size = of.D.cwiseAbs();
+    of.lost = raised<VectorXd>(
+        of.lost + above(R, of.rho) + gamma(n + 2) * (of.f.cwiseAbs() + above(size, of.rho)), 4);
+    of.finite = true;
+    return of;
+}
+VectorXd step(const MatrixXd& Y, const Parts& F) {
+    if (!F.finite) return VectorXd::Constant(Y.rows(), std::numeric_limits<double>::infinity());
+    return raised<VectorXd>((Y * F.f).cwiseAbs() + above(product(Y, F.D).cwiseAbs(), F.rho) +
+                                above(Y.cwiseAbs(), F.lost),
+                            4);
+}
+
+}  // namespace
+
+VectorXd step(const MatrixXd& Y, const std::vector<Interval>& F) {
+    return step(Y, parts_of(F, Laws{}));
+}
+VectorXd step(const MatrixXd& Y, const Residual& F) { return step(Y, parts_of(F.E, F.laws)); }
+
+OverRows over_rows(const Factors& factors, const Residual& F, const std::vector<Split>& J,
+                   const MatrixXd& r) {
+    constexpr Index at_a_time = 32;
+    const Index n = factors.size();
+    const Parts parts = parts_of(F.E, F.laws);
+    const SparseMatrix& M = J.front().M;
+    const SparseMatrix size = M.cwiseAbs();
+    MatrixXd lost(n, r.cols());
+    for (Index k = 0; k < r.cols(); ++k) {
+        const SparseMatrix& R = J[static_cast<std::size_t>(k)].R;
+        lost.col(k) =
+            raised<VectorXd>(above(R, r.col(k)) + J.front().gamma * above(size, r.col(k)), 4);
+    }
+    OverRows bounds{VectorXd(n), MatrixXd(n, r.cols())};
+    for (Index from = 0; from < n; from += at_a_time) {
+        const MatrixXd Y = factors.rows_of_inverse(from, std::min(at_a_time, n - from));
+        bounds.defect.segment(from, Y.rows()) = step(Y, parts);
+        bounds.rest.middleRows(from, Y.rows()) = raised<MatrixXd>(
+            above_each(rest_of(from, Y, M), r) + above_each(Y.cwiseAbs(), lost), 4);
+    }
+    return bounds;
+}
+
+Split recentred(const Split& of, const SparseMatrix& M) {
+    Split moved = of;
+    const SparseMatrix distance = SparseMatrix(of.M - M).cwiseAbs();
+    moved.R = SparseMatrix(of.R + distance) * (1 + 1e-14);
+    moved.M = M;
+    return moved;
 }
 
 }  // namespace elastocheck::reference::certificate

@@ -15,38 +15,37 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 #include <vector>
 
 #include "reference/certificate/interval/interval.hpp"
+#include "reference/certificate/statement/bordered.hpp"
 
 namespace elastocheck::reference::certificate {
 
 // Upper bound of A x, for A and x ≥ 0.
 Eigen::VectorXd above(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
-Eigen::VectorXd above(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& x);
+Eigen::MatrixXd above_each(const Eigen::MatrixXd& A, const Eigen::MatrixXd& x);
+Eigen::VectorXd above(const SparseMatrix& A, const Eigen::VectorXd& x);
 
 // F' = M ± R, where most entries are zero.
 struct Split {
-    Eigen::SparseMatrix<double> M, R;
+    SparseMatrix M, R;
     double gamma = 0;  // of a product with M
     bool finite = false;
 };
-// J by rows.
-Split split(const std::vector<Interval>& J, Eigen::Index n);
+Split split(const SparseRows<Interval>& J);
 // fl(Y M)
-Eigen::MatrixXd product(const Eigen::MatrixXd& Y, const Eigen::SparseMatrix<double>& M);
+Eigen::MatrixXd product(const Eigen::MatrixXd& Y, const SparseMatrix& M);
 
 struct Contraction {
-    Eigen::MatrixXd rest, Y;           // |I - fl(Y M)|, |Y|
-    Eigen::SparseMatrix<double> M, R;  // |M|, and the radii
+    Eigen::MatrixXd rest, Y;  // |I - fl(Y M)|, |Y|
+    SparseMatrix M, R;        // |M|, and the radii
     double gamma = 0;
     bool finite = false;
     // Upper bound of |I - Y F'| r.
     Eigen::VectorXd operator()(const Eigen::VectorXd& r) const;
 };
-// J by rows.
-Contraction contraction(const Eigen::MatrixXd& Y, const std::vector<Interval>& J);
+Contraction contraction(const Eigen::MatrixXd& Y, const SparseRows<Interval>& J);
 
 // An r with `first` + |I - Y F'| r < r, by solving the fixed-point equation: across the corner of a
 // stop r is many times `first`. Empty if none is found.
@@ -54,6 +53,19 @@ Eigen::VectorXd passing(const Eigen::VectorXd& first, const Contraction& rest);
 
 // Upper bound of |Y F|.
 Eigen::VectorXd step(const Eigen::MatrixXd& Y, const std::vector<Interval>& F);
+Eigen::VectorXd step(const Eigen::MatrixXd& Y, const Residual& F);
+
+// All of this for a system too large to keep Y. Each row of the inequality needs the same row of Y
+// alone, which is solved for and discarded.
+struct OverRows {
+    Eigen::VectorXd defect;  // |Y F|
+    Eigen::MatrixXd rest;    // |I - Y F'| r for each box, in columns
+};
+// J [box]: over each box, all with the M of the first; r [n × boxes].
+OverRows over_rows(const Factors& factors, const Residual& F, const std::vector<Split>& J,
+                   const Eigen::MatrixXd& r);
+// M ± R within of.M ± R.
+Split recentred(const Split& of, const SparseMatrix& M);
 
 inline bool all_less(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return (a.array() < b.array()).all();  // false for a NaN entry

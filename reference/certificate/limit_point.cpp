@@ -49,7 +49,7 @@ struct OnCurve {
 };
 OnCurve on_curve(const Problem& problem) {
     Approximate found = newton(problem, problem.y_t, 0);
-    return {std::move(found.y), std::move(found.Y), found.settled};
+    return {std::move(found.y), inverse(found.J), found.settled};
 }
 
 // Secant method for da/dσ = 0 (`slope`), steps in σ. The point and tangent of the
@@ -136,7 +136,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         return limit;
     };
     const System system = make_system(model, branch);
-    if (const auto why = why_not_tried(system); !why.empty()) return open(why);
+    if (const auto why = why_not_tried(system, max_unknowns); !why.empty()) return open(why);
     const StateAt mapped = state_at(system, state);
     if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
 
@@ -150,7 +150,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         evaluate(at_fixed_a, doubles(y.head(n - 1)), state.load, Slopes::yes);
     VectorXd along = VectorXd::Ones(n), right = VectorXd::Zero(n - 1);
     right.head(system.n()) = Eigen::Map<const VectorXd>(values.E_a.data(), system.n());
-    along.head(n - 1) = -inverse(square(values.J, n - 1)) * right;
+    along.head(n - 1) = -factors(middle(values.J)).solve(right);
     if (!along.allFinite() || along.head(n - 1).isZero(0))
         return open("the curve has no tangent at the state");
     y[n - 1] = state.load;

@@ -8,14 +8,15 @@
 // adds k w wᵀ, which is at least that of the smallest slope k ≥ 0 in the box. Only for systems with
 // an energy.
 //
-// Test: with G ≈ L⁻¹ of M = L Lᵀ, in doubles, G (M ± R) Gᵀ is close to the identity. If its row
-// sums deviate by less than one, all its eigenvalues are positive, and so are those of M ± R. The
-// test is row by row, which allows stiff and soft directions together:
+// Test (Rump 2006): scaled by powers of two to a diagonal of about one, which allows stiff and soft
+// directions together, M ± R is M̂ ± R̂. With the row sums C = diag(R̂ 1), C - R̂ has no negative
+// eigenvalue. If Cholesky's method in doubles ends for M̂ - C - c I, with at most p entries in a row of
+// L, then L Lᵀ = M̂ - C - c I + Δ with |Δ_ij| ≤ γ (m_ii m_jj)^½, γ = γ_{p+2}, so
 //
-//   |I - G (M ± R) Gᵀ| 1 ≤ |I - fl(fl(G M) Gᵀ)| 1 + |G| (R + 2γ |M|) |Gᵀ| 1
+//   xᵀ (M̂ ± R̂) x ≥ xᵀ (M̂ - C) x ≥ (c - γ tr M̂) xᵀ x > 0     for a larger c
 #include "reference/certificate/stability.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 
 #include "reference/certificate/krawczyk.hpp"
 
@@ -23,23 +24,32 @@ namespace elastocheck::reference::certificate {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 // Scaling by it is exact.
 double power_of_two(double x) { return std::exp2(std::nearbyint(std::log2(x))); }
 
 using Sparse = std::vector<std::pair<Index, Interval>>;  // one row: its nonzero entries
+using Entries = std::vector<Slope<Interval>>;
 
 // A row of the Jacobian with respect to (δr, L δπ) of each body.
-Sparse turned_row(const System& system, const std::vector<Interval>& z, const Interval* J,
-                  double length) {
+Sparse turned_row(const System& system, const std::vector<Interval>& z,
+                  std::span<const Slope<Interval>> J, double length) {
+    std::vector<std::pair<BodyId, std::array<Interval, 7>>> by_body;
+    for (const auto& [_, column, value] : J) {
+        if (column >= 7 * system.bodies) continue;
+        const BodyId body = column / 7;
+        auto at = std::ranges::find(by_body, body, [](const auto& of) { return of.first; });
+        if (at == by_body.end()) at = by_body.insert(at, {body, {}});
+        at->second[static_cast<std::size_t>(column % 7)] = value;
+    }
     Sparse row;
-    for (BodyId body = 0; body < system.bodies; ++body) {
+    for (const auto& [body, slopes] : by_body) {
         const auto k = static_cast<std::size_t>(system.pose(body));
         const Index to = 6 * body;
         for (std::size_t i = 0; i < 3; ++i)
-            if (!is_zero(J[k + i])) row.emplace_back(to + static_cast<Index>(i), J[k + i]);
-        const Interval *p = &z[k + 3], *d = J + k + 3;
+            if (!is_zero(slopes[i])) row.emplace_back(to + static_cast<Index>(i), slopes[i]);
+        const Interval *p = &z[k + 3], *d = &slopes[3];
         const Interval half = Interval(0.5) / Interval(length);
         const std::array<Interval, 3> turn{d[1] * p[0] - d[0] * p[1] + d[3] * p[2] - d[2] * p[3],
                                            d[2] * p[0] - d[0] * p[2] + d[1] * p[3] - d[3] * p[1],
@@ -52,47 +62,55 @@ Sparse turned_row(const System& system, const std::vector<Interval>& z, const In
 
 }  // namespace
 
-bool positive_definite(const MatrixXd& M, const MatrixXd& R) {
+bool positive_definite(const SparseMatrix& M, const SparseMatrix& R) {
     const Index n = M.rows();
     if (n == 0) return true;
-    if (!M.allFinite() || !R.allFinite()) return false;
-    const Eigen::LLT<MatrixXd> cholesky(M);
+    const VectorXd diagonal = M.diagonal();
+    if (!M.coeffs().allFinite() || !R.coeffs().allFinite() || !(diagonal.minCoeff() > 0))
+        return false;
+    const VectorXd D = diagonal.unaryExpr([](double m) { return power_of_two(1 / std::sqrt(m)); });
+    SparseMatrix scaled = D.asDiagonal() * M * D.asDiagonal();
+    // of the triangle that is decomposed
+    const SparseMatrix radius =
+        SparseMatrix(D.asDiagonal() * R * D.asDiagonal()).selfadjointView<Eigen::Lower>();
+    Eigen::SimplicialLLT<SparseMatrix> cholesky(scaled);
     if (cholesky.info() != Eigen::Success) return false;
-    const MatrixXd G = cholesky.matrixL().solve(MatrixXd::Identity(n, n)), size = G.cwiseAbs();
-    if (!G.allFinite()) return false;
-    const MatrixXd rest = (MatrixXd::Identity(n, n) - G * M * G.transpose()).cwiseAbs();
+    const SparseMatrix L = cholesky.matrixL();
+    VectorXd entries = VectorXd::Zero(n);  // of each row
+    for (Index j = 0; j < n; ++j)
+        for (SparseMatrix::InnerIterator at(L, j); at; ++at) ++entries[at.row()];
     const double unit = std::numeric_limits<double>::epsilon(),
-                 gamma = 2 * static_cast<double>(n + 4) * unit;
-    const Eigen::VectorXd one = Eigen::VectorXd::Ones(n), across = above(size.transpose(), one);
-    const Eigen::VectorXd off =
-        above(rest, one) + above(size, above(R, across) + gamma * above(M.cwiseAbs(), across));
-    return (off.array() < 0.99).all();
+                 c = 1.01 * unit * (entries.maxCoeff() + 4) * (scaled.diagonal().sum() + 1);
+    const VectorXd C = above(radius, VectorXd::Ones(n));
+    for (Index k = 0; k < n; ++k) scaled.coeffRef(k, k) -= 1.01 * (C[k] + c);
+    cholesky.factorize(scaled);
+    return cholesky.info() == Eigen::Success;
 }
 
-bool stable(const Problem& problem, const std::vector<Interval>& z,
-            const std::vector<Interval>& J) {
+bool stable(const Problem& problem, const std::vector<Interval>& z, const SparseRows<Interval>& J) {
     const System& system = problem.system;
     const Index n = 6 * system.bodies;
-    const auto size = static_cast<std::size_t>(problem.size());
     const double length = power_of_two(system.length);
-    const auto row_of = [&](std::size_t row) {
-        return turned_row(system, z, &J[row * size], length);
+    const auto row_of = [&](Index row) { return turned_row(system, z, J.row(row), length); };
+    // Adds weight · row rowᵀ.
+    const auto add_square = [](Entries& to, const Interval& weight, const Sparse& row) {
+        for (const auto& [i, a] : row)
+            for (const auto& [j, b] : row)
+                to.push_back(
+                    {static_cast<int>(i), static_cast<int>(j), weight * (i == j ? sqr(a) : a * b)});
     };
 
-    const auto N = static_cast<std::size_t>(n);
-    std::vector<Interval> H(N * N);
+    Entries H;
     const Interval half = 0.5;
     for (Index i = 0; i < n; ++i) {
         const double by = i % 6 < 3 ? 1 : 1 / length;
-        for (const auto& [j, entry] : row_of(static_cast<std::size_t>(i))) {
+        for (const auto& [j, entry] : row_of(i)) {
             const Interval part = -(entry * Interval(by) * half);
-            const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-            H[a * N + b] += part;
-            H[b * N + a] += part;
+            H.push_back({static_cast<int>(i), static_cast<int>(j), part});
+            H.push_back({static_cast<int>(j), static_cast<int>(i), part});
         }
     }
     for (std::size_t c = 0; c < system.separated.size(); ++c) {
-        const auto at = static_cast<std::size_t>(system.corner(c));
         // from the law itself: the smallest slope of a stop is zero, and outward rounding would
         // make it negative
         std::array<Interval, 2> f;
@@ -100,14 +118,11 @@ bool stable(const Problem& problem, const std::vector<Interval>& z,
                z[static_cast<std::size_t>(system.deformation(c))], 2, f.data());
         const double k = f[1].lo;
         if (!system.conservative || !(k >= 0)) return false;
-        const Sparse w = row_of(at);
-        for (const auto& [i, a] : w)
-            for (const auto& [j, b] : w)
-                H[static_cast<std::size_t>(i) * N + static_cast<std::size_t>(j)] +=
-                    Interval(k) * (i == j ? sqr(a) : a * b);
+        add_square(H, k, row_of(system.corner(c)));
     }
+    H = by_rows(H, static_cast<int>(n)).entries;
     double most = 0;
-    for (const Interval& entry : H) most = std::max(most, mag(entry));
+    for (const auto& entry : H) most = std::max(most, mag(entry.value));
     if (!std::isfinite(most) || !(most > 0)) return n == 0;
 
     // Constraint rows and gauges of idle motions, scaled to size one.
@@ -120,27 +135,15 @@ bool stable(const Problem& problem, const std::vector<Interval>& z,
         for (auto& [k, entry] : row) entry *= by;
         held.push_back(std::move(row));
     };
-    for (int row = 0; row < system.rows; ++row) hold(row_of(static_cast<std::size_t>(n + row)));
+    for (int row = 0; row < system.rows; ++row) hold(row_of(n + row));
     for (int k = problem.border.redundant; k < problem.border.count(); ++k)
-        hold(row_of(static_cast<std::size_t>(system.n() + k)));
+        hold(row_of(system.n() + k));
 
     for (const double rho : {1., 1e3, 1e6}) {
-        std::vector<Interval> all = H;
-        const Interval weight = power_of_two(rho * most);
-        for (const Sparse& row : held)
-            for (const auto& [i, a] : row)
-                for (const auto& [j, b] : row)
-                    all[static_cast<std::size_t>(i) * N + static_cast<std::size_t>(j)] +=
-                        weight * (i == j ? sqr(a) : a * b);
-        MatrixXd M(n, n), R(n, n);
-        for (Index i = 0; i < n; ++i)
-            for (Index j = 0; j < n; ++j) {
-                const Interval& entry = all[static_cast<std::size_t>(std::max(i, j)) * N +
-                                            static_cast<std::size_t>(std::min(i, j))];
-                M(i, j) = mid(entry);
-                R(i, j) = rad(entry);
-            }
-        if (positive_definite(M, R)) return true;
+        Entries all = H;
+        for (const Sparse& row : held) add_square(all, power_of_two(rho * most), row);
+        const Split sum = split(by_rows(all, static_cast<int>(n)));
+        if (sum.finite && positive_definite(sum.M, sum.R)) return true;
         if (held.empty()) return false;
     }
     return false;

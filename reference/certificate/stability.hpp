@@ -6,11 +6,11 @@
 namespace elastocheck::reference::certificate {
 
 // Proves xᵀ H x > 0 for every motion x that the joints allow and that is not idle,
-// H = -∂(balances)/∂(δr, δπ) anywhere in the box; J by rows is the Jacobian of the problem over the
-// box. False: not proved.
-bool stable(const Problem& problem, const std::vector<Interval>& z, const std::vector<Interval>& J);
+// H = -∂(balances)/∂(δr, δπ) anywhere in the box; J is the Jacobian of the problem over the box.
+// False: not proved.
+bool stable(const Problem& problem, const std::vector<Interval>& z, const SparseRows<Interval>& J);
 
-// Whether every symmetric matrix within M ± R is positive definite.
-bool positive_definite(const Eigen::MatrixXd& M, const Eigen::MatrixXd& R);
+// Whether every symmetric matrix within M ± R is positive definite; true: proved.
+bool positive_definite(const SparseMatrix& M, const SparseMatrix& R);
 
 }  // namespace elastocheck::reference::certificate

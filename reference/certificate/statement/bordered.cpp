@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SparseLU>
 #include <algorithm>
 
 #include "models/eigen/dense.hpp"
@@ -16,29 +14,28 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // A reciprocal condition number above the threshold by this factor needs no null space.
 constexpr double surely_regular = 1e3;
 constexpr int equilibration_sweeps = 8;
+// Null spaces take dense matrices.
+constexpr int max_unknowns_of_borders = 2000;
 // Relative to the largest entry of a null vector: smaller entries are rounding.
 constexpr double no_part = 1e-12;
 
-using Sparse = Eigen::SparseMatrix<double>;
-
 // D_r A D_c with rows and columns of size one (Ruiz 2001).
 struct Equilibrated {
-    Sparse A;
+    SparseMatrix A;
     VectorXd D_r, D_c;
 };
-Equilibrated equilibrated(const MatrixXd& A) {
-    Equilibrated result{A.sparseView(), VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
+Equilibrated equilibrated(const SparseMatrix& A) {
+    Equilibrated result{A, VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
     const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
     VectorXd r(A.rows()), c(A.cols());
     for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
         r.setZero(), c.setZero();
         for (Index j = 0; j < A.cols(); ++j)
-            for (Sparse::InnerIterator entry(result.A, j); entry; ++entry) {
+            for (SparseMatrix::InnerIterator entry(result.A, j); entry; ++entry) {
                 const double size = std::abs(entry.value());
                 r[entry.row()] = std::max(r[entry.row()], size);
                 c[j] = std::max(c[j], size);
@@ -46,7 +43,7 @@ Equilibrated equilibrated(const MatrixXd& A) {
         r = r.unaryExpr(scale);
         c = c.unaryExpr(scale);
         for (Index j = 0; j < A.cols(); ++j)
-            for (Sparse::InnerIterator entry(result.A, j); entry; ++entry)
+            for (SparseMatrix::InnerIterator entry(result.A, j); entry; ++entry)
                 entry.valueRef() = r[entry.row()] * entry.value() * c[j];
         result.D_r.array() *= r.array();
         result.D_c.array() *= c.array();
@@ -140,16 +137,18 @@ VectorXd constraint_sizes(const System& system) {
 
 }  // namespace
 
-MatrixXd square(const std::vector<double>& J, Index n) {
-    return Eigen::Map<const RowMajor>(J.data(), n, n);
-}
-
-MatrixXd middle(const std::vector<Interval>& J, Index n) {
-    MatrixXd of(n, n);
-    for (Index i = 0; i < n; ++i)
-        for (Index j = 0; j < n; ++j) of(i, j) = mid(J[static_cast<std::size_t>(i * n + j)]);
+template <class S>
+SparseMatrix middle(const SparseRows<S>& J) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& [row, column, value] : J.entries)
+        entries.emplace_back(row, column, mid(range(value)));
+    const auto n = static_cast<Index>(J.start.size()) - 1;
+    SparseMatrix of(n, n);
+    of.setFromTriplets(entries.begin(), entries.end());
     return of;
 }
+template SparseMatrix middle(const SparseRows<double>&);
+template SparseMatrix middle(const SparseRows<Interval>&);
 
 std::vector<double> doubles(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 std::vector<Interval> thin(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
@@ -180,13 +179,13 @@ Border border_at(const System& system, const VectorXd& z, double a, double zero_
     const Index nb = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
     Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
     const auto values = evaluate(system, doubles(z), a, Slopes::yes);
-    const MatrixXd J = square(values.J, n);
-    if (!J.allFinite() || nb == 0) return border;
-    // The condition estimate is meaningless for a matrix with a pivot that is rounding.
-    const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(equilibrated(J).A));
-    if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > zero_tolerance &&
-        lu.rcond() > surely_regular * zero_tolerance)
+    const SparseMatrix slopes = middle(values.J);
+    if (!slopes.coeffs().allFinite() || nb == 0 ||
+        factors(slopes).rcond() > surely_regular * zero_tolerance)
         return border;
+    border.too_large = n > max_unknowns_of_borders;
+    if (border.too_large) return border;
+    const MatrixXd J = slopes;
 
     // Redundant rows, yᵀ Φ_q = 0: the reactions y are self-equilibrated.
     const MatrixXd T = tangent(system, z);
@@ -214,7 +213,8 @@ Border border_at(const System& system, const VectorXd& z, double a, double zero_
         in_forces[k] = k % 6 < 3 ? 1 : 1 / system.length;
     }
     const VectorXd weight = in_forces.cwiseQuotient(acts);
-    MatrixXd turned = weight.asDiagonal() * square(fixed.J, n).topLeftCorner(nb, poses) * T * Z;
+    MatrixXd turned =
+        weight.asDiagonal() * MatrixXd(middle(fixed.J)).topLeftCorner(nb, poses) * T * Z;
     MatrixXd C = (weight.asDiagonal() * J.block(0, poses, nb, m)).transpose();
     normalise(C);
     // part outside the range of reactions
@@ -314,23 +314,22 @@ void add_border(const Problem& problem, const std::vector<S>& y, std::vector<S>&
 }
 
 template <class S>
-std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& values) {
-    const Index n = problem.n(), k = problem.border.count(), size = problem.size();
-    std::vector<S> J(static_cast<std::size_t>(size * size), constant<S>(0.));
-    const auto entry = [&](Index i, Index j) -> S& {
-        return J[static_cast<std::size_t>(i * size + j)];
+SparseRows<S> bordered_slopes(const Problem& problem, Values<S> values) {
+    const int n = problem.n(), k = problem.border.count(), size = problem.size();
+    std::vector<Slope<S>> entries = std::move(values.J.entries);
+    const auto add = [&](int row, int column, const S& value) {
+        if (!is_zero(value)) entries.push_back({row, column, value});
     };
-    for (Index i = 0; i < n; ++i) {
-        for (Index j = 0; j < n; ++j) entry(i, j) = values.J[static_cast<std::size_t>(i * n + j)];
-        for (Index j = 0; j < k; ++j) {
-            entry(i, n + j) = constant<S>(problem.border.U(i, j));
-            entry(n + j, i) = constant<S>(problem.border.g(i, j));
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < k; ++j) {
+            add(i, n + j, constant<S>(problem.border.U(i, j)));
+            add(n + j, i, constant<S>(problem.border.g(i, j)));
         }
-        if (problem.a_is_unknown) entry(i, size - 1) = values.E_a[static_cast<std::size_t>(i)];
+        if (problem.a_is_unknown) add(i, size - 1, values.E_a[static_cast<std::size_t>(i)]);
     }
-    for (Index i = 0; problem.a_is_unknown && i < size; ++i)
-        entry(size - 1, i) = constant<S>(problem.t[i]);
-    return J;
+    for (int i = 0; problem.a_is_unknown && i < size; ++i)
+        add(size - 1, i, constant<S>(problem.t[i]));
+    return by_rows(entries, size);
 }
 
 }  // namespace
@@ -351,6 +350,12 @@ Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, 
     if (problem.size() > problem.n()) values.J = bordered_slopes(problem, values);
     return values;
 }
+Residual residual(const Problem& problem, const std::vector<Interval>& y, const Interval& a) {
+    Residual at =
+        residual(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a));
+    add_border(problem, y, at.E);
+    return at;
+}
 template Values<double> evaluate(const Problem&, const std::vector<double>&, const double&, Slopes);
 template Values<Interval> evaluate(const Problem&, const std::vector<Interval>&, const Interval&,
                                    Slopes);
@@ -361,52 +366,87 @@ template Values<Along> evaluate_without_slopes(const Problem&, const std::vector
 template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vector<Jet<1>>&,
                                                 const Jet<1>&);
 
+VectorXd Factors::solve(const VectorXd& b) const {
+    if (!transposed) return VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
+    return D_c.cwiseProduct(transposed->transpose().solve(VectorXd(D_r.cwiseProduct(b))));
+}
+
+MatrixXd Factors::rows_of_inverse(Index from, Index count) const {
+    if (!transposed)
+        return MatrixXd::Constant(count, size(), std::numeric_limits<double>::quiet_NaN());
+    MatrixXd right = MatrixXd::Zero(size(), count);
+    for (Index k = 0; k < count; ++k) right(from + k, k) = D_c[from + k];
+    return (D_r.asDiagonal() * MatrixXd(transposed->solve(right))).transpose();
+}
+
+// ‖A⁻¹‖₁ by Hager's method (Hager 1984, Higham 1988).
+double Factors::rcond() const {
+    constexpr int iterations = 5;
+    const Index n = size();
+    if (!transposed) return 0;
+    auto direct = transposed->transpose();
+    VectorXd x = VectorXd::Constant(n, 1 / static_cast<double>(n));
+    double inverse_norm = 0;
+    for (int k = 0; k < iterations; ++k) {
+        const VectorXd y = direct.solve(x);
+        if (!y.allFinite()) return 0;
+        const double size = y.lpNorm<1>();
+        if (k > 0 && !(size > inverse_norm)) break;
+        inverse_norm = std::max(inverse_norm, size);
+        const VectorXd sign = y.unaryExpr([](double v) { return v < 0 ? -1. : 1.; }),
+                       z = transposed->solve(sign);
+        Index largest = 0;
+        const double slope = z.cwiseAbs().maxCoeff(&largest);
+        if (!z.allFinite()) return 0;
+        if (k > 0 && slope <= z.dot(x)) break;
+        x = VectorXd::Unit(n, largest);
+    }
+    for (Index k = 0; k < n; ++k)
+        x[k] = (k % 2 == 0 ? 1 : -1) * (1 + static_cast<double>(k) / static_cast<double>(n));
+    const VectorXd y = direct.solve(x);
+    if (!y.allFinite()) return 0;
+    inverse_norm = std::max(inverse_norm, 2 * y.lpNorm<1>() / (3 * static_cast<double>(n)));
+    return 1 / (norm * inverse_norm);
+}
+
+Factors factors(const SparseMatrix& J) {
+    const Index n = J.rows();
+    Factors result{VectorXd::Ones(n), VectorXd::Ones(n), nullptr};
+    if (n == 0 || !J.coeffs().allFinite()) return result;
+    const auto [A, D_r, D_c] = equilibrated(J);
+    result.D_r = D_r, result.D_c = D_c;
+    for (Index j = 0; j < n; ++j) result.norm = std::max(result.norm, A.col(j).cwiseAbs().sum());
+    auto lu = std::make_shared<Eigen::SparseLU<SparseMatrix>>(SparseMatrix(A.transpose()));
+    if (lu->info() == Eigen::Success) result.transposed = std::move(lu);
+    return result;
+}
+
+MatrixXd inverse(const Factors& factors) { return factors.rows_of_inverse(0, factors.size()); }
+
 namespace {
 
-struct Inverted {
-    MatrixXd Y;        // NaN where a pivot is zero
-    double rcond = 0;  // of J equilibrated, in the 1-norm
-};
-// By sparse factors: a tenth of the entries of J is not zero.
-Inverted inverted(const MatrixXd& J) {
-    const Index n = J.rows();
-    const auto none = [n] {
-        return Inverted{MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN())};
-    };
-    if (n == 0 || !J.allFinite()) return none();
-    const auto [A, D_r, D_c] = equilibrated(J);
-    const Eigen::SparseLU<Sparse> lu(A);
-    if (lu.info() != Eigen::Success) return none();
-    Inverted result{lu.solve(MatrixXd::Identity(n, n))};
+// Of a change of the poses: the largest of a body, relative to the model's size.
+double size_of(const Problem& problem, const VectorXd& step) {
     double size = 0;
-    for (Index j = 0; j < n; ++j) size = std::max(size, A.col(j).cwiseAbs().sum());
-    result.rcond = 1 / (size * result.Y.cwiseAbs().colwise().sum().maxCoeff());
-    result.Y = D_c.asDiagonal() * result.Y * D_r.asDiagonal();
-    return result;
+    for (int b = 0; b < problem.system.bodies; ++b) {
+        const int k = problem.system.pose(b);
+        size = std::max({size, step.segment<3>(k).norm() / problem.system.length,
+                         step.segment<4>(k + 3).norm()});
+    }
+    return size;
 }
 
 }  // namespace
 
-MatrixXd inverse(const MatrixXd& J) { return inverted(J).Y; }
-
 // Newton's method until its steps are rounding, near the state: a divergent one along an idle motion
-// also ends in small steps, at coordinates of 1e7 and more. The last two steps share an inverse, unless they do
-// not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
+// also ends in small steps, at coordinates of 1e7 and more. The last two steps share their factors, unless they do
+// not decrease: then a knot may lie between, and the factors belong to its other side. Near a limit
 // point this is rounding.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     constexpr int max_steps = 12, max_shared = 2, max_anew = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
     const double rounding = problem.system.separated.empty() ? 1e-13 : 1e-15;
     Approximate approximate{from, {}};
-    const auto size_of = [&](const VectorXd& step) {
-        double size = 0;
-        for (int b = 0; b < problem.system.bodies; ++b) {
-            const int k = problem.system.pose(b);
-            size = std::max({size, step.segment<3>(k).norm() / problem.system.length,
-                             step.segment<4>(k + 3).norm()});
-        }
-        return size;
-    };
     double last_size = std::numeric_limits<double>::infinity();
     bool share = false;
     for (int step = 0, shared = 0, anew = 0;
@@ -414,16 +454,14 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         const Values<double> values =
             evaluate(problem, doubles(approximate.y), a, share ? Slopes::no : Slopes::yes);
         if (!share) {
-            Inverted inverse = inverted(square(values.J, problem.size()));
-            approximate.Y = std::move(inverse.Y);
-            approximate.rcond = inverse.rcond;
+            approximate.J = factors(middle(values.J));
             approximate.since = 0;
         }
         const VectorXd dy =
-            -approximate.Y * Eigen::Map<const VectorXd>(values.E.data(), problem.size());
-        if (!dy.allFinite()) return {approximate.y, approximate.Y, false};
+            -approximate.J.solve(Eigen::Map<const VectorXd>(values.E.data(), problem.size()));
+        if (!dy.allFinite()) return {approximate.y, approximate.J, false};
         approximate.y += dy;
-        const double size = size_of(dy);
+        const double size = size_of(problem, dy);
         approximate.since += size;
         approximate.settled = approximate.settled || size < close;
         shared += share ? 1 : 0;
@@ -436,7 +474,7 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         }
         last_size = size;
     }
-    approximate.settled = approximate.settled && size_of(approximate.y - from) <= near;
+    approximate.settled = approximate.settled && size_of(problem, approximate.y - from) <= near;
     return approximate;
 }
 
@@ -446,7 +484,8 @@ BorderCheck check_border(const Problem& problem, const VectorXd& y, double a) {
         border_at(system, y.head(system.n()), a, zero_tolerance_of_rounding(system));
     const bool alike =
         there.redundant == problem.border.redundant && there.count() == problem.border.count();
-    return {alike && !there.pushed && !there.open, alike && there.pushed, alike && there.open};
+    return {alike && !there.pushed && !there.open && !there.too_large, alike && there.pushed,
+            alike && there.open};
 }
 
 NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double a) {
@@ -456,13 +495,20 @@ NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double
         VectorXd y = VectorXd::Zero(problem.size());
         y.head(system.n()) = start;
         Approximate found = newton(problem, y, a);
-        // Without a border the inverse shows that J is regular, also after the steps since.
+        // Without a border the factors show that J is regular, also after the steps since.
         BorderCheck there;
-        if (found.settled && found.y.allFinite())
-            there = problem.border.count() == 0 &&
-                            found.rcond > surely_regular * std::max(rounding, found.since)
-                        ? BorderCheck{true}
-                        : check_border(problem, found.y, a);
+        if (found.settled && found.y.allFinite()) {
+            const Border& border = problem.border;
+            const bool is_there = zero_tolerance == rounding && !border.too_large &&
+                                  size_of(problem, found.y - y) <= rounding;
+            if (border.count() == 0 &&
+                found.J.rcond() > surely_regular * std::max(rounding, found.since))
+                there = {true};
+            else if (is_there)
+                there = {!border.pushed && !border.open, border.pushed, border.open};
+            else
+                there = check_border(problem, found.y, a);
+        }
         return NearEquilibrium{std::move(problem), std::move(found), there};
     };
     // Whether the border at the end is that of the start.

@@ -8,17 +8,24 @@
 // Unknowns y = (z, μ, a).
 #pragma once
 
+#include <Eigen/SparseLU>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "reference/certificate/statement/system.hpp"
 
 namespace elastocheck::reference::certificate {
 
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
 struct Border {
     Eigen::MatrixXd U, g;  // [n × k]: redundant rows first, then idle motions
     int redundant = 0;
     // at z: the redundant rows by more, an idle motion by more than rounding
     bool open = false, pushed = false;
+    bool too_large =
+        false;  // to be looked for where the Jacobian may be singular: nothing is known
     int count() const { return static_cast<int>(U.cols()); }
 };
 
@@ -56,27 +63,41 @@ struct Problem {
     int size() const { return n() + border.count() + (a_is_unknown ? 1 : 0); }
 };
 
-// The equations and, by rows [size × size], their Jacobian. A parameter that is no unknown is the
+// The equations and their Jacobian [size × size]. A parameter that is no unknown is the
 // given `a`.
 template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes);
 template <class S>
 Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a);
+Residual residual(const Problem& problem, const std::vector<Interval>& y, const Interval& a);
 
-Eigen::MatrixXd square(const std::vector<double>& J, Eigen::Index n);
-Eigen::MatrixXd middle(const std::vector<Interval>& J, Eigen::Index n);
+// The matrix, of intervals its middle.
+template <class S>
+SparseMatrix middle(const SparseRows<S>& J);
 std::vector<double> doubles(const Eigen::VectorXd& x);
 std::vector<Interval> box(const Eigen::VectorXd& middle, const Eigen::VectorXd& radius);
 std::vector<Interval> thin(const Eigen::VectorXd& x);
 
-// Floating-point inverse of the Jacobian, and Newton's method with it: start of the proof.
-Eigen::MatrixXd inverse(const Eigen::MatrixXd& J);
+// Floating-point LU factors of a Jacobian D_r⁻¹ A D_c⁻¹, A with rows and columns of size one.
+struct Factors {
+    Eigen::VectorXd D_r, D_c;
+    std::shared_ptr<Eigen::SparseLU<SparseMatrix>> transposed;  // of Aᵀ; none if it is singular
+    double norm = 0;                                            // ‖A‖₁
+    Eigen::Index size() const { return D_r.size(); }
+    Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+    // `count` rows of the inverse [count × n]; NaN without factors.
+    Eigen::MatrixXd rows_of_inverse(Eigen::Index from, Eigen::Index count) const;
+    double rcond() const;  // estimate for A in the 1-norm; 0 without factors
+};
+Factors factors(const SparseMatrix& J);
+Eigen::MatrixXd inverse(const Factors& factors);
+
+// Newton's method: start of the proof.
 struct Approximate {
     Eigen::VectorXd y;
-    Eigen::MatrixXd Y;
+    Factors J;
     bool settled = false;
-    double rcond = 0;  // of the equilibrated Jacobian that Y inverts; 0 where there is no solution
-    double since = 0;  // movement since, relative to the model's size
+    double since = 0;  // movement since the factors, relative to the model's size
 };
 Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a);
 

@@ -15,13 +15,19 @@ struct Slots {
     bool two() const { return i != ground && j != ground; }
 };
 
+// A number with its derivatives by the forces of an element.
+template <class S>
+using InForces = Dual<S, 6>;
+
 template <class S>
 struct Assembly {
     const System& system;
     const std::vector<S>& z;
     const S& a;
     Values<S> out;
-    bool fixed_forces = false;  // elastic forces are constant: slopes of the geometry alone
+    std::vector<Slope<S>> slopes = {};  // of all parts, one after the other
+    Laws laws = {};                     // for InForces
+    bool fixed_forces = false;          // elastic forces are constant: slopes of the geometry alone
     // Σ |force| + |moment| / L of the parts on each body; not computed if empty
     std::vector<double> acts = {};
 
@@ -34,7 +40,8 @@ struct Assembly {
         } else {
             T x;
             x.v = z[static_cast<std::size_t>(k)];
-            x.d.at(static_cast<std::size_t>(slot)) = constant<S>(1.);
+            if constexpr (!std::is_same_v<T, InForces<S>>)
+                x.d.at(static_cast<std::size_t>(slot)) = constant<S>(1.);
             return x;
         }
     }
@@ -54,7 +61,7 @@ struct Assembly {
         } else {
             T x;
             x.v = a;
-            x.d.back() = constant<S>(1.);
+            if constexpr (!std::is_same_v<T, InForces<S>>) x.d.back() = constant<S>(1.);
             return x;
         }
     }
@@ -68,6 +75,12 @@ struct Assembly {
     template <int N>
     void add(const Slots& slots, int row, const Dual<S, N>& x) {
         add(slots, row, x.v);
+        if constexpr (std::is_same_v<S, Interval> && N == 6) {
+            for (std::size_t k = 0; k < 6; ++k)
+                if (!is_zero(x.d[k]))
+                    laws.D.push_back({row, laws.column + static_cast<int>(k), x.d[k]});
+            return;
+        }
         const auto columns = [&](BodyId body, int from) {
             if (body == ground) return;
             for (int q = 0; q < 7; ++q)
@@ -82,9 +95,7 @@ struct Assembly {
     }
     void add_slope(int row, int column, const S& d) {
         if (is_zero(d)) return;
-        S& J = out.J[static_cast<std::size_t>(row) * static_cast<std::size_t>(system.n()) +
-                     static_cast<std::size_t>(column)];
-        J = J + d;
+        slopes.push_back({row, column, d});
     }
     static const S& value(const S& x) { return x; }
     template <int N>
@@ -133,6 +144,7 @@ struct Assembly {
     template <class T>
     void element(std::size_t e) {
         const ElementPath& path = system.elements[e];
+        laws.column = 6 * static_cast<int>(e);
         std::visit(
             [&](const auto& kind) {
                 const Slots slots{kind.i.body, kind.j.body};
@@ -171,7 +183,7 @@ struct Assembly {
                         const Frame<T>& j) {
         return pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
             const T f = force(spring.law, x);
-            return fixed_forces ? constant_of(f) : f;
+            return fixed_forces ? constant_of(f) : as_one(f, 0);
         });
     }
     template <class T>
@@ -180,12 +192,28 @@ struct Assembly {
         const Measured<T> m = measured(bushing, path.rotational, i, j);
         const T raised = path.free_length.at(parameter<T>());
         std::array<T, 6> u = force(bushing.law, deformation(bushing, raised, m), path.separated);
-        for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] + path.preload[k].at(parameter<T>());
+        for (std::size_t k = 0; k < 6; ++k)
+            u[k] = as_one(T(u[k] + path.preload[k].at(parameter<T>())), k);
         if (fixed_forces) {
             for (T& x : u) x = constant_of(x);
             u = turned_back(u, path, m.A_f, -1);
         }
         return acting(bushing, u, m, path.rotational, i, j);
+    }
+
+    // The force k of an element as one number for all equations.
+    template <class T>
+    T as_one(const T& f, std::size_t k) {
+        if constexpr (std::is_same_v<T, InForces<Interval>>) {
+            const double radius = rad(f.v);
+            if (!bounded(f.v) || radius == 0) return f;
+            laws.rho[laws.column + static_cast<int>(k)] = radius;
+            T one;
+            one.v = mid(f.v);
+            one.d[k] = constant<S>(1.);
+            return one;
+        }
+        return f;
     }
 
     static S constant_of(const S& x) { return x; }
@@ -327,6 +355,30 @@ struct Assembly {
     }
 };
 
+template <class Kind>
+bool has_two_bodies(const Kind& kind) {
+    return std::visit([](const auto& k) { return Slots{k.i.body, k.j.body}.two(); }, kind);
+}
+
+// All parts but the elements.
+template <class S, class One, class Two>
+void assemble_others(Assembly<S>& sum) {
+    const System& system = sum.system;
+    const Model& model = *system.model;
+    for (std::size_t c = 0; c < system.separated.size(); ++c)
+        has_two_bodies(model.elastics[system.separated[c].element].kind)
+            ? sum.template corner<Two>(c)
+            : sum.template corner<One>(c);
+    for (std::size_t c = 0; c < model.constraints.size(); ++c)
+        has_two_bodies(model.constraints[c].kind) ? sum.template constraint<Two>(c)
+                                                  : sum.template constraint<One>(c);
+    for (const LoadPath& load : system.loads)
+        if (body_of(load.kind) != ground)
+            sum.slots_of(load.kind).two() ? sum.template load<Two>(load)
+                                          : sum.template load<One>(load);
+    for (BodyId body = 0; body < system.bodies; ++body) sum.template norm<One>(body);
+}
+
 // Assembles all parts; `One` and `Two` are the number types for parts with one and with two bodies.
 template <class S, class One, class Two>
 void assemble(Assembly<S>& sum, Slopes slopes) {
@@ -334,26 +386,12 @@ void assemble(Assembly<S>& sum, Slopes slopes) {
     const Model& model = *system.model;
     const auto n = static_cast<std::size_t>(system.n());
     sum.out.E.assign(n, constant<S>(0.));
-    if (slopes == Slopes::yes) {
-        sum.out.J.assign(n * n, constant<S>(0.));
-        sum.out.E_a.assign(n, constant<S>(0.));
-    }
-    const auto two = [](const auto& kind) {
-        return std::visit([](const auto& k) { return Slots{k.i.body, k.j.body}.two(); }, kind);
-    };
+    if (slopes == Slopes::yes) sum.out.E_a.assign(n, constant<S>(0.));
     for (std::size_t e = 0; e < model.elastics.size(); ++e)
-        two(model.elastics[e].kind) ? sum.template element<Two>(e) : sum.template element<One>(e);
-    for (std::size_t c = 0; c < system.separated.size(); ++c)
-        two(model.elastics[system.separated[c].element].kind) ? sum.template corner<Two>(c)
-                                                              : sum.template corner<One>(c);
-    for (std::size_t c = 0; c < model.constraints.size(); ++c)
-        two(model.constraints[c].kind) ? sum.template constraint<Two>(c)
-                                       : sum.template constraint<One>(c);
-    for (const LoadPath& load : system.loads)
-        if (body_of(load.kind) != ground)
-            sum.slots_of(load.kind).two() ? sum.template load<Two>(load)
-                                          : sum.template load<One>(load);
-    for (BodyId body = 0; body < system.bodies; ++body) sum.template norm<One>(body);
+        has_two_bodies(model.elastics[e].kind) ? sum.template element<Two>(e)
+                                               : sum.template element<One>(e);
+    assemble_others<S, One, Two>(sum);
+    if (slopes == Slopes::yes) sum.out.J = by_rows(sum.slopes, system.n());
 }
 
 template <class S>

@@ -26,6 +26,7 @@
 #include "elastocheck/equilibrium_path.hpp"
 #include "models/driven_inputs.hpp"
 #include "reference/certificate/statement/equations.hpp"
+#include "reference/certificate/statement/sparse_rows.hpp"
 
 namespace elastocheck::reference::certificate {
 
@@ -88,21 +89,34 @@ enum class Corners {
 };
 System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
 bool has_corners(const Model& model);
-// Largest number of unknowns for a proof. Its matrices are dense, so its time grows with the cube
-// (0.3 s per point at 500).
-inline constexpr int max_unknowns = 500;
 // Reason why no proof is tried, the size or the arithmetic of the thread; empty where one is.
-std::string why_not_tried(const System& system);
+std::string why_not_tried(const System& system, int most_unknowns);
 const ScalarLaw& law_of(const System& system, const SeparatedCorner& corner);
 // Sets x and f of the corners from the poses of z.
 void set_corners(const System& system, Eigen::VectorXd& z, double a);
 
-// E, and if requested ∂E/∂z by rows [n × n] and ∂E/∂a.
+// E, and if requested ∂E/∂z [n × n] and ∂E/∂a.
 template <class S>
 struct Values {
-    std::vector<S> E, J, E_a;
+    std::vector<S> E, E_a;
+    SparseRows<S> J;
 };
 enum class Slopes { no, yes };
+
+// E at a point in intervals. A law's force is evaluated to f̂ ± ρ and acts on two bodies at least:
+// as one number in all equations, which leaves far less to be proved than as independent ones,
+//
+//   E ∈ E(f̂) + D [-ρ, ρ]     D: the actions of its unit, six columns per element, one entry a place
+struct Laws {
+    std::vector<Slope<Interval>> D;
+    Eigen::VectorXd rho;
+    int column = 0;  // while assembling: the first of the element
+};
+struct Residual {
+    std::vector<Interval> E;
+    Laws laws;
+};
+Residual residual(const System& system, const std::vector<Interval>& z, const Interval& a);
 template <class S>
 Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes);
 // Number types along a branch piece: for the equations and for their Jacobian.
@@ -111,10 +125,11 @@ using SlopesAlong = Jet<2>;
 template <class S>
 Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a);
 
-// ∂E/∂z by rows [n × n] at constant elastic forces, and the size of the acting forces on each body,
+// ∂E/∂z [n × n] at constant elastic forces, and the size of the acting forces on each body,
 // Σ |force| + |moment| / L over its elements, reactions and loads [N].
 struct Geometry {
-    std::vector<double> J, acts;
+    SparseRows<double> J;
+    std::vector<double> acts;
 };
 Geometry geometry(const System& system, const std::vector<double>& z, double a);
 // ∂e/∂z of the deformation of an element, springs in the first row only [6 × 7 nb].

@@ -249,16 +249,16 @@ TEST(CertificateEquations, StateBeyondTheEndOfATableIsNotProved) {
 TEST(CertificateEquations, VerifiedCholeskyAcceptsOnlyPositiveDefiniteMatrices) {
     Eigen::Matrix2d M, R = Eigen::Matrix2d::Zero();
     M << 1e12, 1, 1, 1e-6;
-    EXPECT_TRUE(positive_definite(M, R));
+    EXPECT_TRUE(positive_definite(M.sparseView(), R.sparseView()));
     R(1, 1) = 0.9e-6;
-    EXPECT_TRUE(positive_definite(M, R));
+    EXPECT_TRUE(positive_definite(M.sparseView(), R.sparseView()));
     R(1, 1) = 1.1e-6;
-    EXPECT_FALSE(positive_definite(M, R));
+    EXPECT_FALSE(positive_definite(M.sparseView(), R.sparseView()));
     M << 1, 1, 1, 1;
     R.setZero();
-    EXPECT_FALSE(positive_definite(M, R));
+    EXPECT_FALSE(positive_definite(M.sparseView(), R.sparseView()));
     M(1, 1) = std::nan("");
-    EXPECT_FALSE(positive_definite(M, R));
+    EXPECT_FALSE(positive_definite(M.sparseView(), R.sparseView()));
 }
 
 }  // namespace
