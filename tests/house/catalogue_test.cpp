@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::set<std::string>> other_meanings{
     {"travel",  // a load case, what a branch drives, or the column of a wheel rate
      {"compare/tables/compare_result.cpp", "reports/command/import_command.cpp",
-      "reports/command/loads_command.cpp", "reports/given/headings.cpp", "reports/given/wheels.cpp",
-      "reports/page/common.cpp", "reports/page/common.hpp",
+      "reports/command/options/load_cases.cpp", "reports/given/headings.cpp",
+      "reports/given/wheels.cpp", "reports/page/common.cpp", "reports/page/common.hpp",
       "reports/page/sections/inputs/suspension.cpp",
       "reports/page/sections/kinematics/travel.cpp"}},
     {"compression", {"compare/comparison/trim.cpp"}},  // of a spring, in a message
