@@ -44,8 +44,8 @@ std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
     }
 }
 
-// Σ w_k ΔG_k into s.work.upper and s.work.lower. Points and lengths that change together keep a row closed: what
-// is left is rounding.
+// Σ w_k ΔG_k into s.work.upper and s.work.lower. Points and lengths that change together keep a row
+// closed: what is left is rounding.
 void difference(SteppingState& s, double a, const Residual& here, const Neighbours& stencil) {
     s.work.upper.setZero(), s.work.lower.setZero();
     for (const Neighbour& k : stencil) {

@@ -1,7 +1,7 @@
 // Explicit instantiation of Eigen's decompositions of MatrixXd and of sparse matrices (in dense.cpp
 // and sparse.cpp), each of which costs the compiler seconds wherever it is used.
 //
-// Included by the precompiled headers; a file that calls matrix_Q includes it itself. A
+// Included by the precompiled headers; a file that calls its functions includes it itself. A
 // decomposition's argument has to be a matrix, not an expression: for every type of an expression
 // Eigen instantiates the decomposition again.
 #pragma once

@@ -82,8 +82,8 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
 struct Tube {
     ProofState state = ProofState::open;
     std::string detail;
-    bool tried =
-        true;  // false: the system is too large, or the arithmetic does not round as assumed
+    // false: the system is too large, or the arithmetic does not round as assumed
+    bool tried = true;
     double from = 0, to = 0;  // range of a covered without a gap
     Extent width;  // of the tube: largest distance of the curve from the states at their a
     int pieces = 0;

@@ -499,15 +499,14 @@ NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double
         BorderCheck there;
         if (found.settled && found.y.allFinite()) {
             const Border& border = problem.border;
+            // A state that is pushed by its own rounding is asked again where that is gone.
             const bool is_there = zero_tolerance == rounding && !border.too_large &&
+                                  !border.pushed && !border.open &&
                                   size_of(problem, found.y - y) <= rounding;
-            if (border.count() == 0 &&
-                found.J.rcond() > surely_regular * std::max(rounding, found.since))
-                there = {true};
-            else if (is_there)
-                there = {!border.pushed && !border.open, border.pushed, border.open};
-            else
-                there = check_border(problem, found.y, a);
+            const bool is_regular =
+                border.count() == 0 &&
+                found.J.rcond() > surely_regular * std::max(rounding, found.since);
+            there = is_there || is_regular ? BorderCheck{true} : check_border(problem, found.y, a);
         }
         return NearEquilibrium{std::move(problem), std::move(found), there};
     };
