@@ -59,7 +59,7 @@ constexpr double at_once = 0.03;
 constexpr double much_better = 0.01, rounding_of_range = 1e-6;
 
 constexpr double by_accident = 0.01;  // of a transformation that is right, at most
-constexpr int most_numbers = 5;       // of a branch: more say no more
+constexpr int max_numbers = 5;        // of a branch: more say no more
 
 struct UnitConfusion {
     double factor;
@@ -140,7 +140,7 @@ int numbers_in(const Beside& b, double left) {
         for (Eigen::Index k = 0; k < n; ++k)
             v[k] = b.candidate[first + static_cast<std::size_t>(k)];
         int count = 1;
-        for (; count < std::min<Eigen::Index>(n, most_numbers); ++count) {
+        for (; count < std::min<Eigen::Index>(n, max_numbers); ++count) {
             Eigen::MatrixXd powers(n, count);
             for (Eigen::Index k = 0; k < n; ++k)
                 for (Eigen::Index j = 0; j < count; ++j)

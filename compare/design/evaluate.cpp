@@ -31,8 +31,8 @@ using Eigen::VectorXd;
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
 
-constexpr int most_shorter = 3;     // how often h is divided by eight
-constexpr double one_slope = 1e-3;  // of the largest change by 2h: a smaller kink is none
+constexpr int max_shorter_steps = 3;  // how often h is divided by eight
+constexpr double one_slope = 1e-3;    // of the largest change by 2h: a smaller kink is none
 
 // Outputs of a model by their names: a figure of the catalogue is made alone; the list of all outputs
 // when another one is asked for, with the sums, which take an analysis, only where it has none.
@@ -297,13 +297,13 @@ VectorXd SearchRange::shares(const VectorXd& p) const {
 }
 
 MatrixXd Figures::gradient(const VectorXd& p) const {
-    const VectorXd here = value(p), rounding = here.unaryExpr(&least_movement);
+    const VectorXd here = value(p), rounding = here.unaryExpr(&min_movement);
     MatrixXd rate = MatrixXd::Constant(here.size(), p.size(), nan);
     VectorXd size = VectorXd::Zero(here.size());  // largest change by a step of any number
     std::vector<Index> open(static_cast<std::size_t>(p.size()));
     std::iota(open.begin(), open.end(), Index{0});
     double share = 1;
-    for (int pass = 0; pass <= most_shorter && !open.empty(); ++pass, share /= 8) {
+    for (int pass = 0; pass <= max_shorter_steps && !open.empty(); ++pass, share /= 8) {
         std::vector<VectorXd> points{p};
         for (const Index i : open)
             for (const double t : {-2, -1, 1, 2})

@@ -126,6 +126,6 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
 inline double step_of(const Number& number) { return varied_number(number).step; }
 
 // What moves a figure of this value by less, does not move it: rounding.
-inline double least_movement(double value) { return 1e-9 * (1 + std::abs(value)); }
+inline double min_movement(double value) { return 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace elastocheck::compare

@@ -19,10 +19,10 @@ using Eigen::VectorXd;
 // The letters and formulas are those of fit.hpp.
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr double least_singular = 1e-6;  // of the largest: below, a combination is not determined
-constexpr double least_part = 1e-3;      // of a number in an undetermined combination
-constexpr double least_noise = 1e-9;     // of the range of a column: exact data
-constexpr int noise_updates = 2;         // estimates of s_c after the first fit
+constexpr double min_singular = 1e-6;  // of the largest: below, a combination is not determined
+constexpr double min_part = 1e-3;      // of a number in an undetermined combination
+constexpr double min_noise = 1e-9;     // of the range of a column: exact data
+constexpr int noise_updates = 2;       // estimates of s_c after the first fit
 constexpr int max_robust_passes = 60;
 constexpr double numbers_stay = 1e-6;     // in steps, from one robust pass to the next
 constexpr double cauchy_width = 2.385;    // c
@@ -69,7 +69,7 @@ void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measure
     const Svd svd = svd_of(J, Eigen::ComputeFullV);
     VectorXd& S = fitted.singular_values = VectorXd::Zero(n);
     S.head(svd.values.size()) = svd.values;
-    const Index determined = (S.array() > least_singular * S[0]).count();
+    const Index determined = (S.array() > min_singular * S[0]).count();
     fitted.undetermined = svd.V.rightCols(n - determined);
     const VectorXd variance =
         (svd.V.leftCols(determined) * S.head(determined).cwiseInverse().asDiagonal())
@@ -80,7 +80,7 @@ void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measure
         student_95(fitted.freedom) * (factor * variance).cwiseSqrt().cwiseProduct(measured.step);
     for (Index i = 0; i < n; ++i)
         if (fitted.freedom < 1 || !std::isfinite(factor) ||
-            (fitted.undetermined.array().row(i).abs() > least_part).any())
+            (fitted.undetermined.array().row(i).abs() > min_part).any())
             fitted.interval[i] = unlimited;
 }
 
@@ -154,7 +154,7 @@ Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& 
         for (const auto& rows : places) {
             const VectorXd deviation = residual(rows);
             noise(rows).setConstant(
-                std::max(least_noise * range_of(measured.value(rows)),
+                std::max(min_noise * range_of(measured.value(rows)),
                          (measured.robust ? normal_median * median_size(deviation)
                                           : root_mean_square(deviation)) /
                              std::sqrt(share)));

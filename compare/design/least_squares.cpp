@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // The search has converged below these relative changes of |r|² and of the scaled x.
-constexpr double least_decrease = 1e-14, least_change = 1e-10;
+constexpr double min_decrease = 1e-14, min_change = 1e-10;
 // It has not where it ends at most this |Δx| from a point at which the residuals are not finite.
 constexpr double undefined_within = 1e-6;
 
@@ -66,8 +66,8 @@ Minimum minimise(const LeastSquares& problem, VectorXd start) {
     if (minimum.converged) return minimum;
     Stacked stacked{problem, J, problem.pull * largest_column, J.rows() + J.cols()};
     Eigen::LevenbergMarquardt<Stacked> method(stacked);
-    method.parameters.ftol = least_decrease;
-    method.parameters.xtol = least_change;
+    method.parameters.ftol = min_decrease;
+    method.parameters.xtol = min_change;
     auto status = method.minimizeInit(minimum.x);
     bool meets_undefined = false;
     do {

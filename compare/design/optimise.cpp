@@ -28,7 +28,7 @@ constexpr int calls_at_one_point = 20;    // the step of SLSQP has vanished: it 
 constexpr double min_step = 1e-12;        // of x
 constexpr double active_within = 1e-6;    // of c
 constexpr double optimal_within = 1e-4;   // of |∇F|
-constexpr double least_residual = 1e-7;   // of the conditions of the optimum, where ∇F vanishes
+constexpr double min_residual = 1e-7;     // of the conditions of the optimum, where ∇F vanishes
 constexpr double multiplier_pull = 1e-7;  // makes the multipliers of parallel ∇c unique
 
 // The problem in x, with the last evaluated point, and the best point within the bands.
@@ -44,7 +44,7 @@ struct Problem {
     MatrixXd f_x = {};  // ∂f/∂x; empty until it is needed
 
     VectorXd best = {};  // x
-    double least_cost = unbounded;
+    double min_cost = unbounded;
 
     // of a run of SLSQP
     nlopt_opt run = nullptr;
@@ -97,8 +97,8 @@ struct Problem {
         f = figures.value(p);
         f_x = {};
         repeats = 0;
-        if (has_value() && largest_excess() <= within_bands && cost() < least_cost)
-            best = x, least_cost = cost();
+        if (has_value() && largest_excess() <= within_bands && cost() < min_cost)
+            best = x, min_cost = cost();
     }
     void differentiate() {
         if (f_x.size() == 0) f_x = figures.gradient(p) * (range.high - range.low).asDiagonal();
@@ -189,7 +189,7 @@ void set_conditions(Problem& problem, Search& search) {
                   multiplier_pull},
                  zero);
     const double remainder = multipliers.residual.norm(), size = F_x.norm();
-    search.converged = remainder <= optimal_within * size + least_residual;
+    search.converged = remainder <= optimal_within * size + min_residual;
     search.optimality = size > 0 ? remainder / size : 0;
     // dF per unit of the shown cost
     const double unit =
@@ -233,7 +233,7 @@ struct BestPoint {
 
 Search search_from(Problem& problem, const Bands& bands, const VectorXd& start) {
     Search search{.p = start, .excess = unbounded, .cost = unbounded};
-    problem.best = {}, problem.least_cost = unbounded;
+    problem.best = {}, problem.min_cost = unbounded;
     const SearchRange& range = problem.range;
     problem.move_to(range.shares(start));
     search.has_value = problem.has_value();

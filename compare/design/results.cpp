@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using enum Digits;
 
-constexpr double least_share = 0.05;  // of a figure in a conflict, of a number in a combination
+constexpr double min_share = 0.05;  // of a figure in a conflict, of a number in a combination
 
 using Columns = std::vector<ColumnOf<Index>>;  // of rows by their positions
 Table rows_of(const char* id, Index count, const Columns& columns) {
@@ -217,7 +217,7 @@ Table searches_table(const OptimisedScene& scene) {
 std::string combination(const FittedScene& fit, const VectorXd& v) {
     std::vector<std::string> parts;
     for (const Index i : largest_first(v))
-        if (std::abs(v[i]) >= least_share)
+        if (std::abs(v[i]) >= min_share)
             parts.push_back(fmt::format("{} {:+.4g} {}", item(fit.varied.numbers, i).path,
                                         v[i] * fit.measured.step[i] / v.cwiseAbs().maxCoeff(),
                                         item(fit.varied.numbers, i).unit));
@@ -289,7 +289,7 @@ Result result_of(const SolvedFor& solved) {
     if (!met) {
         std::vector<std::string> wishes;
         for (std::size_t k = 0; k < solved.wanted.size(); ++k)
-            if (solution.conflict()[static_cast<Index>(k)] > least_share)
+            if (solution.conflict()[static_cast<Index>(k)] > min_share)
                 wishes.push_back(solved.wanted[k].name + " at " + solved.wanted[k].place);
         add_conflict(result, wishes, " Within the limits the numbers move them only together.",
                      solved.varied, solution.at_limit, "wishes");
@@ -345,7 +345,7 @@ Result result_of(const OptimisedScene& scene) {
         for (const Goal& goal : scene.goals)
             for (std::size_t point = 0; point < goal.points.size(); ++point, ++k)
                 if (const bool above = optimum.after[k] > goal.high;
-                    optimum.conflict[k] > least_share)
+                    optimum.conflict[k] > min_share)
                     bands.push_back(
                         bound_text(scene, {false, k, above, above ? goal.high : goal.low}));
         add_conflict(result, bands, "", scene.varied, optimum.nearest.at_limit, "bands");

@@ -14,7 +14,7 @@ SearchStart start_of(const Figures& figures, const SearchRange& range) {
     start.gradient = figures.gradient(range.start);
     start.movement = (start.gradient * (range.high - range.low).asDiagonal()).rowwise().norm();
     for (Index j = 0; j < start.value.size(); ++j)
-        start.still.push_back(!(start.movement[j] > least_movement(start.value[j])));
+        start.still.push_back(!(start.movement[j] > min_movement(start.value[j])));
     return start;
 }
 

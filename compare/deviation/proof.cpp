@@ -13,7 +13,7 @@ void keep_largest(ProvedBound& all, const Extent& one) {
     all = {std::max(all.length, one.length), std::max(all.angle, one.angle),
            std::max(all.force, one.force), std::max(all.moment, one.moment)};
 }
-void keep_least(ProvedBound& all, const Extent& one) {
+void keep_smallest(ProvedBound& all, const Extent& one) {
     all = {std::min(all.length, one.length), std::min(all.angle, one.angle),
            std::min(all.force, one.force), std::min(all.moment, one.moment)};
 }
@@ -33,7 +33,7 @@ void add(Tally& tally, double load, Unit unit, const Certificate& certificate) {
     ++tally.proved;
     tally.stable += certificate.stable;
     keep_largest(tally.error, certificate.error);
-    keep_least(tally.unique, certificate.unique);
+    keep_smallest(tally.unique, certificate.unique);
     tally.held = std::max(tally.held, certificate.held);
     tally.gap = std::max(tally.gap, certificate.gap);
     tally.theorem = certificate.detail;

@@ -182,8 +182,8 @@ Result result_of(const PickupLoads& loads) {
     const auto list = largest(loads);
     result.tables.push_back(table("pickups", largest_columns(), list));
     result.tables.back().caption = "largest loads on each body, in vehicle axes";
-    constexpr std::size_t most_rows = 1000;  // for readers
-    if (const auto rows = by_case(loads); rows.size() <= most_rows) {
+    constexpr std::size_t max_rows = 1000;  // for readers
+    if (const auto rows = by_case(loads); rows.size() <= max_rows) {
         result.tables.push_back(table("", case_columns(), rows));
         result.tables.back().caption = "loads by cases, in vehicle axes";
         result.tables.back().detail = true;

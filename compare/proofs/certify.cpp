@@ -103,7 +103,7 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     run_jobs(jobs, options.threads, part(options.progress, 0, solving));
 
     certificate::Tolerance tolerance = in_si(options.tolerance);
-    tolerance.most_unknowns = certificate::max_unknowns_of_points;
+    tolerance.max_unknowns = certificate::max_unknowns_of_points;
     jobs.clear();
     for (SolvedSide& solved : all)
         jobs.push_back({fmt::format("{}: proving the curve", solved.side.name),

@@ -34,7 +34,7 @@ const Stencil below{{-1, -2, -3, -4}, {-4, 3, -4. / 3, .25}, {-1, 1.5, -1, .25},
 
 // Largest error of the lower order, of the size of its row; of the derivative it is near the square.
 constexpr double settled = 1e-4;
-constexpr int most_shorter = 3;     // steps of an eighth
+constexpr int max_shorter_steps = 3;  // steps of an eighth
 constexpr double one_slope = 1e-3;  // difference of the slopes to both sides that is none, likewise
 constexpr double across_a_knot = std::numeric_limits<double>::max();
 
@@ -208,7 +208,7 @@ std::vector<double> sizes_of_rows(const ReadSide& of, const MatrixXd& rate,
                 std::abs(rate(static_cast<Index>(c), static_cast<Index>(k)) * numbers[k].step);
             if (entry > largest[c]) largest[c] = entry;
         }
-    return least_sizes(of.outputs.channels, std::move(largest));
+    return min_sizes(of.outputs.channels, std::move(largest));
 }
 
 // 6 standard deviations of the rounding of an entry. With ε the rounding of one value of its output, of
@@ -308,7 +308,7 @@ struct Refining {
     void refine(Index column, Rates& rates, VectorXd check) const {
         double h = number.h;
         const VectorXd rounding = rates.rounding.col(column) * h;
-        for (int shorter = 0; shorter < most_shorter && worst(check) > 1; ++shorter) {
+        for (int shorter = 0; shorter < max_shorter_steps && worst(check) > 1; ++shorter) {
             h /= 8;
             const double before = worst(check);
             const auto rows = unsettled(check, true);
@@ -412,7 +412,7 @@ Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
     return rates;
 }
 
-std::vector<double> least_sizes(std::span<const Channel> outputs, std::vector<double> largest) {
+std::vector<double> min_sizes(std::span<const Channel> outputs, std::vector<double> largest) {
     constexpr double smallest_row = 1e-6, smallest_effect = 1e-5, smallest_characteristic = 1e-3;
     double motions = 0, forces = 0;
     const auto is_characteristic = [&](std::size_t c) {

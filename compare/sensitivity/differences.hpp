@@ -95,6 +95,6 @@ Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
 // The smallest size of a row of such a matrix that counts, for its largest entries by the steps of
 // the numbers: a millionth of the largest of its kind, and 1e-5 of its unit; of a characteristic a
 // thousandth of its unit.
-std::vector<double> least_sizes(std::span<const Channel> outputs, std::vector<double> largest);
+std::vector<double> min_sizes(std::span<const Channel> outputs, std::vector<double> largest);
 
 }  // namespace elastocheck::compare

@@ -360,7 +360,7 @@ std::vector<double> row_sizes(const Gradients& gradients, const SideGradients& s
                 if (entry > sizes[c]) sizes[c] = entry;
             }
     }
-    return least_sizes(gradients.outputs, std::move(sizes));
+    return min_sizes(gradients.outputs, std::move(sizes));
 }
 
 Disagreement compared(const Gradients& gradients, const SideGradients& side) {

@@ -19,7 +19,7 @@ constexpr std::size_t longest_name = 64;
 constexpr double same_place = 1e-9;  // of the model's size
 // x, tilted out of the planes in which models have points.
 const Vector3d askew = Vector3d(0.6299, 0.5774, 0.5195).normalized();
-constexpr std::size_t most_told = 40;  // parts listed for one kind of note, in the head of a scene
+constexpr std::size_t max_listed = 40;  // parts listed for one kind of note, in the head of a scene
 
 std::string printable(std::string_view text) {
     std::string result(text);
@@ -250,9 +250,10 @@ std::vector<std::string> described(const Notes& notes) {
         lines.push_back(fmt::format("Point {}: {}.", role, described(point)));
     for (const auto& [why, what] : notes.omitted) {
         std::string list;
-        for (std::size_t k = 0; k < std::min(what.size(), most_told); ++k)
+        for (std::size_t k = 0; k < std::min(what.size(), max_listed); ++k)
             list += (list.empty() ? "" : "; ") + described(what[k]);
-        if (what.size() > most_told) list += fmt::format("; and {} more", what.size() - most_told);
+        if (what.size() > max_listed)
+            list += fmt::format("; and {} more", what.size() - max_listed);
         lines.push_back(fmt::format("Left out, {}: {}.", why, list));
     }
     for (const Kind& kind : kinds(notes.warnings)) {
@@ -263,9 +264,9 @@ std::vector<std::string> described(const Notes& notes) {
             std::string others;
             std::size_t shown = 0;
             for (const auto* warning : kind.all)
-                if (warning != kind.worst && ++shown <= most_told)
+                if (warning != kind.worst && ++shown <= max_listed)
                     others += (others.empty() ? "" : "; ") + described(warning->first);
-            if (shown > most_told) others += fmt::format("; and {} more", shown - most_told);
+            if (shown > max_listed) others += fmt::format("; and {} more", shown - max_listed);
             line += others + ")";
         }
         lines.push_back(line + ".");

@@ -13,7 +13,7 @@ namespace elastocheck::importer {
 namespace {
 
 constexpr std::size_t largest_file = 16 << 20;  // [bytes]
-constexpr std::size_t most_errors = 20;
+constexpr std::size_t max_errors = 20;
 constexpr std::string_view name_of_text = "scene";
 
 std::string where(const SourceLocation& place) {
@@ -23,15 +23,14 @@ std::string where(const SourceLocation& place) {
 // Throws one error with all missing parts, one a line.
 [[noreturn]] void refuse(const std::string& file, const Notes& notes) {
     std::string message;
-    for (std::size_t k = 0; k < std::min(notes.missing.size(), most_errors); ++k) {
+    for (std::size_t k = 0; k < std::min(notes.missing.size(), max_errors); ++k) {
         const auto& [place, what] = notes.missing[k];
         message +=
             fmt::format("{}{}{}: {}: {}", k ? "\n" : "", place.file.empty() ? file : place.file,
                         where(place), reader::shown(place.what), what);
     }
-    if (notes.missing.size() > most_errors)
-        message +=
-            fmt::format("\n... and {} more of this kind", notes.missing.size() - most_errors);
+    if (notes.missing.size() > max_errors)
+        message += fmt::format("\n... and {} more of this kind", notes.missing.size() - max_errors);
     message += fmt::format(
         "\n{} a scene cannot represent; --allow-missing imports the rest and lists the missing "
         "entries in the head",

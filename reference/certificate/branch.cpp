@@ -526,7 +526,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     };
     if (states.size() < 2) return open("a path between states needs two of them");
     const System system = make_system(model, branch, Corners::separated);
-    if (const auto why = why_not_tried(system, max_unknowns); !why.empty()) {
+    if (const auto why = why_not_tried(system, max_unknowns_of_curves); !why.empty()) {
         tube.tried = false;
         return open(why);
     }

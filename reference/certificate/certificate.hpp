@@ -17,18 +17,18 @@ namespace elastocheck::reference::certificate {
 
 // Up to this size matrices are kept as a whole: the time of a proof grows with the cube of the number
 // of unknowns (7 per body, 1 per row of a joint). Beyond it a point is proved row by row, with the square.
-inline constexpr int max_unknowns = 500, max_unknowns_of_points = 40000;
+inline constexpr int max_unknowns_of_curves = 500, max_unknowns_of_points = 40000;
 
 // Accuracy that is to be proved, fixed before the proof: a true equilibrium within these distances
 // of the state.
 struct Tolerance {
-    double length = 1e-9;              // of every body's origin [m]
-    double angle = 1.7453292520e-8;    // of every body's orientation [rad], 1e-6 deg
-    double force = 1e-2;               // of every joint's reaction [N]
-    double moment = 1e-2;              // of every joint's reaction [N·m]
-    double held = 1e-6;                // largest wrench that may hold an idle motion [N, N·m]
-    double gap = 1e-9;                 // largest remaining gap of redundant constraints [m, rad]
-    int most_unknowns = max_unknowns;  // a point of a larger system is not tried
+    double length = 1e-9;            // of every body's origin [m]
+    double angle = 1.7453292520e-8;  // of every body's orientation [rad], 1e-6 deg
+    double force = 1e-2;             // of every joint's reaction [N]
+    double moment = 1e-2;            // of every joint's reaction [N·m]
+    double held = 1e-6;              // largest wrench that may hold an idle motion [N, N·m]
+    double gap = 1e-9;               // largest remaining gap of redundant constraints [m, rad]
+    int max_unknowns = max_unknowns_of_curves;  // a point of a larger system is not tried
 };
 
 // State of a proof, for a point z_s, in the letters of krawczyk.hpp: F the bordered equations, Y an
@@ -78,7 +78,7 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
 // Certifies the path between states: one connected, locally unique curve of equilibria from the
 // first state to the last, within a tube around an interpolating polynomial. `proved` if the
 // inequality of a point holds over every piece with a as a coefficient, and neighbouring pieces share
-// their zero; else `open`. Up to max_unknowns.
+// their zero; else `open`. Up to max_unknowns_of_curves.
 struct Tube {
     ProofState state = ProofState::open;
     std::string detail;
@@ -94,7 +94,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
 
 // Certifies a limit point near the state, with a as an unknown. `proved` if the box contracts for
 // every σ in [-δ, δ] along the tangent and da/dσ has opposite signs at its ends; else `open`. Up to
-// max_unknowns.
+// max_unknowns_of_curves.
 struct LimitPoint {
     ProofState state = ProofState::open;
     std::string detail;

@@ -283,8 +283,9 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     const double load = mapped.state.load;
     const Index n = system.n();
     // Any y will do, so a large system goes without a border.
-    Border border = n > max_unknowns ? Border{Eigen::MatrixXd(n, 0), Eigen::MatrixXd(n, 0)}
-                                     : border_at(system, mapped.z, load, loose_zero_tolerance);
+    Border border = n > max_unknowns_of_curves
+                        ? Border{Eigen::MatrixXd(n, 0), Eigen::MatrixXd(n, 0)}
+                        : border_at(system, mapped.z, load, loose_zero_tolerance);
     const Problem problem{system, std::move(border), mapped.z, false, {}, {}};
     const Index k = problem.border.count();
     const VectorXd delta = radii(mapped, tolerance);
@@ -411,7 +412,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         return certificate;
     };
     if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
-    if (const auto why = why_not_tried(system, tolerance.most_unknowns); !why.empty())
+    if (const auto why = why_not_tried(system, tolerance.max_unknowns); !why.empty())
         return open(why);
     if (const ProvedBox* near = box_at(known, system, state.load))
         if (auto decided = by_known_box(*near, mapped, tolerance)) return *std::move(decided);
@@ -425,7 +426,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                         system.n()));
 
     if (approximate.settled && approximate.y.allFinite()) {
-        const bool large = problem.size() > max_unknowns;
+        const bool large = problem.size() > max_unknowns_of_curves;
         const Box smallest_box = large ? by_rows(problem, approximate, state.load)
                                        : smallest(problem, approximate, state.load);
         if (smallest_box.proved) {

@@ -136,7 +136,8 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         return limit;
     };
     const System system = make_system(model, branch);
-    if (const auto why = why_not_tried(system, max_unknowns); !why.empty()) return open(why);
+    if (const auto why = why_not_tried(system, max_unknowns_of_curves); !why.empty())
+        return open(why);
     const StateAt mapped = state_at(system, state);
     if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
 

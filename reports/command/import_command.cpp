@@ -59,7 +59,7 @@ constexpr FileKind blocks_file{"K&C blocks made by export", blocks_head};
 constexpr FileKind suspension_file{"suspension made by export", "// Exported by elastocheck"};
 
 constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
-constexpr double least_told = 1e-9;      // [mm], [deg]: smaller differences are rounding
+constexpr double min_difference = 1e-9;  // [mm], [deg]: smaller differences are rounding
 
 // Largest distance of the outputs of two scenes, of each unit: "0.0123 mm ('wheel_y' on branch
 // 'jounce' at 3000 N) and 0.004 deg (...)".
@@ -84,8 +84,8 @@ std::string apart(const compare::FormulationStudy& study) {
     std::string text;
     for (const auto& [unit, by, where] : list) {
         text += text.empty() ? "" : " and ";
-        text += by < least_told
-                    ? fmt::format("less than {:g} {}", least_told, compare::symbol(unit))
+        text += by < min_difference
+                    ? fmt::format("less than {:g} {}", min_difference, compare::symbol(unit))
                     : fmt::format("{:.2g} {} ({})", by, compare::symbol(unit), where);
     }
     return text;
@@ -112,14 +112,14 @@ bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
     return study.conclusive();
 }
 
-constexpr std::size_t most_bodies_settled = 200;
+constexpr std::size_t max_bodies_settled = 200;
 
 // Message whether the first branch can begin: whether an equilibrium is found at a = 0, and its
 // distance from the design position. Empty for a scene without a branch or with too many bodies.
 std::string settling(const std::string& yaml) {
     try {
         const Model model = compile(parse_scene(yaml, "scene"));
-        if (model.branches.empty() || model.bodies.size() > most_bodies_settled) return "";
+        if (model.branches.empty() || model.bodies.size() > max_bodies_settled) return "";
         Branch branch = model.branches.front();
         branch.from = 0;
         branch.to *= 1e-6;

@@ -287,12 +287,12 @@ Result inspection(const Inspected& inspected) {
 }
 
 Result shortened(Result result) {
-    constexpr std::size_t most_shown = 40;
+    constexpr std::size_t max_listed = 40;
     for (Table& table : result.tables) {
-        if (table.rows.size() <= most_shown || table.id == "outputs") continue;
+        if (table.rows.size() <= max_listed || table.id == "outputs") continue;
         table.notes.push_back(
-            fmt::format("... and {} more; --verbose lists all", table.rows.size() - most_shown));
-        table.rows.resize(most_shown);
+            fmt::format("... and {} more; --verbose lists all", table.rows.size() - max_listed));
+        table.rows.resize(max_listed);
     }
     return result;
 }

@@ -143,7 +143,7 @@ void print_error(std::string_view lines) {
 std::string progress_line(std::string_view task, double done, double seconds, int width) {
     constexpr int bar = 20;
     // Before that little is known of the time.
-    constexpr double least_done = 0.02, least_seconds = 1;
+    constexpr double min_done = 0.02, min_seconds = 1;
     std::string line;
     if (std::isfinite(done)) {
         const double share = std::clamp(done, 0.0, 1.0);
@@ -151,7 +151,7 @@ std::string progress_line(std::string_view task, double done, double seconds, in
         if (width > 0)
             line = fmt::format("[{}{}] ", std::string(full, '#'), std::string(bar - full, '-'));
         line += fmt::format("{:3.0f} %", std::floor(100 * share));
-        if (share >= least_done && seconds >= least_seconds)
+        if (share >= min_done && seconds >= min_seconds)
             line += fmt::format(", {:.0f} s left", std::ceil(seconds * (1 - share) / share));
     } else {
         line = fmt::format("{:.0f} s", seconds);

@@ -188,30 +188,30 @@ std::string message(const char* kind, std::string_view summary, const std::strin
                        for_xml(text));
 }
 
-std::string testcase(const Test& test, std::size_t most_lines) {
+std::string testcase(const Test& test, std::size_t max_lines) {
     std::vector<std::string> changes = described(test.scene->changed);
     for (auto& change : changes) change = "changed: " + change;
-    const std::string changed = changes.empty() ? "" : lines(changes, most_lines);
+    const std::string changed = changes.empty() ? "" : lines(changes, max_lines);
     const std::vector<std::string>& reasons = test.scene->verdict.reasons;
     std::string messages;
     if (test.error)
         messages += message("error", reasons.front(),
-                            headline(*test.scene) + "\n" + lines(reasons, most_lines) + changed);
+                            headline(*test.scene) + "\n" + lines(reasons, max_lines) + changed);
     if (!test.failed.empty()) {
         std::vector<std::string> descriptions;
         for (const auto& worst : worst_of_each_channel(test.scene, test.failed))
             descriptions.push_back(describe_worst(worst));
         messages +=
-            message("failure", descriptions.front(), lines(descriptions, most_lines) + changed);
+            message("failure", descriptions.front(), lines(descriptions, max_lines) + changed);
     }
     return fmt::format("  <testcase{}{}>\n{}  </testcase>\n",
                        attribute("classname", test.scene->file), attribute("name", test.name),
                        messages);
 }
 
-// The tests with up to `most_lines` numbers each; the others are counted.
+// The tests with up to `max_lines` numbers each; the others are counted.
 std::string junit_of(std::span<const Test> tests, std::span<const Test> left,
-                     std::size_t most_lines) {
+                     std::size_t max_lines) {
     struct Suite {
         int tests = 0, failures = 0, errors = 0;
         std::string cases{};
@@ -219,7 +219,7 @@ std::string junit_of(std::span<const Test> tests, std::span<const Test> left,
     std::map<const GatedScene*, Suite> suites;  // in the order of the scenes
     for (const Test& test : tests) {
         Suite& suite = suites[test.scene];
-        suite.cases += testcase(test, most_lines);
+        suite.cases += testcase(test, max_lines);
         ++suite.tests;
         suite.failures += !test.failed.empty();
         suite.errors += test.error;
@@ -342,13 +342,13 @@ json gate_document(const std::vector<GatedScene>& scenes, const Provenance& prov
 std::string junit(const std::vector<GatedScene>& scenes) {
     std::vector<Test> tests;
     for (const auto& scene : scenes) std::ranges::move(tests_of(scene), std::back_inserter(tests));
-    for (const std::size_t most_lines : {50, 10, 3, 1})
-        if (std::string xml = junit_of(tests, {}, most_lines); xml.size() < most_junit) return xml;
+    for (const std::size_t max_lines : {50, 10, 3, 1})
+        if (std::string xml = junit_of(tests, {}, max_lines); xml.size() < max_junit) return xml;
     std::ranges::stable_partition(tests, [](const Test& test) { return !test.passed(); });
     const std::span all(tests);
     for (std::size_t most = tests.size();; most /= 2)
         if (std::string xml = junit_of(all.first(most), all.subspan(most), 1);
-            xml.size() < most_junit)
+            xml.size() < max_junit)
             return xml;
 }
 

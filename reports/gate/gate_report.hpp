@@ -43,9 +43,9 @@ nlohmann::ordered_json gate_document(const std::vector<GatedScene>& scenes,
 
 std::string gate_table(const GatedScene& scene);                     // for a terminal
 std::string gate_conclusion(const std::vector<GatedScene>& scenes);  // its last line
-// Below `most_junit` bytes, the size that CI services accept: failures come first, omitted tests
+// Below `max_junit` bytes, the size that CI services accept: failures come first, omitted tests
 // are counted.
-inline constexpr std::size_t most_junit = 50'000;
+inline constexpr std::size_t max_junit = 50'000;
 std::string junit(const std::vector<GatedScene>& scenes);
 std::string step_summary(const std::vector<GatedScene>& scenes);  // Markdown, under 1 MiB
 // GitHub workflow commands, at most ten

@@ -63,7 +63,7 @@ OutputTable read_table(std::string_view csv, const std::string& file, const Name
     const auto head = [&](const Cells& cells, int line) {
         read_headings(cells, line, file, names, also_known, table);
     };
-    read_sheet(csv, file, most_measured, head, [&](const Cells& cells, int line) {
+    read_sheet(csv, file, max_measured_points, head, [&](const Cells& cells, int line) {
         table.lines.push_back(line);
         for (std::size_t c = 0; c < cells.size(); ++c) {
             const Meaning& meaning = table.columns[c];
@@ -142,13 +142,13 @@ void keep_rows(PointTable& table, const std::function<std::string(std::size_t po
     compare::Points& points = table.points;
     keep(table.lines), keep(points.branch), keep(points.a), keep(points.at);
     for (auto& column : points.columns) keep(column.values);
-    constexpr std::size_t most_lines = 10;
+    constexpr std::size_t max_lines = 10;
     for (const auto& [why, lines] : left_out)
         table.left_out.push_back(fmt::format(
             "{} {} {} (line{} {}{})", lines.size(), lines.size() == 1 ? "row" : "rows", why,
             lines.size() == 1 ? "" : "s",
-            fmt::join(lines.begin(), lines.begin() + std::min(lines.size(), most_lines), ", "),
-            lines.size() > most_lines ? ", ..." : ""));
+            fmt::join(lines.begin(), lines.begin() + std::min(lines.size(), max_lines), ", "),
+            lines.size() > max_lines ? ", ..." : ""));
 }
 
 PointTable read_points(std::string_view csv, const std::string& file, const Names& names,

@@ -55,9 +55,10 @@ struct States {
     std::set<std::string> passed_over{};
 
     void begin(std::string_view branch, double load, int line) {
-        if (list.size() == most_measured)
-            fail_at(file, line,
-                    fmt::format("more states than {}, the most that are read", most_measured));
+        if (list.size() == max_measured_points)
+            fail_at(
+                file, line,
+                fmt::format("more states than {}, the most that are read", max_measured_points));
         Pose nowhere;
         nowhere.r.setConstant(compare::nan);
         nowhere.p.coeffs().setConstant(compare::nan);
@@ -167,7 +168,7 @@ void read_rows(std::string_view csv, States& states) {
         if (cells.size() != headings.size())
             fail_at(file, line, "a column too many; states have " + reader::listed(headings));
     };
-    read_sheet(csv, file, most_measured * 10, head, [&](const Cells& cells, int line) {
+    read_sheet(csv, file, max_measured_points * 10, head, [&](const Cells& cells, int line) {
         const auto number = [&](std::size_t k) {
             const double value = number_or_none(cells[place[k]], file, line, headings[k]);
             if (std::isnan(value)) fail_at(file, line, headings[k] + ": an empty cell");

@@ -16,7 +16,7 @@ std::string result_page(const compare::Result& result, const std::string& title,
                         const std::map<std::string, std::string>& words,
                         const std::string& reproduce,
                         const std::vector<std::pair<std::string, std::string>>& made) {
-    constexpr std::size_t most_rows = 15;
+    constexpr std::size_t max_rows = 15;
     json data{{"title", title},
               {"answer", result.verdict.sentence},
               {"notes", result.verdict.reasons},
@@ -38,7 +38,7 @@ std::string result_page(const compare::Result& result, const std::string& title,
     for (const Table& table : result.tables) {
         if (page_columns(table).empty()) continue;
         data["tables"].push_back(page_table(table));
-        data["tables"].back()["folded"] = table.rows.size() > most_rows;
+        data["tables"].back()["folded"] = table.rows.size() > max_rows;
     }
     Table by{.caption = "Made by"};
     for (const char* name : {"what", "which"})

@@ -306,7 +306,7 @@ std::string_view name(Kind kind) {
 std::string_view name(Hinge hinge) { return hinge == Hinge::bushing ? "bushing" : "revolute"; }
 bool has_hinges(Kind kind) { return kind != Kind::leaf_spring && kind != Kind::ladder_frame; }
 
-int least_bodies(Kind kind) {
+int min_bodies(Kind kind) {
     switch (kind) {
         case Kind::leaf_spring: return 3;   // a leaf of two segments
         case Kind::ladder_frame: return 4;  // the corners
@@ -341,9 +341,9 @@ Frame frame(int bodies) {
 }
 
 std::string scene(const Family& family) {
-    if (family.bodies < least_bodies(family.kind) || family.bodies > max_bodies)
+    if (family.bodies < min_bodies(family.kind) || family.bodies > max_bodies)
         throw std::out_of_range(fmt::format("a {} has {} to {} bodies, not {}", name(family.kind),
-                                            least_bodies(family.kind), max_bodies, family.bodies));
+                                            min_bodies(family.kind), max_bodies, family.bodies));
     if (!has_hinges(family.kind) && family.hinge != Hinge::bushing)
         throw std::invalid_argument(
             fmt::format("a {} is made of beams and has no joints to choose", name(family.kind)));

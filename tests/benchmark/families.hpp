@@ -42,7 +42,7 @@ struct Family {
     Hinge hinge = Hinge::bushing;
 };
 inline constexpr int max_bodies = 2000;  // what the format of scenes has room for
-int least_bodies(Kind kind);
+int min_bodies(Kind kind);
 
 // The text of the scene. Throws std::invalid_argument for what is no such family, std::out_of_range for a number of
 // bodies that it cannot have.

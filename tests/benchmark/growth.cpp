@@ -58,14 +58,14 @@ struct Cost {
     std::string outcome;  // empty: exit code 0
 };
 
-Cost once(const std::vector<std::string>& words, double most_seconds) {
+Cost once(const std::vector<std::string>& words, double max_seconds) {
     std::vector<std::string> copies = words;
     std::vector<char*> argv;
     for (auto& word : copies) argv.push_back(word.data());
     argv.push_back(nullptr);
     const pid_t child = ::fork();
     if (child == 0) {
-        const auto limit = static_cast<rlim_t>(std::ceil(most_seconds));
+        const auto limit = static_cast<rlim_t>(std::ceil(max_seconds));
         const rlimit cpu{limit, limit + 1};
         const int nothing = ::open("/dev/null", O_RDWR);
         const bool ready = ::setrlimit(RLIMIT_CPU, &cpu) == 0 && nothing >= 0 &&

@@ -345,7 +345,7 @@ TEST(Families, HaveTheRequestedNumberOfBodiesAndASimilarMovement) {
     for (const Kind kind : families::kinds)
         for (const Hinge hinge : {Hinge::bushing, Hinge::revolute}) {
             if (hinge == Hinge::revolute && !has_hinges(kind)) continue;
-            for (const int n : {families::least_bodies(kind), 7, 24, 100, 2000}) {
+            for (const int n : {families::min_bodies(kind), 7, 24, 100, 2000}) {
                 const Family family{kind, n, hinge};
                 EXPECT_EQ(static_cast<int>(FamilyScene(family).model.bodies.size()), n)
                     << named(family);
@@ -361,7 +361,7 @@ TEST(Families, HaveTheRequestedNumberOfBodiesAndASimilarMovement) {
 
 TEST(Families, InvalidSizeOrJointIsRejected) {
     for (const Kind kind : families::kinds) {
-        EXPECT_THROW(families::scene({kind, families::least_bodies(kind) - 1}), std::out_of_range)
+        EXPECT_THROW(families::scene({kind, families::min_bodies(kind) - 1}), std::out_of_range)
             << name(kind);
         EXPECT_THROW(families::scene({kind, families::max_bodies + 1}), std::out_of_range)
             << name(kind);

@@ -175,7 +175,7 @@ TEST(GateReport, JUnitIsLimitedInSizeAndCountsWhatIsOmitted) {
                                                             {100, 3, 20, 600}}) {
         const auto all = wrong(scenes, branches, numbers, length);
         const std::string xml = junit(all);
-        EXPECT_LT(xml.size(), most_junit) << scenes << " scenes";
+        EXPECT_LT(xml.size(), max_junit) << scenes << " scenes";
         EXPECT_TRUE(well_formed(xml));
         const std::size_t shown = count(xml, "<testcase"), tests = 2 + scenes * (1 + branches);
         const std::string left = fmt::format("{} more tests, ", tests - shown);

@@ -45,7 +45,7 @@ const std::vector<Part> parts{
 const std::map<std::string, std::vector<std::string>> owners_of_library{
     {"ceres/", {"reference/equilibrium"}}, {"nlopt", {"reference/energy", "compare/design"}}};
 
-constexpr std::size_t most_files = 20;  // in a folder
+constexpr std::size_t max_files = 20;  // in a folder
 
 bool is_below(const std::string& path, const std::string& folder) {
     return path.starts_with(folder + "/");
@@ -182,7 +182,7 @@ TEST(Layering, FoldersIncludeEachOtherInNoCycle) {
 TEST(Layering, AFolderHoldsAtMostTwentySourceFiles) {
     std::map<fs::path, std::size_t> count;
     for (const auto& source : sources()) ++count[fs::path(source.file).parent_path()];
-    for (const auto& [folder, files] : count) EXPECT_LE(files, most_files) << folder;
+    for (const auto& [folder, files] : count) EXPECT_LE(files, max_files) << folder;
 }
 
 // What the folders that show results include of the folders that compute them.

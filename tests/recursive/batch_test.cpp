@@ -42,7 +42,7 @@ EquilibriumPath alone(const Model& model, const Branch& branch, const Analysis& 
 // moment; infinite where they have other points.
 double difference(const EquilibriumPath& a, const EquilibriumPath& b) {
     if (a.points.size() != b.points.size()) return std::numeric_limits<double>::infinity();
-    double length = 0, turn = 0, force = 0, moment = 0, reach = 0, most_force = 0, most_moment = 0;
+    double length = 0, turn = 0, force = 0, moment = 0, reach = 0, max_force = 0, max_moment = 0;
     const auto grow = [](double& most, double by) {
         if (!(by <= most)) most = by;
     };
@@ -56,15 +56,15 @@ double difference(const EquilibriumPath& a, const EquilibriumPath& b) {
         }
         for (std::size_t joint = 0; joint < p.reactions.size(); ++joint) {
             grow(force, (p.reactions[joint].force - q.reactions[joint].force).norm());
-            grow(most_force, p.reactions[joint].force.norm());
+            grow(max_force, p.reactions[joint].force.norm());
             grow(moment, (p.reactions[joint].moment - q.reactions[joint].moment).norm());
-            grow(most_moment, p.reactions[joint].moment.norm());
+            grow(max_moment, p.reactions[joint].moment.norm());
         }
     }
     const auto over = [](double by, double whole) { return whole > 0 ? by / whole : by; };
     // a moment about the joint's point may be the rounding of forces at levers of a metre
-    return std::max({over(length, reach), turn, over(force, most_force),
-                     over(moment, std::max(most_moment, most_force))});
+    return std::max({over(length, reach), turn, over(force, max_force),
+                     over(moment, std::max(max_moment, max_force))});
 }
 
 // The scene's branch as two branches, one to each side, with what is active on it.

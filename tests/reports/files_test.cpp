@@ -164,7 +164,7 @@ TEST(Limits, ReadmeHasTheLimitsOfTheCode) {
               grouped(1e-9 * largest_json) + " GB in memory",
           "| a baseline | " + grouped(largest_baseline >> 20U) + " MiB",
           "| measured curves | " + grouped(largest_measurement >> 20U) + " MiB, " +
-              grouped(most_measured) + " points"})
+              grouped(max_measured_points) + " points"})
         EXPECT_TRUE(limits.find(said) != limits.npos) << said;
 }
 

@@ -82,8 +82,8 @@ SceneAnalyses sample_with(Measured measured, const char* name = "chrono_mcpherso
 
 TEST(Measurement, AsManyPointsAsTheLimitAreRead) {
     std::string csv = "load_N,toe_deg\n";
-    for (std::size_t k = 0; k < most_measured; ++k) csv += "5e9,0\n";  // none within range
-    EXPECT_EQ(measured(csv)["points"], most_measured);
+    for (std::size_t k = 0; k < max_measured_points; ++k) csv += "5e9,0\n";  // none within range
+    EXPECT_EQ(measured(csv)["points"], max_measured_points);
 }
 
 TEST(Measurement, PointsOfTheEquilibriumLegAgreeWithReferencesAndNotWithTheRecursion) {

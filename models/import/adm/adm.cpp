@@ -161,7 +161,7 @@ void sort_out(Conversion& c) {
     }
 }
 
-constexpr std::size_t fine_steps = 1000, most_events = 1000;
+constexpr std::size_t fine_steps = 1000, max_events = 1000;
 
 // Sets Conversion::times, from 0 to the last event of all functions of TIME, or to one second if
 // there is none: the events, the midpoints between them, and equal steps.
@@ -181,7 +181,7 @@ void read_times(Conversion& c) {
     c.has_events = !events.empty();
     const double end = events.empty() ? 1 / c.geometry.units.second : events.back();
     c.times = {0, end};
-    for (std::size_t k = 0; k < events.size(); k += 1 + events.size() / most_events) {
+    for (std::size_t k = 0; k < events.size(); k += 1 + events.size() / max_events) {
         c.times.push_back(events[k]);
         c.times.push_back(0.5 * (events[k] + (k == 0 ? 0 : events[k - 1])));
     }

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using enum Position;
 
 constexpr double round_off = 1e-6;  // of the model's size, or radians: not reported
-constexpr std::size_t most_motions = 10'000;
+constexpr std::size_t max_motions = 10'000;
 constexpr double assembled = 1e-2;  // larger misalignment: rejected
 
 // Keeps ORIENTATION from turning about z.
@@ -281,7 +281,7 @@ void convert_motion_of_joint(Conversion& c, const Statement& s,
 }
 
 void convert_motion(Conversion& c, const Statement& s) {
-    if (c.drives.size() >= most_motions) s.fail("more than {} motions", most_motions);
+    if (c.drives.size() >= max_motions) s.fail("more than {} motions", max_motions);
     const auto motion = displacement(c, s);
     if (!s.has("ROTATIONAL")) s.has("TRANSLATIONAL");
     if (s.has("JOINT")) return convert_motion_of_joint(c, s, motion);

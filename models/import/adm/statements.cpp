@@ -80,8 +80,8 @@ struct Reading {
         Statement s{.file = file, .line = data.last_line};
         s.keyword = resolved(capitals(line.substr(0, n)), keywords(), "statement of a dataset",
                              "there are", [&](const std::string& what) { fail(what); });
-        if (data.statements.size() == most_statements)
-            fail(fmt::format("more than {} statements", most_statements));
+        if (data.statements.size() == max_statements)
+            fail(fmt::format("more than {} statements", max_statements));
         s.name = std::exchange(name, {});
         line = trimmed(line.substr(slash + 1));
         const std::size_t digits = length(line, 0, is_digit);

@@ -28,7 +28,7 @@
 
 namespace elastocheck::importer::adm {
 
-inline constexpr std::size_t most_statements = 200'000;
+inline constexpr std::size_t max_statements = 200'000;
 
 // Whether a list "A B= C=f" has the word.
 bool has_word(std::string_view list, std::string_view word);

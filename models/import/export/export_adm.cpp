@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double least_mass = 1e-9;    // [kg] ADAMS solves no part without mass
+constexpr double min_mass = 1e-9;      // [kg] ADAMS solves no part without mass
 constexpr double at_hardpoint = 1e-9;  // [m]
 
 std::string real(double x) { return fmt::format("{:.17g}", x == 0 ? 0.0 : x); }
@@ -132,7 +132,7 @@ class AdmWriter {
         const Vector3d cm = weight ? Vector3d(weight->at.s_local) : Vector3d(Vector3d::Zero());
         called(name);
         put("PART/{}\n, MASS = {}\n, CM = {}\n, QG = {}\n", id_of(body),
-            real(std::max(mass, least_mass)), ids_["MARKER"] + 1, list(pose.r));
+            real(std::max(mass, min_mass)), ids_["MARKER"] + 1, list(pose.r));
         marker(body, cm, Matrix3d::Identity(), name + ".cm");
     }
 

@@ -49,7 +49,7 @@ RateTable read_rate_table(const std::string& file) {
     const Sheet sheet = read_sheet(read.text, file, 4);
     if (sheet.rows.empty()) fail(file, 0, "", "an empty table; expected role, x, y, z, rx, ry, rz");
     const SheetRow& head = sheet.rows.front();
-    std::size_t role = SheetRow::most_cells;
+    std::size_t role = SheetRow::max_cells;
     std::map<std::size_t, std::pair<std::size_t, double>> axis_of;  // by column: axis, unit
     for (std::size_t c = 0; c < head.cells.size(); ++c) {
         const std::string word =
@@ -64,7 +64,7 @@ RateTable read_rate_table(const std::string& file) {
             fail(file, head.line, "", "{} is not a column of a table of rates; allowed: role, {}",
                  reader::quote(head.cells[c]), fmt::join(rate_axes, ", "));
     }
-    if (role == SheetRow::most_cells) fail(file, head.line, "role", "missing");
+    if (role == SheetRow::max_cells) fail(file, head.line, "role", "missing");
     RateTable table;
     for (std::size_t r = 1; r < sheet.rows.size(); ++r) {
         const SheetRow& row = sheet.rows[r];

@@ -193,17 +193,17 @@ struct Found {
 // Columns without a heading in the row, whose cells beside the numbers below it are all words.
 std::vector<std::size_t> unnamed_columns(const Sheet& sheet, std::size_t head) {
     std::vector<std::size_t> words;
-    for (std::size_t c = 0; c < SheetRow::most_cells; ++c) {
+    for (std::size_t c = 0; c < SheetRow::max_cells; ++c) {
         std::size_t cells = 0, wide = 0;
         for (std::size_t r = head + 1; r < sheet.rows.size(); ++r) {
             const SheetRow& row = sheet.rows[r];
             if (std::ranges::count_if(row.cells, is_number) < 3) continue;
             wide = std::max(wide, row.cells.size());
-            if (row.at(c).empty() || is_number(row.at(c))) cells = SheetRow::most_cells;
+            if (row.at(c).empty() || is_number(row.at(c))) cells = SheetRow::max_cells;
             ++cells;
         }
         if (c >= wide) break;
-        if (cells < SheetRow::most_cells && sheet.rows[head].at(c).empty()) words.push_back(c);
+        if (cells < SheetRow::max_cells && sheet.rows[head].at(c).empty()) words.push_back(c);
     }
     return words;
 }

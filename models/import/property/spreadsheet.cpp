@@ -58,7 +58,7 @@ struct Splitter {
         SheetRow row{.line = line, .cells = {}};
         for (;;) {
             row.cells.push_back(cell());
-            if (row.cells.size() > SheetRow::most_cells && wrong == nullptr)
+            if (row.cells.size() > SheetRow::max_cells && wrong == nullptr)
                 wrong_line = row.line, wrong = "more than 10000 cells";
             if (place == text.size() || wrong != nullptr) return row;
             if (ends_line()) {

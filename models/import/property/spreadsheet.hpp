@@ -8,7 +8,7 @@
 namespace elastocheck::importer {
 
 struct SheetRow {
-    static constexpr std::size_t most_cells = 10'000;
+    static constexpr std::size_t max_cells = 10'000;
     int line = 0;                    // in the file, of its beginning, from 1
     std::vector<std::string> cells;  // trimmed, without quotes; line ends within a cell are blanks
 

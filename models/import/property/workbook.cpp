@@ -16,7 +16,7 @@ namespace elastocheck::importer {
 namespace {
 
 constexpr std::size_t largest_part = 64 << 20;  // [bytes], unpacked
-constexpr std::size_t most_rows = 100'000;
+constexpr std::size_t max_rows = 100'000;
 
 // The text of a part of a zip file; empty if there is none.
 std::string unpacked(void* zip, const std::string& name, const std::string& file) {
@@ -113,17 +113,17 @@ SheetText text_of_sheet(const Workbook& book, const std::string& name, const std
     std::size_t line = 1;
     for (const auto& row : children(child(document.document_element(), "sheetData"), "row")) {
         const std::size_t number = row.attribute("r").as_uint(static_cast<unsigned>(line));
-        if (number < line || number > most_rows)
+        if (number < line || number > max_rows)
             fail(book.file, static_cast<int>(number), name, "rows are not in order, or beyond {}",
-                 most_rows);
+                 max_rows);
         for (; line < number; ++line) sheet.csv += '\n';
         std::size_t column = 0, numbers = 0;
         for (const auto& cell : children(row, "c")) {
             const std::string_view place = cell.attribute("r").value();
             const std::size_t at = place.empty() ? column : column_in(place);
-            if (at < column || at >= SheetRow::most_cells)
+            if (at < column || at >= SheetRow::max_cells)
                 fail(book.file, static_cast<int>(number), name,
-                     "cells are not in order, or beyond {}", SheetRow::most_cells);
+                     "cells are not in order, or beyond {}", SheetRow::max_cells);
             const std::string value = value_in(cell, strings);
             sheet.csv.append(at - column, ',').append(quoted(value)).append(",");
             column = at + 1;

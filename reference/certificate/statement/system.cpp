@@ -125,13 +125,13 @@ bool has_corners(const Model& model) {
     return any;
 }
 
-std::string why_not_tried(const System& system, int most_unknowns) {
+std::string why_not_tried(const System& system, int max_unknowns) {
     if (!arithmetic_is_as_proved())
         return "the arithmetic does not round to nearest, or flushes denormals to zero: nothing "
                "can be proved";
-    if (system.n() <= most_unknowns) return {};
+    if (system.n() <= max_unknowns) return {};
     return fmt::format("not tried: {} unknowns, proofs are tried up to {}", system.n(),
-                       most_unknowns);
+                       max_unknowns);
 }
 
 const ScalarLaw& law_of(const System& system, const SeparatedCorner& corner) {

@@ -90,7 +90,7 @@ enum class Corners {
 System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
 bool has_corners(const Model& model);
 // Reason why no proof is tried, the size or the arithmetic of the thread; empty where one is.
-std::string why_not_tried(const System& system, int most_unknowns);
+std::string why_not_tried(const System& system, int max_unknowns);
 const ScalarLaw& law_of(const System& system, const SeparatedCorner& corner);
 // Sets x and f of the corners from the poses of z.
 void set_corners(const System& system, Eigen::VectorXd& z, double a);

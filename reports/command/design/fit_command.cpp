@@ -156,11 +156,11 @@ VectorXd extents_of(const Scene& scene, const std::vector<Figure>& figures, cons
     }
     return VectorXd::NullaryExpr(value.size(), [&](Index k) {
         const double extent = largest[figures[static_cast<std::size_t>(k)].name];
-        return extent > compare::least_movement(value[k]) ? extent : compare::nan;
+        return extent > compare::min_movement(value[k]) ? extent : compare::nan;
     });
 }
 
-constexpr double least_share = 1e-9;  // of an extent: what moves by less moves by rounding
+constexpr double min_share = 1e-9;  // of an extent: what moves by less moves by rounding
 
 // What to measure so that each undetermined combination is determined.
 void propose(compare::FittedScene& fit, const Model& model, const MeasuredFigures& data,
@@ -179,7 +179,7 @@ void propose(compare::FittedScene& fit, const Model& model, const MeasuredFigure
             if (fit.proposed[k].by.figure < 0)
                 if (const auto by =
                         compare::proposal(by_steps, extents, open.col(static_cast<Index>(k)));
-                    by.share > least_share)
+                    by.share > min_share)
                     fit.proposed[k] = {figures[static_cast<std::size_t>(by.figure)], by};
     }
 }

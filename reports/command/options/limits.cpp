@@ -30,11 +30,11 @@ double points_of(const Branch& branch, const RunSize& run) {
 
 void check(double points, double bytes, double steps_per_branch,
            const std::string& points_of_what) {
-    if (points * bytes <= most_memory) return;
+    if (points * bytes <= max_memory) return;
     throw std::invalid_argument(fmt::format(
         "{} would take about {:.1f} GB; allowed: {:.0f} GB, which is {:.0f} steps a branch",
-        points_of_what, 1e-9 * points * bytes, 1e-9 * most_memory,
-        std::floor(steps_per_branch * most_memory / (points * bytes)) - 1));
+        points_of_what, 1e-9 * points * bytes, 1e-9 * max_memory,
+        std::floor(steps_per_branch * max_memory / (points * bytes)) - 1));
 }
 
 }  // namespace

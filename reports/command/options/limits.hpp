@@ -11,7 +11,7 @@ namespace elastocheck::reports {
 
 using reader::max_steps;  // of a branch, as in a scene
 // Limit for the stored points of a run [bytes]: available on an ordinary desktop or CI machine.
-inline constexpr double most_memory = 4e9;
+inline constexpr double max_memory = 4e9;
 
 // Requested points and what is stored of them. Outputs are stored, states never; a comparison of
 // legs stores the outputs of all points of all branches.
@@ -24,7 +24,7 @@ struct RunSize {
 };
 
 // Throws std::invalid_argument with the largest possible number of steps if this exceeds
-// `most_memory`.
+// `max_memory`.
 void check_memory(const Model& model, const RunSize& run);
 
 // The same for output row by row with `channels` outputs: only the first of two branch sides is

@@ -17,7 +17,7 @@ using compare::CaseInput;
 using compare::Unit;
 using Kind = CaseInput::Kind;
 
-constexpr std::size_t most_cases = 10000;
+constexpr std::size_t max_cases = 10000;
 
 // A column that a scene may have.
 struct Known {
@@ -115,7 +115,7 @@ std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::
                     fmt::format("case: {} stands there twice", reader::quote(load_case.name)));
         cases.push_back(std::move(load_case));
     };
-    read_sheet(csv, file, most_cases, head, row);
+    read_sheet(csv, file, max_cases, head, row);
     return cases;
 }
 

@@ -96,11 +96,11 @@ void add_json(CLI::App& command, bool& wanted) {
 }
 
 void add_running(CLI::App& command, Running& running) {
-    constexpr int most_threads = 1024;
+    constexpr int max_threads = 1024;
     command
         .add_option("--jobs", running.jobs,
                     "threads (default: one for each core); the results are the same")
-        ->check(CLI::Range(1, most_threads));
+        ->check(CLI::Range(1, max_threads));
     command.add_flag("--quiet", running.quiet, "no progress on standard error");
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using compare::EffectRow;
 
-constexpr std::size_t most_bars = 5, most_charts = 6, most_columns = 8;
+constexpr std::size_t max_bars = 5, max_charts = 6, max_columns = 8;
 
 // The five numbers with the largest effects as bars.
 Figure tornado(const KeyFigure& key) {
@@ -26,7 +26,7 @@ Figure tornado(const KeyFigure& key) {
     Series bars{.style = Series::Style::bars, .colour = blue};
     double row = 0;
     for (const EffectRow& effect : key.effects) {
-        if (row <= -static_cast<double>(most_bars) || !key.counts(effect.effect)) break;
+        if (row <= -static_cast<double>(max_bars) || !key.counts(effect.effect)) break;
         --row;
         const std::string label = number_label(effect);
         figure.y_ticks.emplace_back(row, label);
@@ -87,7 +87,7 @@ std::optional<Section> change_section(const SceneAnalyses& scene) {
         section.figures.push_back(std::move(*group));
     FigureGroup charts;
     for (const auto& figure : figures)
-        if (charts.figures.size() < most_charts) charts.figures.push_back(tornado(figure));
+        if (charts.figures.size() < max_charts) charts.figures.push_back(tornado(figure));
     charts.caption = "The five numbers with the largest effect on each figure, for 1 mm or 1 %.";
     std::vector<std::pair<const KeyFigure*, const EffectRow*>> largest;
     for (const auto& figure : figures)
@@ -106,7 +106,7 @@ std::optional<Section> change_section(const SceneAnalyses& scene) {
     charts.table.caption = "Effects on each figure, the largest ten, for 1 mm or 1 %";
     charts.table.detail = true;
     section.figures.push_back(std::move(charts));
-    if (figures.size() > most_columns) figures.resize(most_columns);
+    if (figures.size() > max_columns) figures.resize(max_columns);
     if (Table map = heat_map(figures, rows); !map.rows.empty())
         section.tables.push_back(std::move(map));
     return section;

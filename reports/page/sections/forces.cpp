@@ -16,7 +16,7 @@
 namespace elastocheck::reports {
 namespace {
 
-constexpr std::size_t most_elements = 40;
+constexpr std::size_t max_elements = 40;
 
 // Beams of segments, and clearances of stops [mm].
 struct Elements {
@@ -94,9 +94,9 @@ std::optional<Section> forces_section(const SceneAnalyses& scene) {
         for (const auto& event : scene.lift_offs[b])
             events.push_back(fmt::format("{} ({})", event, scene.model.branches[b].name));
     if (!events.empty()) section.words["events"] = enumerated(events);
-    if (largest.size() > most_elements) {
-        section.words["left_out"] = whole_number(static_cast<long>(largest.size() - most_elements));
-        largest.resize(most_elements);
+    if (largest.size() > max_elements) {
+        section.words["left_out"] = whole_number(static_cast<long>(largest.size() - max_elements));
+        largest.resize(max_elements);
     }
     using enum Digits;
     using L = Largest;

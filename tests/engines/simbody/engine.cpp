@@ -38,7 +38,7 @@ constexpr double settled =
     1e-11;  // what Newton's last step moves [m, rad] and leaves [m, 1e6 N, 1e6 N·m]
 constexpr double far =
     0.5;  // [m, rad] for one step of the load: some other equilibrium, not the next
-constexpr int iteration_limit = 40, most_halvings = 8;
+constexpr int iteration_limit = 40, max_halvings = 8;
 constexpr double rank =
     1e-8;  // reciprocal condition of J below which a motion is idle; differences leave less
 
@@ -367,7 +367,7 @@ EquilibriumPath simbody(const Model& model, const Branch& branch, std::span<cons
         path.outcome = Outcome::converged;
         for (int k = 0; k < steps && path.outcome == Outcome::converged; ++k)
             path.outcome = advance(model, branch, from + (a - from) * k / steps,
-                                   from + (a - from) * (k + 1) / steps, most_halvings, x);
+                                   from + (a - from) * (k + 1) / steps, max_halvings, x);
         if (path.outcome != Outcome::converged) {
             path.detail =
                 branch.name + ", on the way to " + std::to_string(a) + ": " + name(path.outcome);

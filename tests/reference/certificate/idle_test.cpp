@@ -146,8 +146,8 @@ probes: {{tip: {{on: b{0}, at: p{0}}}}}
 )",
                     n - 1));
     const Equilibrium drawn = way.drawn(0), next = way.drawn(1);
-    const std::string why =
-        fmt::format("not tried: {} unknowns, proofs are tried up to {}", 7 * n, max_unknowns);
+    const std::string why = fmt::format("not tried: {} unknowns, proofs are tried up to {}", 7 * n,
+                                        max_unknowns_of_curves);
     const Certificate c = way.certify(drawn);
     EXPECT_EQ(c.state, ProofState::open);
     EXPECT_EQ(c.detail, why);

@@ -10,7 +10,7 @@ using families::Family;
 using families::Hinge;
 using families::Kind;
 
-constexpr Tolerance large{.most_unknowns = max_unknowns_of_points};
+constexpr Tolerance large{.max_unknowns = max_unknowns_of_points};
 
 // The state at full load, and moved away from it.
 void prove_and_exclude(const Family& family) {

@@ -104,7 +104,7 @@ MatrixXd null_space(const MatrixXd& A) {
 }
 
 // By M itself, with its idle modes fixed.
-double dense_least(const System& system, const Linearisation& at) {
+double dense_smallest(const System& system, const Linearisation& at) {
     const Index n = 6 * system.bodies;
     const MatrixXd J = at.J, A = J.topLeftCorner(n, n);
     const MatrixXd Z = null_space(J.bottomLeftCorner(system.constraint_rows, n));
@@ -127,7 +127,7 @@ double dense_least(const System& system, const Linearisation& at) {
 TEST(EquilibriumSparse, LeastStiffnessEqualsTheDenseEigenvalue) {
     Worst worst;
     at_stations([&](const Continuation& continuation, const std::string& what) {
-        const double least = dense_least(continuation.system, continuation.here.linearised);
+        const double least = dense_smallest(continuation.system, continuation.here.linearised);
         worst.see(std::abs(continuation.here.stiffness.least / least - 1), what);
     });
     EXPECT_TRUE(within(worst, 1e-6));
@@ -157,7 +157,7 @@ TEST(EquilibriumSparse, NegativeEigenvalueFarFromZeroIsFound) {
         const auto at = linearise(derivatives(system, {1e6}, x, counts).J, nullptr, counts);
         const double least = stiffness(system, at).least;
         EXPECT_EQ(least > 0, stable) << least;
-        EXPECT_NEAR(least / dense_least(system, at), 1, 1e-6);
+        EXPECT_NEAR(least / dense_smallest(system, at), 1, 1e-6);
     }
 }
 
