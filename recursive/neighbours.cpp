@@ -47,7 +47,8 @@ std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
 // Σ w_k ΔG_k into s.work.upper and s.work.lower. Points and lengths that change together keep a row
 // closed: what is left is rounding.
 void difference(SteppingState& s, double a, const Residual& here, const Neighbours& stencil) {
-    s.work.upper.setZero(), s.work.lower.setZero();
+    s.work.upper.setZero();
+    s.work.lower.setZero();
     for (const Neighbour& k : stencil) {
         const Residual there = residual_of(*k.model, k.model->branches.front(), a, s.q, s.lambda);
         s.work.upper += k.weight * (there.upper - here.upper);
@@ -105,7 +106,10 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                 lambda += s.work.x.tail(s.m());
                 const double size = std::sqrt(size_of_solution(s)),
                              reactions = s.work.x.tail(s.m()).norm();
-                if (step == 0) first = size, first_reactions = reactions;
+                if (step == 0) {
+                    first = size;
+                    first_reactions = reactions;
+                }
                 met = size <= chord_met * first &&
                       reactions <= chord_met * first_reactions + chord_reactions * lambda.norm();
             }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compliance.hpp"
@@ -369,7 +368,10 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
     for (auto& one : result.explanations) {
         bool included = false;  // in the words about the column that it is exchanged with
         for (const auto& other : result.explanations)
-            if (exchanged(one, other)) one.mutual = true, included = included || &other < &one;
+            if (exchanged(one, other)) {
+                one.mutual = true;
+                included = included || &other < &one;
+            }
         if (!included) result.hints.push_back(describe(one, comparison, standing));
     }
 }
@@ -385,20 +387,27 @@ Beside beside(const Comparison& comparison, std::span<const PointColumn> columns
     const Channel& channel = comparison.channels[b.channel];
     std::vector<std::size_t> others, definitions;
     for (std::size_t d = 0; d < columns.size(); ++d)
-        if (d != c && comparison.channels[columns[d].channel].unit == channel.unit)
-            others.push_back(d), b.other_channels.push_back(columns[d].channel);
+        if (d != c && comparison.channels[columns[d].channel].unit == channel.unit) {
+            others.push_back(d);
+            b.other_channels.push_back(columns[d].channel);
+        }
     for (std::size_t d = 0; d < defined.size(); ++d)
-        if (!definitions_of(defined.subspan(d, 1), channel.name).empty())
-            definitions.push_back(d), b.definition_names.push_back(defined[d].name);
-    b.others.resize(others.size()), b.definitions.resize(definitions.size());
+        if (!definitions_of(defined.subspan(d, 1), channel.name).empty()) {
+            definitions.push_back(d);
+            b.definition_names.push_back(defined[d].name);
+        }
+    b.others.resize(others.size());
+    b.definitions.resize(definitions.size());
     for (const auto& [branch, reading] : branches)
         for (std::size_t k = 0; k < reading->at.size(); ++k) {
             const double theirs = reading->candidate[c][k], ours = reading->truth[c][k];
             if (!std::isfinite(theirs) || !std::isfinite(ours)) continue;
             const Curve& truth = truth_of(*branch);
-            b.candidate.push_back(theirs), b.reference.push_back(ours);
+            b.candidate.push_back(theirs);
+            b.reference.push_back(ours);
             b.begin.push_back(truth.values[truth.start][b.channel]);
-            b.at.push_back(reading->at[k]), b.branch.push_back(branch->branch);
+            b.at.push_back(reading->at[k]);
+            b.branch.push_back(branch->branch);
             for (std::size_t o = 0; o < others.size(); ++o)
                 b.others[o].push_back(reading->truth[others[o]][k]);
             for (std::size_t d = 0; d < definitions.size(); ++d)

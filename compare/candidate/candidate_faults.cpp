@@ -30,7 +30,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -361,7 +360,10 @@ std::string nearer_with(const Beside& b, const Channel& channel) {
     std::string how;
     const auto try_it = [&](const Values& reading, const std::string& as, double at_most) {
         const double now = rms(less(v, reading));
-        if (now < std::min(left, at_most)) left = now, how = as;
+        if (now < std::min(left, at_most)) {
+            left = now;
+            how = as;
+        }
     };
     try_it(times(-1, r), "with its sign turned", quarter * scatter);
     const double offset = mean(less(v, r));

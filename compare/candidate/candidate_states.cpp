@@ -51,8 +51,10 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
     std::vector<Channel> channels;  // all but characteristics, which need the tangent of a leg
     std::vector<std::size_t> position;
     for (std::size_t c = 0; c < comparison.channels.size(); ++c)
-        if (comparison.channels[c].kind() != ChannelKind::characteristic)
-            channels.push_back(comparison.channels[c]), position.push_back(c);
+        if (comparison.channels[c].kind() != ChannelKind::characteristic) {
+            channels.push_back(comparison.channels[c]);
+            position.push_back(c);
+        }
     for (const std::size_t c : position) result.points.columns.push_back({c, false, {}});
 
     for (std::size_t b = 0; b < model.branches.size(); ++b) {

@@ -376,8 +376,10 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                 part);
     }
     if (!disagreements.empty())
-        if (const auto two = on_two_branches(model, requested, equilibrium, second); !two.empty())
-            objections.add(two), disagreements = {};
+        if (const auto two = on_two_branches(model, requested, equilibrium, second); !two.empty()) {
+            objections.add(two);
+            disagreements = {};
+        }
     for (const auto& one : disagreements.worst) objections.add(one.what, one.share);
     objections.count += disagreements.count - static_cast<int>(disagreements.worst.size());
     for (const auto& [run, other] :

@@ -262,9 +262,12 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
                 free.outcome == Outcome::loaded_idle_mode || free.outcome == Outcome::singular;
         }
     }
-    if (is_unresisted(response.free))
-        response.free.clear(), response.why_not_free = "only rounding resists a motion",
-                               response.nothing_resists = true, held.reset();
+    if (is_unresisted(response.free)) {
+        response.free.clear();
+        response.why_not_free = "only rounding resists a motion";
+        response.nothing_resists = true;
+        held.reset();
+    }
 
     const auto on_jacks = [&](std::size_t count, ResponseCache& cache) {
         const ResponseCase up = jacked_up(freed_case, count);

@@ -84,7 +84,8 @@ struct OnBranch {
     void add_figures(NamedOutputs& outputs) {
         for (std::size_t k = 0; k < figures.size(); ++k)
             if (has(figures[k])) {
-                add(figures[k].name, outputs), add(figures[k].over, outputs);
+                add(figures[k].name, outputs);
+                add(figures[k].over, outputs);
                 which.push_back(k);
             }
     }
@@ -149,7 +150,10 @@ void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, Rea
     const auto path = solve_at(side, leg, points, [&](const Equilibrium& state) {
         if (std::ranges::find(points, state.load) != points.end()) into.states.push_back(state);
     });
-    if (into.outcome == Outcome::converged) into.outcome = path.outcome, into.detail = path.detail;
+    if (into.outcome == Outcome::converged) {
+        into.outcome = path.outcome;
+        into.detail = path.detail;
+    }
 }
 
 // Whether a model differs from that of the states in its numbers only.
@@ -157,7 +161,8 @@ bool same_structure(const Model& model, std::span<const ReadStates> states) {
     std::vector<int> here, there;
     for (const ReadStates& of : states) {
         if (of.branch >= model.branches.size()) return false;
-        here.clear(), there.clear();
+        here.clear();
+        there.clear();
         structure(of.sides.front().model, here);
         structure(read_sides(model, of).front().model, there);
         if (here != there) return false;

@@ -124,7 +124,10 @@ struct SolvedFigures {
         if (first.size() != points[0].size() || first != points[0]) {
             AtPoint there = std::move(near({points.data(), 1}).front());
             first = points[0];
-            if (!there.model) there.trim = here.trim, there.states = std::move(here.states);
+            if (!there.model) {
+                there.trim = here.trim;
+                there.states = std::move(here.states);
+            }
             here = std::move(there);
         }
         std::vector<VectorXd> values{here.figures.value};

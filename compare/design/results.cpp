@@ -101,8 +101,10 @@ void set_confirmation(Result& result, const Confirmation& by, Grade otherwise) {
 double worst_of(const Goal& goal, const VectorXd& values) {
     double most = -INFINITY, worst = nan;
     for (const double value : values)
-        if (const double excess = std::max(goal.low - value, value - goal.high); excess > most)
-            most = excess, worst = value;
+        if (const double excess = std::max(goal.low - value, value - goal.high); excess > most) {
+            most = excess;
+            worst = value;
+        }
     return worst;
 }
 double largest_difference(const VectorXd& a, const VectorXd& b) {

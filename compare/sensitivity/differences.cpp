@@ -193,9 +193,10 @@ OneSided beside_corner(const ReadSide& read_side, Leg leg, const Equilibrium& st
     }
     // what needs a stiffness of the corner itself has none
     for (std::size_t c = 0; c < read_side.outputs.channels.size(); ++c)
-        if (read_side.outputs.channels[c].kind() == ChannelKind::characteristic)
-            both.growing.row(static_cast<Index>(c)).setConstant(nan),
-                both.falling.row(static_cast<Index>(c)).setConstant(nan);
+        if (read_side.outputs.channels[c].kind() == ChannelKind::characteristic) {
+            both.growing.row(static_cast<Index>(c)).setConstant(nan);
+            both.falling.row(static_cast<Index>(c)).setConstant(nan);
+        }
     return both;
 }
 
@@ -216,7 +217,10 @@ std::vector<double> sizes_of_rows(const ReadSide& of, const MatrixXd& rate,
 // which is h³ of smooth functions: its median over the numbers that move the output is 0.6745 ε √(...).
 double spread(const std::array<double, 4>& c) {
     double sum = 0, squares = 0;
-    for (const double one : c) sum += one, squares += one * one;
+    for (const double one : c) {
+        sum += one;
+        squares += one * one;
+    }
     return std::sqrt(squares + sum * sum);
 }
 MatrixXd rounding_of(const Entries& entries, std::span<const Neighbouring> near) {
@@ -316,7 +320,8 @@ struct Refining {
             for (std::size_t n = 0; n < rows.size(); ++n)
                 if (const auto at = static_cast<Index>(n); finer.check(at, 0) < check[rows[n]]) {
                     const Index c = rows[n];
-                    rates.at(c, column) = finer.rate(at, 0), check[c] = finer.check(at, 0);
+                    rates.at(c, column) = finer.rate(at, 0);
+                    check[c] = finer.check(at, 0);
                     rates.rounding(c, column) = rounding[c] / h;
                 }
             if (worst(check) > before / 2) break;  // rounding, or a kink at the number itself

@@ -482,9 +482,10 @@ std::vector<Gradients> gradients(const Scene& scene, const Trimmed& trimmed, con
         run_jobs(jobs, options.threads, {});
         for (Gradients& of_group : all)
             for (std::size_t k = from; k < std::min(from + numbers.size(), varying.numbers.size());
-                 ++k)
-                of_group.numbers[k].side = points[k - from].side,
+                 ++k) {
+                of_group.numbers[k].side = points[k - from].side;
                 of_group.numbers[k].undefined = points[k - from].undefined;
+            }
         on_every_side([&](SideWork& side) { side.differentiate(numbers, points); });
     }
     std::vector<Adjusting> dx(used.size());

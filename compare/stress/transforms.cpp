@@ -18,10 +18,12 @@ void each_part(Scene& scene, const F& visit) {
     for (auto& elastic : scene.elastics) each_member(elastic.kind, visit);
     if constexpr (std::is_invocable_v<const F&, Point&>) {
         for (auto& probe : scene.probes) visit(probe.at);
-        for (auto& damper : scene.dampers) visit(damper.i), visit(damper.j);
+        for (auto& damper : scene.dampers)
+            for (auto* end : {&damper.i, &damper.j}) visit(*end);
         for (auto& wheel : scene.wheels) {
             visit(wheel.contact);
-            if (auto& axis = wheel.steering_axis) visit(axis->lower), visit(axis->upper);
+            if (auto& axis = wheel.steering_axis)
+                for (auto* point : {&axis->lower, &axis->upper}) visit(*point);
         }
     }
 }

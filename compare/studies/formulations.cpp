@@ -70,7 +70,10 @@ std::optional<FormulationSpread> spread_of(const std::vector<SolvedFormulation>&
         found.highest = high->name;
     }
     if (found.spread < 0) return std::nullopt;
-    if (found.spread < min_spread) found.lowest.clear(), found.highest.clear();
+    if (found.spread < min_spread) {
+        found.lowest.clear();
+        found.highest.clear();
+    }
     return found;
 }
 

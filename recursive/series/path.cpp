@@ -339,7 +339,10 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
         // loss of stability.
         bool past = !reversed && is_past(w, rises_ahead(w));
         if (!past && !reversed)
-            if (const auto lost = lost_inside(w, from, end.tau)) past = true, end.tau = *lost;
+            if (const auto lost = lost_inside(w, from, end.tau)) {
+                past = true;
+                end.tau = *lost;
+            }
         if (past) end.tau = divide(w, from, end.tau);
         if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,

@@ -57,7 +57,10 @@ void take(Equations<Real>& e, const Model& model, const Branch& branch, int lane
         detail::take_kind(e.loads.at(at), what.kind, lane);
         std::visit([&](auto& t) { detail::put(t.factor, lane, start); }, e.loads[at]);
     };
-    for (const auto& each : model.static_loads) load(each, 1), ++at;
+    for (const auto& each : model.static_loads) {
+        load(each, 1);
+        ++at;
+    }
     for (const auto& driver : branch.drivers)
         std::visit(
             overloaded{[&](const Load& what) {

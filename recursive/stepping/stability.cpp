@@ -77,8 +77,10 @@ bool is_unstable(const SteppingState& s) {
             const auto at = static_cast<std::size_t>(e);
             const int row = idle.row[at];
             if (const double here = std::abs(idle.value[at] * s.system.weight[row]);
-                here > size && std::ranges::find(held, row) == held.end())
-                largest = row, size = here;
+                here > size && std::ranges::find(held, row) == held.end()) {
+                largest = row;
+                size = here;
+            }
         }
         if (largest >= 0) held.push_back(largest);
     }

@@ -52,7 +52,10 @@ Equilibrium solved(const Model& model, const StateTangent& tangent, const Condit
         lambda += dlambda;
         move_to(chart, solution.x);
         at = poses(chart);
-        if (step == 0) first = solution.x.norm(), first_reactions = dlambda.norm();
+        if (step == 0) {
+            first = solution.x.norm();
+            first_reactions = dlambda.norm();
+        }
         has_met = solution.x.norm() <= chord_met * first &&
                   dlambda.norm() <= chord_met * first_reactions + chord_reactions * lambda.norm();
     }

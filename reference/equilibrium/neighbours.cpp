@@ -62,7 +62,10 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                 size = pose_size(system, by.dx);
                 const auto m = system.constraint_rows;
                 const double reactions = by.dx.tail(m).norm();
-                if (step == 0) first = size, first_reactions = reactions;
+                if (step == 0) {
+                    first = size;
+                    first_reactions = reactions;
+                }
                 met = size <= chord_met * first &&
                       reactions <= chord_met * first_reactions + chord_reactions * x.tail(m).norm();
             }

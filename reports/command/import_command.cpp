@@ -347,8 +347,10 @@ int export_map(const ExportRequest& request) {
         }
         auto a = path.curve.a;
         auto values = path.curve.values;
-        if (a.size() > 1 && a.front() > a.back())
-            std::ranges::reverse(a), std::ranges::reverse(values);
+        if (a.size() > 1 && a.front() > a.back()) {
+            std::ranges::reverse(a);
+            std::ranges::reverse(values);
+        }
         for (auto& point : values)
             for (double& value : point)
                 if (!std::isfinite(value)) value = std::numeric_limits<double>::quiet_NaN();

@@ -140,7 +140,10 @@ void keep_rows(PointTable& table, const std::function<std::string(std::size_t po
         for (const std::size_t k : kept) of_points.push_back(std::move(all[k]));
     };
     compare::Points& points = table.points;
-    keep(table.lines), keep(points.branch), keep(points.a), keep(points.at);
+    keep(table.lines);
+    keep(points.branch);
+    keep(points.a);
+    keep(points.at);
     for (auto& column : points.columns) keep(column.values);
     constexpr std::size_t max_lines = 10;
     for (const auto& [why, lines] : left_out)
@@ -171,8 +174,10 @@ PointTable read_points(std::string_view csv, const std::string& file, const Name
                                   &compare::PointColumn::channel) != points.columns.end())
                 fail_at(file, 1, fmt::format("two columns for {}", channel.name));
             points.columns.push_back({meaning.channel, meaning.change, table.values[c]});
-            if (!points.abscissa && !meaning.change && is_travel(channel))
-                points.abscissa = meaning.channel, points.at = table.values[c];
+            if (!points.abscissa && !meaning.change && is_travel(channel)) {
+                points.abscissa = meaning.channel;
+                points.at = table.values[c];
+            }
         }
     }
     if (!points.a.empty() && table.branch.empty())

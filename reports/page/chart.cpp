@@ -161,7 +161,8 @@ Figure figure_of(const compare::Chart& chart, const Table& table, const std::str
 void add_tolerance(Figure& figure, double tolerance, const std::string& unit, int decades) {
     double low = INFINITY, high = -INFINITY;
     const auto take = [&](double value) {
-        low = std::min(low, value), high = std::max(high, value);
+        low = std::min(low, value);
+        high = std::max(high, value);
     };
     if (std::isfinite(tolerance)) take(tolerance);
     for (const auto& series : figure.series)

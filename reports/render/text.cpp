@@ -138,7 +138,10 @@ std::string text(const compare::Result& result) {
     const auto gap = [&] {
         if (!all.empty() && !all.ends_with("\n\n")) all += "\n";
     };
-    for (const auto& paragraph : result.about) line(paragraph), gap();
+    for (const auto& paragraph : result.about) {
+        line(paragraph);
+        gap();
+    }
     for (const auto& table : result.tables) {
         if (table.detail) continue;
         const std::string rows = table.rows.empty() ? "" : text(table);

@@ -198,8 +198,10 @@ void add_states(const compare::Leftover& left, compare::Result& result) {
 std::pair<double, double> imbalance(const CandidateJudgement& j) {
     double force = 0, moment = 0;
     for (const auto& left : j.leftovers)
-        for (const auto& of : left.truth)
-            force = std::max(force, of.force), moment = std::max(moment, of.moment);
+        for (const auto& of : left.truth) {
+            force = std::max(force, of.force);
+            moment = std::max(moment, of.moment);
+        }
     return {force, moment};
 }
 

@@ -105,8 +105,10 @@ std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
         double size = 0;
         for (Sparse::InnerIterator at(modes, k); at; ++at)
             if (at.row() < n && std::abs(at.value()) > size &&
-                std::ranges::find(held, at.row()) == held.end())
-                largest = at.row(), size = std::abs(at.value());
+                std::ranges::find(held, at.row()) == held.end()) {
+                largest = at.row();
+                size = std::abs(at.value());
+            }
         if (largest >= 0) held.push_back(largest);
     }
     return held;

@@ -62,7 +62,8 @@ compare::ToleratedNumbers read_tolerances(const std::string& file, const Scene& 
         if (!(value > 0)) size.fail(fmt::format("{:g}; allowed: more than zero", value));
         tolerated.numbers.push_back(name);
         const auto n = std::ssize(tolerated.numbers);
-        tolerated.sd.conservativeResize(n), tolerated.largest.conservativeResize(n);
+        tolerated.sd.conservativeResize(n);
+        tolerated.largest.conservativeResize(n);
         tolerated.sd[n - 1] = normal ? value : value / std::sqrt(3.0);
         tolerated.largest[n - 1] = normal ? 3 * value : value;
     }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/csv_table.hpp"

@@ -36,9 +36,11 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
         if ((!shown || turned) && !rows.empty() && !rows.back().empty()) rows.emplace_back();
         if (!shown) continue;
         rows.push_back({at_rest(x[j]), at_rest(y)});
-        least = std::min(least, y), most = std::max(most, y);
+        least = std::min(least, y);
+        most = std::max(most, y);
     }
-    extent.low = std::min(extent.low, least), extent.high = std::max(extent.high, most);
+    extent.low = std::min(extent.low, least);
+    extent.high = std::max(extent.high, most);
     if (most > least) extent.moved = std::max(extent.moved, most - least);
     return rows;
 }
