@@ -94,7 +94,7 @@ void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Correcti
 void require_drawn_values(const Scene& scene) {
     const Eigen::VectorXd differs = requested_from_drawn(scene);
     for (Eigen::Index k = 0; k < differs.size(); ++k)
-        if (!(std::abs(differs[k]) <= acceptable))
+        if (!(std::abs(differs[k]) <= accepted_residual))
             throw std::invalid_argument(
                 fmt::format("'{}' differs from its value as drawn, and with balanced bushings the "
                             "drawn position "

@@ -385,7 +385,7 @@ std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimI
         if (const std::string why = ill_posed(*problem.trim, *J); !why.empty()) {
             // Well-posed at an earlier iterate: the iteration has reached the limit of what
             // can be trimmed.
-            if (it.iterations == 0 || it.here.missed.norm() <= acceptable)
+            if (it.iterations == 0 || it.here.missed.norm() <= accepted_residual)
                 throw std::invalid_argument(why);
             it.stuck = "; at that state " + why;
             break;
@@ -429,7 +429,7 @@ bool record_conditions(const TrimProblem& problem, const TrimIteration& it, Trim
                                      in_unit(unit) * problem.target[i],
                                      in_unit(unit) * it.here.missed[i], std::nan("")});
     }
-    if (it.here.missed.norm() <= acceptable) return true;
+    if (it.here.missed.norm() <= accepted_residual) return true;
     const auto worst = std::ranges::max_element(
         record.conditions, {}, [](const auto& c) { return std::abs(c.missed) / in_unit(c.unit); });
     record.outcome = Outcome::iteration_limit;
@@ -453,7 +453,7 @@ VectorXd requested_from_drawn(const Scene& scene) {
 }
 
 Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
-                  SettledTrim* settles) {
+                  SettledTrim* settled) {
     Trimmed result{scene, std::nullopt};
     const Trim& trim = *scene.trim;
     if (trim.adjust.size() != trim.until.size() || trim.adjust.empty())
@@ -486,15 +486,15 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     const Index n = it.p.size();
     if (is_similar && start->J.rows() == n && start->J.cols() == n)
         iterate_from(*start, problem, it);
-    const bool settled = it.J.size() > 0 && it.has_met();
-    if (!settled) {
+    const bool starts_met = it.J.size() > 0 && it.has_met();
+    if (!starts_met) {
         it.p.setZero();
         it.iterations = 0;
         it.here = settle(problem, it.p, problem.solver);
     }
     if (it.here.outcome != Outcome::converged)
         return give_up(it.here, "the scene has no settled equilibrium before the trim");
-    if (const auto failed = iterate(problem, !settled, it))
+    if (const auto failed = iterate(problem, !starts_met, it))
         return give_up(*failed, "at a neighbouring state");
     record.iterations = it.iterations;
     if (!record_conditions(problem, it, record)) return result;
@@ -511,7 +511,7 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     if (start != nullptr)
         *start = {it.p, it.J, std::move(parts),
                   problem.analysis ? problem.analysis->settled : start->settled};
-    if (settles != nullptr) *settles = {held, it.here.state};
+    if (settled != nullptr) *settled = {held, it.here.state};
     apply(trim, it.p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
         const auto& adjusted = trim.adjust[k];
