@@ -14,7 +14,7 @@ constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
 System in_scales_of(const System& of, const Model& model, double a) {
     System system = make_system(model, model.branches.front(), {&a, 1});
     if (system.equations() != of.equations())
-        throw std::invalid_argument("a neighbour of another model");
+        throw std::invalid_argument("a neighbour has other parts than the model");
     system.centre = of.centre;
     system.length = of.length;
     system.force = of.force;

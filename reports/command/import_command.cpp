@@ -235,7 +235,7 @@ Breakpoints held_breakpoints(const Rows& rows, const Scene& scene, const Branch&
         for (double& value : points.values) value *= factor;
         return points;
     }
-    throw std::invalid_argument("--rows: nothing that the branch holds changes");
+    throw std::invalid_argument("--rows: no quantity held on the branch differs between its rows");
 }
 
 // The parameter of the branch, `values` in its display unit. It is a travel where it moves jacks of

@@ -46,7 +46,7 @@ Map map_of(const std::string& text, const std::string& file) {
         const Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
                             std::string(reader::trimmed(piece.substr(equals + 1)))};
         if (std::ranges::find(keys, chosen.key) == keys.end())
-            fail(file, 0, "--columns", "{} is nothing that a point has{}",
+            fail(file, 0, "--columns", "{} is not a property of a point{}",
                  reader::quote(chosen.key), reader::did_you_mean(chosen.key, keys, "allowed"));
         if (has(map, chosen.key)) fail(file, 0, "--columns", "{} is given twice", chosen.key);
         if (chosen.column.empty()) fail(file, 0, "--columns", "no column for {}", chosen.key);

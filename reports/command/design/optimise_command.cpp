@@ -104,7 +104,7 @@ void add_curve(const Cursor& entry, const LoadedScene& loaded, const std::string
                Goal& goal) {
     const Model& model = loaded.model;
     const double from = entry.require("from").number(), to = entry.require("to").number();
-    if (!(from < to)) entry.fail("from is not below to");
+    if (!(from < to)) entry.fail(fmt::format("from {:g} is not below to {:g}", from, to));
     const auto count = entry.optional("points"), branch = entry.optional("branch"),
                over = entry.optional("over");
     const int points = count ? count->whole_number(2, 1000) : default_points;
@@ -207,7 +207,7 @@ GoalsFile read_goals(const std::string& file, const LoadedScene& loaded) {
         result.minimised_line = minimised->value->line;
     }
     if (result.goals.empty() && !result.minimised)
-        whole.fail("neither goals nor a figure to minimise");
+        whole.fail("neither goals nor a figure to minimise; required: goals, minimise or both");
     return result;
 }
 

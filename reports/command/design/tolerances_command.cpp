@@ -33,7 +33,7 @@ void add_correlation(const Cursor& entry, compare::ToleratedNumbers& tolerated) 
     for (std::size_t i = 0; i < 2; ++i)
         k[i] = static_cast<Index>(parts[i].one_of("a number with a tolerance", tolerated.numbers));
     const double rho = parts[2].number();
-    if (k[0] == k[1]) entry.fail("a number with itself");
+    if (k[0] == k[1]) entry.fail("a number with itself; required: two different numbers");
     if (!(std::abs(rho) <= 1)) parts[2].fail(fmt::format("{:g}; allowed: -1 to 1", rho));
     tolerated.correlation(k[0], k[1]) = tolerated.correlation(k[1], k[0]) = rho;
 }
