@@ -54,7 +54,7 @@ void add_missing_parts(const Branch& branch, const BranchComparison& compared_br
                        const std::vector<Channel>& channels, std::vector<std::string>& list) {
     const double unit = in_unit(compared_branch.unit);
     const auto missing = [&](std::size_t c) {
-        std::optional<std::string> least;
+        std::optional<std::string> shortest;
         for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
             const auto& reading = given.reading(kind);
             if (reading.columns.empty()) continue;
@@ -73,9 +73,9 @@ void add_missing_parts(const Branch& branch, const BranchComparison& compared_br
             for (std::size_t k = 0; k < reading.at.size(); ++k)
                 if (!std::isnan(reading.candidate[c][k])) places.push_back(reading.at[k]);
             const std::string parts = omitted(std::move(places), low, high, unit_name);
-            if (!least || parts.empty()) least = parts;
+            if (!shortest || parts.empty()) shortest = parts;
         }
-        return least;
+        return shortest;
     };
     std::vector<std::pair<std::string, std::string>> of_columns;  // name, missing part
     for (std::size_t c = 0; c < judgement.columns.size(); ++c) {

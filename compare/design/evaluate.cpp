@@ -206,7 +206,7 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
 }
 
 std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg) {
-    std::vector<ReadStates> all;
+    std::vector<ReadStates> all_states;
     for (std::size_t b = 0; b < model.branches.size(); ++b)
         for (const bool whole : {false, true}) {
             ReadStates states{b, whole, {}};
@@ -228,9 +228,9 @@ std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> fi
                     if (std::exchange(first, false)) std::erase(points, 0.);
                 }
             }
-            all.push_back(std::move(states));
+            all_states.push_back(std::move(states));
         }
-    return all;
+    return all_states;
 }
 
 FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
@@ -252,15 +252,15 @@ FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg l
 std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
                                                          std::span<const Model* const> models,
                                                          int threads) {
-    std::vector<std::vector<ReadStates>> all(models.size());
+    std::vector<std::vector<ReadStates>> states_of_models(models.size());
     if (std::ranges::any_of(states, [](const ReadStates& of) { return !of.complete(); }))
-        return all;
+        return states_of_models;
     std::vector<std::atomic<bool>> near(models.size());
     std::vector<Job> jobs;
     for (std::size_t m = 0; m < models.size(); ++m) {
         near[m] = models[m] != nullptr && same_structure(*models[m], states);
         for (std::size_t k = 0; near[m] && k < states.size(); ++k) {
-            ReadStates& of = all[m].emplace_back(states[k]);
+            ReadStates& of = states_of_models[m].emplace_back(states[k]);
             of.sides = read_sides(*models[m], of);
         }
     }
@@ -270,17 +270,18 @@ std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadSta
         std::vector<std::size_t> model_of;  // their models
         for (std::size_t m = 0; m < models.size(); ++m)
             if (near[m]) {
-                stencils.push_back({{&side_at(all[m][k].sides, state.load).model, 1, 1}});
+                stencils.push_back(
+                    {{&side_at(states_of_models[m][k].sides, state.load).model, 1, 1}});
                 model_of.push_back(m);
             }
         const BranchSide& side = side_at(states[k].sides, state.load);
         const auto found =
             reference::equilibrium::neighbour_states(side.model, side.branch, state, stencils);
         for (std::size_t n = 0; n < found.size(); ++n) {
-            const BranchSide& there = side_at(all[model_of[n]][k].sides, state.load);
+            const BranchSide& there = side_at(states_of_models[model_of[n]][k].sides, state.load);
             if (found[n].outcome == Outcome::converged && found[n].settled &&
                 ends_at_table(there.model, there.branch, found[n].states.front()).empty())
-                all[model_of[n]][k].states[s] = found[n].states.front();
+                states_of_models[model_of[n]][k].states[s] = found[n].states.front();
             else
                 near[model_of[n]] = false;
         }
@@ -290,8 +291,8 @@ std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadSta
             jobs.push_back({"", [&, k, s] { move_state(k, s); }});
     run_jobs(jobs, threads, {});
     for (std::size_t m = 0; m < models.size(); ++m)
-        if (!near[m]) all[m].clear();
-    return all;
+        if (!near[m]) states_of_models[m].clear();
+    return states_of_models;
 }
 
 VectorXd SearchRange::at(const VectorXd& shares) const {
@@ -302,9 +303,9 @@ VectorXd SearchRange::shares(const VectorXd& p) const {
 }
 
 MatrixXd Figures::gradient(const VectorXd& p) const {
-    const VectorXd here = value(p), rounding = here.unaryExpr(&min_movement);
-    MatrixXd rate = MatrixXd::Constant(here.size(), p.size(), nan);
-    VectorXd size = VectorXd::Zero(here.size());  // largest change by a step of any number
+    const VectorXd centre = value(p), rounding = centre.unaryExpr(&min_movement);
+    MatrixXd rate = MatrixXd::Constant(centre.size(), p.size(), nan);
+    VectorXd size = VectorXd::Zero(centre.size());  // largest change by a step of any number
     std::vector<Index> open(static_cast<std::size_t>(p.size()));
     std::iota(open.begin(), open.end(), Index{0});
     double share = 1;
@@ -317,9 +318,10 @@ MatrixXd Figures::gradient(const VectorXd& p) const {
         std::vector<Index> kinked;
         for (std::size_t k = 1; k < y.size(); k += 4) {
             const Index i = open[k / 4];
-            const Changes changes{y[k] - here, y[k + 1] - here, y[k + 2] - here, y[k + 3] - here};
+            const Changes changes{y[k] - centre, y[k + 1] - centre, y[k + 2] - centre,
+                                  y[k + 3] - centre};
             bool settled = true;
-            for (Index j = 0; j < here.size(); ++j) {
+            for (Index j = 0; j < centre.size(); ++j) {
                 if (pass == 0) size[j] = std::max(size[j], changes.size(j));
                 if (pass > 0 && !std::isnan(rate(j, i))) continue;
                 const bool kink = changes.kink(j) > one_slope * share * size[j] + rounding[j];

@@ -308,8 +308,8 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
             o != Outcome::converged)
             return o;
         // Crossing a knot must not have changed the sign of the determinant.
-        if (const int here = has_shared ? (*shared)->side : side(w, w.to); starts) {
-            w.side = here;
+        if (const int side_here = has_shared ? (*shared)->side : side(w, w.to); starts) {
+            w.side = side_here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
                 const bool is_known = known != nullptr && pieces_of(w.curves) == pieces;
                 const StartStability start = has_shared ? (*shared)->stability
@@ -322,7 +322,7 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                 if (shared != nullptr && !has_shared)
                     *shared = {s.q,   s.lambda, s.system.held.value,
                                w.c.x, w.c.load, log_determinant(s.system),
-                               here,  start};
+                               side_here,  start};
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;

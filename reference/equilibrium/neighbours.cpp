@@ -30,16 +30,17 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     const StateTangent tangent = tangent_at(model, branch, state, none);
     if (tangent.outcome != Outcome::converged)
         return {stencils.size(), NeighbourStates{tangent.outcome, tangent.what, {}}};
-    const Eigen::VectorXd here = residual(tangent.system, tangent.loading, tangent.x);
+    const Eigen::VectorXd own_residual = residual(tangent.system, tangent.loading, tangent.x);
     const double rounding = last_digits * largest_entry(tangent.at.J);
     std::vector<NeighbourStates> neighbours;
     for (const Neighbours& stencil : stencils) {
         NeighbourStates& result = neighbours.emplace_back();
         std::vector<System> systems;
-        Eigen::VectorXd E_rate = Eigen::VectorXd::Zero(here.size());
+        Eigen::VectorXd E_rate = Eigen::VectorXd::Zero(own_residual.size());
         for (const Neighbour& k : stencil) {
             systems.push_back(in_scales_of(tangent.system, *k.model, state.load));
-            E_rate += k.weight * (residual(systems.back(), tangent.loading, tangent.x) - here);
+            E_rate +=
+                k.weight * (residual(systems.back(), tangent.loading, tangent.x) - own_residual);
         }
         const Solved solved = solve_at_state(tangent, E_rate, rounding * amplification(stencil));
         if (solved.outcome != Outcome::converged) {
@@ -56,7 +57,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             for (int step = 0; step < chord_steps && !last; ++step) {
                 last = met;
                 const Solved by = solve_at_state(
-                    tangent, residual(system, tangent.loading, x) - here, not_judged);
+                    tangent, residual(system, tangent.loading, x) - own_residual, not_judged);
                 if (by.outcome != Outcome::converged) break;
                 x = moved(system, x, by.dx);
                 size = pose_size(system, by.dx);

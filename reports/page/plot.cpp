@@ -337,9 +337,9 @@ Svg draw_plot(const Figure& figure) {
     double right = width - 20;
     const double bottom = svg.height - (figure.log_x ? 47 : 43);
     const auto end = [&](double value) { return figure.log_y ? std::log10(value) : value; };
-    const Range all = coordinates(figure, 1, figure.log_y);
+    const Range whole = coordinates(figure, 1, figure.log_y);
     const bool free = !figure.log_y && std::isnan(figure.y_low) && std::isnan(figure.y_high);
-    const Range shown = free ? bulk_of(figure, all) : all;
+    const Range shown = free ? bulk_of(figure, whole) : whole;
     const auto vertical = [&](double top) {
         Axis axis = ticked(figure.log_y, shown, end(figure.y_low), end(figure.y_high),
                            (bottom - top) / (figure.log_y ? 22 : 15));
@@ -409,10 +409,11 @@ Svg draw_plot(const Figure& figure) {
             top, bottom);
         svg.elements += "</g>";
     }
-    if (shown.low != all.low || shown.high != all.high)
-        svg.text({left + 6, top + 12},
-                 fmt::format("axis cut: values from {} to {}", number(all.low), number(all.high)),
-                 slate, "start");
+    if (shown.low != whole.low || shown.high != whole.high)
+        svg.text(
+            {left + 6, top + 12},
+            fmt::format("axis cut: values from {} to {}", number(whole.low), number(whole.high)),
+            slate, "start");
     // for the script of the page: pixels and coordinates of the ends of the axes, and their names
     const auto add_axis = [&](char name, const Axis& axis, const std::string& words) {
         svg.of_image += fmt::format(" data-{0}=\"{1} {2} {3:.8g} {4:.8g} {5:d}\" data-{0}n=\"{6}\"",

@@ -302,12 +302,12 @@ std::size_t resolved(const Sheet& sheet, const std::string& file, const Chosen& 
 
 Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
     Found found;
-    std::ptrdiff_t most = 0;
+    std::ptrdiff_t max_of_map = 0;
     for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) {
         const auto of_map = std::ranges::count_if(
             map, [&](const Chosen& c) { return !headed(sheet.rows[r], c.column).empty(); });
-        if (of_map > most) {
-            most = of_map;
+        if (of_map > max_of_map) {
+            max_of_map = of_map;
             found.head = r;
         }
     }
