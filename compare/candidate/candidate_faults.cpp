@@ -273,8 +273,7 @@ std::optional<Explanation> explain(const Beside& b) {
         std::min(explained * deviation,
                  std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, of_movement * movement));
     std::optional<Explanation> accepted;
-    // A factor alone has to reproduce the level of the column; with an offset or from r_0 its
-    // range.
+    // A factor alone has to reproduce the column's level; with an offset or from r_0, its range.
     int tests = 0;
     // Tests v = `transformed`; the first explanation that makes the column right is accepted.
     const auto try_it = [&](Explanation explanation, const Values& transformed,

@@ -99,7 +99,7 @@ namespace {
 
 // The scene on a branch whose drivers are the adjustments. compile() treats them as moving, so that
 // no adjustment is left out because it starts at zero.
-TrimProblem pose(const Scene& scene) {
+TrimProblem trim_problem(const Scene& scene) {
     TrimProblem problem;
     problem.trim = &*scene.trim;
     Scene held = scene;
@@ -323,7 +323,7 @@ struct TrimIteration {
     MatrixXd J;     // the last one
     TrimAttempt here = {};
     int iterations = 0;
-    std::string stuck = {};  // why it went no further, "; at the next iterate: ..."
+    std::string stuck = {};  // why it stopped, "; at the next iterate: ..."
 
     bool has_met() const { return here.outcome == Outcome::converged && here.missed.norm() <= met; }
     // The same step as settled at p + h s.
@@ -348,7 +348,7 @@ void iterate_from(const TrimStart& start, const TrimProblem& problem, TrimIterat
     }
 }
 
-// One step along s, halved until it comes nearer to the conditions; false if none does. Unreachable
+// One step along dp, halved until it comes nearer to the conditions; false if none does. Unreachable
 // conditions lead to a singular state, beyond which rounding decides which are met.
 bool step_nearer(const TrimProblem& problem, const VectorXd& dp, TrimIteration& it) {
     TrimAttempt next;
@@ -397,7 +397,7 @@ std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimI
     return std::nullopt;
 }
 
-// Settles the trimmed scene by another leg. Fills `record`; returns a leg that did not settle.
+// Settles the trimmed scene by another leg. Fills `record`; returns an attempt that did not settle.
 std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIteration& it,
                                         const BranchSide& held, TrimRecord& record) {
     record.confirmed_by = Leg::energy;
@@ -420,7 +420,7 @@ std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIt
     return std::nullopt;
 }
 
-// What each condition is missed by; false if more than is acceptable, with the reason in `record`.
+// Records by how much each condition is missed; false beyond `accepted_residual`, with the reason.
 bool record_conditions(const TrimProblem& problem, const TrimIteration& it, TrimRecord& record) {
     for (std::size_t k = 0; k < problem.trim->until.size(); ++k) {
         const Unit unit = problem.channels[k].unit;
@@ -448,7 +448,7 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
 }
 
 VectorXd requested_from_drawn(const Scene& scene) {
-    const TrimProblem problem = pose(scene);
+    const TrimProblem problem = trim_problem(scene);
     return problem.target - problem.drawn;
 }
 
@@ -460,7 +460,7 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
         throw std::invalid_argument(
             fmt::format("{} adjusted quantities for {} conditions; their numbers must be equal",
                         trim.adjust.size(), trim.until.size()));
-    TrimProblem problem = pose(scene);
+    TrimProblem problem = trim_problem(scene);
     problem.solver = solver;
     std::vector<int> parts;
     structure(problem.side.model, parts);

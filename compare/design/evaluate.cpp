@@ -32,10 +32,11 @@ using Eigen::VectorXd;
 constexpr int interpolated_points = 40;
 
 constexpr int max_shorter_steps = 3;  // how often h is divided by eight
-constexpr double one_slope = 1e-3;    // of the largest change by 2h: a smaller kink is none
+constexpr double max_kink = 1e-3;     // share of the largest change by 2h: more has no rate
 
-// Outputs of a model by their names: a figure of the catalogue is made alone; the list of all outputs
-// when another one is asked for, with the sums, which take an analysis, only where it has none.
+// Outputs of a model by their names. A figure of the catalogue is made without the others. For another
+// output the list of all is made, and only if it is not there the list with the sums, which need an
+// analysis of the model.
 class NamedOutputs {
   public:
     explicit NamedOutputs(const Model& model) : model_(model) {}
@@ -71,8 +72,8 @@ struct OnBranch {
     Leg leg;
     std::span<const Figure> figures;
     FigureValues& result;
-    std::vector<Channel> read = {};  // outputs of the figures, each once
-    std::vector<std::size_t> which = {};
+    std::vector<Channel> read = {};        // outputs of the figures, each once
+    std::vector<std::size_t> chosen = {};  // figures of this branch
 
     const Branch& branch() const { return model.branches[states.branch]; }
     bool has(const Figure& figure) const {
@@ -86,7 +87,7 @@ struct OnBranch {
             if (has(figures[k])) {
                 add(figures[k].name, outputs);
                 add(figures[k].over, outputs);
-                which.push_back(k);
+                chosen.push_back(k);
             }
     }
     std::size_t column(const std::string& name) const {
@@ -114,7 +115,7 @@ struct OnBranch {
         for (const Equilibrium& state : states.states)
             append(curve, state.load,
                    row_of(model, read, states.sides.front(), {.leg = leg}, state, analyses).values);
-        for (const std::size_t k : which)
+        for (const std::size_t k : chosen)
             if (states.whole)
                 set_over_output(k, curve);
             else if (const auto at =
@@ -324,7 +325,7 @@ MatrixXd Figures::gradient(const VectorXd& p) const {
             for (Index j = 0; j < centre.size(); ++j) {
                 if (pass == 0) size[j] = std::max(size[j], changes.size(j));
                 if (pass > 0 && !std::isnan(rate(j, i))) continue;
-                const bool kink = changes.kink(j) > one_slope * share * size[j] + rounding[j];
+                const bool kink = changes.kink(j) > max_kink * share * size[j] + rounding[j];
                 rate(j, i) = kink ? nan : changes.rate(j, share * step[i], rounding[j]);
                 settled = settled && !kink;
             }
