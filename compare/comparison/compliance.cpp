@@ -234,8 +234,8 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     const ResponseCase freed_case = freed(side, state);
     // The references refine their solutions, so that the response to a force at the patch of a wheel that
     // does not roll may be a sum. The recursion does not: such sums differ from its solutions by 1e-10.
-    const bool refines = analyses.one_factorisation || solver.leg == Leg::equilibrium ||
-                         solver.leg == Leg::energy;
+    const bool refines =
+        analyses.one_factorisation || solver.leg == Leg::equilibrium || solver.leg == Leg::energy;
     const bool with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);
     const auto wrenches = causes_at(side.model, state, with_patches);
     const std::size_t first = freed_case.model.joints.size();

@@ -44,7 +44,7 @@ struct ResponseCache {
 };
 struct Analyses {
     ResponseCache free, jacked;
-    ResponseCache tied;  // of the jacked model with one jack
+    ResponseCache tied;                              // of the jacked model with one jack
     std::optional<std::vector<int>> dependent_rows;  // recursive/diagnosis/self_stress.hpp
     std::optional<WheelResponse> response;           // at the state of the last row_of()
     bool one_factorisation = false;                  // for the recursion too, see the head

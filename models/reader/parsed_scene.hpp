@@ -35,7 +35,7 @@ class ParsedScene {
 };
 
 // A scene that is read many times with other values of the same numbers, in half the time of
-// ParsedScene::read(): values are not written as text, and Scene::numbers stays empty.
+// ParsedScene::read(): values are not written as text, and the numbers of the scene have no paths.
 class VariedScene {
   public:
     // `paths`: the numbers that vary; `settings`: of other values, the same at each reading. Throws

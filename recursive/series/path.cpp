@@ -320,9 +320,9 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                 if (const Outcome o = check_start_stability(s, start); o != Outcome::converged)
                     return o;
                 if (shared != nullptr && !has_shared)
-                    *shared = {s.q,   s.lambda, s.system.held.value,
-                               w.c.x, w.c.load, log_determinant(s.system),
-                               side_here,  start};
+                    *shared = {s.q,       s.lambda, s.system.held.value,
+                               w.c.x,     w.c.load, log_determinant(s.system),
+                               side_here, start};
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;

@@ -29,7 +29,8 @@ PointTable read_points(std::string_view csv, const std::string& file, const Name
                        const std::vector<compare::Channel>* also_known);
 // Removes the points with a reason to be left out, and adds a line for each reason to left_out: "3 rows
 // beyond the range of branch 'travel' (lines 5, 6, 9)".
-void keep_rows(PointTable& table, const std::function<std::string(std::size_t point)>& why_left_out);
+void keep_rows(PointTable& table,
+               const std::function<std::string(std::size_t point)>& why_left_out);
 
 // Whether a channel is the travel of a wheel, which gives the place of a point.
 bool is_travel(const compare::Channel& channel);
