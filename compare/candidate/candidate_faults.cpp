@@ -15,19 +15,19 @@
 // would make any curve right for a column that hardly moves. If none applies, the column may be
 // right up to a point.
 //
-// A transformation that makes the column right by accident is not an explanation. The information in a
-// column is the number of coefficients of the polynomial that describes it as well as the transformation
-// does (at most one per point): two for a straight line, however many points it has. Each coefficient
-// that does not serve to fit an offset or a factor agrees by accident with a probability of about
-// 2 left / range, where `left` is the remaining deviation. Of m transformations tried, one is right by
-// accident with a probability of about
+// A transformation that makes the column right by accident is not an explanation. The information
+// in a column is the number of coefficients of the polynomial that describes it as well as the
+// transformation does (at most one per point): two for a straight line, however many points it has.
+// Each coefficient that does not serve to fit an offset or a factor agrees by accident with a
+// probability of about 2 left / range, where `left` is the remaining deviation. Of m
+// transformations tried, one is right by accident with a probability of about
 //
 //   m (2 left / range)^(coefficients - fitted)
 //
-// and is accepted only if this is at most a hundredth. Where nothing is fitted, one coefficient is the
-// level of the column, and its range is the largest value. Another definition as it stands is as simple
-// as the figure: m counts such definitions alone. A column that is written with few decimals may be off
-// by half of its last one.
+// and is accepted only if this is at most a hundredth. Where nothing is fitted, one coefficient is
+// the level of the column, and its range is the largest value. Another definition as it stands is
+// as simple as the figure: m counts such definitions alone. A column that is written with few
+// decimals may be off by half of its last one.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -46,14 +46,14 @@ namespace {
 using Kind = Explanation::Kind;
 using Values = std::vector<double>;
 
-// Shares that may remain: of the deviation, of the column's own range (see above), of the range of the
-// reference.
+// Shares that may remain: of the deviation, of the column's own range (see above), of the range of
+// the reference.
 constexpr double explained = 0.05, of_column = 0.05, of_movement = 1e-3;
-// wrong_from(): share of the points of a branch that must be right first, that is to this share of the
-// largest deviation beyond.
+// wrong_from(): share of the points of a branch that must be right first, that is to this share of
+// the largest deviation beyond.
 constexpr double first_part = 0.1, right_so_far = 1e-3;
-// The deviation a tenth of the branch further on must be this share of the largest: one that grows as a
-// power up to the sixth is below a hundredth there, and such a column was never right.
+// The deviation a tenth of the branch further on must be this share of the largest: one that grows
+// as a power up to the sixth is below a hundredth there, and such a column was never right.
 constexpr double at_once = 0.03;
 // a definition takes the place of a simpler explanation where it leaves a hundredth of what that
 // leaves, and that is more than rounding
@@ -125,8 +125,8 @@ double dot(const Values& a, const Values& b) {
     return sum;
 }
 
-// Coefficients of the polynomials that describe a column to within `left`, one polynomial a branch, or its
-// points if these are fewer.
+// Coefficients of the polynomials that describe a column to within `left`, one polynomial a branch,
+// or its points if these are fewer.
 int coefficients_of(const Beside& b, double left) {
     int coefficients = 0;
     for (std::size_t first = 0; first < b.branch.size();) {

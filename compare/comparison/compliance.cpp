@@ -139,10 +139,11 @@ bool is_unresisted(const std::vector<std::array<Motions, causes>>& free) {
     return false;
 }
 
-// The responses of the jacked model from those of the free one. Under a disturbance the wheel centres of the
-// free model rise by z; forces F of the jacks, with C the rise per unit force, hold them at the given travel
-// t: z + C F = t. In the order of on_jacks() below; none where C is nearly singular. `free`: responses to
-// the wrenches, `per_wheel` of them a wheel, and perhaps to the steering.
+// The responses of the jacked model from those of the free one. Under a disturbance the wheel
+// centres of the free model rise by z; forces F of the jacks, with C the rise per unit force, hold
+// them at the given travel t: z + C F = t. In the order of on_jacks() below; none where C is nearly
+// singular. `free`: responses to the wrenches, `per_wheel` of them a wheel, and perhaps to the
+// steering.
 std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& free,
                                                   const Model& model, const Equilibrium& state,
                                                   std::size_t per_wheel) {
@@ -232,8 +233,9 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     WheelResponse response;
     const std::size_t wheels = side.model.wheels.size();
     const ResponseCase freed_case = freed(side, state);
-    // The references refine their solutions, so that the response to a force at the patch of a wheel that
-    // does not roll may be a sum. The recursion does not: such sums differ from its solutions by 1e-10.
+    // The references refine their solutions, so that the response to a force at the patch of a
+    // wheel that does not roll may be a sum. The recursion does not: such sums differ from its
+    // solutions by 1e-10.
     const bool refines =
         analyses.one_factorisation || solver.leg == Leg::equilibrium || solver.leg == Leg::energy;
     const bool with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);

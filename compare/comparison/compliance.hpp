@@ -12,10 +12,10 @@
 //
 // A jack and a dead force at its point are both vertical and have the same geometric stiffness when
 // the wheel turns. The tangent therefore equals that of the branch except for the removed supports.
-// A leg that refines its solutions computes the responses of the jacked model as those of the free one
-// under the forces of the jacks, from one factorisation; the jacked model is solved only where these
-// forces are not determined. The recursion does so on request (Analyses::one_factorisation): such
-// responses differ from its own by 1e-10.
+// A leg that refines its solutions computes the responses of the jacked model as those of the free
+// one under the forces of the jacks, from one factorisation; the jacked model is solved only where
+// these forces are not determined. The recursion does so on request (Analyses::one_factorisation):
+// such responses differ from its own by 1e-10.
 #pragma once
 
 #include <memory>

@@ -32,17 +32,17 @@ struct Row {
 };
 struct Analyses;       // compliance.hpp
 struct WheelResponse;  // compliance.hpp
-// Evaluates the channels at one point. Characteristics are read from the response of the wheels, which
-// the leg that found the state computes with these settings and leaves in Analyses::response. `analyses`
-// are reused over the points of a branch side.
+// Evaluates the channels at one point. Characteristics are read from the response of the wheels,
+// which the leg that found the state computes with these settings and leaves in Analyses::response.
+// `analyses` are reused over the points of a branch side.
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses);
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state);
 
-// solve_branch() of elastocheck/legs.hpp without keeping points: `read` converts each point when it is
-// found, and `hand_over` receives the rows in the order of the path. The rows of the first of two sides
-// are buffered, since that side runs backwards.
+// solve_branch() of elastocheck/legs.hpp without keeping points: `read` converts each point when it
+// is found, and `hand_over` receives the rows in the order of the path. The rows of the first of
+// two sides are buffered, since that side runs backwards.
 EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverSettings& solver,
                              const std::function<Row(const Equilibrium&)>& read,
                              const std::function<void(Row)>& hand_over);
@@ -57,8 +57,8 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
 // The runs of the sides of a branch as one, as solve_branch() joins them.
 PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves);
 
-// The path that ends at the start of a branch side, the settled state at a = 0: one point, or none where
-// the leg does not settle.
+// The path that ends at the start of a branch side, the settled state at a = 0: one point, or none
+// where the leg does not settle.
 EquilibriumPath rest(const BranchSide& side, Leg leg);
 
 // States of a leg at these values of the parameter [SI], of the sign of the side and in ascending

@@ -16,10 +16,10 @@ namespace elastocheck::compare {
 std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
                                        std::vector<PointColumn> columns);
 
-// Position in Comparison::branches of each point's branch, or -1 where none reaches it. `names` are the
-// branches of the points, or empty; `x` their places: values of the channel, or without one of the
-// parameter. Throws std::invalid_argument for a branch that is not in the comparison, and where names
-// are needed because two branches lie on the same side of zero.
+// Position in Comparison::branches of each point's branch, or -1 where none reaches it. `names` are
+// the branches of the points, or empty; `x` their places: values of the channel, or without one of
+// the parameter. Throws std::invalid_argument for a branch that is not in the comparison, and where
+// names are needed because two branches lie on the same side of zero.
 std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                              const std::vector<std::string>& names, const std::vector<double>& x,
                              std::optional<std::size_t> channel);

@@ -348,8 +348,8 @@ void iterate_from(const TrimStart& start, const TrimProblem& problem, TrimIterat
     }
 }
 
-// One step along dp, halved until it comes nearer to the conditions; false if none does. Unreachable
-// conditions lead to a singular state, beyond which rounding decides which are met.
+// One step along dp, halved until it comes nearer to the conditions; false if none does.
+// Unreachable conditions lead to a singular state, beyond which rounding decides which are met.
 bool step_nearer(const TrimProblem& problem, const VectorXd& dp, TrimIteration& it) {
     TrimAttempt next;
     double share = 1;

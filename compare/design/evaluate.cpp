@@ -34,9 +34,9 @@ constexpr int interpolated_points = 40;
 constexpr int max_shorter_steps = 3;  // how often h is divided by eight
 constexpr double max_kink = 1e-3;     // share of the largest change by 2h: more has no rate
 
-// Outputs of a model by their names. A figure of the catalogue is made without the others. For another
-// output the list of all is made, and only if it is not there the list with the sums, which need an
-// analysis of the model.
+// Outputs of a model by their names. A figure of the catalogue is made without the others. For
+// another output the list of all is made, and only if it is not there the list with the sums, which
+// need an analysis of the model.
 class NamedOutputs {
   public:
     explicit NamedOutputs(const Model& model) : model_(model) {}

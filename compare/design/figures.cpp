@@ -35,9 +35,9 @@ struct NearTrim : TrimStart {
     bool by_equilibrium = false;
 };
 
-// The compiled scene with the numbers p, the states of the equilibrium leg at which its figures are read,
-// and the figures. Without a model there is no such scene (a negative rate, points that coincide), or its
-// trim is not reached.
+// The compiled scene with the numbers p, the states of the equilibrium leg at which its figures are
+// read, and the figures. Without a model there is no such scene (a negative rate, points that
+// coincide), or its trim is not reached.
 struct AtPoint {
     NearTrim trim = {};
     std::optional<Model> model = {};
@@ -93,8 +93,9 @@ FigureValues values_at(const Varied& varied, std::span<const Figure> figures, co
     return at.figures;
 }
 
-// Values at points near the first one, the centre. Trim and states of the centre start from those of the
-// last centre, and those of the other points from those of the centre. Values at the last centre are kept.
+// Values at points near the first one, the centre. Trim and states of the centre start from those
+// of the last centre, and those of the other points from those of the centre. Values at the last
+// centre are kept.
 struct SolvedFigures {
     Varied varied;
     std::vector<Figure> figures;

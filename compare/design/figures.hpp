@@ -60,10 +60,10 @@ struct ReadStates {
 std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg);
 FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
                           std::span<const Figure> figures, Leg leg);
-// Of each model (null: none) the states by the equilibrium leg at the same places, from the `states`
-// of a similar model by the chord method (models/neighbours.hpp), which factorises once a state for
-// all models. None for a model of another structure, and where the method does not converge since the
-// models are far from each other.
+// Of each model (null: none) the states by the equilibrium leg at the same places, from the
+// `states` of a similar model by the chord method (models/neighbours.hpp), which factorises once a
+// state for all models. None for a model of another structure, and where the method does not
+// converge since the models are far from each other.
 std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
                                                          std::span<const Model* const> models,
                                                          int threads);
@@ -97,8 +97,8 @@ struct Figures {
     // [figures × numbers], NaN where there is no rate
     Eigen::MatrixXd gradient(const Eigen::VectorXd& p) const;
 };
-// By the equilibrium leg, points on several threads. Trim and states start from those at p[0] of the
-// last call where that is near, else from the design position.
+// By the equilibrium leg, points on several threads. Trim and states start from those at p[0] of
+// the last call where that is near, else from the design position.
 Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads = 1);
 
 // Reason why one of the figures has no value, or else no rate, at p: "no rate at the start: ...".

@@ -61,8 +61,8 @@ Table numbers_table(const Varied& varied, const VectorXd& to, const std::vector<
     });
 }
 
-// Notes what prevents a solution: the `conflicting` wishes or bands, followed by `together` if there are
-// several, and limits of numbers. `noun`: "bands".
+// Notes what prevents a solution: the `conflicting` wishes or bands, followed by `together` if
+// there are several, and limits of numbers. `noun`: "bands".
 void add_conflict(Result& result, const std::vector<std::string>& conflicting,
                   const std::string& together, const Varied& varied,
                   const std::vector<int>& at_limit, const char* noun) {
@@ -81,8 +81,8 @@ void add_conflict(Result& result, const std::vector<std::string>& conflicting,
             : fmt::format("The {} would come nearer with {}.", noun, fmt::join(limits, "; ")));
 }
 
-// Without convergence the numbers are neither known to be the nearest ones (not met) nor those of the
-// smallest change (met).
+// Without convergence the numbers are neither known to be the nearest ones (not met) nor those of
+// the smallest change (met).
 Grade grade_of(bool met, bool converged) {
     return !converged ? Grade::not_judged : met ? Grade::pass : Grade::fail;
 }

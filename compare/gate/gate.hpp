@@ -42,8 +42,8 @@ enum class Quantity {
     work_equilibrium,
     work_energy,
 };
-// What the numbers of a series belong to: the kept points of the branch (GatedBranch::a), the stations
-// among these, the range over the branch, or none of them.
+// What the numbers of a series belong to: the kept points of the branch (GatedBranch::a), the
+// stations among these, the range over the branch, or none of them.
 enum class Places { points, stations, range, elsewhere };
 struct QuantityKind {
     const char* name;

@@ -263,8 +263,8 @@ std::size_t max_expansions(const Continuation& w, std::size_t knots_crossed) {
     return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(knots_crossed, knots));
 }
 
-// What the sides of a branch share: the start, its stability and the coefficients x_k of the expansion
-// there (x, load). On a side whose a_1 is r times as large, x_k is rᵏ times as large.
+// What the sides of a branch share: the start, its stability and the coefficients x_k of the
+// expansion there (x, load). On a side whose a_1 is r times as large, x_k is rᵏ times as large.
 struct SharedStart {
     State<double> q;
     Vector<double> lambda;
@@ -289,8 +289,9 @@ Outcome expand_shared(Continuation& w, const SharedStart& shared, Singularity& s
     return range_of_validity(w, w.at(), singularity, end);
 }
 
-// Follows the path from an equilibrium, with its factors in s.system, to the end. `known`: stability of
-// that equilibrium, if known. `shared`: the start of another side of the branch; filled if it is empty.
+// Follows the path from an equilibrium, with its factors in s.system, to the end. `known`:
+// stability of that equilibrium, if known. `shared`: the start of another side of the branch;
+// filled if it is empty.
 Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                       std::optional<SharedStart>* shared = nullptr) {
     SteppingState& s = w.s;

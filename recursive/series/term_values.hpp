@@ -10,8 +10,8 @@
 #include "recursive/series/equations.hpp"
 
 namespace elastocheck::recursive::series {
-// In an unnamed namespace, since two files instantiate them: the compiler inlines a function with one
-// caller only where no other file can call it, which saves a seventh of the instructions.
+// In an unnamed namespace, since two files instantiate them: the compiler inlines a function with
+// one caller only where no other file can call it, which saves a seventh of the instructions.
 namespace detail {
 namespace {
 

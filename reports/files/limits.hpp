@@ -1,4 +1,5 @@
-// Size limits of external input. Output of this program is smaller (reports/command/options/limits.hpp).
+// Size limits of external input. Output of this program is smaller
+// (reports/command/options/limits.hpp).
 #pragma once
 
 #include <cstddef>

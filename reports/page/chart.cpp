@@ -78,8 +78,8 @@ Figure bars_of(const compare::Chart& chart, const Table& table) {
     return figure;
 }
 
-// A horizontal bar for each of the largest rows: rows of (NaN, value) or (NaN, value, low and high end of
-// its interval).
+// A horizontal bar for each of the largest rows: rows of (NaN, value) or (NaN, value, low and high
+// end of its interval).
 Figure ranking_of(const compare::Chart& chart, const Table& table) {
     constexpr std::size_t max_bars = 8;
     struct Ranked {

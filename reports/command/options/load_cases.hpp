@@ -10,11 +10,11 @@
 
 namespace elastocheck::reports {
 
-// Columns, with a unit as in other tables ("left.patch_force_z [kN]", "travel_mm"). An empty cell is no
-// input. Where the scene has a single wheel without a name, "WHEEL." is left out:
+// Columns, with a unit as in other tables ("left.patch_force_z [kN]", "travel_mm"). An empty cell
+// is no input. Where the scene has a single wheel without a name, "WHEEL." is left out:
 //
 //   case                            name of the case, once each
-//   WHEEL.patch_force_x, _y, _z     total force of the road on the tyre [N]; replaces a static load;
+//   WHEEL.patch_force_x, _y, _z     force of the road on the tyre [N], all of it (no static load);
 //                                   along x its torque is taken by a brake on the carrier
 //   WHEEL.centre_force_x, _y, _z    force at the wheel centre [N]
 //   WHEEL.moment_x, _y, _z          moment on the wheel carrier [N·m]

@@ -1,4 +1,5 @@
-// `elastocheck study`: many variants of a scene, by the Python package (reports/python/package/study/).
+// `elastocheck study`: many variants of a scene, by the Python package
+// (reports/python/package/study/).
 #include <unistd.h>
 
 #include <cstdlib>

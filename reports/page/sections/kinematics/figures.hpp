@@ -1,5 +1,5 @@
-// Figures of the report's first part (kinematics): one per quantity, with the curves of all load cases
-// and wheels.
+// Figures of the report's first part (kinematics): one per quantity, with the curves of all load
+// cases and wheels.
 #pragma once
 
 #include <string>
