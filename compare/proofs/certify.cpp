@@ -66,7 +66,7 @@ void certify_path(SolvedSide& solved, const CertifyOptions& options) {
         result.curve = certificate::certify_branch(side.model, side.branch, path.points,
                                                    in_si(options.tolerance));
     // The last point starts the search for the limit point; it claims no accuracy.
-    constexpr certificate::Tolerance anywhere{1, 1, 1e9, 1e9};
+    constexpr certificate::Tolerance anywhere{.length = 1, .angle = 1, .force = 1e9, .moment = 1e9};
     if (path.outcome == Outcome::limit_point && !path.points.empty())
         result.limit =
             certificate::certify_limit_point(side.model, side.branch, path.points.back(), anywhere);

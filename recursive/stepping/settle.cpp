@@ -87,7 +87,7 @@ Outcome settle_consistently(SteppingState& s) {
     const double length = s.setup.length;
     // Steps before the end need only stay in the convergence region of Newton's method.
     const ContinuationSettings settings{Drive::start, 1e-4 * length, 1e-4};
-    Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+    Node node{.q = s.q, .lambda = s.lambda}, next = node;
     go_to(s, {0, 0});
     drive_at(s, Drive::start, 1, s.q, s.lambda);
     if (!s.work.upper.isZero(0) || !s.work.lower.isZero(0)) {
