@@ -325,7 +325,7 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                                w.c.x,     w.c.load, log_determinant(s.system),
                                side_here, start};
             }
-        } else if (here != w.side && !w.by_arc())
+        } else if (side_here != w.side && !w.by_arc())
             return Outcome::singular;
         w.log_begin = has_shared ? (*shared)->log_determinant : log_determinant(s.system);
         if (const Outcome o = accept_expansion(w, from, end, judged); o != Outcome::converged)
