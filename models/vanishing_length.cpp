@@ -17,7 +17,10 @@ std::optional<Vanishing> vanishing_length(const Model& model, const Branch& side
         if (link == nullptr) continue;
         double start = link->length, rate = 0;
         for (const Driver& other : side.drivers)
-            if (driven_joint(other.what) == joint) start += other.start, rate += other.rate;
+            if (driven_joint(other.what) == joint) {
+                start += other.start;
+                rate += other.rate;
+            }
         const double end = start + rate * side.to;
         if (start > 0 && end > 0) continue;
         const double at = start > 0 ? -start / rate : 0;

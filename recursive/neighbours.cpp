@@ -47,7 +47,8 @@ std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
 // Σ w_k ΔG_k into s.work.upper and s.work.lower. Points and lengths that change together keep a row
 // closed: what is left is rounding.
 void difference(SteppingState& s, double a, const Residual& here, const Neighbours& stencil) {
-    s.work.upper.setZero(), s.work.lower.setZero();
+    s.work.upper.setZero();
+    s.work.lower.setZero();
     for (const Neighbour& k : stencil) {
         const Residual there = residual_of(*k.model, k.model->branches.front(), a, s.q, s.lambda);
         s.work.upper += k.weight * (there.upper - here.upper);
@@ -76,14 +77,14 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                               : factorise_response(s, true, orders);
     if (ready != Outcome::converged)
         return {stencils.size(), NeighbourStates{ready, why_not(ready, analysis.diagnosis), {}}};
-    const Residual here = residual_of(model, branch, state.load, s.q, s.lambda);
+    const Residual residual = residual_of(model, branch, state.load, s.q, s.lambda);
     const double stiffest = *std::ranges::max_element(s.system.M.values, {},
                                                       [](double x) { return std::abs(x); }),
                  rounding = last_digits * stiffest * s.setup.length;
     std::vector<NeighbourStates> neighbours;
     for (const Neighbours& stencil : stencils) {
         NeighbourStates& result = neighbours.emplace_back();
-        difference(s, state.load, here, stencil);
+        difference(s, state.load, residual, stencil);
         result.outcome = solve_response(s, Judged::all, rounding * amplification(stencil));
         if (result.outcome != Outcome::converged) {
             result.detail = why_not(result.outcome, analysis.diagnosis);
@@ -98,14 +99,17 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                 last = met;
                 const Residual there =
                     residual_of(*k.model, k.model->branches.front(), state.load, q, lambda);
-                s.work.upper = there.upper - here.upper;
-                s.work.lower = there.lower - here.lower;
+                s.work.upper = there.upper - residual.upper;
+                s.work.lower = there.lower - residual.lower;
                 (void)solve_response(s, Judged::none);
                 advance(q, s.work.x.head(s.n()));
                 lambda += s.work.x.tail(s.m());
                 const double size = std::sqrt(size_of_solution(s)),
                              reactions = s.work.x.tail(s.m()).norm();
-                if (step == 0) first = size, first_reactions = reactions;
+                if (step == 0) {
+                    first = size;
+                    first_reactions = reactions;
+                }
                 met = size <= chord_met * first &&
                       reactions <= chord_met * first_reactions + chord_reactions * lambda.norm();
             }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compliance.hpp"
@@ -55,7 +54,7 @@ void add_missing_parts(const Branch& branch, const BranchComparison& compared_br
                        const std::vector<Channel>& channels, std::vector<std::string>& list) {
     const double unit = in_unit(compared_branch.unit);
     const auto missing = [&](std::size_t c) {
-        std::optional<std::string> least;
+        std::optional<std::string> shortest;
         for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
             const auto& reading = given.reading(kind);
             if (reading.columns.empty()) continue;
@@ -74,9 +73,9 @@ void add_missing_parts(const Branch& branch, const BranchComparison& compared_br
             for (std::size_t k = 0; k < reading.at.size(); ++k)
                 if (!std::isnan(reading.candidate[c][k])) places.push_back(reading.at[k]);
             const std::string parts = omitted(std::move(places), low, high, unit_name);
-            if (!least || parts.empty()) least = parts;
+            if (!shortest || parts.empty()) shortest = parts;
         }
-        return least;
+        return shortest;
     };
     std::vector<std::pair<std::string, std::string>> of_columns;  // name, missing part
     for (std::size_t c = 0; c < judgement.columns.size(); ++c) {
@@ -369,7 +368,10 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
     for (auto& one : result.explanations) {
         bool included = false;  // in the words about the column that it is exchanged with
         for (const auto& other : result.explanations)
-            if (exchanged(one, other)) one.mutual = true, included = included || &other < &one;
+            if (exchanged(one, other)) {
+                one.mutual = true;
+                included = included || &other < &one;
+            }
         if (!included) result.hints.push_back(describe(one, comparison, standing));
     }
 }
@@ -385,20 +387,27 @@ Beside beside(const Comparison& comparison, std::span<const PointColumn> columns
     const Channel& channel = comparison.channels[b.channel];
     std::vector<std::size_t> others, definitions;
     for (std::size_t d = 0; d < columns.size(); ++d)
-        if (d != c && comparison.channels[columns[d].channel].unit == channel.unit)
-            others.push_back(d), b.other_channels.push_back(columns[d].channel);
+        if (d != c && comparison.channels[columns[d].channel].unit == channel.unit) {
+            others.push_back(d);
+            b.other_channels.push_back(columns[d].channel);
+        }
     for (std::size_t d = 0; d < defined.size(); ++d)
-        if (!definitions_of(defined.subspan(d, 1), channel.name).empty())
-            definitions.push_back(d), b.definition_names.push_back(defined[d].name);
-    b.others.resize(others.size()), b.definitions.resize(definitions.size());
+        if (!definitions_of(defined.subspan(d, 1), channel.name).empty()) {
+            definitions.push_back(d);
+            b.definition_names.push_back(defined[d].name);
+        }
+    b.others.resize(others.size());
+    b.definitions.resize(definitions.size());
     for (const auto& [branch, reading] : branches)
         for (std::size_t k = 0; k < reading->at.size(); ++k) {
             const double theirs = reading->candidate[c][k], ours = reading->truth[c][k];
             if (!std::isfinite(theirs) || !std::isfinite(ours)) continue;
             const Curve& truth = truth_of(*branch);
-            b.candidate.push_back(theirs), b.reference.push_back(ours);
+            b.candidate.push_back(theirs);
+            b.reference.push_back(ours);
             b.begin.push_back(truth.values[truth.start][b.channel]);
-            b.at.push_back(reading->at[k]), b.branch.push_back(branch->branch);
+            b.at.push_back(reading->at[k]);
+            b.branch.push_back(branch->branch);
             for (std::size_t o = 0; o < others.size(); ++o)
                 b.others[o].push_back(reading->truth[others[o]][k]);
             for (std::size_t d = 0; d < definitions.size(); ++d)

@@ -15,22 +15,22 @@
 // would make any curve right for a column that hardly moves. If none applies, the column may be
 // right up to a point.
 //
-// What agrees by accident is no explanation. A column says as many numbers as a polynomial needs to
-// describe it as well as the transformation does (at most one per point): a straight line says two,
-// however many points it has. Each number that is not used to fit an offset or a factor agrees by
-// accident with a probability of about 2 left / range. Of m transformations tried, one is right by
-// accident with a probability of about
+// A transformation that makes the column right by accident is not an explanation. The information
+// in a column is the number of coefficients of the polynomial that describes it as well as the
+// transformation does (at most one per point): two for a straight line, however many points it has.
+// Each coefficient that does not serve to fit an offset or a factor agrees by accident with a
+// probability of about 2 left / range, where `left` is the remaining deviation. Of m
+// transformations tried, one is right by accident with a probability of about
 //
-//   m (2 left / range)^(numbers - fitted)
+//   m (2 left / range)^(coefficients - fitted)
 //
-// and is accepted only if this is at most a hundredth. Where nothing is fitted, the level of the column
-// is one of the numbers, with its size for the range. Another definition as it stands is as simple as
-// the figure: m counts such definitions alone. A column that is written with few decimals may be off
-// by half of its last one.
+// and is accepted only if this is at most a hundredth. Where nothing is fitted, one coefficient is
+// the level of the column, and its range is the largest value. Another definition as it stands is
+// as simple as the figure: m counts such definitions alone. A column that is written with few
+// decimals may be off by half of its last one.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,20 +46,21 @@ namespace {
 using Kind = Explanation::Kind;
 using Values = std::vector<double>;
 
-constexpr double explained = 0.05;     // of the deviation that may remain
-constexpr double of_column = 0.05;     // of the column's own range that may remain, see above
-constexpr double of_movement = 1e-3;   // of the range of the reference
-constexpr double first_part = 0.1;     // of the points of a branch that must be right first
-constexpr double right_so_far = 1e-3;  // of the largest deviation beyond
-// of that, a tenth of the branch further on: a deviation that grows as a power up to the sixth is
-// below a hundredth there, and was never right
+// Shares that may remain: of the deviation, of the column's own range (see above), of the range of
+// the reference.
+constexpr double explained = 0.05, of_column = 0.05, of_movement = 1e-3;
+// wrong_from(): share of the points of a branch that must be right first, that is to this share of
+// the largest deviation beyond.
+constexpr double first_part = 0.1, right_so_far = 1e-3;
+// The deviation a tenth of the branch further on must be this share of the largest: one that grows
+// as a power up to the sixth is below a hundredth there, and such a column was never right.
 constexpr double at_once = 0.03;
 // a definition takes the place of a simpler explanation where it leaves a hundredth of what that
 // leaves, and that is more than rounding
 constexpr double much_better = 0.01, rounding_of_range = 1e-6;
 
-constexpr double by_accident = 0.01;  // of a transformation that is right, at most
-constexpr int max_numbers = 5;        // of a branch: more say no more
+constexpr double by_accident = 0.01;  // largest probability
+constexpr int max_coefficients = 5;   // counted per branch
 
 struct UnitConfusion {
     double factor;
@@ -86,7 +87,7 @@ double mean(const Values& x) {
     for (const double v : x) sum += v;
     return x.empty() ? 0 : sum / static_cast<double>(x.size());
 }
-double off(const Values& a, const Values& b) {
+double max_difference(const Values& a, const Values& b) {
     double worst = 0;
     for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, std::abs(a[k] - b[k]));
     return worst;
@@ -117,17 +118,17 @@ double rounding(const Values& v) {
             return unit / 2;
     return 0;
 }
-double level(const Values& v) { return std::max(off(v, Values(v.size(), 0)), span(v)); }
+double level(const Values& v) { return std::max(max_difference(v, Values(v.size(), 0)), span(v)); }
 double dot(const Values& a, const Values& b) {
     double sum = 0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
     return sum;
 }
 
-// Numbers that a column says about its course to within `left`: on each branch the coefficients of
-// the polynomial that describes it as well, or its points if these are fewer.
-int numbers_in(const Beside& b, double left) {
-    int numbers = 0;
+// Coefficients of the polynomials that describe a column to within `left`, one polynomial a branch,
+// or its points if these are fewer.
+int coefficients_of(const Beside& b, double left) {
+    int coefficients = 0;
     for (std::size_t first = 0; first < b.branch.size();) {
         std::size_t last = first;
         while (last < b.branch.size() && b.branch[last] == b.branch[first]) ++last;
@@ -140,19 +141,19 @@ int numbers_in(const Beside& b, double left) {
         for (Eigen::Index k = 0; k < n; ++k)
             v[k] = b.candidate[first + static_cast<std::size_t>(k)];
         int count = 1;
-        for (; count < std::min<Eigen::Index>(n, max_numbers); ++count) {
+        for (; count < std::min<Eigen::Index>(n, max_coefficients); ++count) {
             Eigen::MatrixXd powers(n, count);
             for (Eigen::Index k = 0; k < n; ++k)
                 for (Eigen::Index j = 0; j < count; ++j)
                     powers(k, j) =
                         std::pow((b.at[first + static_cast<std::size_t>(k)] - middle) / half, j);
-            const Eigen::VectorXd off = v - powers * solve_by_qr(powers, v);
-            if (off.cwiseAbs().maxCoeff() <= left) break;
+            const Eigen::VectorXd rest = v - powers * solve_by_qr(powers, v);
+            if (rest.cwiseAbs().maxCoeff() <= left) break;
         }
-        numbers += count;
+        coefficients += count;
         first = last;
     }
-    return numbers;
+    return coefficients;
 }
 
 // Whether a transformation that leaves `left`, with `fitted` numbers and one of `tried`, is right by
@@ -160,9 +161,9 @@ int numbers_in(const Beside& b, double left) {
 bool is_accident(const Beside& b, double left, int fitted, int tried) {
     const double range = span(b.candidate);
     if (!(range > 0)) return true;
-    const int free = numbers_in(b, left) - fitted;
-    const double each = std::min(1., 2 * left / range),
-                 of_level = fitted == 0 && free > 0 ? range / level(b.candidate) : 1;
+    const int free = coefficients_of(b, left) - fitted;
+    const double each = std::min(1., 2 * left / range);
+    const double of_level = fitted == 0 && free > 0 ? range / level(b.candidate) : 1;
     return !(tried * of_level * std::pow(each, free) <= by_accident);
 }
 
@@ -228,7 +229,7 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed, int o
         const auto try_it = [&](const std::string& as, const Values& reading, bool needs_movement,
                                 int fitted) {
             const int tried = as == name ? static_cast<int>(b.definitions.size()) : ++others;
-            const double left = off(v, reading);
+            const double left = max_difference(v, reading);
             const bool moves = left <= of_column * span(v);
             if (!fit && left <= allowed && (moves || !needs_movement) &&
                 !is_accident(b, left, fitted, tried))
@@ -264,7 +265,7 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed, int o
 std::optional<Explanation> explain(const Beside& b) {
     const Values &v = b.candidate, &r = b.reference;
     if (v.size() < 2) return std::nullopt;
-    const double deviation = off(v, r), movement = span(r);
+    const double deviation = max_difference(v, r), movement = span(r);
     if (!(deviation > 0)) return std::nullopt;
     if (!(span(v) > 1e-9) && movement > 1e-6)
         return Explanation{.kind = Kind::still, .column = b.column, .left = deviation};
@@ -272,14 +273,13 @@ std::optional<Explanation> explain(const Beside& b) {
         std::min(explained * deviation,
                  std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, of_movement * movement));
     std::optional<Explanation> accepted;
-    // A factor alone has to reproduce the level of the column; with an offset or from r_0 its
-    // range.
+    // A factor alone has to reproduce the column's level; with an offset or from r_0, its range.
     int tests = 0;
     // Tests v = `transformed`; the first explanation that makes the column right is accepted.
     const auto try_it = [&](Explanation explanation, const Values& transformed,
                             bool is_level = true, int fitted = 0) {
         ++tests;
-        explanation.left = off(v, transformed);
+        explanation.left = max_difference(v, transformed);
         explanation.column = b.column;
         const bool scaled =
             explanation.kind == Kind::factor || explanation.kind == Kind::factor_and_offset;
@@ -361,26 +361,29 @@ std::string nearer_with(const Beside& b, const Channel& channel) {
     std::string how;
     const auto try_it = [&](const Values& reading, const std::string& as, double at_most) {
         const double now = rms(less(v, reading));
-        if (now < std::min(left, at_most)) left = now, how = as;
+        if (now < std::min(left, at_most)) {
+            left = now;
+            how = as;
+        }
     };
     try_it(times(-1, r), "with its sign turned", quarter * scatter);
     const double offset = mean(less(v, r));
-    const std::string unit = symbol(channel.unit);
-    try_it(plus(r, offset), fmt::format("once {:.3g} {} is taken off", offset, unit), before);
+    const std::string symbol = compare::symbol(channel.unit);
+    try_it(plus(r, offset), fmt::format("once {:.3g} {} is taken off", offset, symbol), before);
     std::vector<std::string> near;
     for (const double sign : {1., -1.})
-        for (const auto& of : units) {
-            const double now = rms(less(v, times(sign * of.factor, r)));
-            if ((of.factor > model_is_off || of.factor < 1 / model_is_off) &&
+        for (const auto& unit : units) {
+            const double now = rms(less(v, times(sign * unit.factor, r)));
+            if ((unit.factor > model_is_off || unit.factor < 1 / model_is_off) &&
                 now < quarter * std::min(before, scatter)) {
-                near.push_back(fmt::format("{:.6g} times ({})", sign * of.factor, of.word));
-                try_it(times(sign * of.factor, r), "unit", quarter * scatter);
+                near.push_back(fmt::format("{:.6g} times ({})", sign * unit.factor, unit.word));
+                try_it(times(sign * unit.factor, r), "unit", quarter * scatter);
             }
         }
     if (how == "unit") how = fmt::format("with the reference taken {}", fmt::join(near, " or "));
     if (how.empty()) return "";
     return fmt::format("{} is nearer {}: {:.2g} {} off (rms) instead of {:.2g}", channel.name, how,
-                       left, unit, before);
+                       left, symbol, before);
 }
 
 std::string describe(const Explanation& e, const Comparison& comparison, const Points& points) {

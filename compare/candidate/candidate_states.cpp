@@ -16,14 +16,14 @@
 namespace elastocheck::compare {
 namespace {
 
-bool is_said(const Pose& pose) { return pose.r.allFinite() && pose.p.coeffs().allFinite(); }
-// An infinite entry marks a value that is not a number.
+bool is_finite(const Pose& pose) { return pose.r.allFinite() && pose.p.coeffs().allFinite(); }
+// NaN marks a pose that is not given, infinity one that is given and not finite.
 bool is_broken(const Pose& pose) {
     const auto infinite = [](double x) { return std::isinf(x); };
     return std::ranges::any_of(pose.r, infinite) || std::ranges::any_of(pose.p.coeffs(), infinite);
 }
 Pose broken_where_not_finite(Pose pose) {
-    if (!is_said(pose)) pose.r.setConstant(INFINITY);
+    if (!is_finite(pose)) pose.r.setConstant(INFINITY);
     return pose;
 }
 
@@ -34,11 +34,11 @@ Comparison outline(const Model& model) {
     result.channels = channels(model);
     std::ranges::move(characteristics(model), std::back_inserter(result.channels));
     for (const auto& branch : model.branches) {
-        BranchComparison& of = result.branches.emplace_back();
-        of.branch = branch.name;
-        of.unit = unit_of(branch.unit);
-        of.steps = branch.steps;
-        of.determined.assign(result.channels.size(), true);
+        BranchComparison& compared = result.branches.emplace_back();
+        compared.branch = branch.name;
+        compared.unit = unit_of(branch.unit);
+        compared.steps = branch.steps;
+        compared.determined.assign(result.channels.size(), true);
     }
     return result;
 }
@@ -51,8 +51,10 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
     std::vector<Channel> channels;  // all but characteristics, which need the tangent of a leg
     std::vector<std::size_t> position;
     for (std::size_t c = 0; c < comparison.channels.size(); ++c)
-        if (comparison.channels[c].kind() != ChannelKind::characteristic)
-            channels.push_back(comparison.channels[c]), position.push_back(c);
+        if (comparison.channels[c].kind() != ChannelKind::characteristic) {
+            channels.push_back(comparison.channels[c]);
+            position.push_back(c);
+        }
     for (const std::size_t c : position) result.points.columns.push_back({c, false, {}});
 
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
@@ -67,26 +69,26 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
             const double a = parameter_in(left.unit, state.load);
             result.points.branch.push_back(branch.name);
             result.points.a.push_back(a);
-            Equilibrium found;
-            found.load = state.load;
-            found.poses = state.poses;
-            found.reactions.assign(model.joints.size(), {Eigen::Vector3d::Constant(nan),
-                                                         Eigen::Vector3d::Constant(nan)});
-            const bool whole = std::ranges::all_of(found.poses, is_said);
+            Equilibrium equilibrium;
+            equilibrium.load = state.load;
+            equilibrium.poses = state.poses;
+            equilibrium.reactions.assign(model.joints.size(), {Eigen::Vector3d::Constant(nan),
+                                                               Eigen::Vector3d::Constant(nan)});
+            const bool whole = std::ranges::all_of(equilibrium.poses, is_finite);
             if (whole && std::isfinite(state.load)) {
                 const BranchSide& side = side_at(sides, state.load);
-                found.reactions = reference::equilibrium::reactions_at(side.model, side.branch,
-                                                                       state.load, found.poses);
+                equilibrium.reactions = reference::equilibrium::reactions_at(
+                    side.model, side.branch, state.load, equilibrium.poses);
                 const Leg second = left.second == Leg::energy ? Leg::energy : Leg::recursive;
                 left.a.push_back(a);
-                left.truth.push_back(judge(Leg::equilibrium, side, found));
-                left.by_second.push_back(judge(second, side, found));
+                left.truth.push_back(judge(Leg::equilibrium, side, equilibrium));
+                left.by_second.push_back(judge(second, side, equilibrium));
             } else {
                 left.why_not = "it does not give the position of every body";
             }
             const bool broken =
-                !std::isfinite(state.load) || std::ranges::any_of(found.poses, is_broken);
-            auto values = evaluate(model, sides.front().branch, channels, found);
+                !std::isfinite(state.load) || std::ranges::any_of(equilibrium.poses, is_broken);
+            auto values = evaluate(model, sides.front().branch, channels, equilibrium);
             if (broken) std::ranges::fill(values, INFINITY);
             for (std::size_t c = 0; c < values.size(); ++c)
                 result.points.columns[c].values.push_back(values[c]);

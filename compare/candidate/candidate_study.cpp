@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/legs.hpp"
@@ -68,8 +67,10 @@ Study study_candidate(const Model& model, const std::string& name,
                 return outlined.channels[column.channel].name == channels[c].name;
             });
         };
-        if (channels[c].main && std::ranges::all_of(levels, gives))
-            studied.push_back(c), result.channels.push_back(channels[c]);
+        if (channels[c].main && std::ranges::all_of(levels, gives)) {
+            studied.push_back(c);
+            result.channels.push_back(channels[c]);
+        }
     }
     if (studied.empty()) return refuse("it gives no main output");
 

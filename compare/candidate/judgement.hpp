@@ -17,9 +17,9 @@ struct Assessment {
     bool tolerance_given = false;  // the tolerance was given, not the default
     // A verdict is requested, by a method or a tolerance; else only the deviations are given.
     bool requested = true;
-    // Largest deviations by reading; empty where nothing is compared. They are taken from the main
-    // outputs, unless these are within their limits and another position or angle takes a larger
-    // share of its own limit.
+    // Largest deviations; empty where nothing is compared. They are taken from the main outputs,
+    // unless these are within their limits and another position or angle takes a larger share of
+    // its own limit.
     std::optional<Worst> position, angle;                // at equal parameter (load, jack travel)
     std::optional<Worst> position_across, angle_across;  // at equal abscissa: equal travel
     // Deviation of an output that is neither position nor angle (forces, moments, drive forces,
@@ -27,9 +27,10 @@ struct Assessment {
     // that may be undefined is taken only where all others are within their limits. At equal
     // abscissa the uncertainty of the interpolation is subtracted.
     std::optional<Worst> other, other_across;
-    std::optional<RateError> wheel_rate;  // the one with the largest |off|
+    std::optional<RateError> wheel_rate;  // the one with the largest relative error
     bool exact = false;                   // every deviation is within rounding
-    int outputs = 0, others = 0;          // number of judged outputs; those not of motion
+    int outputs = 0;                      // number of judged outputs ...
+    int others = 0;                       // ... of which are neither positions nor angles
 };
 
 // A wheel-rate error is judged as a position error. Rates k (1 + off) and k give, under one force

@@ -33,7 +33,10 @@ std::vector<int> directions(const std::vector<double>& x) {
     int current = 0;
     for (std::size_t k = 1; k < x.size(); ++k) {
         const double step = x[k] - turned_at;
-        if (std::abs(step) > noise) current = step > 0 ? 1 : -1, turned_at = x[k];
+        if (std::abs(step) > noise) {
+            current = step > 0 ? 1 : -1;
+            turned_at = x[k];
+        }
         direction[k] = current;
     }
     for (std::size_t k = direction.size(); k-- > 0;)
@@ -66,8 +69,10 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
             std::vector<double> x;
             for (std::size_t k = 0; k < places.size(); ++k)
                 if (places[k].branch == static_cast<int>(b) &&
-                    places[k].by_parameter == by_parameter && std::isfinite(column.values[k]))
-                    points.push_back(k), x.push_back(places[k].x);
+                    places[k].by_parameter == by_parameter && std::isfinite(column.values[k])) {
+                    points.push_back(k);
+                    x.push_back(places[k].x);
+                }
             if (points.size() < 4) continue;
             const auto direction = directions(x);
             std::array<std::vector<std::pair<double, double>>, 2> sweeps;  // down, up
@@ -84,8 +89,10 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
                 if (!std::isfinite(other)) continue;
                 ++loop.points;
                 mean[points[k]] = (here + other) / 2;
-                if (std::abs(here - other) > loop.width)
-                    loop.width = std::abs(here - other), loop.at = x[k];
+                if (std::abs(here - other) > loop.width) {
+                    loop.width = std::abs(here - other);
+                    loop.at = x[k];
+                }
             }
             column.values = std::move(mean);
             if (loop.width > 0) loops.push_back(loop);
@@ -113,8 +120,10 @@ CandidateReading beside_leg(const Given& given, const std::vector<Place>& places
         placed_by(curve, {})};
     CandidateReading reading;
     for (std::size_t k = 0; k < places.size(); ++k)
-        if (places[k].branch == static_cast<int>(b) && std::isfinite(places[k].x))
-            reading.points.push_back(k), reading.at.push_back(places[k].x);
+        if (places[k].branch == static_cast<int>(b) && std::isfinite(places[k].x)) {
+            reading.points.push_back(k);
+            reading.at.push_back(places[k].x);
+        }
     const auto interpolated = [&](const std::vector<double>& y) {
         std::vector<double> values;
         for (const std::size_t k : reading.points) {
@@ -225,7 +234,8 @@ MeasuredRow measured_row(const std::array<CandidateReading, legs.size()>& beside
         };
         if (!std::ranges::all_of(beside, finite)) continue;
         used[beside[0].points[k]] = true;
-        x.push_back(beside[0].at[k]), measured.push_back(beside[0].candidate[c][k]);
+        x.push_back(beside[0].at[k]);
+        measured.push_back(beside[0].candidate[c][k]);
         for (std::size_t l = 0; l < legs.size(); ++l) values[l].push_back(beside[l].truth[c][k]);
     }
     for (std::size_t l = 0; l < legs.size(); ++l) row.off[l] = deviation_of(measured, values[l], x);
@@ -266,8 +276,10 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
         const auto& x = by_parameter ? measured.a : measured.at;
         if (std::ranges::none_of(x, [](double v) { return std::isfinite(v); })) continue;
         std::vector<Place> places = result.places;
-        for (std::size_t k = 0; k < places.size(); ++k)
-            places[k].by_parameter = by_parameter, places[k].x = x[k];
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            places[k].by_parameter = by_parameter;
+            places[k].x = x[k];
+        }
         MeasuredReading reading{by_parameter, {}};
         std::vector<std::array<CandidateReading, legs.size()>> branches(comparison.branches.size());
         for (std::size_t b = 0; b < branches.size(); ++b)

@@ -57,8 +57,7 @@ struct DefinedCurves {
 DefinedCurves defined_curves(const Model& model, const Comparison& comparison);
 
 // A point is compared only with the branch it names, by its parameter and by its abscissa as far as
-// it has them. Where the points of a branch go out and back, the mean of both directions is
-// compared.
+// it has them. Where the points of a branch go out and back, their mean is compared.
 //
 // A column whose deviation is larger than a hundredth of its range is explained. First the sign of
 // the places of a branch is tried, which turns all its columns at once: it is changed where that

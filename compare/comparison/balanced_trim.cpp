@@ -1,7 +1,6 @@
 // Trims, with bushings that are unloaded as drawn or balanced (elastocheck/trim.hpp).
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -80,8 +79,10 @@ void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Correcti
     Eigen::VectorXd next = P + r;
     if (history.P.size() == P.size()) {
         const Eigen::Index k = history.dP.cols();
-        history.dP.conservativeResize(P.size(), k + 1), history.dP.col(k) = P - history.P;
-        history.dr.conservativeResize(P.size(), k + 1), history.dr.col(k) = r - history.r;
+        history.dP.conservativeResize(P.size(), k + 1);
+        history.dP.col(k) = P - history.P;
+        history.dr.conservativeResize(P.size(), k + 1);
+        history.dr.col(k) = r - history.r;
         next -= (history.dP + history.dr) * solve_by_qr(history.dr, r);
     }
     history.P = P;
@@ -93,7 +94,7 @@ void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Correcti
 void require_drawn_values(const Scene& scene) {
     const Eigen::VectorXd differs = requested_from_drawn(scene);
     for (Eigen::Index k = 0; k < differs.size(); ++k)
-        if (!(std::abs(differs[k]) <= acceptable))
+        if (!(std::abs(differs[k]) <= accepted_residual))
             throw std::invalid_argument(
                 fmt::format("'{}' differs from its value as drawn, and with balanced bushings the "
                             "drawn position "

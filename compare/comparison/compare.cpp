@@ -220,23 +220,23 @@ std::string on_two_branches(const Model& model, const Branch& requested, const L
                 idle[static_cast<std::size_t>(entry.index() / 6)] = true;
     for (const auto landmark :
          {&Landmarks::back, &Landmarks::front, &Landmarks::middle, &Landmarks::start}) {
-        const auto &here = truth.landmarks.*landmark, &there = other.landmarks.*landmark;
-        if (!here || !there || here->load != there->load) continue;
+        const auto &own = truth.landmarks.*landmark, &others = other.landmarks.*landmark;
+        if (!own || !others || own->load != others->load) continue;
         std::size_t farthest = 0;
         double length = 0, angle = 0;
-        for (std::size_t b = 0; b < here->poses.size(); ++b) {
+        for (std::size_t b = 0; b < own->poses.size(); ++b) {
             if (idle[b]) continue;
-            const double distance = (here->poses[b].r - there->poses[b].r).norm();
+            const double distance = (own->poses[b].r - others->poses[b].r).norm();
             if (distance > length) {
                 length = distance;
                 farthest = b;
             }
-            angle = std::max(angle, here->poses[b].p.angularDistance(there->poses[b].p));
+            angle = std::max(angle, own->poses[b].p.angularDistance(others->poses[b].p));
         }
-        const BranchSide& side = side_at(sides, here->load);
-        const Certificate of_here = certify(side.model, side.branch, *here);
+        const BranchSide& side = side_at(sides, own->load);
+        const Certificate of_here = certify(side.model, side.branch, *own);
         if (of_here.state != ProofState::proved) continue;
-        const Certificate of_there = certify(side.model, side.branch, *there);
+        const Certificate of_there = certify(side.model, side.branch, *others);
         if (of_there.state != ProofState::proved) continue;
         if (!(length > of_here.error.length + of_there.error.length ||
               angle > of_here.error.angle + of_there.error.angle))
@@ -246,7 +246,7 @@ std::string on_two_branches(const Model& model, const Branch& requested, const L
             "the {} leg is on another equilibrium than the {} leg at {:.6g} {}, each proved: body "
             "'{}' is "
             "{:.3g} mm away",
-            name(other.leg), name(truth.leg), in_unit(unit) * here->load, symbol(unit),
+            name(other.leg), name(truth.leg), in_unit(unit) * own->load, symbol(unit),
             model.bodies[farthest].name, 1e3 * length);
     }
     return {};
@@ -376,8 +376,10 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                 part);
     }
     if (!disagreements.empty())
-        if (const auto two = on_two_branches(model, requested, equilibrium, second); !two.empty())
-            objections.add(two), disagreements = {};
+        if (const auto two = on_two_branches(model, requested, equilibrium, second); !two.empty()) {
+            objections.add(two);
+            disagreements = {};
+        }
     for (const auto& one : disagreements.worst) objections.add(one.what, one.share);
     objections.count += disagreements.count - static_cast<int>(disagreements.worst.size());
     for (const auto& [run, other] :

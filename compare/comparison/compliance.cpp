@@ -139,23 +139,25 @@ bool is_unresisted(const std::vector<std::array<Motions, causes>>& free) {
     return false;
 }
 
-// The responses of the jacked model by those of the free one, whose answers to forces F of the jacks have
-// to hold the heights z of the wheel centres: z - C F = travel. In the order of on_jacks below; none where
-// C is nearly singular. `all`: of the wrenches, `each` per wheel, and perhaps of the steering.
-std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& all,
+// The responses of the jacked model from those of the free one. Under a disturbance the wheel
+// centres of the free model rise by z; forces F of the jacks, with C the rise per unit force, hold
+// them at the given travel t: z + C F = t. In the order of on_jacks() below; none where C is nearly
+// singular. `free`: responses to the wrenches, `per_wheel` of them a wheel, and perhaps to the
+// steering.
+std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& free,
                                                   const Model& model, const Equilibrium& state,
-                                                  std::size_t each) {
+                                                  std::size_t per_wheel) {
     constexpr double well_posed = 1e-4;
     const std::size_t wheels = model.wheels.size();
     if (wheels == 0) return {};
-    Eigen::MatrixXd z(wheels, all.size()), C(wheels, wheels);
+    Eigen::MatrixXd z(wheels, free.size()), C(wheels, wheels);
     for (std::size_t w = 0; w < wheels; ++w) {
         const Placed centre = Subject{model, &state, w}.centre();
-        for (std::size_t k = 0; k < all.size(); ++k)
+        for (std::size_t k = 0; k < free.size(); ++k)
             z(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(k)) =
-                Subject::moved_by(all[k], centre).z();
+                Subject::moved_by(free[k], centre).z();
     }
-    const auto lifted_at = [&](std::size_t w) { return each * w + at_centre + 2; };
+    const auto lifted_at = [&](std::size_t w) { return per_wheel * w + at_centre + 2; };
     for (std::size_t w = 0; w < wheels; ++w)
         C.col(static_cast<Eigen::Index>(w)) = z.col(static_cast<Eigen::Index>(lifted_at(w)));
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(C);
@@ -163,18 +165,18 @@ std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& al
     const auto pushed = [&](Motions motions, const Eigen::VectorXd& F) {
         for (std::size_t w = 0; w < wheels; ++w)
             for (std::size_t b = 0; b < motions.size(); ++b) {
-                motions[b].dr += F[static_cast<Eigen::Index>(w)] * all[lifted_at(w)][b].dr;
-                motions[b].dpi += F[static_cast<Eigen::Index>(w)] * all[lifted_at(w)][b].dpi;
+                motions[b].dr += F[static_cast<Eigen::Index>(w)] * free[lifted_at(w)][b].dr;
+                motions[b].dpi += F[static_cast<Eigen::Index>(w)] * free[lifted_at(w)][b].dpi;
             }
         return motions;
     };
     std::vector<Motions> held;
-    for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::size_t k = 0; k < free.size(); ++k)
         held.push_back(
-            pushed(all[k], lu.solve(Eigen::VectorXd(-z.col(static_cast<Eigen::Index>(k))))));
+            pushed(free[k], lu.solve(Eigen::VectorXd(-z.col(static_cast<Eigen::Index>(k))))));
     const Eigen::MatrixXd lifts = inverse_of(lu);
     for (std::size_t w = 0; w < wheels; ++w)
-        held.insert(held.begin() + static_cast<std::ptrdiff_t>(each * wheels + w),
+        held.insert(held.begin() + static_cast<std::ptrdiff_t>(per_wheel * wheels + w),
                     pushed(Motions(model.bodies.size()), lifts.col(static_cast<Eigen::Index>(w))));
     return held;
 }
@@ -184,7 +186,7 @@ std::string failure_text(const Response& response) {
            (response.detail.empty() ? "" : ": " + response.detail);
 }
 
-// Begins with the elimination orders of a similar model, as far as the matrices have one pattern.
+// Begins with the elimination orders of a similar model, where its matrices have the same pattern.
 recursive::ResponseAnalysis analysis_like(const std::optional<recursive::ResponseAnalysis>& before,
                                           const Model& model) {
     const recursive::EliminationOrder order = before ? before->analysis.system.lu.order : nullptr;
@@ -231,11 +233,12 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     WheelResponse response;
     const std::size_t wheels = side.model.wheels.size();
     const ResponseCase freed_case = freed(side, state);
-    // The references refine their answers, so that those at the patch of a wheel that does not roll
-    // may be summed. The recursion does not: its sums would differ from its own answers by 1e-10.
-    const bool refines = analyses.one_factorisation || solver.leg == Leg::equilibrium ||
-                         solver.leg == Leg::energy,
-               with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);
+    // The references refine their solutions, so that the response to a force at the patch of a
+    // wheel that does not roll may be a sum. The recursion does not: such sums differ from its
+    // solutions by 1e-10.
+    const bool refines =
+        analyses.one_factorisation || solver.leg == Leg::equilibrium || solver.leg == Leg::energy;
+    const bool with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);
     const auto wrenches = causes_at(side.model, state, with_patches);
     const std::size_t first = freed_case.model.joints.size();
     const bool steers =
@@ -246,13 +249,13 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
             return linear_response(solver, freed_case.model, freed_case.branch, freed_case.state,
                                    list, analyses.free);
         };
-        std::vector<Disturbance> all = wrenches;
-        if (steers && refines) all.push_back(Motion{steering});
-        Response free = answers_to(all);
+        std::vector<Disturbance> with_steering = wrenches;
+        if (steers && refines) with_steering.push_back(Motion{steering});
+        Response free = answers_to(with_steering);
         if (free.outcome == Outcome::converged && refines)
             held =
                 held_by_jacks(free.increments, side.model, state, with_patches ? causes : at_patch);
-        else if (all.size() > wrenches.size())
+        else if (with_steering.size() > wrenches.size())
             free = answers_to(wrenches);
         if (free.outcome == Outcome::converged) {
             response.free = by_wheel(free.increments, side.model, state, with_patches);
@@ -262,9 +265,12 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
                 free.outcome == Outcome::loaded_idle_mode || free.outcome == Outcome::singular;
         }
     }
-    if (is_unresisted(response.free))
-        response.free.clear(), response.why_not_free = "only rounding resists a motion",
-                               response.nothing_resists = true, held.reset();
+    if (is_unresisted(response.free)) {
+        response.free.clear();
+        response.why_not_free = "only rounding resists a motion";
+        response.nothing_resists = true;
+        held.reset();
+    }
 
     const auto on_jacks = [&](std::size_t count, ResponseCache& cache) {
         const ResponseCase up = jacked_up(freed_case, count);

@@ -12,9 +12,10 @@
 //
 // A jack and a dead force at its point are both vertical and have the same geometric stiffness when
 // the wheel turns. The tangent therefore equals that of the branch except for the removed supports.
-// A leg that refines its answers gives those of the jacked model by the forces of the jacks on the
-// free one, from one factorisation; only where these forces are not determined is it solved itself.
-// The recursion does so where it is asked to (Analyses): such answers differ from its own by 1e-10.
+// A leg that refines its solutions computes the responses of the jacked model as those of the free
+// one under the forces of the jacks, from one factorisation; the jacked model is solved only where
+// these forces are not determined. The recursion does so on request (Analyses::one_factorisation):
+// such responses differ from its own by 1e-10.
 #pragma once
 
 #include <memory>
@@ -38,16 +39,17 @@ namespace elastocheck::compare {
 // state, but for the elimination orders, which are those of the last one: they change rounding.
 struct ResponseCache {
     std::optional<recursive::ResponseAnalysis> recursion;
-    std::optional<recursive::ResponseAnalysis> before;  // of a similar model: its orders go first
+    std::optional<recursive::ResponseAnalysis> before;  // of a similar model: its orders are tried
     std::shared_ptr<const reference::equilibrium::Orders> equilibrium;
 };
 struct Analyses {
-    ResponseCache free, jacked, tied;
-    std::optional<std::vector<int>> dependent_rows;  // of diagnosis.hpp, likewise
+    ResponseCache free, jacked;
+    ResponseCache tied;                              // of the jacked model with one jack
+    std::optional<std::vector<int>> dependent_rows;  // recursive/diagnosis/self_stress.hpp
     std::optional<WheelResponse> response;           // at the state of the last row_of()
-    bool one_factorisation = false;                  // by the recursion too: see below
+    bool one_factorisation = false;                  // for the recursion too, see the head
 };
-// None yet, with the elimination orders of those of a similar model.
+// An empty cache that begins with the elimination orders of a similar model's.
 Analyses like(const Analyses& other);
 
 // Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix

@@ -152,7 +152,10 @@ std::vector<double> requested_parameters(const std::vector<BranchSide>& sides, i
     for (std::size_t w = 0; w < sides.size(); ++w) {
         auto side = grid(sides[w].branch, every);
         const bool comes_reversed = w + 1 < sides.size();
-        if (comes_reversed) std::ranges::reverse(side), side.pop_back();
+        if (comes_reversed) {
+            std::ranges::reverse(side);
+            side.pop_back();
+        }
         std::ranges::copy(side, std::back_inserter(a));
     }
     return a;

@@ -32,23 +32,23 @@ struct Row {
 };
 struct Analyses;       // compliance.hpp
 struct WheelResponse;  // compliance.hpp
-// Evaluates the channels at one point. A characteristic is computed by the leg that found the
-// state, with these settings. `analyses` are reused over the points of a branch
-// side; their `response` is what the characteristics are read from, empty where there are none.
+// Evaluates the channels at one point. Characteristics are read from the response of the wheels,
+// which the leg that found the state computes with these settings and leaves in Analyses::response.
+// `analyses` are reused over the points of a branch side.
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses);
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state);
 
-// The same path without keeping points: `read` converts each point when it is found, and
-// `hand_over` receives the rows in the order of the path. The rows of the first of two sides are
-// buffered, since that side runs backwards.
+// solve_branch() of elastocheck/legs.hpp without keeping points: `read` converts each point when it
+// is found, and `hand_over` receives the rows in the order of the path. The rows of the first of
+// two sides are buffered, since that side runs backwards.
 EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverSettings& solver,
                              const std::function<Row(const Equilibrium&)>& read,
                              const std::function<void(Row)>& hand_over);
 
-// The same path as a curve. `also` is called with every point when it is found, and with its
-// response where an output is read from it.
+// The same path as a curve. `also` receives every point when it is found, and the response of the
+// wheels there if an output is read from it.
 using VisitResponse = std::function<void(const Equilibrium&, const WheelResponse*)>;
 PathCurve solve_branch(const Model& model, std::span<const Channel> channels, const Branch& branch,
                        const std::vector<BranchSide>& sides, const SolverSettings& solver,
@@ -57,8 +57,8 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
 // The runs of the sides of a branch as one, as solve_branch() joins them.
 PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves);
 
-// Start of a branch side by this leg: one point, the settled state at a = 0; no point where it does
-// not settle.
+// The path that ends at the start of a branch side, the settled state at a = 0: one point, or none
+// where the leg does not settle.
 EquilibriumPath rest(const BranchSide& side, Leg leg);
 
 // States of a leg at these values of the parameter [SI], of the sign of the side and in ascending
@@ -81,7 +81,7 @@ struct References {
     // why there is no reference: a leg failed, or nothing drives the branch
     std::vector<std::string> failures;
 };
-// Runs them without a judgement, judges their runs, or both.
+// references() runs both references and judges the runs; the other two do one of these each.
 References run_references(const Model& model, const std::vector<Channel>& channels,
                           const Branch& branch, const std::vector<BranchSide>& sides);
 void judge_references(const Model& model, const std::vector<Channel>& channels,
@@ -93,7 +93,7 @@ References references(const Model& model, const std::vector<Channel>& channels,
 PathCurve second_reference(const Model& model, const std::vector<Channel>& channels,
                            const Branch& branch, const std::vector<BranchSide>& sides, Leg& leg);
 
-// Message where no driver of a branch is left; empty otherwise.
+// Message if compile() has left no driver to a branch; else empty.
 std::string nothing_drives(const Model& model, const Branch& branch);
 
 // ---- Start of a branch: the state at a = 0, settled under the constant loads.

@@ -16,9 +16,10 @@ namespace elastocheck::compare {
 std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
                                        std::vector<PointColumn> columns);
 
-// Position in Comparison::branches of each point's branch, or -1 where none reaches it. `x` places
-// the points, by the parameter or by the channel. Throws std::invalid_argument for a branch that is
-// not in the comparison, or, without names, if two branches lie on the same side.
+// Position in Comparison::branches of each point's branch, or -1 where none reaches it. `names` are
+// the branches of the points, or empty; `x` their places: values of the channel, or without one of
+// the parameter. Throws std::invalid_argument for a branch that is not in the comparison, and where
+// names are needed because two branches lie on the same side of zero.
 std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                              const std::vector<std::string>& names, const std::vector<double>& x,
                              std::optional<std::size_t> channel);
@@ -28,14 +29,14 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
 struct Place {
     int branch = -1;  // position in Comparison::branches; -1: none reaches it
     bool by_parameter = true;
-    double x = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing gives its place
+    double x = std::numeric_limits<double>::quiet_NaN();  // NaN: the point gives no place
 };
 // Throws as branches_of().
 std::vector<Place> places_of(const Model& model, const Comparison& comparison,
                              const Points& points);
 
-// Values along the curve by which points are placed: of its parameter, or of a channel. Empty where
-// the channel is not strictly monotonic.
+// Values along the curve by which points are placed: those of the channel, or without one of the
+// parameter. Empty where the channel is not strictly monotonic.
 std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel);
 // Whether x lies within the range of a monotonic sequence, up to 1e-9 of that range.
 bool reaches(const std::vector<double>& over, double x);

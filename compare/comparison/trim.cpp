@@ -99,7 +99,7 @@ namespace {
 
 // The scene on a branch whose drivers are the adjustments. compile() treats them as moving, so that
 // no adjustment is left out because it starts at zero.
-TrimProblem pose(const Scene& scene) {
+TrimProblem trim_problem(const Scene& scene) {
     TrimProblem problem;
     problem.trim = &*scene.trim;
     Scene held = scene;
@@ -323,7 +323,7 @@ struct TrimIteration {
     MatrixXd J;     // the last one
     TrimAttempt here = {};
     int iterations = 0;
-    std::string stuck = {};  // why it went no further, "; at the next iterate: ..."
+    std::string stuck = {};  // why it stopped, "; at the next iterate: ..."
 
     bool has_met() const { return here.outcome == Outcome::converged && here.missed.norm() <= met; }
     // The same step as settled at p + h s.
@@ -348,8 +348,8 @@ void iterate_from(const TrimStart& start, const TrimProblem& problem, TrimIterat
     }
 }
 
-// One step along s, halved until it comes nearer to the conditions; false if none does. Unreachable
-// conditions lead to a singular state, beyond which rounding decides which are met.
+// One step along dp, halved until it comes nearer to the conditions; false if none does.
+// Unreachable conditions lead to a singular state, beyond which rounding decides which are met.
 bool step_nearer(const TrimProblem& problem, const VectorXd& dp, TrimIteration& it) {
     TrimAttempt next;
     double share = 1;
@@ -385,7 +385,7 @@ std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimI
         if (const std::string why = ill_posed(*problem.trim, *J); !why.empty()) {
             // Well-posed at an earlier iterate: the iteration has reached the limit of what
             // can be trimmed.
-            if (it.iterations == 0 || it.here.missed.norm() <= acceptable)
+            if (it.iterations == 0 || it.here.missed.norm() <= accepted_residual)
                 throw std::invalid_argument(why);
             it.stuck = "; at that state " + why;
             break;
@@ -397,7 +397,7 @@ std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimI
     return std::nullopt;
 }
 
-// Settles the trimmed scene by another leg. Fills `record`; returns a leg that did not settle.
+// Settles the trimmed scene by another leg. Fills `record`; returns an attempt that did not settle.
 std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIteration& it,
                                         const BranchSide& held, TrimRecord& record) {
     record.confirmed_by = Leg::energy;
@@ -420,7 +420,7 @@ std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIt
     return std::nullopt;
 }
 
-// What each condition is missed by; false if more than is acceptable, with the reason in `record`.
+// Records by how much each condition is missed; false beyond `accepted_residual`, with the reason.
 bool record_conditions(const TrimProblem& problem, const TrimIteration& it, TrimRecord& record) {
     for (std::size_t k = 0; k < problem.trim->until.size(); ++k) {
         const Unit unit = problem.channels[k].unit;
@@ -429,7 +429,7 @@ bool record_conditions(const TrimProblem& problem, const TrimIteration& it, Trim
                                      in_unit(unit) * problem.target[i],
                                      in_unit(unit) * it.here.missed[i], std::nan("")});
     }
-    if (it.here.missed.norm() <= acceptable) return true;
+    if (it.here.missed.norm() <= accepted_residual) return true;
     const auto worst = std::ranges::max_element(
         record.conditions, {}, [](const auto& c) { return std::abs(c.missed) / in_unit(c.unit); });
     record.outcome = Outcome::iteration_limit;
@@ -448,19 +448,19 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
 }
 
 VectorXd requested_from_drawn(const Scene& scene) {
-    const TrimProblem problem = pose(scene);
+    const TrimProblem problem = trim_problem(scene);
     return problem.target - problem.drawn;
 }
 
 Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
-                  SettledTrim* settles) {
+                  SettledTrim* settled) {
     Trimmed result{scene, std::nullopt};
     const Trim& trim = *scene.trim;
     if (trim.adjust.size() != trim.until.size() || trim.adjust.empty())
         throw std::invalid_argument(
             fmt::format("{} adjusted quantities for {} conditions; their numbers must be equal",
                         trim.adjust.size(), trim.until.size()));
-    TrimProblem problem = pose(scene);
+    TrimProblem problem = trim_problem(scene);
     problem.solver = solver;
     std::vector<int> parts;
     structure(problem.side.model, parts);
@@ -486,15 +486,15 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     const Index n = it.p.size();
     if (is_similar && start->J.rows() == n && start->J.cols() == n)
         iterate_from(*start, problem, it);
-    const bool settled = it.J.size() > 0 && it.has_met();
-    if (!settled) {
+    const bool starts_met = it.J.size() > 0 && it.has_met();
+    if (!starts_met) {
         it.p.setZero();
         it.iterations = 0;
         it.here = settle(problem, it.p, problem.solver);
     }
     if (it.here.outcome != Outcome::converged)
         return give_up(it.here, "the scene has no settled equilibrium before the trim");
-    if (const auto failed = iterate(problem, !settled, it))
+    if (const auto failed = iterate(problem, !starts_met, it))
         return give_up(*failed, "at a neighbouring state");
     record.iterations = it.iterations;
     if (!record_conditions(problem, it, record)) return result;
@@ -511,7 +511,7 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     if (start != nullptr)
         *start = {it.p, it.J, std::move(parts),
                   problem.analysis ? problem.analysis->settled : start->settled};
-    if (settles != nullptr) *settles = {held, it.here.state};
+    if (settled != nullptr) *settled = {held, it.here.state};
     apply(trim, it.p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
         const auto& adjusted = trim.adjust[k];

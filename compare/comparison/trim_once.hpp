@@ -7,8 +7,9 @@
 
 namespace elastocheck::compare {
 
-// [m, rad]: |c| that is accepted where Newton's method on the conditions comes no nearer to zero.
-constexpr double acceptable = 1e-9;
+// Largest residual |c| of the conditions [m, rad] (elastocheck/trim.hpp) that is accepted where
+// Newton's method does not reduce it further.
+constexpr double accepted_residual = 1e-9;
 
 // The equilibrium of a trimmed scene at a = 0.
 struct SettledTrim {
@@ -18,11 +19,11 @@ struct SettledTrim {
 
 // Pre: scene.trim. Solves the trim equations by the leg `solver`. With `confirm` the energy leg
 // confirms the result or, where that does not apply, the series. `start`: as for trim_by_series();
-// `settles` receives the settled state of a trim that is reached. Both may be null.
+// `settled` receives the state of a trim that is reached. Both may be null.
 Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
-                  SettledTrim* settles);
+                  SettledTrim* settled);
 
-// Requested value minus the value as drawn, per condition [m, rad].
+// Requested value less the value of the scene as drawn, per condition [m, rad].
 Eigen::VectorXd requested_from_drawn(const Scene& scene);
 
 }  // namespace elastocheck::compare

@@ -32,10 +32,11 @@ using Eigen::VectorXd;
 constexpr int interpolated_points = 40;
 
 constexpr int max_shorter_steps = 3;  // how often h is divided by eight
-constexpr double one_slope = 1e-3;    // of the largest change by 2h: a smaller kink is none
+constexpr double max_kink = 1e-3;     // share of the largest change by 2h: more has no rate
 
-// Outputs of a model by their names: a figure of the catalogue is made alone; the list of all outputs
-// when another one is asked for, with the sums, which take an analysis, only where it has none.
+// Outputs of a model by their names. A figure of the catalogue is made without the others. For
+// another output the list of all is made, and only if it is not there the list with the sums, which
+// need an analysis of the model.
 class NamedOutputs {
   public:
     explicit NamedOutputs(const Model& model) : model_(model) {}
@@ -71,8 +72,8 @@ struct OnBranch {
     Leg leg;
     std::span<const Figure> figures;
     FigureValues& result;
-    std::vector<Channel> read = {};  // outputs of the figures, each once
-    std::vector<std::size_t> which = {};
+    std::vector<Channel> read = {};        // outputs of the figures, each once
+    std::vector<std::size_t> chosen = {};  // figures of this branch
 
     const Branch& branch() const { return model.branches[states.branch]; }
     bool has(const Figure& figure) const {
@@ -84,8 +85,9 @@ struct OnBranch {
     void add_figures(NamedOutputs& outputs) {
         for (std::size_t k = 0; k < figures.size(); ++k)
             if (has(figures[k])) {
-                add(figures[k].name, outputs), add(figures[k].over, outputs);
-                which.push_back(k);
+                add(figures[k].name, outputs);
+                add(figures[k].over, outputs);
+                chosen.push_back(k);
             }
     }
     std::size_t column(const std::string& name) const {
@@ -113,7 +115,7 @@ struct OnBranch {
         for (const Equilibrium& state : states.states)
             append(curve, state.load,
                    row_of(model, read, states.sides.front(), {.leg = leg}, state, analyses).values);
-        for (const std::size_t k : which)
+        for (const std::size_t k : chosen)
             if (states.whole)
                 set_over_output(k, curve);
             else if (const auto at =
@@ -149,7 +151,10 @@ void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, Rea
     const auto path = solve_at(side, leg, points, [&](const Equilibrium& state) {
         if (std::ranges::find(points, state.load) != points.end()) into.states.push_back(state);
     });
-    if (into.outcome == Outcome::converged) into.outcome = path.outcome, into.detail = path.detail;
+    if (into.outcome == Outcome::converged) {
+        into.outcome = path.outcome;
+        into.detail = path.detail;
+    }
 }
 
 // Whether a model differs from that of the states in its numbers only.
@@ -157,7 +162,8 @@ bool same_structure(const Model& model, std::span<const ReadStates> states) {
     std::vector<int> here, there;
     for (const ReadStates& of : states) {
         if (of.branch >= model.branches.size()) return false;
-        here.clear(), there.clear();
+        here.clear();
+        there.clear();
         structure(of.sides.front().model, here);
         structure(read_sides(model, of).front().model, there);
         if (here != there) return false;
@@ -201,7 +207,7 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
 }
 
 std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg) {
-    std::vector<ReadStates> all;
+    std::vector<ReadStates> all_states;
     for (std::size_t b = 0; b < model.branches.size(); ++b)
         for (const bool whole : {false, true}) {
             ReadStates states{b, whole, {}};
@@ -223,9 +229,9 @@ std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> fi
                     if (std::exchange(first, false)) std::erase(points, 0.);
                 }
             }
-            all.push_back(std::move(states));
+            all_states.push_back(std::move(states));
         }
-    return all;
+    return all_states;
 }
 
 FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
@@ -247,15 +253,15 @@ FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg l
 std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
                                                          std::span<const Model* const> models,
                                                          int threads) {
-    std::vector<std::vector<ReadStates>> all(models.size());
+    std::vector<std::vector<ReadStates>> states_of_models(models.size());
     if (std::ranges::any_of(states, [](const ReadStates& of) { return !of.complete(); }))
-        return all;
+        return states_of_models;
     std::vector<std::atomic<bool>> near(models.size());
     std::vector<Job> jobs;
     for (std::size_t m = 0; m < models.size(); ++m) {
         near[m] = models[m] != nullptr && same_structure(*models[m], states);
         for (std::size_t k = 0; near[m] && k < states.size(); ++k) {
-            ReadStates& of = all[m].emplace_back(states[k]);
+            ReadStates& of = states_of_models[m].emplace_back(states[k]);
             of.sides = read_sides(*models[m], of);
         }
     }
@@ -265,17 +271,18 @@ std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadSta
         std::vector<std::size_t> model_of;  // their models
         for (std::size_t m = 0; m < models.size(); ++m)
             if (near[m]) {
-                stencils.push_back({{&side_at(all[m][k].sides, state.load).model, 1, 1}});
+                stencils.push_back(
+                    {{&side_at(states_of_models[m][k].sides, state.load).model, 1, 1}});
                 model_of.push_back(m);
             }
         const BranchSide& side = side_at(states[k].sides, state.load);
         const auto found =
             reference::equilibrium::neighbour_states(side.model, side.branch, state, stencils);
         for (std::size_t n = 0; n < found.size(); ++n) {
-            const BranchSide& there = side_at(all[model_of[n]][k].sides, state.load);
+            const BranchSide& there = side_at(states_of_models[model_of[n]][k].sides, state.load);
             if (found[n].outcome == Outcome::converged && found[n].settled &&
                 ends_at_table(there.model, there.branch, found[n].states.front()).empty())
-                all[model_of[n]][k].states[s] = found[n].states.front();
+                states_of_models[model_of[n]][k].states[s] = found[n].states.front();
             else
                 near[model_of[n]] = false;
         }
@@ -285,8 +292,8 @@ std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadSta
             jobs.push_back({"", [&, k, s] { move_state(k, s); }});
     run_jobs(jobs, threads, {});
     for (std::size_t m = 0; m < models.size(); ++m)
-        if (!near[m]) all[m].clear();
-    return all;
+        if (!near[m]) states_of_models[m].clear();
+    return states_of_models;
 }
 
 VectorXd SearchRange::at(const VectorXd& shares) const {
@@ -297,9 +304,9 @@ VectorXd SearchRange::shares(const VectorXd& p) const {
 }
 
 MatrixXd Figures::gradient(const VectorXd& p) const {
-    const VectorXd here = value(p), rounding = here.unaryExpr(&min_movement);
-    MatrixXd rate = MatrixXd::Constant(here.size(), p.size(), nan);
-    VectorXd size = VectorXd::Zero(here.size());  // largest change by a step of any number
+    const VectorXd centre = value(p), rounding = centre.unaryExpr(&min_movement);
+    MatrixXd rate = MatrixXd::Constant(centre.size(), p.size(), nan);
+    VectorXd size = VectorXd::Zero(centre.size());  // largest change by a step of any number
     std::vector<Index> open(static_cast<std::size_t>(p.size()));
     std::iota(open.begin(), open.end(), Index{0});
     double share = 1;
@@ -312,12 +319,13 @@ MatrixXd Figures::gradient(const VectorXd& p) const {
         std::vector<Index> kinked;
         for (std::size_t k = 1; k < y.size(); k += 4) {
             const Index i = open[k / 4];
-            const Changes changes{y[k] - here, y[k + 1] - here, y[k + 2] - here, y[k + 3] - here};
+            const Changes changes{y[k] - centre, y[k + 1] - centre, y[k + 2] - centre,
+                                  y[k + 3] - centre};
             bool settled = true;
-            for (Index j = 0; j < here.size(); ++j) {
+            for (Index j = 0; j < centre.size(); ++j) {
                 if (pass == 0) size[j] = std::max(size[j], changes.size(j));
                 if (pass > 0 && !std::isnan(rate(j, i))) continue;
-                const bool kink = changes.kink(j) > one_slope * share * size[j] + rounding[j];
+                const bool kink = changes.kink(j) > max_kink * share * size[j] + rounding[j];
                 rate(j, i) = kink ? nan : changes.rate(j, share * step[i], rounding[j]);
                 settled = settled && !kink;
             }

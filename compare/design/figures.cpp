@@ -35,9 +35,9 @@ struct NearTrim : TrimStart {
     bool by_equilibrium = false;
 };
 
-// The scene with the numbers p, the states at which its figures are read, by the equilibrium leg, and
-// the figures. Without a model there is no such scene (a negative rate, points that meet), or its trim
-// is not reached.
+// The compiled scene with the numbers p, the states of the equilibrium leg at which its figures are
+// read, and the figures. Without a model there is no such scene (a negative rate, points that
+// coincide), or its trim is not reached.
 struct AtPoint {
     NearTrim trim = {};
     std::optional<Model> model = {};
@@ -45,10 +45,10 @@ struct AtPoint {
     FigureValues figures = {};
 };
 
-// A failure of `set` leaves the figures without values.
-void guarded(AtPoint& at, std::size_t figures, const std::function<void()>& set) {
+// Runs a part of the solution; a failure leaves the figures without values, and its reason.
+void guarded(AtPoint& at, std::size_t figures, const std::function<void()>& part) {
     try {
-        set();
+        part();
     } catch (const std::runtime_error& error) {
         at.figures = {VectorXd::Constant(static_cast<Index>(figures), nan), error.what()};
         at.model.reset();
@@ -77,7 +77,7 @@ void compile_at(const Varied& varied, const VectorXd& p, std::size_t figures, At
     });
 }
 
-// Without states they are found from the design position.
+// Reads the figures at the states, which are solved from the design position if there are none.
 void read_at(std::span<const Figure> figures, AtPoint& at) {
     if (!at.model) return;
     guarded(at, figures.size(), [&] {
@@ -93,15 +93,15 @@ FigureValues values_at(const Varied& varied, std::span<const Figure> figures, co
     return at.figures;
 }
 
-// Values at points near the first one. Trim and states of the first point start from those of the
-// last first point, and those of the others from those of the first. A value at the same first point
-// is kept.
+// Values at points near the first one, the centre. Trim and states of the centre start from those
+// of the last centre, and those of the other points from those of the centre. Values at the last
+// centre are kept.
 struct SolvedFigures {
     Varied varied;
     std::vector<Figure> figures;
     int threads;
-    VectorXd first = {};
-    AtPoint here = {};  // at the last first point
+    VectorXd centre = {};
+    AtPoint at_centre = {};
 
     void on_all(std::vector<AtPoint>& points, const std::function<void(std::size_t)>& run) const {
         std::vector<Job> jobs;
@@ -109,27 +109,31 @@ struct SolvedFigures {
         run_jobs(jobs, threads, {});
     }
     std::vector<AtPoint> near(std::span<const VectorXd> points) const {
-        std::vector<AtPoint> all(points.size(), AtPoint{here.trim});
-        on_all(all, [&](std::size_t k) { compile_at(varied, points[k], figures.size(), all[k]); });
+        std::vector<AtPoint> solved(points.size(), AtPoint{at_centre.trim});
+        on_all(solved,
+               [&](std::size_t k) { compile_at(varied, points[k], figures.size(), solved[k]); });
         std::vector<const Model*> models;
-        for (const AtPoint& at : all) models.push_back(at.model ? &*at.model : nullptr);
-        auto states = neighbouring_states(here.states, models, threads);
-        on_all(all, [&](std::size_t k) {
-            all[k].states = std::move(states[k]);
-            read_at(figures, all[k]);
+        for (const AtPoint& point : solved) models.push_back(point.model ? &*point.model : nullptr);
+        auto states = neighbouring_states(at_centre.states, models, threads);
+        on_all(solved, [&](std::size_t k) {
+            solved[k].states = std::move(states[k]);
+            read_at(figures, solved[k]);
         });
-        return all;
+        return solved;
     }
     std::vector<VectorXd> operator()(const std::vector<VectorXd>& points) {
-        if (first.size() != points[0].size() || first != points[0]) {
-            AtPoint there = std::move(near({points.data(), 1}).front());
-            first = points[0];
-            if (!there.model) there.trim = here.trim, there.states = std::move(here.states);
-            here = std::move(there);
+        if (centre.size() != points[0].size() || centre != points[0]) {
+            AtPoint moved = std::move(near({points.data(), 1}).front());
+            centre = points[0];
+            if (!moved.model) {
+                moved.trim = at_centre.trim;
+                moved.states = std::move(at_centre.states);
+            }
+            at_centre = std::move(moved);
         }
-        std::vector<VectorXd> values{here.figures.value};
-        for (const AtPoint& at : near(std::span(points).subspan(1)))
-            values.push_back(at.figures.value);
+        std::vector<VectorXd> values{at_centre.figures.value};
+        for (const AtPoint& point : near(std::span(points).subspan(1)))
+            values.push_back(point.figures.value);
         return values;
     }
 };

@@ -23,11 +23,11 @@ namespace elastocheck::compare {
 
 // An output at one station of a branch.
 struct Figure {
-    std::string name;       // of the output: "bump_steer", "toe"
-    std::string branch;     // its name
-    double at = 0;          // parameter of the branch [SI]; or, with `over`, a value of that output
-    std::string over = {};  // output that gives the place: "travel"; in its unit
-    bool change = false;    // counts from the design position
+    std::string name;    // name of the output: "bump_steer", "toe"
+    std::string branch;  // name of the branch
+    double at = 0;       // the station: parameter of the branch [SI], or value of the output `over`
+    std::string over = {};              // "travel"; empty: the station is a parameter
+    bool change = false;                // the change from the design position, not the value
     std::string unit = {}, place = {};  // for readers: "deg", "jounce = 3000 N"
 };
 
@@ -35,8 +35,8 @@ struct Figure {
 // of what redundant joints share.
 std::vector<Channel> figure_outputs(const Model& model, bool with_sums = true);
 
-// Values of figures by one leg, in their units. NaN where there is none, with the reason in `why_not`
-// (of the first).
+// Values of figures by one leg, in their units; NaN where there is none, `why_not` says why for the
+// first of these.
 struct FigureValues {
     Eigen::VectorXd value;
     std::string why_not = {};
@@ -60,10 +60,10 @@ struct ReadStates {
 std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg);
 FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
                           std::span<const Figure> figures, Leg leg);
-// Of each model (null: none) the states by the equilibrium leg at the same places, from the `states`
-// of a similar model by the chord method (models/neighbours.hpp), which factorises once a state for
-// all models. None for a model of another structure, and where the method does not meet: there the
-// models are far from each other.
+// Of each model (null: none) the states by the equilibrium leg at the same places, from the
+// `states` of a similar model by the chord method (models/neighbours.hpp), which factorises once a
+// state for all models. None for a model of another structure, and where the method does not
+// converge since the models are far from each other.
 std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
                                                          std::span<const Model* const> models,
                                                          int threads);
@@ -75,8 +75,7 @@ FigureValues figure_values(const Scene& scene, std::span<const Figure> figures,
 // Limits of the numbers of a search, in their units; infinite where there are none.
 struct SearchRange {
     Eigen::VectorXd start, low, high;
-    // The numbers at these shares of the range from the start, within the limits; and the
-    // shares of numbers.
+    // p = start + shares · (high - low), kept within the limits; and its inverse.
     Eigen::VectorXd at(const Eigen::VectorXd& shares) const;
     Eigen::VectorXd shares(const Eigen::VectorXd& p) const;
 };
@@ -98,8 +97,8 @@ struct Figures {
     // [figures × numbers], NaN where there is no rate
     Eigen::MatrixXd gradient(const Eigen::VectorXd& p) const;
 };
-// By the equilibrium leg, points on several threads. Trim and states start from those of the last
-// first point where that is near, else from the design position.
+// By the equilibrium leg, points on several threads. Trim and states start from those at p[0] of
+// the last call where that is near, else from the design position.
 Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads = 1);
 
 // Reason why one of the figures has no value, or else no rate, at p: "no rate at the start: ...".

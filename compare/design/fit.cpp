@@ -1,6 +1,5 @@
 #include "compare/design/fit.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -61,7 +61,8 @@ Table numbers_table(const Varied& varied, const VectorXd& to, const std::vector<
     });
 }
 
-// What stands in the way of `what` ("bands"): those that conflict, and limits of numbers.
+// Notes what prevents a solution: the `conflicting` wishes or bands, followed by `together` if
+// there are several, and limits of numbers. `noun`: "bands".
 void add_conflict(Result& result, const std::vector<std::string>& conflicting,
                   const std::string& together, const Varied& varied,
                   const std::vector<int>& at_limit, const char* noun) {
@@ -80,8 +81,8 @@ void add_conflict(Result& result, const std::vector<std::string>& conflicting,
             : fmt::format("The {} would come nearer with {}.", noun, fmt::join(limits, "; ")));
 }
 
-// Numbers with which wishes are not met are the nearest ones, and those with which they are change least,
-// where the search has converged.
+// Without convergence the numbers are neither known to be the nearest ones (not met) nor those of
+// the smallest change (met).
 Grade grade_of(bool met, bool converged) {
     return !converged ? Grade::not_judged : met ? Grade::pass : Grade::fail;
 }
@@ -99,17 +100,20 @@ void set_confirmation(Result& result, const Confirmation& by, Grade otherwise) {
 
 // The value of a goal that is nearest to leaving the band, or furthest outside; of its `values`.
 double worst_of(const Goal& goal, const VectorXd& values) {
-    double most = -INFINITY, worst = nan;
+    double largest_excess = -INFINITY, worst = nan;
     for (const double value : values)
-        if (const double excess = std::max(goal.low - value, value - goal.high); excess > most)
-            most = excess, worst = value;
+        if (const double excess = std::max(goal.low - value, value - goal.high);
+            excess > largest_excess) {
+            largest_excess = excess;
+            worst = value;
+        }
     return worst;
 }
 double largest_difference(const VectorXd& a, const VectorXd& b) {
-    double most = nan;
-    for (const double apart : (a - b).cwiseAbs().eval())
-        if (std::isfinite(apart) && !(apart <= most)) most = apart;
-    return most;
+    double largest = nan;
+    for (const double difference : (a - b).cwiseAbs().eval())
+        if (std::isfinite(difference) && !(difference <= largest)) largest = difference;
+    return largest;
 }
 
 Table goals_table(const OptimisedScene& scene) {
@@ -168,9 +172,9 @@ double relaxed_by(const OptimisedScene& scene, const Bound& bound) {
     const auto goal = std::ranges::find_if(scene.goals, [&](const Goal& candidate) {
         return bound.which < (first += std::ssize(candidate.points));
     });
-    const double width = goal->high - goal->low,
-                 largest =
-                     std::isfinite(width) ? width / 10 : scene.optimum.scale[bound.which] / 100;
+    const double width = goal->high - goal->low;
+    const double largest =
+        std::isfinite(width) ? width / 10 : scene.optimum.scale[bound.which] / 100;
     return std::pow(10, std::floor(std::log10(largest) + 1e-9));
 }
 

@@ -24,11 +24,17 @@ Solution solve_for(const Figures& figures, const Bands& bands, const SearchRange
     VectorXd valued, f, rated;
     MatrixXd rate;
     const auto value_at = [&](const VectorXd& x) -> const VectorXd& {
-        if (x.size() != valued.size() || x != valued) f = figures.value(range.at(x)), valued = x;
+        if (x.size() != valued.size() || x != valued) {
+            f = figures.value(range.at(x));
+            valued = x;
+        }
         return f;
     };
     const auto rate_at = [&](const VectorXd& x) -> const MatrixXd& {
-        if (x.size() != rated.size() || x != rated) rate = figures.gradient(range.at(x)), rated = x;
+        if (x.size() != rated.size() || x != rated) {
+            rate = figures.gradient(range.at(x));
+            rated = x;
+        }
         return rate;
     };
     LeastSquares problem{

@@ -154,7 +154,10 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
                         .is = is->values[k],
                         .tolerance = allowed,
                         .noticeable = noticeable(baseline, was)};
-        if (is_placed) offence.a = places[k], offence.a_unit = branch->unit;
+        if (is_placed) {
+            offence.a = places[k];
+            offence.a_unit = branch->unit;
+        }
         verdict.offences.push_back(offence);
     }
 }
@@ -224,7 +227,10 @@ void judge_limit(const Limit& limit, const Measurement& measurement, GateVerdict
                             .was = bound,
                             .is = s.values[k],
                             .tolerance = std::abs(bound)};
-            if (!everywhere) offence.a = 0, offence.a_unit = branch->unit;
+            if (!everywhere) {
+                offence.a = 0;
+                offence.a_unit = branch->unit;
+            }
             verdict.offences.push_back(offence);
         }
     }

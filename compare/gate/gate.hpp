@@ -26,30 +26,29 @@ inline constexpr std::array tolerance_classes{
     ToleranceClass::same_build, ToleranceClass::cross_build, ToleranceClass::physical};
 const char* name(ToleranceClass kind);  // "same-build", ...
 
-// Quantity of a series on a branch. Of a position or angle also the range over all points of the
-// equilibrium leg, of the compliance matrix one row at the start of the first branch, of a deviation
-// the largest |recursion - equilibrium leg| over all points.
+// Quantity of a series on a branch.
 enum class Quantity {
-    recursive,
+    recursive,  // outputs along the branch, by a leg
     equilibrium,
-    range_equilibrium,
+    range_equilibrium,  // smallest and largest value of a position or angle over all points
     characteristic_recursive,
     characteristic_equilibrium,
     range_characteristic_equilibrium,
-    compliance_recursive,
+    compliance_recursive,  // a row of the compliance matrix at the start of the first branch
     compliance_equilibrium,
-    deviation_at_equal_parameter,
+    deviation_at_equal_parameter,  // largest |recursion - equilibrium leg| over all points
     deviation_at_equal_abscissa,
     work_recursive,  // counters of a leg: steps, factorisations, iterations, evaluations
     work_equilibrium,
     work_energy,
 };
-// Where its numbers are: at the kept parameters of the branch, at the stations among them.
+// What the numbers of a series belong to: the kept points of the branch (GatedBranch::a), the
+// stations among these, the range over the branch, or none of them.
 enum class Places { points, stations, range, elsewhere };
 struct QuantityKind {
     const char* name;
     Places places = Places::elsewhere;
-    const char* tolerance = "";  // its key; "": the unit
+    const char* tolerance = "";  // key in Tolerances; "": the unit
 };
 // In the order of Quantity.
 inline constexpr std::array quantities{
@@ -74,15 +73,13 @@ inline const char* name(Quantity quantity) { return kind_of(quantity).name; }
 struct Series {
     std::string branch;
     Quantity quantity = Quantity::recursive;
-    std::string channel;  // or name of the counter
-    std::string unit;     // "mm", "deg", "N", "N·m", "1/m", "count"
-    // per kept parameter of the branch for a channel; per station for a characteristic; a row of a
-    // matrix; smallest and largest; else one value
-    std::vector<double> values;
-    bool main = false;  // a figure that a reviewer of a baseline reads
+    std::string channel;         // or name of the counter
+    std::string unit;            // "mm", "deg", "N", "N·m", "1/m", "count"
+    std::vector<double> values;  // one per place; a row of a matrix; smallest and largest; or one
+    bool main = false;           // a figure that a reviewer of a baseline reads
 };
 
-// A swing arm is kept as 1 / arm: a change from -110 m to -476 m is next to none.
+// A swing arm is kept as 1 / arm, since a change from -110 m to -476 m is hardly a change.
 inline constexpr const char* per_metre = "1/m";
 
 struct GatedBranch {
@@ -123,12 +120,13 @@ Tolerances default_tolerances(ToleranceClass kind);
 // figure (Quantity::equilibrium): an output or characteristic of the equilibrium leg.
 struct Limit {
     Quantity of = Quantity::deviation_at_equal_abscissa;
-    // of a figure also without its first part: "bump_steer" for "left." and "right.bump_steer"
+    // "bump_steer" stands for both left.bump_steer and right.bump_steer
     std::string channel;
     double max = std::numeric_limits<double>::infinity();
-    double min = -std::numeric_limits<double>::infinity();  // of a figure, like the following
-    std::string unit = {};                                  // unit of the bounds
-    std::string over = {};  // a branch, at all of its points; empty: at the design position
+    // for a figure only:
+    double min = -std::numeric_limits<double>::infinity();
+    std::string unit = {};  // unit of the bounds
+    std::string over = {};  // branch on all points of which the limit holds; empty: design position
 };
 struct Baseline {
     Measurement accepted;

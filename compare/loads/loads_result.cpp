@@ -63,11 +63,16 @@ std::vector<Largest> largest(const PickupLoads& loads) {
             if (solved.loads.empty()) continue;
             const Vector6& w = solved.loads[k].in_ground_axes;
             most.shared = most.shared || !w.allFinite();
-            if (const double force = w.head<3>().norm(); force > most.force)
-                most.force = force, most.force_in = solved.name;
+            if (const double force = w.head<3>().norm(); force > most.force) {
+                most.force = force;
+                most.force_in = solved.name;
+            }
             const double rounding = 1e-9 * w.head<3>().norm();  // of levers of a metre
-            if (const double moment = w.tail<3>().norm(); moment > std::max(most.moment, rounding))
-                most.moment = moment, most.moment_in = solved.name;
+            if (const double moment = w.tail<3>().norm();
+                moment > std::max(most.moment, rounding)) {
+                most.moment = moment;
+                most.moment_in = solved.name;
+            }
         }
     }
     return list;

@@ -66,7 +66,7 @@ void certify_path(SolvedSide& solved, const CertifyOptions& options) {
         result.curve = certificate::certify_branch(side.model, side.branch, path.points,
                                                    in_si(options.tolerance));
     // The last point starts the search for the limit point; it claims no accuracy.
-    constexpr certificate::Tolerance anywhere{1, 1, 1e9, 1e9};
+    constexpr certificate::Tolerance anywhere{.length = 1, .angle = 1, .force = 1e9, .moment = 1e9};
     if (path.outcome == Outcome::limit_point && !path.points.empty())
         result.limit =
             certificate::certify_limit_point(side.model, side.branch, path.points.back(), anywhere);
@@ -92,12 +92,12 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     std::vector<BranchSide> sides;
     for (const Branch& branch : model.branches)
         std::ranges::move(sides_of(model, branch), std::back_inserter(sides));
-    std::vector<SolvedSide> all;  // the solvers of a side one after the other
+    std::vector<SolvedSide> solved_sides;  // the solvers of a side one after the other
     for (const BranchSide& side : sides)
-        for (const SolverSettings& solver : solvers) all.push_back({side, solver});
+        for (const SolverSettings& solver : solvers) solved_sides.push_back({side, solver});
     constexpr double solving = 0.1;  // share of the work
     std::vector<Job> jobs;
-    for (SolvedSide& solved : all)
+    for (SolvedSide& solved : solved_sides)
         jobs.push_back(
             {fmt::format("{}: solving", solved.side.name), [&] { solve(solved, options.points); }});
     run_jobs(jobs, options.threads, part(options.progress, 0, solving));
@@ -105,11 +105,11 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     certificate::Tolerance tolerance = in_si(options.tolerance);
     tolerance.max_unknowns = certificate::max_unknowns_of_points;
     jobs.clear();
-    for (SolvedSide& solved : all)
+    for (SolvedSide& solved : solved_sides)
         jobs.push_back({fmt::format("{}: proving the curve", solved.side.name),
                         [&] { certify_path(solved, options); }});
-    for (std::size_t first = 0; first < all.size(); first += solvers.size()) {
-        const auto of_side = std::span(all).subspan(first, solvers.size());
+    for (std::size_t first = 0; first < solved_sides.size(); first += solvers.size()) {
+        const auto of_side = std::span(solved_sides).subspan(first, solvers.size());
         std::set<double> parameters;
         for (const SolvedSide& solved : of_side)
             for (const Equilibrium& state : solved.path.points)
@@ -119,7 +119,7 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
                             [&tolerance, a, of_side] { certify_at(a, of_side, tolerance); }});
     }
     run_jobs(jobs, options.threads, part(options.progress, solving, 1));
-    for (SolvedSide& solved : all) {
+    for (SolvedSide& solved : solved_sides) {
         for (std::size_t k = 0; k < solved.points.size(); ++k)
             add(solved.result.tally, solved.path.points[k].load, solved.result.unit,
                 solved.points[k]);

@@ -24,8 +24,10 @@ Table with_columns(const Table& table, const std::vector<std::string>& names) {
         const auto of = std::ranges::find(table.columns, name, &Column::name);
         if (of == table.columns.end()) continue;
         chosen.columns.push_back(*of);
-        if (of->digits == Digits::hidden)
-            chosen.columns.back().words = true, chosen.columns.back().digits = Digits::words;
+        if (of->digits == Digits::hidden) {
+            chosen.columns.back().words = true;
+            chosen.columns.back().digits = Digits::words;
+        }
         chosen.columns.back().place = -1;
         for (std::size_t r = 0; r < table.rows.size(); ++r)
             chosen.rows[r].push_back(

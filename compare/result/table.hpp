@@ -88,19 +88,19 @@ struct ColumnOf {
 // The table of a range of S; of std::vector<ColumnOf<S>>.
 template <class S>
 Table table(std::string id, const std::vector<ColumnOf<S>>& columns, const auto& range) {
-    Table all{.id = std::move(id)};
+    Table result{.id = std::move(id)};
     for (const auto& c : columns)
-        all.columns.push_back({.name = c.name,
-                               .unit = c.unit,
-                               .description = c.description,
-                               .words = c.digits == Digits::words || c.digits == Digits::note,
-                               .digits = c.digits,
-                               .heading = c.heading});
+        result.columns.push_back({.name = c.name,
+                                  .unit = c.unit,
+                                  .description = c.description,
+                                  .words = c.digits == Digits::words || c.digits == Digits::note,
+                                  .digits = c.digits,
+                                  .heading = c.heading});
     for (const S& s : range) {
-        auto& row = all.rows.emplace_back();
+        auto& row = result.rows.emplace_back();
         for (const auto& c : columns) row.push_back(c.cell(s).cell);
     }
-    return all;
+    return result;
 }
 
 // The table with these of its columns alone, in this order, each for readers; those that are hidden as

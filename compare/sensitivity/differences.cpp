@@ -133,7 +133,7 @@ Entries differences(const ReadSide& read_side, Leg leg, const Equilibrium& state
         return VectorXd(Eigen::Map<const VectorXd>(values.data(), rows) - placed.from);
     };
     const auto pieces_here = pieces(read_side.side, state);
-    const VectorXd here =
+    const VectorXd centre =
         read(read_side.side, state, read_side.outputs.placed(read_side.side.model, {}));
     const auto neighbours = neighbour_states(leg, read_side.side, state, stencils);
     for (std::size_t n = 0; n < neighbours.size(); ++n) {
@@ -148,7 +148,7 @@ Entries differences(const ReadSide& read_side, Leg leg, const Equilibrium& state
         bool crosses = false;
         for (std::size_t p = 0; p < near[k].sides.size(); ++p) {
             const BranchSide& side = near[k].sides[p];
-            const VectorXd change = read(side, neighbours[n].states[p], near[k].placed[p]) - here;
+            const VectorXd change = read(side, neighbours[n].states[p], near[k].placed[p]) - centre;
             rate += near[k].stencil->weight[p] / near[k].h * change;
             check += near[k].stencil->check[p] / near[k].h * change;
             kink += near[k].stencil->kink[p] / near[k].h * change;
@@ -193,9 +193,10 @@ OneSided beside_corner(const ReadSide& read_side, Leg leg, const Equilibrium& st
     }
     // what needs a stiffness of the corner itself has none
     for (std::size_t c = 0; c < read_side.outputs.channels.size(); ++c)
-        if (read_side.outputs.channels[c].kind() == ChannelKind::characteristic)
-            both.growing.row(static_cast<Index>(c)).setConstant(nan),
-                both.falling.row(static_cast<Index>(c)).setConstant(nan);
+        if (read_side.outputs.channels[c].kind() == ChannelKind::characteristic) {
+            both.growing.row(static_cast<Index>(c)).setConstant(nan);
+            both.falling.row(static_cast<Index>(c)).setConstant(nan);
+        }
     return both;
 }
 
@@ -216,7 +217,10 @@ std::vector<double> sizes_of_rows(const ReadSide& of, const MatrixXd& rate,
 // which is h³ of smooth functions: its median over the numbers that move the output is 0.6745 ε √(...).
 double spread(const std::array<double, 4>& c) {
     double sum = 0, squares = 0;
-    for (const double one : c) sum += one, squares += one * one;
+    for (const double one : c) {
+        sum += one;
+        squares += one * one;
+    }
     return std::sqrt(squares + sum * sum);
 }
 MatrixXd rounding_of(const Entries& entries, std::span<const Neighbouring> near) {
@@ -316,7 +320,8 @@ struct Refining {
             for (std::size_t n = 0; n < rows.size(); ++n)
                 if (const auto at = static_cast<Index>(n); finer.check(at, 0) < check[rows[n]]) {
                     const Index c = rows[n];
-                    rates.at(c, column) = finer.rate(at, 0), check[c] = finer.check(at, 0);
+                    rates.at(c, column) = finer.rate(at, 0);
+                    check[c] = finer.check(at, 0);
                     rates.rounding(c, column) = rounding[c] / h;
                 }
             if (worst(check) > before / 2) break;  // rounding, or a kink at the number itself
@@ -368,19 +373,19 @@ Neighbouring on_side(const Compiled& compiled, const ReadSide& read_side) {
     std::vector<int> expected, structure;
     elastocheck::structure(read_side.side.model, expected);
     for (const Changed& point : compiled.points) {
-        BranchSide there{read_side.side.name, {}, read_side.side.branch, read_side.side.analysis};
+        BranchSide moved{read_side.side.name, {}, read_side.side.branch, read_side.side.analysis};
         const auto branch =
             std::ranges::find(point.model.branches, read_side.side.branch.name, &Branch::name);
-        if (branch != point.model.branches.end()) there.branch.drivers = branch->drivers;
-        there.model = on_branch(point.model, there.branch);
-        elastocheck::structure(there.model, structure);
+        if (branch != point.model.branches.end()) moved.branch.drivers = branch->drivers;
+        moved.model = on_branch(point.model, moved.branch);
+        elastocheck::structure(moved.model, structure);
         if (structure != expected) {
             near.undefined = "decides at this value which parts the model has" +
-                             difference(read_side.side.model, there.model);
+                             difference(read_side.side.model, moved.model);
             return near;
         }
-        near.placed.push_back(read_side.outputs.placed(there.model, point.trim));
-        near.sides.push_back(std::move(there));
+        near.placed.push_back(read_side.outputs.placed(moved.model, point.trim));
+        near.sides.push_back(std::move(moved));
     }
     return near;
 }

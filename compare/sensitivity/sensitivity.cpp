@@ -100,9 +100,10 @@ Changing by_parameter(const BranchSide& side) {
 // ---- What is read.
 
 Outputs outputs_of(std::span<const Channel> outputs, const std::vector<bool>& changes) {
-    Outputs all{{outputs.begin(), outputs.end()}, {}};
+    Outputs result{{outputs.begin(), outputs.end()}, {}};
     // points and numbers of the design position are in channels() alone
-    all.placed = [list = all.channels, changes](const Model& model, const std::optional<Trim>&) {
+    result.placed = [list = result.channels, changes](const Model& model,
+                                                      const std::optional<Trim>&) {
         Outputs::Placed placed{{}, VectorXd::Zero(std::ssize(list))};
         const auto every = channels(model);
         for (std::size_t c = 0; c < list.size(); ++c) {
@@ -116,7 +117,7 @@ Outputs outputs_of(std::span<const Channel> outputs, const std::vector<bool>& ch
         }
         return placed;
     };
-    return all;
+    return result;
 }
 
 // The conditions of a trim, counted from what it asks.
@@ -440,14 +441,14 @@ std::vector<Gradients> gradients(const Scene& scene, const Trimmed& trimmed, con
                                  std::span<const GradientGroup> groups) {
     const GradientOptions& options = groups.front().options;
     const auto used = legs_for(model, options.legs);
-    std::vector<Gradients> all;
+    std::vector<Gradients> of_groups;
     std::vector<SideWork> sides;
     std::vector<std::size_t> group_of;  // of each side
     for (const GradientGroup& group : groups) {
         std::ranges::move(sides_to_follow(model, group.outputs, group.options),
                           std::back_inserter(sides));
-        group_of.resize(sides.size(), all.size());
-        all.push_back({group.outputs, varying.numbers, {}});
+        group_of.resize(sides.size(), of_groups.size());
+        of_groups.push_back({group.outputs, varying.numbers, {}});
     }
     const auto on_every_side = [&](const std::function<void(SideWork&)>& run) {
         std::vector<Job> jobs;
@@ -480,11 +481,12 @@ std::vector<Gradients> gradients(const Scene& scene, const Trimmed& trimmed, con
         for (std::size_t k = 0; k < numbers.size(); ++k)
             jobs.push_back({"models", [&, k] { points[k] = compiled(numbers[k]); }});
         run_jobs(jobs, options.threads, {});
-        for (Gradients& of_group : all)
+        for (Gradients& of_group : of_groups)
             for (std::size_t k = from; k < std::min(from + numbers.size(), varying.numbers.size());
-                 ++k)
-                of_group.numbers[k].side = points[k - from].side,
+                 ++k) {
+                of_group.numbers[k].side = points[k - from].side;
                 of_group.numbers[k].undefined = points[k - from].undefined;
+            }
         on_every_side([&](SideWork& side) { side.differentiate(numbers, points); });
     }
     std::vector<Adjusting> dx(used.size());
@@ -506,11 +508,11 @@ std::vector<Gradients> gradients(const Scene& scene, const Trimmed& trimmed, con
             side.differentiate({&parameter, 1}, {&points, 1});
         }
         take(side, numbers, dx);
-        if (std::ssize(used) > 1) side.result.worst = compared(all[group], side.result);
+        if (std::ssize(used) > 1) side.result.worst = compared(of_groups[group], side.result);
     });
     for (std::size_t k = 0; k < sides.size(); ++k)
-        all[group_of[k]].sides.push_back(std::move(sides[k].result));
-    return all;
+        of_groups[group_of[k]].sides.push_back(std::move(sides[k].result));
+    return of_groups;
 }
 
 }  // namespace elastocheck::compare

@@ -131,8 +131,8 @@ double difference_step(const VariedNumber& number) {
 
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
                      std::span<const std::string> paths) {
-    const File of(file, settings);
-    const Scene scene = of.parsed->read(settings);
+    const File scene_file(file, settings);
+    const Scene scene = scene_file.parsed->read(settings);
     std::vector<VariedNumber> numbers;
     for (const std::string& joined : paths) {
         for (const std::string& path : paths_in(joined))
@@ -146,15 +146,15 @@ VaryingScene varying(const std::filesystem::path& file, std::span<const Setting>
         numbers.push_back(varied_number(*find_number(scene, paths_in(joined).front())));
         numbers.back().path = joined;
     }
-    return varying(of, std::move(numbers));
+    return varying(scene_file, std::move(numbers));
 }
 
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
                      const std::function<bool(const std::string& path)>& wanted) {
     std::vector<VariedNumber> numbers;
     std::vector<bool> chosen;
-    File of(file, settings);
-    const Scene scene = of.parsed->read(settings);
+    File scene_file(file, settings);
+    const Scene scene = scene_file.parsed->read(settings);
     for (const Number& number : scene.numbers) {
         numbers.push_back(varied_number(number));
         chosen.push_back(wanted ? wanted(number.path) : !is_count(number.path));
@@ -164,8 +164,8 @@ VaryingScene varying(const std::filesystem::path& file, std::span<const Setting>
                 chosen.push_back(true);
             }
     }
-    auto list = joined(of, std::move(numbers), std::move(chosen));
-    return varying(std::move(of), std::move(list));
+    auto list = joined(scene_file, std::move(numbers), std::move(chosen));
+    return varying(std::move(scene_file), std::move(list));
 }
 
 }  // namespace elastocheck::compare

@@ -11,7 +11,6 @@
 #include "compare/deviation/agreement.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
-#include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reference/certificate/certificate.hpp"

@@ -18,10 +18,12 @@ void each_part(Scene& scene, const F& visit) {
     for (auto& elastic : scene.elastics) each_member(elastic.kind, visit);
     if constexpr (std::is_invocable_v<const F&, Point&>) {
         for (auto& probe : scene.probes) visit(probe.at);
-        for (auto& damper : scene.dampers) visit(damper.i), visit(damper.j);
+        for (auto& damper : scene.dampers)
+            for (auto* end : {&damper.i, &damper.j}) visit(*end);
         for (auto& wheel : scene.wheels) {
             visit(wheel.contact);
-            if (auto& axis = wheel.steering_axis) visit(axis->lower), visit(axis->upper);
+            if (auto& axis = wheel.steering_axis)
+                for (auto* point : {&axis->lower, &axis->upper}) visit(*point);
         }
     }
 }
@@ -102,25 +104,25 @@ Scene transformed(const Scene& original, const Transform& how) {
         branch.from *= parameter;
         branch.to *= parameter;
         for (auto& driver : branch.drivers) {
-            double by = length;  // of a free length
+            double factor = length;  // of a free length
             each_member(driver.what,
                         overloaded{[&](Load& load) {
                                        each_member(load.kind, [&](LoadVector<Vector3d> v) {
-                                           by = v.is_moment ? moment : force;
+                                           factor = v.is_moment ? moment : force;
                                        });
                                    },
                                    [&](JointIndex<int> k) {
                                        const auto& joint =
                                            scene.joints[static_cast<std::size_t>(k.value)];
-                                       by = is_angle(joint.kind) ? 1 : length;
+                                       factor = is_angle(joint.kind) ? 1 : length;
                                    },
                                    [&](ForceAndMoment<Vector6> preload) {
                                        preload.value = axial.asDiagonal() * preload.value;
                                        preload.value.tail<3>() *= length;
-                                       by = force;
+                                       factor = force;
                                    }});
-            driver.start *= by;
-            driver.rate *= by / parameter;
+            driver.start *= factor;
+            driver.rate *= factor / parameter;
         }
     }
     for (auto& wheel : scene.wheels) {

@@ -49,7 +49,8 @@ struct SolvedFormulation {
 
 std::optional<FormulationSpread> spread_of(const std::vector<SolvedFormulation>& solved,
                                            std::size_t channel) {
-    FormulationSpread found{.channel = channel, .spread = -1, .at = 0, .lowest = {}, .highest = {}};
+    FormulationSpread largest{
+        .channel = channel, .spread = -1, .at = 0, .lowest = {}, .highest = {}};
     // Range that every curve reaches, around the start points.
     std::size_t before = solved.front().curve.start, after = solved.front().curve.a.size();
     for (const auto& one : solved) {
@@ -63,15 +64,18 @@ std::optional<FormulationSpread> spread_of(const std::vector<SolvedFormulation>&
         const auto [low, high] = std::ranges::minmax_element(solved, {}, value);
         const double spread = value(*high) - value(*low);
         if (!std::isfinite(spread)) return std::nullopt;
-        if (spread <= found.spread) continue;
-        found.spread = spread;
-        found.at = solved.front().curve.a[solved.front().curve.start - before + k];
-        found.lowest = low->name;
-        found.highest = high->name;
+        if (spread <= largest.spread) continue;
+        largest.spread = spread;
+        largest.at = solved.front().curve.a[solved.front().curve.start - before + k];
+        largest.lowest = low->name;
+        largest.highest = high->name;
     }
-    if (found.spread < 0) return std::nullopt;
-    if (found.spread < min_spread) found.lowest.clear(), found.highest.clear();
-    return found;
+    if (largest.spread < 0) return std::nullopt;
+    if (largest.spread < min_spread) {
+        largest.lowest.clear();
+        largest.highest.clear();
+    }
+    return largest;
 }
 
 }  // namespace

@@ -52,27 +52,29 @@ OrderLevel level_of(const Solves& solves, const BranchSide& side, const Referenc
 
 std::vector<BranchOrders> order_study(Solves& solves, const OrderOptions& options) {
     const int multiple = options.points / solves.base;
-    std::vector<BranchSide> all;
-    for (const auto& sides : solves.sides) std::ranges::copy(sides, std::back_inserter(all));
-    std::vector<References> truth(all.size());
-    std::vector<BranchOrders> result(all.size());
+    std::vector<BranchSide> sides;
+    for (const auto& of_branch : solves.sides)
+        std::ranges::copy(of_branch, std::back_inserter(sides));
+    std::vector<References> truth(sides.size());
+    std::vector<BranchOrders> result(sides.size());
     std::vector<Job> references, levels;
-    for (std::size_t k = 0; k < all.size(); ++k)
-        references.push_back({fmt::format("{}: references", all[k].name),
-                              [&, k] { truth[k] = references_on_side(solves, all[k], multiple); }});
+    for (std::size_t k = 0; k < sides.size(); ++k)
+        references.push_back({fmt::format("{}: references", sides[k].name), [&, k] {
+                                  truth[k] = references_on_side(solves, sides[k], multiple);
+                              }});
     run_jobs(references, options.threads, part(options.progress, 0, 0.3));
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        result[k] = {all[k].name, truth[k].failures.empty() ? "" : truth[k].failures.front(),
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+        result[k] = {sides[k].name, truth[k].failures.empty() ? "" : truth[k].failures.front(),
                      truth[k].uncertainty,
                      std::vector<OrderLevel>(options.tolerances.size() * options.orders.size())};
         std::size_t l = 0;
         for (const double tolerance : options.tolerances)
             for (const int order : options.orders)
                 levels.push_back(
-                    {fmt::format("{}: order {}, {:.0e} m", all[k].name, order, tolerance),
+                    {fmt::format("{}: order {}, {:.0e} m", sides[k].name, order, tolerance),
                      [&, k, tolerance, order, at = l++] {
                          result[k].levels[at] =
-                             level_of(solves, at_points(all[k], multiple), truth[k], tolerance,
+                             level_of(solves, at_points(sides[k], multiple), truth[k], tolerance,
                                       order, options.expansions);
                      }});
     }

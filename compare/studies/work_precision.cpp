@@ -94,7 +94,7 @@ PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int m
 // ---- Ranking
 
 void rank(Trade& trade) {
-    const double least = share_of(trade.tolerance, trade.uncertainty);
+    const double min_share = share_of(trade.tolerance, trade.uncertainty);
     for (auto& point : trade.points) {
         point.share = share_of(trade.tolerance, point.error);
         if (point.again)
@@ -105,7 +105,7 @@ void rank(Trade& trade) {
             point.not_ranked = name(point.outcome);
         else if (!std::isfinite(point.share))
             point.not_ranked = "not a number";
-        else if (!(point.share > least))
+        else if (!(point.share > min_share))
             point.not_ranked = "below the reference uncertainty";
         point.ranked = point.not_ranked.empty();
     }

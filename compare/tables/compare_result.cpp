@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
@@ -307,9 +306,10 @@ std::string not_determined(std::span<const Channel> channels,
                            const std::function<bool(std::size_t)>& is_undefined) {
     std::string names, why;
     for (std::size_t c = 0; c < channels.size(); ++c)
-        if (!channels[c].joints().empty() && is_undefined(c))
-            names += (names.empty() ? "" : ", ") + channels[c].name,
-                why = why_undefined(channels[c]);
+        if (!channels[c].joints().empty() && is_undefined(c)) {
+            names += (names.empty() ? "" : ", ") + channels[c].name;
+            why = why_undefined(channels[c]);
+        }
     return names.empty() ? "" : fmt::format("no value of {}: {}", names, why);
 }
 

@@ -14,7 +14,7 @@ std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison&
     std::vector<Channel> pairs;
     for (const Channel& figure : comparison.channels)
         for (const Channel& other : definitions_of(defined, figure.name))
-            if (other.unit == figure.unit) pairs.push_back(figure), pairs.push_back(other);
+            if (other.unit == figure.unit) pairs.insert(pairs.end(), {figure, other});
     if (pairs.empty()) return rows;
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const BranchComparison& compared = comparison.branches[b];
@@ -37,8 +37,10 @@ std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison&
                 if (!std::isfinite(difference)) continue;
                 any = true;
                 if (k == path.curve.start) row.drawn = difference;
-                if (!(std::abs(difference) <= std::abs(row.difference)))
-                    row.difference = difference, row.at = path.curve.a[k];
+                if (!(std::abs(difference) <= std::abs(row.difference))) {
+                    row.difference = difference;
+                    row.at = path.curve.a[k];
+                }
             }
             if (!any) continue;
             const auto& deviations = compared.deviation.equal_parameter.channels;

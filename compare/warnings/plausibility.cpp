@@ -192,10 +192,10 @@ struct Drawn {
 };
 
 Drawn drawn(const Scene& scene) {
-    Drawn all{scene};
+    Drawn drawing{scene};
     std::vector<Pose> poses;
     for (const auto& body : scene.bodies) {
-        all.points[static_cast<BodyId>(poses.size())].push_back(
+        drawing.points[static_cast<BodyId>(poses.size())].push_back(
             {static_cast<BodyId>(poses.size()), body.design.r});
         poses.push_back(body.design);
     }
@@ -203,22 +203,22 @@ Drawn drawn(const Scene& scene) {
         std::vector<Attached> ends;
         each_point(kind, [&](const auto& end) {
             ends.push_back(
-                {end.body, position(poses, end.body, end.s_local), all.connections.size()});
+                {end.body, position(poses, end.body, end.s_local), drawing.connections.size()});
         });
         if (ends.size() != 2) return;
         const auto same = [&](const Attached& a) {  // a stop beside its spring, a drive
             if (a.connection == std::string::npos || !a.at.isApprox(ends[0].at)) return false;
-            const Connection& c = all.connections[a.connection];
+            const Connection& c = drawing.connections[a.connection];
             return c.i.body == ends[0].body && c.j.body == ends[1].body &&
                    c.i.at.isApprox(ends[0].at) && c.j.at.isApprox(ends[1].at);
         };
-        if (std::ranges::any_of(all.points[ends[0].body], same)) return;
-        all.connections.push_back({name, ends[0], ends[1]});
-        for (const auto& end : ends) all.points[end.body].push_back(end);
+        if (std::ranges::any_of(drawing.points[ends[0].body], same)) return;
+        drawing.connections.push_back({name, ends[0], ends[1]});
+        for (const auto& end : ends) drawing.points[end.body].push_back(end);
     };
     for (const auto& joint : scene.joints) add(joint.name, joint.kind);
     for (const auto& elastic : scene.elastics) add(elastic.name, elastic.kind);
-    return all;
+    return drawing;
 }
 
 constexpr double much_farther = 2;  // ratio of distances

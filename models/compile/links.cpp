@@ -41,7 +41,8 @@ Attached attached(const Scene& scene) {
     }
     for (const Elastic& elastic : scene.elastics) {
         const auto [i, j] = ends(elastic.kind);
-        more(i), more(j);
+        more(i);
+        more(j);
     }
     for (const Load& load : scene.static_loads) more(body_of(load.kind));
     each_driven(scene, [&](const Driven& driven) {
@@ -71,7 +72,8 @@ void shorten_links(Scene& scene) {
         const double length = (second_ball->on_link.s_local - first_ball->on_link.s_local).norm();
         if (!(length > 1e-9)) continue;  // coincident balls have no direction
 
-        names.erase(joint.name), names.erase(scene.joints[second].name);
+        names.erase(joint.name);
+        names.erase(scene.joints[second].name);
         std::string name = scene.bodies[b].name;
         while (!names.insert(name).second) name += ".link";
         for (const std::size_t k : on.joints[b])

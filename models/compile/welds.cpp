@@ -86,12 +86,14 @@ struct OnMerged {
     void operator()(Wheel& wheel) const {
         Point centre{wheel.body, wheel.centre_local};
         Direction spin{wheel.body, wheel.spin_axis_local};
-        (*this)(centre), (*this)(wheel.contact), (*this)(spin);
+        (*this)(centre);
+        (*this)(wheel.contact);
+        (*this)(spin);
         wheel.spin_axis_local = spin.u_local;
         wheel.centre_local = centre.s_local;
         wheel.body = centre.body;
-        if (wheel.steering_axis)
-            (*this)(wheel.steering_axis->lower), (*this)(wheel.steering_axis->upper);
+        if (auto& axis = wheel.steering_axis)
+            for (Point* point : {&axis->lower, &axis->upper}) (*this)(*point);
     }
 };
 
@@ -142,7 +144,8 @@ void weld(Scene& scene) {
     each_load(scene, [&](LoadKind& load) { each_member(load, express); });
     for (Wheel& wheel : scene.wheels) express(wheel);
     for (Probe& probe : scene.probes) express(probe.at);
-    for (Damper& damper : scene.dampers) express(damper.i), express(damper.j);
+    for (Damper& damper : scene.dampers)
+        for (Point* end : {&damper.i, &damper.j}) express(*end);
     keep_only(scene, kept);
 }
 

@@ -31,7 +31,10 @@ Apart off(const Rows& rows, const Theirs& theirs, Between between = Between::mon
                          x = rows[k].first + t;
             const auto& c = ours.pieces[k + 1];
             const double force = std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - theirs(k, x));
-            if (force > worst.force) worst.force = force, worst.at = x;
+            if (force > worst.force) {
+                worst.force = force;
+                worst.at = x;
+            }
         }
     return worst;
 }

@@ -10,15 +10,15 @@ namespace elastocheck::importer {
 
 using Rows = std::vector<std::pair<double, double>>;
 
-// Largest deviation between the rows [unit of their force], the deformation at which it occurs, and
-// the largest force of the rows.
+// Largest difference of the two interpolants between the rows [unit of their force], the
+// deformation at which it occurs, and the largest force of the rows.
 struct Apart {
     double force = 0, at = 0, of = 0;
 };
 // Interpolant of the scene: its default, or straight lines (`interpolation: linear`).
 enum class Between { monotone, straight };
-// The other interpolant is that of Akima (H. Akima, J. ACM 17 (1970) 589), the polygon, the natural
-// cubic spline, or factor · xⁿ.
+// The largest difference from the interpolant of the other program: that of Akima (H. Akima, J. ACM
+// 17 (1970) 589), the polygon, the natural cubic spline, or factor · x^exponent.
 Apart off_akima(const Rows& rows, Between ours = Between::monotone);
 Apart off_straight(const Rows& rows);
 Apart off_natural(const Rows& rows);

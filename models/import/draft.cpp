@@ -227,7 +227,10 @@ std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
         if (is_new) result.push_back({&warning, first, {}});
         Kind& kind = result[found->second];
         kind.all.push_back(&warning);
-        if (first > kind.size) kind.worst = &warning, kind.size = first;
+        if (first > kind.size) {
+            kind.worst = &warning;
+            kind.size = first;
+        }
     }
     return result;
 }

@@ -22,8 +22,7 @@ class ParsedScene {
     // Of a file. Throws SceneError if it cannot be read.
     explicit ParsedScene(const std::filesystem::path& file);
 
-    // As read_whole() of the text; without `warnings` nothing is checked for them.
-    // Throws SceneError. Thread-safe.
+    // As read_whole() of the text; `warnings` null: not looked for. Throws SceneError. Thread-safe.
     Scene read(std::span<const Setting> settings,
                std::vector<std::string>* warnings = nullptr) const;
     std::vector<RequestedDefinition> definitions(std::span<const Setting> settings) const;
@@ -35,12 +34,12 @@ class ParsedScene {
     Folder folder_;
 };
 
-// A scene that is read at other values of the same numbers, half the time of ParsedScene::read()
-// each: without their texts, and without the paths of all numbers, which the scene then has not.
+// A scene that is read many times with other values of the same numbers, in half the time of
+// ParsedScene::read(): values are not written as text, and the numbers of the scene have no paths.
 class VariedScene {
   public:
-    // With these settings of other values. Throws SceneError for a path that is not one of a value,
-    // or is given twice.
+    // `paths`: the numbers that vary; `settings`: of other values, the same at each reading. Throws
+    // SceneError for a path that is not one of a value, or is given twice.
     VariedScene(const ParsedScene& scene, std::vector<std::string> paths,
                 std::vector<Setting> settings = {});
     // The values in the units of the file. Throws SceneError, as ParsedScene::read().

@@ -22,7 +22,7 @@ namespace elastocheck::reader {
 //   bushings  √(k_rot / k_trans), the largest rates of each kind, is a length: the radius at which
 //             an element of stiffness k_trans would resist a rotation like that. For rubber
 //             bushings it is some millimetres, of the order of their radius; below 0.4 mm the
-//             rotational rates are probably in N·m where N·mm is declared, or left to be the unit.
+//             rotational rates are probably in N·m where N·mm is declared or the default.
 //   vehicle   a wheelbase or height of the centre of gravity that no car has
 //   wheels    static loads that pull a wheel down, or press it up with less than 50 N or more than
 //             100 kN; a contact patch above the wheel centre

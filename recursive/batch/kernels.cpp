@@ -9,7 +9,7 @@ void eliminate_all(Factors& lu) {
     const std::size_t n = lu.size();
     const Elimination& order = *lu.order;
     Lanes* const LU = lu.LU.data();
-    Lanes least = std::numeric_limits<double>::infinity(), most = 0, multiplier = 0,
+    Lanes min_pivot = std::numeric_limits<double>::infinity(), max_pivot = 0, multiplier = 0,
           sign = order.parity, finite = 0;
     std::fill(lu.LU.begin(), lu.LU.end(), Lanes(0));
     for (std::size_t e = 0; e < lu.values.size(); ++e) {
@@ -20,8 +20,8 @@ void eliminate_all(Factors& lu) {
     for (std::size_t k = 0; k < n; ++k) {
         const Lanes pivot = LU[order.pivot[k]], size = abs(pivot), inverse = 1 / pivot;
         lu.inverse[k] = inverse;
-        least = smaller(size, least);
-        most = larger(size, most);
+        min_pivot = smaller(size, min_pivot);
+        max_pivot = larger(size, max_pivot);
         finite += pivot * 0;
         sign = with_sign_of(pivot, sign);
         const auto* const last = order.right.data() + order.first_right[k + 1];
@@ -37,8 +37,8 @@ void eliminate_all(Factors& lu) {
             }
         }
     }
-    lu.min_pivot = least;
-    lu.largest_pivot = most;
+    lu.min_pivot = min_pivot;
+    lu.largest_pivot = max_pivot;
     lu.largest_multiplier = multiplier;
     lu.sign = sign;
     lu.finite = finite;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/structure.hpp"
 #include "recursive/diagnosis/length.hpp"
 #include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"
@@ -11,7 +10,6 @@
 #include "recursive/series/sides.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "recursive/stepping/stability.hpp"
-#include "recursive/stepping/step_check.hpp"
 #include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive::batch {

@@ -3,8 +3,6 @@
 #include <cmath>
 
 #include "recursive/batch/pack.hpp"
-#include "recursive/formula/recentre.hpp"
-#include "recursive/stepping/settle.hpp"
 #include "recursive/stepping/step_check.hpp"
 
 namespace elastocheck::recursive::batch {

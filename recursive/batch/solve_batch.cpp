@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "elastocheck/recursive.hpp"
-#include "models/branch.hpp"
 #include "models/structure.hpp"
 #include "recursive/batch/pack.hpp"
 

@@ -45,20 +45,20 @@ struct Complement {
 template <class Operator>
 double largest_eigenvalue(Eigen::Index size, const Complement& P, const Operator& A) {
     constexpr double same = 1e-10;
-    const Eigen::Index most = std::min<Eigen::Index>(4 * size, 256);
+    const Eigen::Index max_steps = std::min<Eigen::Index>(4 * size, 256);
     std::mt19937 random(1);  // the same sequence on every platform
-    VectorXd v(size), before = VectorXd::Zero(size), alpha(most), beta(most);
+    VectorXd v(size), before = VectorXd::Zero(size), alpha(max_steps), beta(max_steps);
     for (auto& entry : v) entry = static_cast<double>(random()) / 4294967296.0 - 0.5;
     v = P(v).normalized();
     double largest = 0;
-    for (Eigen::Index k = 0, look = 8; k < most; ++k) {
+    for (Eigen::Index k = 0, look = 8; k < max_steps; ++k) {
         VectorXd w = A(v);
         alpha[k] = v.dot(w);
         w -= alpha[k] * v;
         if (k > 0) w -= beta[k - 1] * before;
         beta[k] = w.norm();
         const bool is_last =
-            k + 1 == most || !(beta[k] > same * alpha.head(k + 1).cwiseAbs().maxCoeff());
+            k + 1 == max_steps || !(beta[k] > same * alpha.head(k + 1).cwiseAbs().maxCoeff());
         if (is_last || k + 1 == look) {
             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> T;
             T.computeFromTridiagonal(alpha.head(k + 1), beta.head(k), Eigen::EigenvaluesOnly);

@@ -40,7 +40,7 @@ template <class Real, class Add>
 void for_each_stored_rate(const DriverChange<Real>& change, Add&& add) {
     const auto& [model, branch, inputs, drive, amount, q] = change;
     for (const auto& driver : branch.drivers) {
-        const Real by = amount * speed<Real>(driver, drive);
+        const Real change_of_input = amount * speed<Real>(driver, drive);
         std::visit(overloaded{
                        [](const Load&) {},
                        [](const Motion&) {},
@@ -51,15 +51,15 @@ void for_each_stored_rate(const DriverChange<Real>& change, Add&& add) {
                                    return force_of_free_length<Real>(e, inputs.rest[k], q);
                                },
                                model.elastics[k].kind);
-                           force.F *= by;
-                           force.M *= by;
+                           force.F *= change_of_input;
+                           force.M *= change_of_input;
                            add(k, force);
                        },
                        [&](const Preload& p) {
                            const auto k = static_cast<std::size_t>(p.elastic);
                            const auto& bushing = std::get<Bushing>(model.elastics[k].kind);
-                           add(k,
-                               force_of_preload<Real>(bushing, by * p.direction.cast<Real>(), q));
+                           add(k, force_of_preload<Real>(
+                                      bushing, change_of_input * p.direction.cast<Real>(), q));
                        },
                    },
                    driver.what);

@@ -202,8 +202,7 @@ Matrix<Real> stiffness(const Model& model, const Inputs<Real>& inputs, const Sta
     return K;
 }
 
-// ---- The law: f_elast(q), ∂U/∂q where U exists; K Δq linearises it at an unloaded design
-// position.
+// ---- The law: f_elast(q), ∂U/∂q where U exists; K Δq linearises it at an unloaded position.
 //
 // Spring:  f = u'(ℓ - ℓ₀) n along its axis n.
 // Bushing: with the stress σ = (F', M') = ∂u/∂e + preload at e - e₀, and e a function of x and B

@@ -132,27 +132,27 @@ void set_inputs(const Model& model, const Branch& branch, const Inputs<Real>& dr
     // Each driver changes one input and two drivers may share it: first reset all, then add.
     const auto each = [&](auto&& change) {
         for (std::size_t k = 0; k < branch.drivers.size(); ++k) {
-            const Real by = t * static_cast<Real>(branch.drivers[k].start) +
-                            a * static_cast<Real>(branch.drivers[k].rate);
+            const Real value = t * static_cast<Real>(branch.drivers[k].start) +
+                               a * static_cast<Real>(branch.drivers[k].rate);
             std::visit(overloaded{
-                           [&](const Load&) { change(inputs.load_factor[k], Real(0), by); },
+                           [&](const Load&) { change(inputs.load_factor[k], Real(0), value); },
                            [&](const Motion& m) {
                                const std::size_t c = constraint_of(model, m);
-                               change(inputs.offset[c], drawn.offset[c], by);
+                               change(inputs.offset[c], drawn.offset[c], value);
                            },
                            [&](const FreeLength& f) {
                                const auto e = static_cast<std::size_t>(f.elastic);
                                Rest<Real>& rest = inputs.rest[e];
                                const Rest<Real>& as_drawn = drawn.rest[e];
                                if (driven_number(model.elastics[e].kind) != nullptr)
-                                   change(rest.free_length, as_drawn.free_length, by);
+                                   change(rest.free_length, as_drawn.free_length, value);
                                else
-                                   change(rest.undeformed[2], as_drawn.undeformed[2], by);
+                                   change(rest.undeformed[2], as_drawn.undeformed[2], value);
                            },
                            [&](const Preload& p) {
                                const auto e = static_cast<std::size_t>(p.elastic);
                                change(inputs.rest[e].preload, drawn.rest[e].preload,
-                                      by * p.direction.cast<Real>());
+                                      value * p.direction.cast<Real>());
                            },
                        },
                        branch.drivers[k].what);

@@ -6,8 +6,9 @@
 namespace elastocheck::recursive {
 namespace {
 
-// A spring with a curve, as u'(x) - k x beside a linear spring k: the free length of the second
-// drives the force of both. Returns the second, with the force -F more.
+// Splits a spring with the force u'(x) into one with u'(x) - k x, which replaces it, and a linear
+// spring k x, whose free length can be driven. Returns the linear spring, with a free length F / k
+// longer: its force at the design position is less by F.
 AxialSpring split(AxialSpring& spring, double k, double F) {
     AxialSpring linear = spring;
     linear.law = LinearRate{k};

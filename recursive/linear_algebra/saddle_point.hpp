@@ -3,9 +3,8 @@
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩ 0 ⎭      [(6nb + m) × (6nb + m)]      (24)
 //
-// The raw matrix mixes N/m, N·m and pure numbers. It is equilibrated symmetrically to M̂ = D M
-// D with unit rows (Ruiz 2001) before pivots are judged. D holds powers of two, so scaling
-// causes no rounding.
+// The raw matrix mixes N/m, N·m and pure numbers. It is equilibrated symmetrically to M̂ = D M D
+// with unit rows (Ruiz 2001) before pivots are judged. D holds powers of two: no rounding.
 //
 // A motion z that nothing resists (idle mode), or a redundant combination y of constraints, makes M
 // singular in a direction known from the diagnosis (diagnosis.hpp). Bordering holds that direction,

@@ -34,7 +34,7 @@ struct Continuation {
     double log_begin = 0;  // log₂ |determinant| at the start of the expansion
     // determinant() at the midpoint of the expansion; -1 if the matrix is singular there
     double in_middle = 1;
-    bool reversed = false;  // an element, at the end of the last expansion
+    bool reversed = false;  // whether an element reversed at the end of the last expansion
     Vector<double> x;       // value of the polynomial
     Path path;
 
@@ -79,9 +79,9 @@ struct Crossing {
 struct End {
     double tau = 0;
     bool last = false;
-    std::vector<Crossing> over;
+    std::vector<Crossing> over = {};
     // deformations outside their piece from the start: the expansion is invalid
-    std::vector<Crossing> at_once;
+    std::vector<Crossing> at_once = {};
 };
 
 // Sets the state to the polynomial about `from` at τ.

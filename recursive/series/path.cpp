@@ -92,7 +92,7 @@ void stop_at_knots(const Continuation& w, End& end) {
         if (const auto there = leaving(w.e, w.curves[k], reach, w.near)) {
             met.push_back({{k, there->direction}, *there});
             if (there->at_once) end.at_once.push_back(met.back().first);
-            if (there->tau < end.tau) end = {there->tau, false, {}, std::move(end.at_once)};
+            if (there->tau < end.tau) end = {.tau = there->tau, .at_once = std::move(end.at_once)};
         }
     // Several deformations may reach their knots at the same τ.
     for (const auto& [crossing, there] : met)
@@ -116,7 +116,7 @@ bool meets_knot_before(const Continuation& w, double tau_s) {
 // Range of validity of the expansion at the parameter a_0; an outcome other than `converged` if the
 // branch does not continue.
 Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singularity, End& end) {
-    end = {reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius), false, {}, {}};
+    end = {.tau = reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius)};
     if (std::isnan(end.tau)) return Outcome::not_finite;
     const double reached = end.tau;
     if (w.by_arc()) {
@@ -124,12 +124,12 @@ Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singul
         end.tau = std::min(end.tau, 1.0);
         if (const auto met =
                 first_zero([&](double t) { return polynomial(w.c.load, t) - w.end; }, end.tau))
-            end = {*met, true, {}, {}};
+            end = {.tau = *met, .last = true};
         stop_at_knots(w, end);
         return Outcome::converged;
     }
     const double rest = (w.end - a_0) / w.to;
-    if (end.tau >= rest) end = {rest, true, {}, {}};
+    if (end.tau >= rest) end = {.tau = rest, .last = true};
     stop_at_knots(w, end);
     if (end.last || !end.over.empty() || !end.at_once.empty()) return Outcome::converged;
     constexpr double near = 1e-4, at_it = 1e-8;  // of the branch
@@ -170,10 +170,8 @@ Outcome accept_expansion(Continuation& w, const State<double>& from, End& end,
             return outcome;
         ++w.path.rejected;
         const double shrink = std::pow(w.options.tolerance / error, 1.0 / (w.e.order() + 1));
-        end = {end.tau * (outcome == Outcome::converged ? std::clamp(0.9 * shrink, 0.3, 0.9) : 0.5),
-               false,
-               {},
-               {}};
+        end = {.tau = end.tau *
+                      (outcome == Outcome::converged ? std::clamp(0.9 * shrink, 0.3, 0.9) : 0.5)};
     }
     return Outcome::branch_lost;
 }
@@ -259,15 +257,15 @@ Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
 
 // Maximum number of expansions: the option's number, and as many again for each crossing of a knot;
 // crossings count up to the number of knots.
-std::size_t max_expansions(const Continuation& w, std::size_t gone_over) {
+std::size_t max_expansions(const Continuation& w, std::size_t knots_crossed) {
     std::size_t knots = 0;
     for (const auto& curve : w.curves) knots += curve.curve->knots.size();
-    return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(gone_over, knots));
+    return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(knots_crossed, knots));
 }
 
-// What the sides of a branch share: the start, its stability and the expansion there. With another
-// a_1, r times as large, x_k is rᵏ times as large.
-struct Begun {
+// What the sides of a branch share: the start, its stability and the coefficients x_k of the
+// expansion there (x, load). On a side whose a_1 is r times as large, x_k is rᵏ times as large.
+struct SharedStart {
     State<double> q;
     Vector<double> lambda;
     std::vector<double> held;  // Held::value
@@ -278,73 +276,78 @@ struct Begun {
     StartStability stability;
 };
 
-// The expansion at the start that another side of the branch has computed.
-Outcome expand_as(Continuation& w, const Begun& begun, Singularity& singularity, End& end) {
-    const double share = w.first / begun.load[1];
+// The expansion at the start from that of another side of the branch.
+Outcome expand_shared(Continuation& w, const SharedStart& shared, Singularity& singularity,
+                      End& end) {
+    const double share = w.first / shared.load[1];
     double power = 1;
-    for (Eigen::Index k = 0; k < begun.x.cols(); ++k, power *= share)
-        w.c.x.col(k) = power * begun.x.col(k);
-    w.c.load = begun.load;
+    for (Eigen::Index k = 0; k < shared.x.cols(); ++k, power *= share)
+        w.c.x.col(k) = power * shared.x.col(k);
+    w.c.load = shared.load;
     w.c.load[1] = w.first;
     singularity = nearest_singularity(w.s, w.c);
     return range_of_validity(w, w.at(), singularity, end);
 }
 
-// From an equilibrium, with its factors in s.system, to the end. `known`: its stability. `begun`:
-// of another side of the branch, or to be filled for one.
+// Follows the path from an equilibrium, with its factors in s.system, to the end. `known`:
+// stability of that equilibrium, if known. `shared`: the start of another side of the branch;
+// filled if it is empty.
 Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
-                      std::optional<Begun>* begun = nullptr) {
+                      std::optional<SharedStart>* shared = nullptr) {
     SteppingState& s = w.s;
-    std::size_t gone_over = 0;
+    std::size_t knots_crossed = 0;
     const std::vector<Piece> pieces = pieces_of(w.curves);
-    while (w.path.expansions.size() < max_expansions(w, gone_over)) {
+    while (w.path.expansions.size() < max_expansions(w, knots_crossed)) {
         const bool starts = w.path.expansions.empty();
-        const bool again = starts && begun != nullptr && *begun;
+        const bool has_shared = starts && shared != nullptr && *shared;
         const State<double> from = s.q;
         Singularity singularity;
         End end;
         Certificate judged;
-        if (const Outcome o =
-                again ? expand_as(w, **begun, singularity, end) : expand_here(w, singularity, end);
+        if (const Outcome o = has_shared ? expand_shared(w, **shared, singularity, end)
+                                         : expand_here(w, singularity, end);
             o != Outcome::converged)
             return o;
         // Crossing a knot must not have changed the sign of the determinant.
-        if (const int here = again ? (*begun)->side : side(w, w.to); starts) {
-            w.side = here;
+        if (const int side_here = has_shared ? (*shared)->side : side(w, w.to); starts) {
+            w.side = side_here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
                 const bool is_known = known != nullptr && pieces_of(w.curves) == pieces;
-                const StartStability start = again      ? (*begun)->stability
+                const StartStability start = has_shared ? (*shared)->stability
                                              : is_known ? *known
                                                         : start_stability(s);
                 w.softest = start.softest;
                 w.stable = start.least.of_energy && start.least.value > 0;
                 if (const Outcome o = check_start_stability(s, start); o != Outcome::converged)
                     return o;
-                if (begun != nullptr && !again)
-                    *begun = {s.q,   s.lambda, s.system.held.value,
-                              w.c.x, w.c.load, log_determinant(s.system),
-                              here,  start};
+                if (shared != nullptr && !has_shared)
+                    *shared = {s.q,       s.lambda, s.system.held.value,
+                               w.c.x,     w.c.load, log_determinant(s.system),
+                               side_here, start};
             }
-        } else if (here != w.side && !w.by_arc())
+        } else if (side_here != w.side && !w.by_arc())
             return Outcome::singular;
-        w.log_begin = again ? (*begun)->log_determinant : log_determinant(s.system);
+        w.log_begin = has_shared ? (*shared)->log_determinant : log_determinant(s.system);
         if (const Outcome o = accept_expansion(w, from, end, judged); o != Outcome::converged)
             return o;
         const auto reversed = reversed_inside(w, from, end.tau);
         if (reversed) {
-            end = {*reversed, false, {}, {}};
+            end = {.tau = *reversed};
             w.reversed = true;
         }
         // The polynomial continues past a bifurcation point, and the branch past a
         // loss of stability.
         bool past = !reversed && is_past(w, rises_ahead(w));
         if (!past && !reversed)
-            if (const auto lost = lost_inside(w, from, end.tau)) past = true, end.tau = *lost;
+            if (const auto lost = lost_inside(w, from, end.tau)) {
+                past = true;
+                end.tau = *lost;
+            }
         if (past) end.tau = divide(w, from, end.tau);
         if (w.by_arc()) look_for_turns(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,
                                      static_cast<int>(end.over.size()), singularity, judged});
-        gone_over += end.over.size();
+        knots_crossed += end.over.size();
         if (past) return Outcome::bifurcation_point;
         if (reversed) return Outcome::branch_lost;
         if (end.last) return w.end == w.to ? Outcome::converged : Outcome::inconsistent_constraints;
@@ -354,7 +357,7 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
     return Outcome::iteration_limit;
 }
 
-std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagnosis) {
+std::string failure_text(const Continuation& w, Outcome outcome, const Diagnosis& diagnosis) {
     const bool settles = w.e.drive == Drive::start;
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
     const std::string place =
@@ -418,12 +421,12 @@ SteppingState series_state(const Model& model, const Branch& branch, const Analy
 Outcome settle(Continuation& settling, const Analysis& analysis) {
     SteppingState& s = settling.s;
     if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged) return o;
-    const Outcome walked = follow_to_end(settling);
+    const Outcome outcome = follow_to_end(settling);
     if (s.start.Phi_d.norm() <= guard::closed) s.start.Phi_d.setZero();
-    return settled(s, walked, 0.0);
+    return settled(s, outcome, 0.0);
 }
 
-void stand_on(SteppingState& s, std::vector<Followed>& curves, const Start& start) {
+void place_at_start(SteppingState& s, std::vector<Followed>& curves, const Start& start) {
     s.q = start.q;
     s.lambda = start.lambda;
     s.start.Phi_d = start.Phi_d;
@@ -438,7 +441,7 @@ bool settle_near(SteppingState& s, std::vector<Followed>& curves, const recursiv
                  const Start& other) {
     constexpr double near = 1e-2;
     if (s.system.held.idle > 0) return false;
-    stand_on(s, curves, other);
+    place_at_start(s, curves, other);
     Continuation w(s, curves, options, Drive::rate);
     w.go_to(0);
     for (const double limit : {near * s.setup.length, options.tolerance}) {
@@ -459,8 +462,8 @@ bool is_at_rest(const Branch& branch) {
     return std::ranges::all_of(branch.drivers, [](const Driver& d) { return d.rate == 0; });
 }
 
-// The path of a branch on which nothing moves, from its start.
-Outcome stay(Continuation& w, const StartStability* known) {
+// The path of a branch on which nothing moves: one constant expansion at its start.
+Outcome stay_at_start(Continuation& w, const StartStability* known) {
     SteppingState& s = w.s;
     const Outcome outcome =
         check_start_stability(s, known != nullptr ? *known : start_stability(s));
@@ -486,10 +489,10 @@ std::vector<Driver> start_values(const Branch& branch) {
     return list;
 }
 
-// Follows one side. `begun`: empty, or of another side with the same drivers; filled where the side
-// may be begun alike.
+// Follows one side. `shared` (null: not used): empty, or the start of another side with the same
+// drivers; filled where both sides can use it.
 Path follow(const Model& model, const Branch& branch, const recursive::Series& options,
-            const Analysis& analysis, std::optional<Begun>* begun) {
+            const Analysis& analysis, std::optional<SharedStart>* shared) {
     check(model, branch);
     if (std::isnan(analysis.diagnosis.constraint_error)) {
         Path none;
@@ -501,7 +504,8 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     std::vector<Followed> curves = curves_of(model);
     const auto finish = [&](Continuation& w, Outcome outcome) {
         w.path.outcome = outcome;
-        if (outcome != Outcome::converged) w.path.detail = words(w, outcome, analysis.diagnosis);
+        if (outcome != Outcome::converged)
+            w.path.detail = failure_text(w, outcome, analysis.diagnosis);
         w.path.counts = s.counts;
         w.path.arc_length = options.arc_length;
         if (w.e.drive == Drive::start) w.path.expansions.clear();
@@ -510,23 +514,23 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     const auto finish_from_start = [&](const StartStability* stability) {
         Continuation w(s, curves, options, Drive::rate);
         w.go_to(0);
-        if (is_at_rest(branch)) return finish(w, stay(w, stability));
-        return finish(w, follow_to_end(w, stability, begun));
+        if (is_at_rest(branch)) return finish(w, stay_at_start(w, stability));
+        return finish(w, follow_to_end(w, stability, shared));
     };
-    if (!curves.empty() || options.arc_length) begun = nullptr;
-    if (begun != nullptr && *begun) {
-        s.q = (*begun)->q;
-        s.lambda = (*begun)->lambda;
-        s.system.held.value = (*begun)->held;
+    if (!curves.empty() || options.arc_length) shared = nullptr;
+    if (shared != nullptr && *shared) {
+        s.q = (*shared)->q;
+        s.lambda = (*shared)->lambda;
+        s.system.held.value = (*shared)->held;
         Continuation w(s, curves, options, Drive::rate);
         w.go_to(w.to);  // with all forces at the end of the branch
         const Outcome loaded = check_idle_load_here(w.s, 0);
         w.go_to(0);
-        return finish(w, loaded == Outcome::converged ? follow_to_end(w, nullptr, begun) : loaded);
+        return finish(w, loaded == Outcome::converged ? follow_to_end(w, nullptr, shared) : loaded);
     }
     if (const Start* start = analysis.settled.get();
         start != nullptr && same_values(start->drivers, start_values(branch))) {
-        stand_on(s, curves, *start);
+        place_at_start(s, curves, *start);
         return finish_from_start(&start->stability);
     }
     // The factors of the analysis belong to the design position. If that is no equilibrium,
@@ -541,7 +545,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     Continuation w(s, curves, options, Drive::rate);
     if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged)
         return finish(w, o);
-    return finish(w, follow_to_end(w, curves.empty() ? &analysis.start : nullptr, begun));
+    return finish(w, follow_to_end(w, curves.empty() ? &analysis.start : nullptr, shared));
 }
 
 }  // namespace
@@ -578,10 +582,10 @@ void keep_start(const Model& model, const Branch& branch, const recursive::Serie
 std::vector<Path> follow_sides(const Model& model, std::span<const Branch> sides,
                                const recursive::Series& options, const Analysis& analysis) {
     std::vector<Path> paths;
-    std::optional<Begun> begun;
+    std::optional<SharedStart> shared;
     for (std::size_t k = 0; k < sides.size(); ++k) {
-        if (k > 0 && !same_drivers(sides[k - 1], sides[k])) begun.reset();
-        paths.push_back(follow(model, sides[k], options, analysis, &begun));
+        if (k > 0 && !same_drivers(sides[k - 1], sides[k])) shared.reset();
+        paths.push_back(follow(model, sides[k], options, analysis, &shared));
     }
     return paths;
 }

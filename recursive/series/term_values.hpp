@@ -10,8 +10,8 @@
 #include "recursive/series/equations.hpp"
 
 namespace elastocheck::recursive::series {
-// Unnamed, for the two files that instantiate them: the compiler inlines a function of one caller only
-// where no other file can call it, a seventh of the instructions of a coefficient.
+// In an unnamed namespace, since two files instantiate them: the compiler inlines a function with
+// one caller only where no other file can call it, which saves a seventh of the instructions.
 namespace detail {
 namespace {
 
@@ -26,12 +26,12 @@ void reserve_arm(Arena& room, Arm<Real>& arm, BodyId body) {
 }
 template <class Real>
 void reserve(Arena& room, TurnSeries<Real>& t, bool constant = false) {
-    const auto each = [&](auto&... all) { (reserve(room, all, constant), ...); };
+    const auto each = [&](auto&... series) { (reserve(room, series, constant), ...); };
     each(t.g, t.h, t.stretch, t.shrink, t.hg, t.C);
 }
 template <class Real>
 void reserve(Arena& room, CubicSeries<Real>& t) {
-    for (auto* all : {&t.xi, &t.inner, &t.slope}) reserve(room, *all);
+    for (auto* series : {&t.xi, &t.inner, &t.slope}) reserve(room, *series);
 }
 // A term between two bodies: memory for its two arms and for the listed series.
 template <class Term, class Kind, class... Members>
@@ -74,17 +74,19 @@ ElasticSeries<Real> term(Arena& room, const Bushing& e) {
         t.middle = room.take<MiddleSeries<Real>>(1, {});
         MiddleSeries<Real>& s = *t.middle;
         reserve(room, s.half);
-        for (auto* all : {&s.squared, &s.size, &s.sum, &s.inverse}) reserve(room, *all);
-        for (auto* all : {&s.d_i, &s.d, &s.F_local, &s.F_i, &s.m, &s.g_m}) reserve(room, *all);
+        for (auto* series : {&s.squared, &s.size, &s.sum, &s.inverse}) reserve(room, *series);
+        for (auto* series : {&s.d_i, &s.d, &s.F_local, &s.F_i, &s.m, &s.g_m})
+            reserve(room, *series);
     }
     if (e.formulation.angles != Formulation::Angles::rotation_vector) {
         t.angles = room.take<AnglesSeries<Real>>(1, {});
         reserve(room, t.angles->B);
         for (auto& s : t.angles->axis) {
-            for (auto* all : {&s.xy, &s.unit}) reserve(room, *all);
-            for (auto* all : {&s.squared, &s.r, &s.inverse, &s.angle, &s.z, &s.factor, &s.moment})
-                reserve(room, *all);
-            for (auto* all : {&s.along, &s.row, &s.share}) reserve(room, *all);
+            for (auto* series : {&s.xy, &s.unit}) reserve(room, *series);
+            for (auto* series :
+                 {&s.squared, &s.r, &s.inverse, &s.angle, &s.z, &s.factor, &s.moment})
+                reserve(room, *series);
+            for (auto* series : {&s.along, &s.row, &s.share}) reserve(room, *series);
         }
     }
     return t;
@@ -164,26 +166,27 @@ LoadSeries<Real> term(Arena& room, const FollowerMoment& m) {
 }
 // ---- Numbers of a lane.
 
-// A number of one lane, or all numbers of a matrix.
+// Sets one lane of a number, or of all numbers of a matrix.
 template <class Real, class Value>
-void put(Real& all, int lane, const Value& value) {
+void put(Real& lanes, int lane, const Value& value) {
     if constexpr (std::is_same_v<Real, Value>)
-        all = value;
+        lanes = value;
     else if constexpr (std::is_base_of_v<Eigen::MatrixBase<Real>, Real>)
-        for (Eigen::Index k = 0; k < all.size(); ++k)
-            set_lane(all.data()[k], lane, value.data()[k]);
+        for (Eigen::Index k = 0; k < lanes.size(); ++k)
+            set_lane(lanes.data()[k], lane, value.data()[k]);
     else
-        set_lane(all, lane, value);
+        set_lane(lanes, lane, value);
 }
-// A matrix of one lane.
+// One lane of a matrix.
 template <class Real, int rows, int columns>
-Eigen::Matrix<double, rows, columns> got(const Eigen::Matrix<Real, rows, columns>& all, int at) {
+Eigen::Matrix<double, rows, columns> lane_of(const Eigen::Matrix<Real, rows, columns>& lanes,
+                                             int at) {
     if constexpr (std::is_same_v<Real, double>) {
-        return all;
+        return lanes;
     } else {
-        Eigen::Matrix<double, rows, columns> one;
-        for (Eigen::Index k = 0; k < all.size(); ++k) one.data()[k] = lane(all.data()[k], at);
-        return one;
+        Eigen::Matrix<double, rows, columns> value;
+        for (Eigen::Index k = 0; k < lanes.size(); ++k) value.data()[k] = lane(lanes.data()[k], at);
+        return value;
     }
 }
 template <class T, class Value>
@@ -270,12 +273,12 @@ void take(FollowerSeries<Real>& t, const FollowerMoment& m, int lane) {
     put(t.f.local, lane, Eigen::Vector3d(Eigen::Vector3d::Zero()));
     put(t.m.local, lane, m.m_local);
 }
-// A term and a kind that do not belong together.
+// A term of one kind, an element of another.
 template <class Term, class Kind>
 void take(Term&, const Kind&, int) {
-    throw std::invalid_argument("a variant has elements of other kinds");
+    throw std::invalid_argument("a variant has elements of other kinds than the design");
 }
-// Takes the numbers of the kind that the term is of. The term was made for a kind of the same name.
+// Takes the numbers of an element for its term, which was made for an element of the same kind.
 template <class Terms, class Kind>
 void take_kind(Terms& terms, const Kind& kind, int lane) {
     std::visit([&](auto& t, const auto& k) { take(t, k, lane); }, terms, kind);
@@ -283,15 +286,15 @@ void take_kind(Terms& terms, const Kind& kind, int lane) {
 
 // ---- Driven inputs. Constraints without an offset cannot be driven (models/lowering.hpp).
 
-// Adds `what` times the driver to a lane.
+// Adds `direction` times the driver to a lane of a driven input.
 template <class T, class Value>
-void add(Driven<T>& driven, Drive drive, const Driver& driver, const Value& what, int at) {
-    const auto add_to = [&](auto& all, double by) {
+void add(Driven<T>& driven, Drive drive, const Driver& driver, const Value& direction, int at) {
+    const auto add_to = [&](auto& lanes, double by) {
         if constexpr (std::is_base_of_v<Eigen::MatrixBase<T>, T>) {
-            for (Eigen::Index k = 0; k < all.size(); ++k)
-                set_lane(all[k], at, lane(all[k], at) + by * what[k]);
+            for (Eigen::Index k = 0; k < lanes.size(); ++k)
+                set_lane(lanes[k], at, lane(lanes[k], at) + by * direction[k]);
         } else {
-            set_lane(all, at, lane(all, at) + by * what);
+            set_lane(lanes, at, lane(lanes, at) + by * direction);
         }
     };
     if (drive == Drive::rate) add_to(driven.start, driver.start);
@@ -374,9 +377,9 @@ bool curved(const BushingSeries<Real>& t) {
 
 template <class Real>
 void place(Arm<Real>& arm, const State<double>& q, int lane) {
-    put(arm.fixed, lane, q[arm.body].lever(got(arm.local, lane)));
+    put(arm.fixed, lane, q[arm.body].lever(lane_of(arm.local, lane)));
 }
-// Of a term with two arms and nothing else that turns.
+// For a term with two arms and nothing else that turns.
 template <class Term>
 requires requires(Term& t) {
     t.i;
@@ -401,7 +404,7 @@ void place(BushingSeries<Real>& t, const State<double>& q, int lane) {
     place(t.i, q, lane);
     place(t.j, q, lane);
     const auto axes = [&](const Arm<Real>& arm, const Vector4<Real>& local) {
-        return q[arm.body].p * Eigen::Quaterniond(got(local, lane));
+        return q[arm.body].p * Eigen::Quaterniond(lane_of(local, lane));
     };
     const Eigen::Quaterniond p_i = axes(t.i, t.A_i_local), p_j = axes(t.j, t.A_j_local);
     put(t.E_i, lane, p_i.toRotationMatrix());

@@ -52,23 +52,26 @@ void take(Equations<Real>& e, const Model& model, const Branch& branch, int lane
         detail::take_kind(e.elastics[k], model.elastics[k].kind, lane);
     for (std::size_t k = 0; k < e.constraints.size(); ++k)
         detail::take_kind(e.constraints[k], model.constraints[k].kind, lane);
-    std::size_t at = 0;
+    std::size_t position = 0;
     const auto load = [&](const Load& what, double start) {
-        detail::take_kind(e.loads.at(at), what.kind, lane);
-        std::visit([&](auto& t) { detail::put(t.factor, lane, start); }, e.loads[at]);
+        detail::take_kind(e.loads.at(position), what.kind, lane);
+        std::visit([&](auto& t) { detail::put(t.factor, lane, start); }, e.loads[position]);
     };
-    for (const auto& each : model.static_loads) load(each, 1), ++at;
+    for (const auto& each : model.static_loads) {
+        load(each, 1);
+        ++position;
+    }
     for (const auto& driver : branch.drivers)
         std::visit(
             overloaded{[&](const Load& what) {
                            load(what, 0);
                            std::visit(
                                [&](auto& t) { detail::add(t.factor, e.drive, driver, 1.0, lane); },
-                               e.loads[at++]);
+                               e.loads[position++]);
                        },
                        [&](const auto& what) { detail::drive(e, model, driver, what, lane); }},
             driver.what);
-    same(at, e.loads.size());
+    same(position, e.loads.size());
 }
 
 template <class Real>

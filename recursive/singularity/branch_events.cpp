@@ -115,7 +115,7 @@ struct Traversal {
 
 Traversal follow_by_long_steps(SteppingState& s, double to) {
     const ContinuationSettings settings{Drive::rate, tolerance * s.setup.length, tolerance};
-    Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+    Node node{.q = s.q, .lambda = s.lambda}, next = node;
     differentiate(s, settings, node);
     double log_here = log_determinant(s.system);
     // The step before: its first node, the slope of the log-determinant over it, and whether its

@@ -177,7 +177,7 @@ Outcome try_next(Sweep& w) {
 // Records the points at equal increments of the parameter up to `to`. Pre: the state
 // has just settled.
 Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& recording) {
-    const Node start{s.q, s.lambda, {}, {}, 0, 0};
+    const Node start{.q = s.q, .lambda = s.lambda};
     Sweep w{.s = s,
             .settings = {Drive::rate, method.length_tolerance, method.angle_tolerance},
             .to = to,

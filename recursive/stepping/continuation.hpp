@@ -22,7 +22,7 @@ namespace elastocheck::recursive {
 
 struct Node {
     State<double> q;
-    Vector<double> lambda, dq, dlambda;  // z' = (dq, dlambda) per unit of p
+    Vector<double> lambda, dq = {}, dlambda = {};  // z' = (dq, dlambda) per unit of p
     double p = 0;
     int orientation = 0;  // sign of the determinant
 };

@@ -87,7 +87,7 @@ Outcome settle_consistently(SteppingState& s) {
     const double length = s.setup.length;
     // Steps before the end need only stay in the convergence region of Newton's method.
     const ContinuationSettings settings{Drive::start, 1e-4 * length, 1e-4};
-    Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+    Node node{.q = s.q, .lambda = s.lambda}, next = node;
     go_to(s, {0, 0});
     drive_at(s, Drive::start, 1, s.q, s.lambda);
     if (!s.work.upper.isZero(0) || !s.work.lower.isZero(0)) {
@@ -113,7 +113,7 @@ Outcome settle_consistently(SteppingState& s) {
     }
     // Corrections fall quadratically down to round-off. From a stiff start they need not fall at
     // once. If they do not become small, the outcome is branch_lost.
-    constexpr int most = 24;
+    constexpr int max_corrections = 24;
     const double enough = 100 * std::numeric_limits<double>::epsilon() * length;
     const double rest = std::max(1e-6 * length, 1000 * enough);
     double before = std::numeric_limits<double>::infinity();
@@ -125,7 +125,7 @@ Outcome settle_consistently(SteppingState& s) {
             return outcome;
         const double size = std::sqrt(size_of_solution(s));
         if (size <= enough || (size <= rest && !(size < before))) break;
-        if (k == most) return Outcome::branch_lost;
+        if (k == max_corrections) return Outcome::branch_lost;
         before = size;
     }
     if (has_redundancy(s)) {

@@ -77,8 +77,10 @@ bool is_unstable(const SteppingState& s) {
             const auto at = static_cast<std::size_t>(e);
             const int row = idle.row[at];
             if (const double here = std::abs(idle.value[at] * s.system.weight[row]);
-                here > size && std::ranges::find(held, row) == held.end())
-                largest = row, size = here;
+                here > size && std::ranges::find(held, row) == held.end()) {
+                largest = row;
+                size = here;
+            }
         }
         if (largest >= 0) held.push_back(largest);
     }
@@ -216,19 +218,19 @@ Dip lowest_determinant(std::array<double, 3> d,
         const auto dip = parabola_dips(t, d, outside);
         if (!dip) break;
         const double nearest = separation * (t[2] - t[0]);
-        double there = std::clamp(dip->t, t[0] + nearest, t[2] - nearest);
-        if (!(std::abs(there - t[1]) > nearest))
-            there = t[1] + (t[2] - t[1] > t[1] - t[0] ? nearest : -nearest);
-        const double value = determinant_at(there);
-        if (value < 0) return {there, value};
-        const bool left = there < t[1];
+        double place = std::clamp(dip->t, t[0] + nearest, t[2] - nearest);
+        if (!(std::abs(place - t[1]) > nearest))
+            place = t[1] + (t[2] - t[1] > t[1] - t[0] ? nearest : -nearest);
+        const double value = determinant_at(place);
+        if (value < 0) return {place, value};
+        const bool left = place < t[1];
         if (value < d[1]) {
             (left ? t[2] : t[0]) = t[1];
             (left ? d[2] : d[0]) = d[1];
-            t[1] = there;
+            t[1] = place;
             d[1] = value;
         } else {
-            (left ? t[0] : t[2]) = there;
+            (left ? t[0] : t[2]) = place;
             (left ? d[0] : d[2]) = value;
         }
     }
@@ -247,7 +249,7 @@ double min_of_idle(const SteppingState& s) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const Held<double>& held = s.system.held;
     const SaddleMatrix<double>& M = s.system.M;
-    double least = 0;
+    double min_stiffness = 0;
     for (int first = 0, end = 0; first < held.idle; first = end) {
         for (end = first + 1; end < held.idle && held.with[static_cast<std::size_t>(end)] == first;)
             ++end;
@@ -274,9 +276,9 @@ double min_of_idle(const SteppingState& s) {
             }
         if (!Q.allFinite()) continue;
         if (const double lowest = min_eigenvalue(Q); lowest < -several * epsilon * sizes.norm())
-            least = std::min(least, lowest);
+            min_stiffness = std::min(min_stiffness, lowest);
     }
-    return least;
+    return min_stiffness;
 }
 
 double negative_idle_stiffness(SteppingState& s, const State<double>& near,
@@ -296,18 +298,18 @@ double negative_idle_stiffness(SteppingState& s, const State<double>& near,
     const Counts counts = s.counts;  // a check only: not counted
     State<double> q = near;
     Vector<double> lambda = lambda_near;
-    bool there = true;
-    for (int k = 0; k < corrections && there; ++k) {
+    bool regular = true;
+    for (int k = 0; k < corrections && regular; ++k) {
         residual_at(s, q, lambda);
         back_substitute(s);
-        there = s.work.x.allFinite();
+        regular = s.work.x.allFinite();
         s.step.dq = s.work.x.head(s.n());
         advance(q, s.step.dq);
         lambda += s.work.x.tail(s.m());
-        there = there && factorise_at(s, q, lambda) == Outcome::converged;
+        regular = regular && factorise_at(s, q, lambda) == Outcome::converged;
     }
     s.counts = counts;
-    return there ? least(q) : 0;
+    return regular ? least(q) : 0;
 }
 
 }  // namespace elastocheck::recursive

@@ -9,9 +9,9 @@ std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<do
         for (const BodyId b : {i, j})
             if (b != ground) on_body[static_cast<std::size_t>(b)].push_back(k);
     }
-    std::vector<std::vector<Moved>> all(static_cast<std::size_t>(held.idle));
+    std::vector<std::vector<Moved>> of_modes(static_cast<std::size_t>(held.idle));
     for (int c = 0; c < held.idle; ++c) {
-        auto& moved = all[static_cast<std::size_t>(c)];
+        auto& moved = of_modes[static_cast<std::size_t>(c)];
         for (int e = held.begin(c); e < held.end(c); e += 6)
             for (const std::size_t k :
                  on_body[static_cast<std::size_t>(held.row[static_cast<std::size_t>(e)] / 6)]) {
@@ -22,7 +22,7 @@ std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<do
         const auto same = [](const Moved& a, const Moved& b) { return a.element == b.element; };
         moved.erase(std::unique(moved.begin(), moved.end(), same), moved.end());
     }
-    return all;
+    return of_modes;
 }
 
 double load_on_idle_modes(const SteppingState& s, const Vector<double>& force, double whole) {

@@ -3,9 +3,9 @@
 namespace elastocheck::recursive {
 namespace {
 
-// f_ext for the step to `next`, minus the held part of the imbalance at the design position. Where
-// the load does not follow, the applied load keeps its moment and only the increment acts at the
-// current lever.
+// f_ext for the step, less the part `held` of the imbalance R_d at the design position, which falls
+// from 1 to 0 while the start settles. Where the load does not follow, the applied load keeps its
+// moment and only the increment acts at the current lever.
 void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amount, double held) {
     if (follow.load) {
         external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
@@ -148,7 +148,8 @@ Outcome step(SteppingState& s, const Consistent& method, Parameters next) {
     back_substitute(s);
     s.step.before = s.q;
     if (method.solve == Consistent::Solve::midpoint) {
-        // G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz + O(Δ³): the same residual, the matrix half a step ahead.
+        // With z = (q, λ) and G = (f_elast - f_ext + Φ_qᵀ λ, Φ), G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz
+        // + O(Δ³): the same residual, the matrix half a step ahead.
         s.step.dq = s.work.x.head(n) / 2;
         advance(s.q, s.step.dq);
         if (beyond_a_kink(s, s.q)) {

@@ -35,31 +35,34 @@ Conditions conditions(const Model& model, const StateTangent& at, const VectorXd
 }
 
 // The state of a neighbour by the chord method.
-Equilibrium solved(const Model& model, const StateTangent& tangent, const Conditions& here) {
+Equilibrium solved(const Model& model, const StateTangent& tangent, const Conditions& own) {
     constexpr double not_judged = std::numeric_limits<double>::infinity();
-    std::vector<Pose> at = tangent.state.poses;
+    std::vector<Pose> centre = tangent.state.poses;
     VectorXd lambda = tangent.lambda;
     double first = 0, first_reactions = 0;
     bool has_met = false, last = false;
     for (int step = 0; step < chord_steps && !last; ++step) {
         last = has_met;
-        Chart chart = chart_about(at);
+        Chart chart = chart_about(centre);
         const Conditions there = conditions(model, tangent, lambda, chart);
         const TangentSolution solution =
-            solve_tangent(tangent, there.b - here.b, there.Phi - here.Phi, not_judged);
+            solve_tangent(tangent, there.b - own.b, there.Phi - own.Phi, not_judged);
         if (solution.outcome != Outcome::converged) break;
         const VectorXd dlambda = multiplier_rates(tangent, solution);
         lambda += dlambda;
         move_to(chart, solution.x);
-        at = poses(chart);
-        if (step == 0) first = solution.x.norm(), first_reactions = dlambda.norm();
+        centre = poses(chart);
+        if (step == 0) {
+            first = solution.x.norm();
+            first_reactions = dlambda.norm();
+        }
         has_met = solution.x.norm() <= chord_met * first &&
                   dlambda.norm() <= chord_met * first_reactions + chord_reactions * lambda.norm();
     }
-    const Chart chart = chart_about(at);
+    const Chart chart = chart_about(centre);
     const ConstraintValues values = constraints(
         model, energy::at(course_of(model, model.branches.front()), tangent.state.a), chart);
-    return {tangent.state.a, at, reactions(model, chart, values, lambda), values.Phi.norm()};
+    return {tangent.state.a, centre, reactions(model, chart, values, lambda), values.Phi.norm()};
 }
 
 }  // namespace
@@ -77,18 +80,18 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     const Chart chart = chart_about(tangent.state.poses);
     Model here_alone = model;
     here_alone.branches = {branch};
-    const Conditions here = conditions(here_alone, tangent, tangent.lambda, chart);
+    const Conditions own = conditions(here_alone, tangent, tangent.lambda, chart);
     double reach = 1;
     for (const Pose& pose : tangent.state.poses) reach = std::max(reach, pose.r.norm());
     const double stiffest = tangent.K.size() > 0 ? tangent.K.cwiseAbs().maxCoeff() : 0;
     std::vector<NeighbourStates> list;
     for (const Neighbours& stencil : stencils) {
         NeighbourStates& result = list.emplace_back();
-        Conditions change{VectorXd::Zero(here.b.size()), VectorXd::Zero(here.Phi.size())};
+        Conditions change{VectorXd::Zero(own.b.size()), VectorXd::Zero(own.Phi.size())};
         for (const Neighbour& k : stencil) {
             const Conditions there = conditions(*k.model, tangent, tangent.lambda, chart);
-            change.b += k.weight * (there.b - here.b);
-            change.Phi += k.weight * (there.Phi - here.Phi);
+            change.b += k.weight * (there.b - own.b);
+            change.Phi += k.weight * (there.Phi - own.Phi);
         }
         // Points and lengths that change together keep a row closed: what is left is rounding.
         const double rounding = last_digits * amplification(stencil);
@@ -101,7 +104,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             result.detail = solution.what;
             continue;
         }
-        for (const Neighbour& k : stencil) result.states.push_back(solved(*k.model, tangent, here));
+        for (const Neighbour& k : stencil) result.states.push_back(solved(*k.model, tangent, own));
     }
     return list;
 }

@@ -14,7 +14,7 @@ constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
 System in_scales_of(const System& of, const Model& model, double a) {
     System system = make_system(model, model.branches.front(), {&a, 1});
     if (system.equations() != of.equations())
-        throw std::invalid_argument("a neighbour of another model");
+        throw std::invalid_argument("a neighbour has other parts than the model");
     system.centre = of.centre;
     system.length = of.length;
     system.force = of.force;
@@ -30,16 +30,17 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     const StateTangent tangent = tangent_at(model, branch, state, none);
     if (tangent.outcome != Outcome::converged)
         return {stencils.size(), NeighbourStates{tangent.outcome, tangent.what, {}}};
-    const Eigen::VectorXd here = residual(tangent.system, tangent.loading, tangent.x);
+    const Eigen::VectorXd own_residual = residual(tangent.system, tangent.loading, tangent.x);
     const double rounding = last_digits * largest_entry(tangent.at.J);
     std::vector<NeighbourStates> neighbours;
     for (const Neighbours& stencil : stencils) {
         NeighbourStates& result = neighbours.emplace_back();
         std::vector<System> systems;
-        Eigen::VectorXd E_rate = Eigen::VectorXd::Zero(here.size());
+        Eigen::VectorXd E_rate = Eigen::VectorXd::Zero(own_residual.size());
         for (const Neighbour& k : stencil) {
             systems.push_back(in_scales_of(tangent.system, *k.model, state.load));
-            E_rate += k.weight * (residual(systems.back(), tangent.loading, tangent.x) - here);
+            E_rate +=
+                k.weight * (residual(systems.back(), tangent.loading, tangent.x) - own_residual);
         }
         const Solved solved = solve_at_state(tangent, E_rate, rounding * amplification(stencil));
         if (solved.outcome != Outcome::converged) {
@@ -56,13 +57,16 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             for (int step = 0; step < chord_steps && !last; ++step) {
                 last = met;
                 const Solved by = solve_at_state(
-                    tangent, residual(system, tangent.loading, x) - here, not_judged);
+                    tangent, residual(system, tangent.loading, x) - own_residual, not_judged);
                 if (by.outcome != Outcome::converged) break;
                 x = moved(system, x, by.dx);
                 size = pose_size(system, by.dx);
                 const auto m = system.constraint_rows;
                 const double reactions = by.dx.tail(m).norm();
-                if (step == 0) first = size, first_reactions = reactions;
+                if (step == 0) {
+                    first = size;
+                    first_reactions = reactions;
+                }
                 met = size <= chord_met * first &&
                       reactions <= chord_met * first_reactions + chord_reactions * x.tail(m).norm();
             }

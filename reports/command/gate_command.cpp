@@ -169,7 +169,10 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     ToleranceClass kind = apart.kind;
     scene.differs = apart.differs;
     for (const auto wanted : compare::tolerance_classes)
-        if (forced == name(wanted)) kind = wanted, scene.differs = "--class";
+        if (forced == name(wanted)) {
+            kind = wanted;
+            scene.differs = "--class";
+        }
     scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
     scene.widened = compare::widened(was.baseline, kind);
     scene.changed = compare::changes(was.numbers, is.numbers);

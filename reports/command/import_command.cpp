@@ -235,7 +235,7 @@ Breakpoints held_breakpoints(const Rows& rows, const Scene& scene, const Branch&
         for (double& value : points.values) value *= factor;
         return points;
     }
-    throw std::invalid_argument("--rows: nothing that the branch holds changes");
+    throw std::invalid_argument("--rows: no quantity held on the branch differs between its rows");
 }
 
 // The parameter of the branch, `values` in its display unit. It is a travel where it moves jacks of
@@ -347,8 +347,10 @@ int export_map(const ExportRequest& request) {
         }
         auto a = path.curve.a;
         auto values = path.curve.values;
-        if (a.size() > 1 && a.front() > a.back())
-            std::ranges::reverse(a), std::ranges::reverse(values);
+        if (a.size() > 1 && a.front() > a.back()) {
+            std::ranges::reverse(a);
+            std::ranges::reverse(values);
+        }
         for (auto& point : values)
             for (double& value : point)
                 if (!std::isfinite(value)) value = std::numeric_limits<double>::quiet_NaN();

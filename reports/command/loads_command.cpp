@@ -1,6 +1,5 @@
 // `elastocheck loads`: loads at every pickup point under load cases, for stress analysis.
 #include <memory>
-#include <stdexcept>
 
 #include "compare/loads/loads.hpp"
 #include "elastocheck/compile.hpp"

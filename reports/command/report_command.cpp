@@ -368,7 +368,7 @@ int write(const ReportRequest& request, const std::string& reproduce) {
     const int threads = threads_of(request.running);
     // Invalid requests are rejected before the work.
     if (request.live && request.scenes.size() != 1)
-        throw std::invalid_argument("--live: of one scene");
+        throw std::invalid_argument("--live: allowed with one scene only");
     const std::string live =
         request.live ? live_page(request.scenes.front(), request.settings) : "";
     const std::string opener = request.open ? browser() : "";

@@ -115,12 +115,16 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
     const std::string who = whole.method.empty() ? name(leg) : whole.method;
     for (const auto& branch : model.branches) {
         if (csv) progress(branch.name);
-        whole.curve = {}, whole.constraint_error = {};
+        whole.curve = {};
+        whole.constraint_error = {};
         whole.curve.unit = compare::unit_of(branch.unit);
         const SolvedBranch solved = solve_branch(
             model, branch, channels, solver,
             [&](const Equilibrium& state, const compare::Row&) {
-                if (states) states->add(state_line(model, branch.name, state)), has_states = true;
+                if (states) {
+                    states->add(state_line(model, branch.name, state));
+                    has_states = true;
+                }
             },
             [&](const compare::Row& row) {
                 for (std::size_t c = 0; c < channels.size(); ++c)

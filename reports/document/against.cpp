@@ -69,7 +69,8 @@ Line thinned(const Line& line) {
     const std::size_t count = std::min(line.a.size(), most);
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t from = count == 1 ? 0 : k * (line.a.size() - 1) / (count - 1);
-        few.a.push_back(line.a[from]), few.y.push_back(line.y[from]);
+        few.a.push_back(line.a[from]);
+        few.y.push_back(line.y[from]);
     }
     return few;
 }
@@ -104,7 +105,10 @@ void add_curve(std::vector<Against::Curve>& curves, const Channel& channel, cons
     for (std::size_t k = 0; k < is.a.size(); ++k) {
         if (!compare::reaches(was.a, is.a[k])) continue;
         const double difference = is.y[k] - compare::interpolate(was.a, was.y, is.a[k], 6);
-        if (std::abs(difference) > std::abs(largest)) largest = difference, place = is.a[k];
+        if (std::abs(difference) > std::abs(largest)) {
+            largest = difference;
+            place = is.a[k];
+        }
     }
     if (std::abs(largest) > 1e-9)
         curves.push_back({channel.name, symbol(channel.unit), largest, place,

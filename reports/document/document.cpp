@@ -299,7 +299,10 @@ compare::Table recommended_table(const Recommended& recommended) {
 // What the analyses found, each as its command writes it.
 json results_json(const SceneAnalyses& s) {
     compare::Assessment judgement = s.judgement.value_or(compare::Assessment{});
-    if (!s.judgement) judgement.requested = false, judgement.verdict = compare::Grade::pass;
+    if (!s.judgement) {
+        judgement.requested = false;
+        judgement.verdict = compare::Grade::pass;
+    }
     compare::Result compared = result_of(s.model, s.comparison, judgement);
     if (s.judgement) compared.verdict.sentence = sentence(judgement);
     if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);

@@ -51,7 +51,10 @@ struct Sketch {
         bool known = false;
         const Vector3d position = at(point, design());
         for (const auto& hardpoint : scene->hardpoints)
-            if ((hardpoint.position - position).norm() < same) name = hardpoint.name, known = true;
+            if ((hardpoint.position - position).norm() < same) {
+                name = hardpoint.name;
+                known = true;
+            }
         points.push_back(point);
         names.push_back(name);
         hard.push_back(known);
@@ -94,8 +97,10 @@ void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine
         for (const auto k : mine)
             for (const auto l : joined)
                 if (const double d = (sketch.points[k].s_local - sketch.points[l].s_local).norm();
-                    d < least)
-                    least = d, nearest = {k, l};
+                    d < least) {
+                    least = d;
+                    nearest = {k, l};
+                }
         sketch.link("body", name, nearest.second, nearest.first);
         joined.push_back(nearest.first);
         std::erase(mine, nearest.first);
@@ -290,7 +295,8 @@ Beams draw_connections(Sketch& sketch) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
         if (joint.active_only_where_driven) continue;  // a jack is not part of the suspension
         std::visit(overloaded{[&](const CoincidentPoints& c) {
-                                  sketch.add(c.i, joint.name), sketch.add(c.j, joint.name);
+                                  sketch.add(c.i, joint.name);
+                                  sketch.add(c.j, joint.name);
                               },
                               [&](const PointInPlane& c) { sketch.add(c.i, joint.name); },
                               [](const PerpendicularDirections&) {},

@@ -148,14 +148,14 @@ void add_branches(Result& result, const Model& model,
     Table begins{.columns = {words("output"), words("unit")},
                  .id = "settled",
                  .caption = "displacements where the branches begin, from the drawn position"};
-    std::vector<compare::Settled> all;
+    std::vector<compare::Settled> of_branches;
     for (const auto& branch : model.branches) {
         std::string moved, held;
         for (const auto& driver : branch.drivers)
             append(driver.rate != 0 ? moved : held, driven_name(model, driver.what), " + ");
         const compare::Unit unit = compare::unit_of(branch.unit);
         const compare::Settled& settled =
-            all.emplace_back(compare::settled(model, channels, branch));
+            of_branches.emplace_back(compare::settled(model, channels, branch));
         branches.push_back({branch.name, moved, compare::in_unit(unit) * branch.from,
                             compare::in_unit(unit) * branch.to, symbol(unit), 1.0 * branch.steps,
                             held, name(settled.outcome)});
@@ -166,7 +166,7 @@ void add_branches(Result& result, const Model& model,
     }
     for (std::size_t c = 0; c < channels.size(); ++c) {
         std::vector<compare::Cell> row{channels[c].name, symbol(channels[c].unit)};
-        for (const auto& settled : all)
+        for (const auto& settled : of_branches)
             row.emplace_back(settled.outcome == Outcome::converged ? settled.displacement[c] : NAN);
         const bool moves = std::any_of(row.begin() + 2, row.end(), [](const compare::Cell& cell) {
             return std::abs(std::get<double>(cell)) >= 1e-6;

@@ -38,7 +38,7 @@ double number_or_none(std::string_view cell, const std::string& file, int line,
     return number_in(cell, file, line, column);
 }
 
-void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
+void read_sheet(std::string_view csv, const std::string& file, std::size_t max_rows,
                 const std::function<void(const Cells&, int)>& head,
                 const std::function<void(const Cells&, int)>& row) {
     if (csv.starts_with("\xFF\xFE") || csv.starts_with("\xFE\xFF"))
@@ -61,8 +61,9 @@ void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
             fail_at(file, number,
                     fmt::format("{} cells, but {} columns are named in the first line",
                                 cells.size(), columns));
-        if (rows == most)
-            fail_at(file, number, fmt::format("more points than {}, the most that are read", most));
+        if (rows == max_rows)
+            fail_at(file, number,
+                    fmt::format("more points than {}, the most that are read", max_rows));
         ++rows;
         row(cells, number);
     }

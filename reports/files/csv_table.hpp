@@ -18,9 +18,9 @@ struct SheetError : std::runtime_error {
 
 using Cells = std::vector<std::string_view>;  // trimmed, without the quotes around one
 // Calls `head` for the first line with content, which names the columns, and `row` for every
-// further one. Throws SheetError for a line with another number of cells, more than `most` lines or
-// 10 000 columns, UTF-16, or an empty table.
-void read_sheet(std::string_view csv, const std::string& file, std::size_t most,
+// further one. Throws SheetError for a line with another number of cells, more than `max_rows`
+// lines or 10 000 columns, UTF-16, or an empty table.
+void read_sheet(std::string_view csv, const std::string& file, std::size_t max_rows,
                 const std::function<void(const Cells&, int line)>& head,
                 const std::function<void(const Cells&, int line)>& row);
 

@@ -1,4 +1,4 @@
-// Size limits of external input. Output of this program is smaller, by the limits of its runs
+// Size limits of external input. Output of this program is smaller
 // (reports/command/options/limits.hpp).
 #pragma once
 

@@ -16,6 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "reports/files/files.hpp"
 
@@ -84,7 +85,7 @@ std::vector<std::string> words_of(std::string_view line) {
             open = false;
             continue;
         }
-        if (!open) words.emplace_back(), open = true;
+        if (!std::exchange(open, true)) words.emplace_back();
         if (c == '\\' && quote != '\'') {
             if (++k == line.size()) throw std::invalid_argument("it ends in a backslash");
             words.back() += line[k];
@@ -128,7 +129,8 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
     if (child == 0) execute_child(arguments.data(), output_text[1], failed[1]);
     ::setpgid(child, child);  // here and in the child, as either may run first
     running_group = child;
-    ::close(output_text[1]), ::close(failed[1]);
+    ::close(output_text[1]);
+    ::close(failed[1]);
 
     ProcessResult result;
     pollfd output{output_text[0], POLLIN, 0};
@@ -147,7 +149,8 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
     ::fcntl(output_text[0], F_SETFL, O_NONBLOCK);
     while (keep_output(output_text[0], result.output_text)) continue;
     const bool started = ::read(failed[0], &why, sizeof why) != sizeof why;
-    ::close(output_text[0]), ::close(failed[0]);
+    ::close(output_text[0]);
+    ::close(failed[0]);
     if (result.output_text.size() > largest_output)
         result.output_text.erase(0, result.output_text.size() - largest_output);
     using enum ProcessResult::How;

@@ -126,11 +126,12 @@ bool is_travel(const compare::Channel& channel) {
     return compare::is_figure(channel, compare::figure::travel);
 }
 
-void keep_rows(PointTable& table, const std::function<std::string(std::size_t point)>& why_not) {
+void keep_rows(PointTable& table,
+               const std::function<std::string(std::size_t point)>& why_left_out) {
     std::map<std::string, std::vector<int>> left_out;  // lines by reason
     std::vector<std::size_t> kept;
     for (std::size_t k = 0; k < table.lines.size(); ++k)
-        if (const std::string why = why_not(k); why.empty())
+        if (const std::string why = why_left_out(k); why.empty())
             kept.push_back(k);
         else
             left_out[why].push_back(table.lines[k]);
@@ -140,7 +141,10 @@ void keep_rows(PointTable& table, const std::function<std::string(std::size_t po
         for (const std::size_t k : kept) of_points.push_back(std::move(all[k]));
     };
     compare::Points& points = table.points;
-    keep(table.lines), keep(points.branch), keep(points.a), keep(points.at);
+    keep(table.lines);
+    keep(points.branch);
+    keep(points.a);
+    keep(points.at);
     for (auto& column : points.columns) keep(column.values);
     constexpr std::size_t max_lines = 10;
     for (const auto& [why, lines] : left_out)
@@ -171,8 +175,10 @@ PointTable read_points(std::string_view csv, const std::string& file, const Name
                                   &compare::PointColumn::channel) != points.columns.end())
                 fail_at(file, 1, fmt::format("two columns for {}", channel.name));
             points.columns.push_back({meaning.channel, meaning.change, table.values[c]});
-            if (!points.abscissa && !meaning.change && is_travel(channel))
-                points.abscissa = meaning.channel, points.at = table.values[c];
+            if (!points.abscissa && !meaning.change && is_travel(channel)) {
+                points.abscissa = meaning.channel;
+                points.at = table.values[c];
+            }
         }
     }
     if (!points.a.empty() && table.branch.empty())

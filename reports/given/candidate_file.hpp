@@ -19,17 +19,18 @@ struct PointTable {
     compare::Points points;
     std::vector<std::string> parameters;  // names of the columns with a branch parameter
     std::vector<std::string> left_out;    // columns and rows that are not compared
-    std::vector<int> lines;               // of the points
+    std::vector<int> lines;               // lines of the file, one per point
 };
-// Headings and names of tests are the map's, this program's or a rig's (headings.hpp). Of a candidate:
-// `also_known` are channels that it may give and that are not compared; an unknown column is an error
-// unless there is a map. Of a measurement (null): every unknown column is left out, and a cell that is
-// not a finite number is an error. Throws SheetError "file:line: ...".
+// Reads headings as in headings.hpp. For a candidate, `also_known` lists channels that its table
+// may have and that are not compared; an unknown column is an error unless there is a map. For a
+// measurement (`also_known` null) unknown columns are left out, and a cell that is not a finite
+// number is an error. Throws SheetError "file:line: ...".
 PointTable read_points(std::string_view csv, const std::string& file, const Names& names,
                        const std::vector<compare::Channel>* also_known);
-// Keeps the points for which it returns an empty text; the others are left out for that reason, in
-// which they are counted: "3 rows beyond the range of branch 'travel' (lines 5, 6, 9)".
-void keep_rows(PointTable& table, const std::function<std::string(std::size_t point)>& why_not);
+// Removes the points with a reason to be left out, and adds a line for each reason to left_out: "3
+// rows beyond the range of branch 'travel' (lines 5, 6, 9)".
+void keep_rows(PointTable& table,
+               const std::function<std::string(std::size_t point)>& why_left_out);
 
 // Whether a channel is the travel of a wheel, which gives the place of a point.
 bool is_travel(const compare::Channel& channel);

@@ -186,8 +186,10 @@ std::optional<std::pair<Heading, std::string>> heading_of_rig(const Heading& hea
     std::string_view moves = entry != nullptr ? "" : known->moves;
     if (moves == "heave" && std::ranges::none_of(names.tests, [&](const TestBranch& test) {
             return test.moves == moves && !test.by_travel;
-        }))
-        name = compare::figure::wheel_load, moves = "";
+        })) {
+        name = compare::figure::wheel_load;
+        moves = "";
+    }
     if (name != "branch" && name != "parameter" && !side.empty()) {
         const auto is = [&](const std::string& output) {
             return compare::find_channel(names.channels, output) >= 0;

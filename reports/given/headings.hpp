@@ -1,5 +1,5 @@
-// What the columns and rows of a table of other numbers mean in a scene: by its map, by the names of
-// this program, and by those of K&C rigs.
+// What the columns and rows of a table from another program or a rig mean in a scene: by a map, by
+// the names of this program, and by those of K&C rigs.
 #pragma once
 
 #include <optional>
@@ -19,9 +19,8 @@ struct ColumnMap {
         std::string theirs{};
         std::string output{};  // an output of the scene, "parameter" or "branch"
         std::string unit{};    // empty: the output's own
-        double sign = 1,
-               // output = sign · number · unit + offset, the offset in the output's own unit
-            offset = 0;
+        // output = sign · number · unit + offset, the offset in the output's own unit
+        double sign = 1, offset = 0;
         bool change = false;  // relative to the design position
         int line = 0;
     };
@@ -70,10 +69,10 @@ struct Meaning {
     std::size_t channel = 0;
     bool change = false;
     double factor = 1, offset = 0;
-    // of a parameter, as written; empty: the branch's own, or given by a column
+    // unit of a parameter, as written; empty: that of the branch, or given by a column
     std::string unit{};
-    // of a rig's parameter: what it is the parameter of, "lateral force"; elsewhere the column is no
-    // parameter, since a rig records every force in every test
+    // "lateral force": the column is the parameter of tests with this load case and of no others,
+    // since a rig records every force in every test
     std::string moves{};
 };
 // "toe [deg]", "toe_deg", "toe_change_deg", "toe", "load_kN", "branch"; of a rig in any case, with the
@@ -89,8 +88,8 @@ std::string left_out_heading(const std::string& heading, const Names& names);
 // The branches that the name of a rig test may mean, in any case and with - or _ for blanks:
 //   bounce, ride, heave, parallel travel | roll | steer, steering | lateral (force), also opposed or
 //   parallel | aligning torque, also opposed or parallel | braking | traction
-// Of several with that load case the one whose name has the test's word, "braking", else the one whose
-// parameter is a travel; empty if the name is no test.
+// Of several branches with that load case: those whose name contains the word of the test
+// ("braking"), else those whose parameter is a travel. Empty if the name is not that of a test.
 std::vector<std::string> branches_of_test(std::string_view test,
                                           const std::vector<TestBranch>& branches);
 // The branch that a cell means: by the map, its name, or a rig's test. Throws SheetError.

@@ -38,7 +38,8 @@ std::vector<bool> nodes_of(const Model& model) {
                     mark(elastic.written_as == WrittenAs::beam ? beam : other, b);
             },
             elastic.kind);
-    for (const auto& joint : model.joints) mark(other, joint.i), mark(other, joint.j);
+    for (const auto& joint : model.joints)
+        for (const BodyId body : {joint.i, joint.j}) mark(other, body);
     for (const auto& wheel : model.wheels) mark(other, wheel.body);
     for (std::size_t b = 0; b < beam.size(); ++b) beam[b] = beam[b] && !other[b];
     return beam;

@@ -56,7 +56,8 @@ void add(WheelEffects& effects, const Model& model, const LoadKind& load, double
 
 WheelEffects effects_of(const Model& model, const Branch& branch) {
     WheelEffects effects;
-    effects.lift.assign(model.wheels.size(), 0), effects.push = effects.lift;
+    effects.lift.assign(model.wheels.size(), 0);
+    effects.push = effects.lift;
     for (const auto& driver : branch.drivers) {
         if (driver.rate == 0) continue;
         const auto raise = [&](std::optional<std::size_t> wheel, bool& otherwise) {

@@ -31,7 +31,7 @@ nlohmann::ordered_json parse_json(std::string_view text) {
     try {
         return nlohmann::ordered_json::parse(text);
     } catch (const nlohmann::json::exception& error) {
-        throw JsonError(fmt::format("is no JSON, or was cut off ({})", error.what()));
+        throw JsonError(fmt::format("is not JSON, or is cut off ({})", error.what()));
     }
 }
 

@@ -15,9 +15,10 @@ namespace {
 constexpr Colour curve_colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
 
 std::size_t place_of(const Table& table, const std::string& name) {
-    const auto of = std::ranges::find(table.columns, name, &compare::Column::name);
-    if (of == table.columns.end()) throw std::out_of_range("no column " + name);
-    return static_cast<std::size_t>(of - table.columns.begin());
+    const auto column = std::ranges::find(table.columns, name, &compare::Column::name);
+    if (column == table.columns.end())
+        throw std::out_of_range("table " + table.id + " has no column " + name);
+    return static_cast<std::size_t>(column - table.columns.begin());
 }
 
 std::string heading_of(const compare::Column& column) {
@@ -29,7 +30,7 @@ bool has_row(const compare::Chart& chart, const std::vector<compare::Cell>& row)
     return chart.only.empty() || word == nullptr || *word == chart.only;
 }
 
-// The rows of the chart in its columns: the abscissa, then the ordinates. A text is NaN.
+// The rows of the chart in its columns: the abscissa, then chart.y in its order. A text is NaN.
 std::vector<std::vector<double>> chart_rows(const compare::Chart& chart, const Table& table) {
     std::vector<std::size_t> places{place_of(table, chart.x)};
     for (const auto& name : chart.y) places.push_back(place_of(table, name));
@@ -56,6 +57,7 @@ Figure scatter_of(const compare::Chart& chart, const Table& table) {
     return figure;
 }
 
+// Bars: rows of (low end of the bar, high end, height). Marks are vertical lines.
 Figure bars_of(const compare::Chart& chart, const Table& table) {
     Figure figure{.description = fmt::format("{} of {}.", chart.title, chart.only),
                   .x = chart.axis,
@@ -76,25 +78,27 @@ Figure bars_of(const compare::Chart& chart, const Table& table) {
     return figure;
 }
 
+// A horizontal bar for each of the largest rows: rows of (NaN, value) or (NaN, value, low and high
+// end of its interval).
 Figure ranking_of(const compare::Chart& chart, const Table& table) {
-    constexpr std::size_t most = 8;
+    constexpr std::size_t max_bars = 8;
     struct Ranked {
         std::string name;
         std::vector<double> values;
     };
-    std::vector<Ranked> all;
+    std::vector<Ranked> ranked;
     const auto numbers = chart_rows(chart, table);
     for (const auto& row : table.rows)
         if (has_row(chart, row))
-            all.push_back(
-                {std::get<std::string>(row[place_of(table, chart.x)]), numbers[all.size()]});
+            ranked.push_back(
+                {std::get<std::string>(row[place_of(table, chart.x)]), numbers[ranked.size()]});
     std::ranges::stable_sort(
-        all, [](const Ranked& a, const Ranked& b) { return a.values[1] > b.values[1]; });
-    all.resize(std::min(all.size(), most));
+        ranked, [](const Ranked& a, const Ranked& b) { return a.values[1] > b.values[1]; });
+    ranked.resize(std::min(ranked.size(), max_bars));
     Figure figure{.description = fmt::format("{} of {}:", chart.axis, chart.only), .x = chart.axis};
     Series bars{.style = Series::Style::bars, .colour = blue},
         intervals{.title = "interval of 95 %"};
-    for (const auto& [name, values] : all) {
+    for (const auto& [name, values] : ranked) {
         const double value = values[1], place = -1. - static_cast<double>(figure.y_ticks.size());
         figure.description += fmt::format("{} {} {:.2g}", place < -1 ? ";" : "", name, value);
         figure.y_ticks.emplace_back(place, name);
@@ -105,9 +109,9 @@ Figure ranking_of(const compare::Chart& chart, const Table& table) {
                                   {{values[2], place}, {values[3], place}, {}});
     }
     figure.description += ".";
-    figure.y_low = -0.6 - static_cast<double>(all.size());
+    figure.y_low = -0.6 - static_cast<double>(ranked.size());
     figure.y_high = -0.4;
-    figure.height = 0.45 + 0.08 * static_cast<double>(all.size());
+    figure.height = 0.45 + 0.08 * static_cast<double>(ranked.size());
     figure.series.push_back(std::move(bars));
     if (!intervals.rows.empty()) figure.series.push_back(std::move(intervals));
     return figure;
@@ -135,24 +139,24 @@ Figure figure_of(const compare::Chart& chart, const Table& table, const std::str
     for (const auto& name : chart.y) {
         const std::size_t ordinate = place_of(table, name);
         for (const auto& row : table.rows) {
-            const auto *at = std::get_if<double>(&row[x]),
+            const auto can_be_drawn = [](const double* number, bool logarithmic) {
+                return number != nullptr && std::isfinite(*number) && (!logarithmic || *number > 0);
+            };
+            const auto *abscissa = std::get_if<double>(&row[x]),
                        *value = std::get_if<double>(&row[ordinate]);
-            if (at == nullptr || value == nullptr || !std::isfinite(*at) ||
-                !std::isfinite(*value) || (chart.log_x && !(*at > 0)) ||
-                (chart.log_y && !(*value > 0)))
-                continue;
+            if (!can_be_drawn(abscissa, chart.log_x) || !can_be_drawn(value, chart.log_y)) continue;
             std::string title = chart.y.size() > 1 ? name : "";
-            for (const auto& by : chart.by)
-                title +=
-                    (title.empty() ? "" : ", ") + std::get<std::string>(row[place_of(table, by)]);
-            auto of = std::ranges::find(figure.series, title, &Series::title);
-            if (of == figure.series.end()) {
+            for (const auto& column : chart.by)
+                title += (title.empty() ? "" : ", ") +
+                         std::get<std::string>(row[place_of(table, column)]);
+            auto curve = std::ranges::find(figure.series, title, &Series::title);
+            if (curve == figure.series.end()) {
                 const std::size_t n = figure.series.size();
-                of = figure.series.insert(
-                    of, {title, Series::Style::line_points,
-                         curve_colours[n % std::size(curve_colours)], static_cast<int>(n)});
+                curve = figure.series.insert(
+                    curve, {title, Series::Style::line_points,
+                            curve_colours[n % std::size(curve_colours)], static_cast<int>(n)});
             }
-            of->rows.push_back({*at, *value});
+            curve->rows.push_back({*abscissa, *value});
         }
     }
     return figure;
@@ -161,7 +165,8 @@ Figure figure_of(const compare::Chart& chart, const Table& table, const std::str
 void add_tolerance(Figure& figure, double tolerance, const std::string& unit, int decades) {
     double low = INFINITY, high = -INFINITY;
     const auto take = [&](double value) {
-        low = std::min(low, value), high = std::max(high, value);
+        low = std::min(low, value);
+        high = std::max(high, value);
     };
     if (std::isfinite(tolerance)) take(tolerance);
     for (const auto& series : figure.series)

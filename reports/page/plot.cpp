@@ -58,7 +58,9 @@ double round_step(double least) {
 struct Range {
     double low = INFINITY, high = -INFINITY;
     void take(double value) {
-        if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+        if (!std::isfinite(value)) return;
+        low = std::min(low, value);
+        high = std::max(high, value);
     }
 };
 
@@ -98,9 +100,10 @@ Range coordinates(const Figure& figure, std::size_t column, bool logarithmic) {
     Range range;
     for (const auto& series : figure.series)
         for (const auto& row : series.rows)
-            if (series.style == Series::Style::bars)
-                range.take(row[2 + 2 * column]), range.take(row[3 + 2 * column]);
-            else if (row.size() > column)
+            if (series.style == Series::Style::bars) {
+                range.take(row[2 + 2 * column]);
+                range.take(row[3 + 2 * column]);
+            } else if (row.size() > column)
                 range.take(logarithmic ? std::log10(row[column]) : row[column]);
     return range;
 }
@@ -125,7 +128,8 @@ Range bulk_of(const Figure& figure, const Range& all) {
                      high = std::min(y.back(), at(0.75) + fence * half);
         const bool cut = y.size() >= 9 && half > 1e-6 * (all.high - all.low) &&
                          y.back() - y.front() > 3 * (high - low);
-        bulk.take(cut ? low : y.front()), bulk.take(cut ? high : y.back());
+        bulk.take(cut ? low : y.front());
+        bulk.take(cut ? high : y.back());
     }
     return all.high - all.low > 3 * (bulk.high - bulk.low) ? bulk : all;
 }
@@ -200,13 +204,16 @@ std::string rectangle(double left, double top, double right, double bottom) {
 std::string clipped(const std::vector<PaperPoint>& points, double top, double bottom) {
     std::string path;
     std::vector<PaperPoint> piece;
-    const auto flush = [&] { path += Svg::polyline(piece), piece.clear(); };
+    const auto flush = [&] {
+        path += Svg::polyline(piece);
+        piece.clear();
+    };
     for (std::size_t k = 1; k < points.size(); ++k) {
         const PaperPoint &a = points[k - 1], &b = points[k];
         double from = 0, to = 1;
         if (a.y != b.y) {
             const double enter = (top - a.y) / (b.y - a.y), leave = (bottom - a.y) / (b.y - a.y);
-            from = std::max(from, std::min(enter, leave)),
+            from = std::max(from, std::min(enter, leave));
             to = std::min(to, std::max(enter, leave));
         } else if (a.y < top || a.y > bottom) {
             to = -1;
@@ -288,7 +295,10 @@ std::vector<Entry> legend(const Figure& figure, double lines_width) {
     int line = 0;
     for (auto& entry : entries) {
         const double need = sample + 4 + text_width(entry.text, letter);
-        if (x > 0 && x + need > lines_width) x = 0, ++line;
+        if (x > 0 && x + need > lines_width) {
+            x = 0;
+            ++line;
+        }
         entry.x = x;
         entry.line = line;
         x += need + 6;
@@ -327,9 +337,9 @@ Svg draw_plot(const Figure& figure) {
     double right = width - 20;
     const double bottom = svg.height - (figure.log_x ? 47 : 43);
     const auto end = [&](double value) { return figure.log_y ? std::log10(value) : value; };
-    const Range all = coordinates(figure, 1, figure.log_y);
+    const Range whole = coordinates(figure, 1, figure.log_y);
     const bool free = !figure.log_y && std::isnan(figure.y_low) && std::isnan(figure.y_high);
-    const Range shown = free ? bulk_of(figure, all) : all;
+    const Range shown = free ? bulk_of(figure, whole) : whole;
     const auto vertical = [&](double top) {
         Axis axis = ticked(figure.log_y, shown, end(figure.y_low), end(figure.y_high),
                            (bottom - top) / (figure.log_y ? 22 : 15));
@@ -399,10 +409,11 @@ Svg draw_plot(const Figure& figure) {
             top, bottom);
         svg.elements += "</g>";
     }
-    if (shown.low != all.low || shown.high != all.high)
-        svg.text({left + 6, top + 12},
-                 fmt::format("axis cut: values from {} to {}", number(all.low), number(all.high)),
-                 slate, "start");
+    if (shown.low != whole.low || shown.high != whole.high)
+        svg.text(
+            {left + 6, top + 12},
+            fmt::format("axis cut: values from {} to {}", number(whole.low), number(whole.high)),
+            slate, "start");
     // for the script of the page: pixels and coordinates of the ends of the axes, and their names
     const auto add_axis = [&](char name, const Axis& axis, const std::string& words) {
         svg.of_image += fmt::format(" data-{0}=\"{1} {2} {3:.8g} {4:.8g} {5:d}\" data-{0}n=\"{6}\"",

@@ -202,7 +202,10 @@ std::vector<LegendPosition> legend_positions(const std::vector<Sign>& list, doub
     int line = 0;
     for (const auto& entry : list) {
         const double need = 38 + text_width(entry.legend, letter) + 12;
-        if (x > 6 && x + need > width) x = 6, ++line;
+        if (x > 6 && x + need > width) {
+            x = 6;
+            ++line;
+        }
         result.push_back({x, line});
         x += need;
     }
@@ -351,8 +354,10 @@ void draw_names(Canvas& canvas, const Suspension& s) {
 struct Extent {
     double left = INFINITY, right = -INFINITY, bottom = INFINITY, top = -INFINITY;
     void take(PaperPoint p) {
-        left = std::min(left, p.x), right = std::max(right, p.x);
-        bottom = std::min(bottom, p.y), top = std::max(top, p.y);
+        left = std::min(left, p.x);
+        right = std::max(right, p.x);
+        bottom = std::min(bottom, p.y);
+        top = std::max(top, p.y);
     }
     double width() const { return std::max(right - left, 1.0); }
     double height() const { return std::max(top - bottom, 1.0); }

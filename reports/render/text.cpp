@@ -131,14 +131,17 @@ std::string text(const Table& table) {
 }
 
 std::string text(const compare::Result& result) {
-    std::string all;
+    std::string written;
     const auto line = [&](const std::string& what) {
-        if (!what.empty()) all += what + "\n";
+        if (!what.empty()) written += what + "\n";
     };
     const auto gap = [&] {
-        if (!all.empty() && !all.ends_with("\n\n")) all += "\n";
+        if (!written.empty() && !written.ends_with("\n\n")) written += "\n";
     };
-    for (const auto& paragraph : result.about) line(paragraph), gap();
+    for (const auto& paragraph : result.about) {
+        line(paragraph);
+        gap();
+    }
     for (const auto& table : result.tables) {
         if (table.detail) continue;
         const std::string rows = table.rows.empty() ? "" : text(table);
@@ -146,7 +149,7 @@ std::string text(const compare::Result& result) {
             table.notes.empty())
             continue;
         line(table.caption);
-        if (rows.find_first_not_of('\n') != std::string::npos) all += rows;
+        if (rows.find_first_not_of('\n') != std::string::npos) written += rows;
         for (const auto& note : table.notes) line("  " + note);
         gap();
     }
@@ -154,8 +157,8 @@ std::string text(const compare::Result& result) {
     if (!result.notes.empty()) gap();
     for (const auto& reason : result.verdict.reasons) line("inconclusive: " + reason);
     line(result.verdict.sentence);
-    while (all.ends_with("\n\n")) all.pop_back();
-    return all;
+    while (written.ends_with("\n\n")) written.pop_back();
+    return written;
 }
 
 }  // namespace elastocheck::reports

@@ -167,13 +167,13 @@ std::vector<ColumnOf<Left>> columns_of_states(bool of_all) {
 
 // The largest residuals of the states on a branch, and those of every state.
 void add_states(const compare::Leftover& left, compare::Result& result) {
-    std::vector<Left> all, largest;
+    std::vector<Left> states, largest;
     for (const auto& [leg, list] :
          {std::pair{"equilibrium", &left.truth}, {compare::name(left.second), &left.by_second}}) {
         Left worst{&left, leg, nan, {}};
         for (std::size_t k = 0; k < list->size(); ++k) {
             const Residuals& r = (*list)[k];
-            all.push_back({&left, leg, left.a[k], r});
+            states.push_back({&left, leg, left.a[k], r});
             if (std::isnan(worst.a) ||
                 compare::worse(r.force, worst.residuals.force) != worst.residuals.force)
                 worst.a = left.a[k];
@@ -190,7 +190,7 @@ void add_states(const compare::Leftover& left, compare::Result& result) {
         table.notes.push_back(fmt::format("{} of its states are not judged: {}",
                                           left.truth.empty() ? "all" : "some", left.why_not));
     result.tables.push_back(std::move(table));
-    result.tables.push_back(compare::table("residuals", columns_of_states(true), all));
+    result.tables.push_back(compare::table("residuals", columns_of_states(true), states));
 }
 
 // Largest imbalance of the states in the equilibrium leg [N], [N·m]; 0 without states;
@@ -198,8 +198,10 @@ void add_states(const compare::Leftover& left, compare::Result& result) {
 std::pair<double, double> imbalance(const CandidateJudgement& j) {
     double force = 0, moment = 0;
     for (const auto& left : j.leftovers)
-        for (const auto& of : left.truth)
-            force = std::max(force, of.force), moment = std::max(moment, of.moment);
+        for (const auto& of : left.truth) {
+            force = std::max(force, of.force);
+            moment = std::max(moment, of.moment);
+        }
     return {force, moment};
 }
 

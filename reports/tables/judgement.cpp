@@ -16,8 +16,8 @@ using compare::Assessment;
 using compare::Grade;
 using compare::Worst;
 
-constexpr double nothing = 1e-9;        // [mm], [deg]: smaller deviations are rounding
-constexpr double nothing_of_it = 1e-6;  // share of an extent: likewise
+constexpr double zero_deviation = 1e-9;  // [mm], [deg]: smaller deviations are rounding
+constexpr double zero_share = 1e-6;      // share of an extent: likewise
 
 std::string subject(const Assessment& j) {
     if (j.method.empty() || j.method == "published") return "the linear recursion as published";
@@ -41,8 +41,7 @@ std::string other_of(const Assessment& j) {
     const bool crosswise =
         !std::isnan(taken(j.other)) && !(taken(j.other_across) <= (1 + 1e-6) * taken(j.other));
     const auto& worst = crosswise ? j.other_across : j.other;
-    if (!worst || !(worst->max >= nothing_of_it * worst->extent || std::isnan(worst->max)))
-        return "";
+    if (!worst || !(worst->max >= zero_share * worst->extent || std::isnan(worst->max))) return "";
     return fmt::format("{}, {} of its extent ({}, branch {}{})", size(*worst, worst->limit),
                        percent(worst->max / worst->extent), as_words(worst->channel), worst->branch,
                        crosswise ? ", at equal position" : "");
@@ -59,7 +58,7 @@ std::string worst_of(const Assessment& j) {
             *across &&
             (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (1 + 1e-6) * (*at)->max)));
         const auto& worst = crosswise ? *across : *at;
-        if (!worst || (worst->max < nothing && worst->max <= limit)) continue;
+        if (!worst || (worst->max < zero_deviation && worst->max <= limit)) continue;
         parts.push_back(fmt::format("{} ({}, branch {}{})", size(*worst, limit),
                                     as_words(worst->channel), worst->branch,
                                     crosswise ? ", at equal position" : ""));
@@ -103,7 +102,8 @@ std::string deviations(const Assessment& j) {
 std::string deviation_text(double value, double limit, const char* unit) {
     if (std::isnan(value)) return "not a number";
     if (value > limit && value < 1.1 * limit) return fmt::format("{:.6g} {}", value, unit);
-    if (value < nothing) return value > limit ? fmt::format("{:.1e} {}", value, unit) : "nothing";
+    if (value < zero_deviation)
+        return value > limit ? fmt::format("{:.1e} {}", value, unit) : "nothing";
     return quantity(value, unit);
 }
 

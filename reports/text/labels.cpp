@@ -25,7 +25,8 @@ bool crosses(const PaperPoint& a, const PaperPoint& b, const Box& box) {
         if (step == 0) return start >= low && start <= high;
         double enter = (low - start) / step, leave = (high - start) / step;
         if (enter > leave) std::swap(enter, leave);
-        from = std::max(from, enter), to = std::min(to, leave);
+        from = std::max(from, enter);
+        to = std::min(to, leave);
         return from <= to;
     };
     return clip(a.x, b.x - a.x, box.left, box.right) && clip(a.y, b.y - a.y, box.bottom, box.top);
@@ -130,8 +131,11 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
                 double cost = reach;
                 for (const auto& line : paper.lines)
                     if (crosses(line[0], line[1], box_with_gap)) cost += cost_of_crossing;
-                if (cost < best_cost)
-                    best_cost = cost, best_box = box, best_leader = {label.at, nearest};
+                if (cost < best_cost) {
+                    best_cost = cost;
+                    best_box = box;
+                    best_leader = {label.at, nearest};
+                }
             }
         placed[k] = best_box;
         if (!best_box) continue;

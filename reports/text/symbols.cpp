@@ -16,7 +16,10 @@ struct LineFrame {
 
     LineFrame(PaperPoint a, PaperPoint b)
         : from(a), length(std::hypot(b.x - a.x, b.y - a.y)), ux(1), uy(0) {
-        if (length > 0) ux = (b.x - a.x) / length, uy = (b.y - a.y) / length;
+        if (length > 0) {
+            ux = (b.x - a.x) / length;
+            uy = (b.y - a.y) / length;
+        }
     }
     PaperPoint at(double along, double across) const {
         return {from.x + along * ux - across * uy, from.y + along * uy + across * ux};

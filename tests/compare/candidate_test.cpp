@@ -343,7 +343,7 @@ TEST(Candidate, ConstantColumnsAreNotJudged) {
 }
 
 // As Ackermann straight ahead: the reason names the output, not its points.
-TEST(Candidate, UndefinedOnlyOutputIsNotJudged) {
+TEST(Candidate, CandidateWhoseOnlyOutputIsUndefinedIsNotJudged) {
     Comparison comparison = solved().comparison;
     const std::size_t toe = solved().channel("toe");
     for (auto& branch : comparison.branches) branch.determined[toe] = false;

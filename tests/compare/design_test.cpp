@@ -551,7 +551,7 @@ TEST(Optimise, KeepsToeOfAMcPhersonWithinABandOverItsTravel) {
 
 // ---- Tolerances.
 
-TEST(Tolerances, ShareOfEachAddsUpAndTheWorstCaseIsTheSum) {
+TEST(Tolerances, SharesSumToOneAndWorstCasesAddUp) {
     ToleratedNumbers numbers{
         {"a", "b"}, list_of({2, std::sqrt(3.0)}), list_of({6, 3}), MatrixXd::Identity(2, 2)};
     const Scatter f = scatter(list_of({3, -1}), numbers), g = scatter(list_of({0, 0}), numbers);

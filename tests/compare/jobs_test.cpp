@@ -108,7 +108,7 @@ TEST(Solves, StudiesOfAReportSolveEachRunOnce) {
     }
 }
 
-TEST(Solves, SharedStudyEqualsASeparateStudy) {
+TEST(Solves, StudyOfSharedSolvesEqualsASeparateStudy) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Solves solves(model, 10, 4);
     const StudyOptions options{.steps = {20, 40, 80, 160, 320, 640}};

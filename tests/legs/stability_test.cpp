@@ -106,7 +106,7 @@ TEST_P(Stability, UnstableStretchEndsTheBranchForAnyOutputPoints) {
     }
 }
 
-TEST_P(Stability, ArchWithoutLateralBucklingIsPassed) {
+TEST_P(Stability, BranchOfAnArchThatDoesNotBuckleSidewaysReachesItsEnd) {
     const Arch arch;
     for (const double part : {1.5, 1.05, 1.01, 1.002})
         for (const bool driven : {true, false})

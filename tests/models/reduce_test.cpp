@@ -349,7 +349,7 @@ TEST(Link, BodyWithAnotherJointOrCoincidentBallsIsKept) {
     for (const Scene& scene : {hinged, short_link}) EXPECT_EQ(names(compile(scene).bodies), "a b");
 }
 
-TEST(Link, DistanceTakesAFreeName) {
+TEST(Link, DistanceJointOfALinkGetsAnUnusedName) {
     Scene own = linked();
     own.joints[0].name = "b";  // name of the removed link
     const Model model = compile(own);

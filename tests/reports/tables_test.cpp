@@ -54,7 +54,7 @@ TEST(Tables, TextTableIsNarrowAndOmitsEmptyColumns) {
     EXPECT_EQ(text(one), "  n  who\n  4  c\n");
 }
 
-TEST(Tables, ThePageShowsTheSameColumns) {
+TEST(Tables, PageShowsTheColumnsOfTheTerminal) {
     const compare::Table told{{{"who", "", "", true, Digits::words},
                                {"told", "m", "", false, Digits::given},
                                {"count", "", "", false, Digits::whole, "how many"},

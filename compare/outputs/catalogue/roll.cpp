@@ -108,9 +108,10 @@ double roll_stiffness(const Subject& x) {
     return ratio(track * track, rise, rigid);
 }
 
-// The part of the elements of one kind in it: their part of the work of the unit forces, which is
-// their rise, is Σ Δs·Δe, with Δe their deformation and Δs their force by these. The rest of the work
-// is that of preloads, whose directions turn.
+// The part of the elements of one kind in the roll stiffness. The work of the unit forces equals
+// the rise of their points; Σ Δs·Δe over the elements of the kind is their part of it, with Δe the
+// deformations and Δs the forces under these unit forces. The remainder is the work of preloads,
+// which turn.
 enum class Carries { spring, bar, bushing };
 Carries carries(const Elastic& elastic) {
     if (member<ScalarLaw>(elastic.kind) != nullptr) return Carries::spring;

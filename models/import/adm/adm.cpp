@@ -231,7 +231,7 @@ void require_ids(const Dataset& data) {
     std::map<std::pair<std::string_view, int>, int> lines;
     for (const Statement& s : data.statements) {
         if (s.is("UNITS ACCGRAV") || role_of(s.keyword) != Role::converted) continue;
-        if (s.id == 0) s.fail("has no id");
+        if (s.id == 0) s.fail("has no id; expected: {}/ID", s.keyword);
         const auto [first, is_new] = lines.try_emplace({s.keyword, s.id}, s.line);
         if (!is_new) s.fail("duplicate id, first in line {}", first->second);
     }

@@ -263,10 +263,11 @@ class Parser {
 
     // A function that is known where its arguments are.
     Value of_numbers(const std::string& name, const std::vector<Value>& p) const {
-        const auto one = std::ranges::find(unary, name, &std::pair<std::string_view, Unary>::first);
-        const auto found = std::ranges::find(functions, name, &Function::name);
-        const bool is_unary = one != std::end(unary);
-        if (!is_unary && found == std::end(functions))
+        const auto of_one_argument =
+            std::ranges::find(unary, name, &std::pair<std::string_view, Unary>::first);
+        const auto function = std::ranges::find(functions, name, &Function::name);
+        const bool is_unary = of_one_argument != std::end(unary);
+        if (!is_unary && function == std::end(functions))
             return unknown(fmt::format("{}(...), an unsupported function", name));
         Numbers numbers;
         Value result;
@@ -285,10 +286,10 @@ class Parser {
         if (name == "STEP" && p.size() == 5)
             for (const std::size_t edge : {1, 3}) note_event(p[0], p[edge].constant);
         if (result.of_time) result.per_time = NAN;
-        if (numbers.size() < (is_unary ? 1 : found->least) ||
-            numbers.size() > (is_unary ? 1 : found->most))
+        if (numbers.size() < (is_unary ? 1 : function->least) ||
+            numbers.size() > (is_unary ? 1 : function->most))
             return unknown(fmt::format("{} with {} arguments", name, numbers.size()));
-        result.constant = is_unary ? one->second(numbers[0]) : found->f(numbers);
+        result.constant = is_unary ? of_one_argument->second(numbers[0]) : function->f(numbers);
         if (!std::isfinite(result.constant))
             return unknown(name + " of numbers for which it is not defined");
         return result;

@@ -413,23 +413,23 @@ struct VectorForce {
     // Splits the components into a stiffness and curves of their own displacement.
     std::string split(Matrix6& K, std::array<Value, 6>& curves) {
         for (int r = 0; r < 6; ++r) {
-            const auto at = static_cast<std::size_t>(r);
-            const std::string name = components[at],
+            const auto component = static_cast<std::size_t>(r);
+            const std::string name = components[component],
                               other = name +
                                       ": a force that depends on a displacement other than "
                                       "that of its own marker in the axes of the force";
             double sign = 1;
-            for (const auto& [measure, k] : value[at].linear) {
+            for (const auto& [measure, k] : value[component].linear) {
                 const int axis = axis_of(measure, sign);
                 if (axis < 0) return other;
                 K(r, axis) += -sign * k;
             }
-            for (CurveTerm term : value[at].curves) {
+            for (CurveTerm term : value[component].curves) {
                 if (axis_of(term.of, sign) != r) return other;
                 if (term.kind == CurveTerm::Kind::impact)
                     return name + ": a contact in one direction of a vector";
                 term.scale *= sign;
-                curves[at].curves.push_back(term);
+                curves[component].curves.push_back(term);
             }
         }
         return {};

@@ -304,10 +304,13 @@ struct Scanner {
             if (std::ranges::find(arguments, argument.name, &Argument::name) != arguments.end())
                 statement.fail("{} is given twice", argument.name);
             text.remove_prefix(assigns ? text.find('=') + 1 : written.size());
-            if (assigns && form.find(" " + argument.name + "=f ") != form.npos)
-                argument.kind = Argument::Kind::expression, argument.values = {expression()};
-            else if (assigns)
-                argument.kind = Argument::Kind::values, argument.values = values();
+            if (assigns && form.find(" " + argument.name + "=f ") != form.npos) {
+                argument.kind = Argument::Kind::expression;
+                argument.values = {expression()};
+            } else if (assigns) {
+                argument.kind = Argument::Kind::values;
+                argument.values = values();
+            }
             arguments.push_back(std::move(argument));
         }
     }

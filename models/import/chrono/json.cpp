@@ -4,7 +4,6 @@
 
 #include "models/import/chrono/suspension.hpp"
 #include "models/reader/document/characters.hpp"
-#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
 namespace {

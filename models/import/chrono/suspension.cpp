@@ -434,25 +434,25 @@ void Suspension::add_stops(const Cursor& data, double drawn, bool alone, Fields&
 
 void Suspension::tsda(const std::string& name, const std::string& i, const Vector3d& from,
                       const std::string& j, const Vector3d& to, const Cursor& data) {
-    const SourceLocation here{data.value->line, data.path};
+    const SourceLocation source{data.value->line, data.path};
     const double drawn = (to - from).norm();
     Fields ends, law_fields;
     ends.add("bodies", pair(i, j))
-        .add("from", hardpoint(name + ".top", {from, here}))
-        .add("to", hardpoint(name + ".seat", {to, here}));
+        .add("from", hardpoint(name + ".top", {from, source}))
+        .add("to", hardpoint(name + ".seat", {to, source}));
     const auto put = [&](std::vector<Entry>& list) {
-        list.push_back({element_names_.take(on_side(name)), ends.braced(), here});
+        list.push_back({element_names_.take(on_side(name)), ends.braced(), source});
     };
     const auto put_damper = [&] {
         if (options_.drop_dynamics)
-            draft_.notes.leave_out("by --drop dynamics", here);
+            draft_.notes.leave_out("by --drop dynamics", source);
         else
             put(draft_.dampers);
     };
     const Law law = law_of(data);
     if (law == Law::none)
         return draft_.notes.miss(
-            here, "neither a spring nor a damper: Chrono has no element of these fields");
+            source, "neither a spring nor a damper: Chrono has no element of these fields");
     if (law == Law::damper) return put_damper();
     const double preload = number_or_zero(data, "Preload");
     const auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
@@ -497,7 +497,8 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     }
     if (is_nothing && !has_stops) return put_damper();
     if (side > 0 && force < 0 && !is_nothing)
-        draft_.notes.warn(here, fmt::format("in tension at the design position: {:.4g} N", -force));
+        draft_.notes.warn(source,
+                          fmt::format("in tension at the design position: {:.4g} N", -force));
     if (!is_nothing) ends.add(law_fields);
     if (has_stops) add_stops(data, drawn, is_nothing, ends);
     put(is_nothing ? draft_.stops : draft_.springs);
@@ -508,17 +509,17 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
 // P - k (angle - free), and the angle is 0 at the design position.
 void Suspension::rsda(const std::string& name, const std::string& i, const std::string& j,
                       const Vector3d& p, const Vector3d& axis, const Cursor& data) {
-    const SourceLocation here{data.value->line, data.path};
+    const SourceLocation source{data.value->line, data.path};
     const Law law = law_of(data);
     if (law == Law::none || law == Law::map)
         return draft_.notes.miss(
-            here, "neither a spring nor a damper: Chrono has no element of these fields");
-    if (law == Law::damper) return draft_.notes.leave_out("without effect at rest", here);
+            source, "neither a spring nor a damper: Chrono has no element of these fields");
+    if (law == Law::damper) return draft_.notes.leave_out("without effect at rest", source);
     const double preload = number_or_zero(data, "Preload"),
                  free = number_or_zero(data, "Free Angle");
     if (side < 0 && (preload != 0 || free != 0))
         draft_.notes.warn(
-            here,
+            source,
             "on the right the y component of its axis is reversed, so that its torque at rest is "
             "not the mirror image of the left one's; the scene is the same as Chrono");
     Fields law_fields;
@@ -531,7 +532,7 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
         law_fields.add("curve",
                        linear(rows_of(data.require("Spring Curve Data"), free, preload), false));
     }
-    torsion({name, i, j}, {p, here}, axis, law_fields);
+    torsion({name, i, j}, {p, source}, axis, law_fields);
 }
 
 void Suspension::torsion(const Between& part, const FilePoint& at, const Vector3d& axis,

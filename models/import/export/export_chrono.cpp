@@ -312,12 +312,12 @@ class ChronoWriter {
 
     void stops_of(json& one, const AxialSpring& spring) {
         constexpr double never = 1e3;  // [m]
-        std::optional<double> least, most;
+        std::optional<double> shortest, longest;
         for (const Elastic& elastic : scene_.elastics) {
             const auto* stop = std::get_if<AxialSpring>(&elastic.kind);
             if (elastic.written_as != WrittenAs::stop || !is_between_same(*stop, spring)) continue;
             const auto touches = touching(*stop);
-            auto& length = touches && touches->first ? least : most;
+            auto& length = touches && touches->first ? shortest : longest;
             if (!touches || length) continue;
             length = touches->second;
             written_.insert(elastic.name);
@@ -328,9 +328,9 @@ class ChronoWriter {
                                            "smoothly: the difference is up to {:.3g} of {:.3g} N",
                                            apart.force, apart.of));
         }
-        if (!least && !most) return;
-        one["Minimum Length"] = least.value_or(0);
-        one["Maximum Length"] = most.value_or(never);
+        if (!shortest && !longest) return;
+        one["Minimum Length"] = shortest.value_or(0);
+        one["Maximum Length"] = longest.value_or(never);
     }
 
     void require_written(const Elastic& elastic, const AxialSpring& stop) {

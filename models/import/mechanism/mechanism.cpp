@@ -67,7 +67,10 @@ PlacedPoint understood(std::string name, const Vector3d& at, const SourceLocatio
         bool is_mark = false;
         const Value& marks = mechanism_table("marks");
         for (std::size_t k = 0; k < marks.keys.size(); ++k)
-            if (lists(marks.items[k], word)) point.marks.insert(marks.keys[k]), is_mark = true;
+            if (lists(marks.items[k], word)) {
+                point.marks.insert(marks.keys[k]);
+                is_mark = true;
+            }
         if (is_mark) continue;
         const Value& known = mechanism_table("words");
         const auto same = std::ranges::find_if(

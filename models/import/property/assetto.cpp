@@ -135,9 +135,9 @@ struct AssettoReader {
 
     // The two lowest links are the lower ones; the fifth is a bar across.
     void read_live_axle(const Value& type) {
-        const auto of = ini.optional("AXLE");
-        if (!of) fail(file, 0, "[AXLE]", "missing; it has the links of the axle");
-        const Cursor given = of->require("LINK_COUNT");
+        const auto links_of_axle = ini.optional("AXLE");
+        if (!links_of_axle) fail(file, 0, "[AXLE]", "missing; it has the links of the axle");
+        const Cursor given = links_of_axle->require("LINK_COUNT");
         const double count = given.number();
         if (count != 4 && count != 5)
             fail(file, given.value->line, "LINK_COUNT", "{:g}; known: 4, 5", count);
@@ -150,7 +150,7 @@ struct AssettoReader {
         std::vector<Link> links;
         for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(count); ++k) {
             const std::string& key = entry(type, "points")->items[k].text;
-            add_point(*of, key, 0, 1);
+            add_point(*links_of_axle, key, 0, 1);
             if (k % 2 && k < 8)
                 links.push_back({key.substr(0, 2), draft.points.positions().back()});
             if (k >= 8)
@@ -166,8 +166,9 @@ struct AssettoReader {
                                                     k < 2 ? "lower" : "upper", end, links[k].key,
                                                     part));
         }
-        const double seat = half_track * (version >= 4 ? number_or(of, "ATTACH_REL_POS", 1) : 1),
-                     leaf = version >= 3 ? number_or(of, "LEAF_SPRING_LAT_K", 0) : 0;
+        const double seat = half_track *
+                            (version >= 4 ? number_or(links_of_axle, "ATTACH_REL_POS", 1) : 1),
+                     leaf = version >= 3 ? number_or(links_of_axle, "LEAF_SPRING_LAT_K", 0) : 0;
         for (const auto& [side, sign] : {std::pair{"left", 1.0}, {"right", -1.0}}) {
             const std::string of_side = side;
             add_point(of_side + "_wheel_centre", source_of(axle, "TRACK").line, 0,
@@ -181,7 +182,7 @@ struct AssettoReader {
                      fmt::format("{{bodies: [ground, axle], at: {}_seat, rates: [0, {}, 0], "
                                  "rotational_rates: [0, 0, 0]}}",
                                  side, computed(leaf / 1000)),
-                     source_of(*of, "LEAF_SPRING_LAT_K")});
+                     source_of(*links_of_axle, "LEAF_SPRING_LAT_K")});
         }
         add_bar();
     }

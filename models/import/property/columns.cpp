@@ -46,7 +46,7 @@ Map map_of(const std::string& text, const std::string& file) {
         const Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
                             std::string(reader::trimmed(piece.substr(equals + 1)))};
         if (std::ranges::find(keys, chosen.key) == keys.end())
-            fail(file, 0, "--columns", "{} is nothing that a point has{}",
+            fail(file, 0, "--columns", "{} is not a property of a point{}",
                  reader::quote(chosen.key), reader::did_you_mean(chosen.key, keys, "allowed"));
         if (has(map, chosen.key)) fail(file, 0, "--columns", "{} is given twice", chosen.key);
         if (chosen.column.empty()) fail(file, 0, "--columns", "no column for {}", chosen.key);
@@ -107,7 +107,10 @@ const SheetRow* likely_head(const Sheet& sheet) {
         const auto words = std::ranges::count_if(sheet.rows[r].cells, [](const std::string& cell) {
             return !cell.empty() && !is_number(cell);
         });
-        if (words > most) most = words, head = &sheet.rows[r];
+        if (words > most) {
+            most = words;
+            head = &sheet.rows[r];
+        }
     }
     return head;
 }
@@ -299,11 +302,14 @@ std::size_t resolved(const Sheet& sheet, const std::string& file, const Chosen& 
 
 Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
     Found found;
-    std::ptrdiff_t most = 0;
+    std::ptrdiff_t max_of_map = 0;
     for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) {
         const auto of_map = std::ranges::count_if(
             map, [&](const Chosen& c) { return !headed(sheet.rows[r], c.column).empty(); });
-        if (of_map > most) most = of_map, found.head = r;
+        if (of_map > max_of_map) {
+            max_of_map = of_map;
+            found.head = r;
+        }
     }
     std::map<std::size_t, std::string> used;
     std::map<std::string, Triple> triples;  // by the prefix of their names
@@ -397,9 +403,10 @@ void find_unit(const Sheet& sheet, const std::string& file, std::size_t head,
             columns.unit = unit;
             columns.unit_from = from;
         }
-    if (!option.empty())
-        columns.unit = option, columns.unit_from = "by --unit";
-    else if (!first_without.empty())
+    if (!option.empty()) {
+        columns.unit = option;
+        columns.unit_from = "by --unit";
+    } else if (!first_without.empty())
         fail(file, sheet.rows[head == no_row ? columns.first : head].line, first_without,
              "no unit in its heading or below it; say it with --unit: {}",
              fmt::join(length_units, ", "));

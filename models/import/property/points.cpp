@@ -131,7 +131,10 @@ void warn_of_equal_sides(const std::vector<NamedPoint>& points, Notes& notes) {
         if (point.name.starts_with("right_"))
             if (const auto twin = left.find(point.name.substr(6)); twin != left.end()) {
                 ++pairs;
-                if (twin->second * point.at[1] > 0) ++same, line = point.line;
+                if (twin->second * point.at[1] > 0) {
+                    ++same;
+                    line = point.line;
+                }
             }
     if (same > 0)
         notes.warn(
@@ -190,7 +193,10 @@ void check_opposites(const std::vector<NamedPoint>& points, const std::array<dou
                 const double a = along[at] * first->at[at], b = along[at] * second->second->at[at];
                 const bool of_links = word[0] == "front";
                 if (of_links) wrong += a < b ? 1 : -1;
-                if (of_links && a < b && front == nullptr) front = first, rear = second->second;
+                if (of_links && a < b && front == nullptr) {
+                    front = first;
+                    rear = second->second;
+                }
                 if (!of_links && (axis == 1 ? a < 0 && b > 0 : a < b))
                     refuse(*first, axis == 1 ? "to the right of" : "behind", *second->second);
             }

@@ -21,7 +21,8 @@ struct Splitter {
     bool ends_line() const { return text[place] == '\n' || text[place] == '\r'; }
     void pass_line_end() {
         if (text[place] == '\r' && place + 1 < text.size() && text[place + 1] == '\n') ++place;
-        ++place, ++line;
+        ++place;
+        ++line;
     }
 
     // From the quote to behind the one that ends it; "" is a quote within.
@@ -39,7 +40,10 @@ struct Splitter {
                 cell += text[place++];
             }
         }
-        if (wrong == nullptr) wrong_line = begin, wrong = "the quote in this line does not end";
+        if (wrong == nullptr) {
+            wrong_line = begin;
+            wrong = "the quote in this line does not end";
+        }
         return cell;
     }
 
@@ -58,8 +62,10 @@ struct Splitter {
         SheetRow row{.line = line, .cells = {}};
         for (;;) {
             row.cells.push_back(cell());
-            if (row.cells.size() > SheetRow::max_cells && wrong == nullptr)
-                wrong_line = row.line, wrong = "more than 10000 cells";
+            if (row.cells.size() > SheetRow::max_cells && wrong == nullptr) {
+                wrong_line = row.line;
+                wrong = "more than 10000 cells";
+            }
             if (place == text.size() || wrong != nullptr) return row;
             if (ends_line()) {
                 pass_line_end();

@@ -162,7 +162,7 @@ double Cursor::number(const std::string& unit) const {
 
 bool Cursor::yes_or_no() const { return one_of("yes or no", {"true", "false"}) == 0; }
 
-int Cursor::whole_number(int least, int most) const {
+int Cursor::whole_number(int min, int max) const {
     if (accesses) accesses->read.insert(value);
     const std::string& digits = value->text;
     int n = 0;
@@ -172,9 +172,9 @@ int Cursor::whole_number(int least, int most) const {
         n = static_cast<int>(*value->number);
         stop = n == *value->number ? end : nullptr;
     }
-    if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < least ||
-        n > most)
-        fail(fmt::format("expected a whole number from {} to {}, found {}", least, most, found()));
+    if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < min ||
+        n > max)
+        fail(fmt::format("expected a whole number from {} to {}, found {}", min, max, found()));
     numbers->push_back({path + item, static_cast<double>(n), ""});
     return n;
 }

@@ -53,7 +53,7 @@ struct Cursor {
     // 0, or 1e-30 to 1e30 in size; locale-independent
     double number(const std::string& unit = "") const;
     bool yes_or_no() const;  // true, false
-    int whole_number(int least, int most) const;
+    int whole_number(int min, int max) const;
     // position in `allowed`
     std::size_t one_of(const std::string& what, const std::vector<std::string>& allowed) const;
 

@@ -15,7 +15,6 @@
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/document/text_file.hpp"
 
 namespace elastocheck::reader {
 namespace {

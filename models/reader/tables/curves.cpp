@@ -147,9 +147,11 @@ double deflection_at(const Cursor& field, const Curve& curve, double force, cons
     const auto& c = curve.pieces[k + 1];
     const auto f = [&](double t) -> double { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); };
     double low = 0, high = x[k + 1] - x[k];
-    for (double t; t = low + (high - low) / 2, t > low && t < high;)
+    for (;;) {
+        const double t = low + (high - low) / 2;
+        if (!(t > low && t < high)) return x[k] + high;
         (f(t) < force ? low : high) = t;
-    return x[k] + high;
+    }
 }
 
 }  // namespace

@@ -55,8 +55,7 @@ Blocks hessian_blocks(const Model& model, const Prescribed& prescribed, const Sc
                       const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
 Blocks load_blocks(const Prescribed& prescribed, const std::vector<Pose>& centre);
 
-// Modes of motion that the constraints allow: eigenvectors of the reduced Hessian (reduced to
-// `along`).
+// Modes of motion that the constraints allow: eigenvectors of the Hessian reduced to `along`.
 struct Modes {
     Eigen::MatrixXd Z;          // orthonormal [6nb × f]
     Eigen::VectorXd stiffness;  // ascending [f]

@@ -1,5 +1,4 @@
-// Measures that make SLSQP converge to the last digits; without them it stops at 1e-6 of the
-// gradient.
+// Measures that make SLSQP converge to the last digits; without, it stops at 1e-6 of the gradient.
 //
 // 1. Coordinates y, ξ = T y, in which the problem is well scaled: T = [N B] with
 //      B = Z |W|^-½                      the modes along the constraints, each with unit stiffness

@@ -9,8 +9,7 @@ namespace elastocheck::reference::energy {
 // applied share of the held loads and offsets.
 std::optional<Failure> settle(const Path& path, State& state);
 
-// Name of the joint that cannot be closed at parameter a, if |Φ|² has a nonzero minimum near
-// `poses`.
+// The joint that cannot be closed at parameter a, if |Φ|² has a nonzero minimum near `poses`.
 std::optional<std::string> contradicting_joint(const Path& path, double a,
                                                const std::vector<Pose>& poses);
 

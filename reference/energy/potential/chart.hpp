@@ -1,5 +1,4 @@
-// Local coordinates: per body a displacement and a rotation vector (ground axes) about a centre
-// pose.
+// Local coordinates: each body's displacement and rotation vector (ground axes) from a centre pose.
 //
 //   r = r_c + Δr,   A = exp(φ) A_c,   x = (Δr, φ) of every body, [6nb]
 //

@@ -1,6 +1,5 @@
 #include "reference/energy/potential/potential.hpp"
 
-#include "models/overloaded.hpp"
 #include "reference/energy/potential/laws.hpp"
 #include "reference/energy/potential/relative_rotation.hpp"
 #include "reference/energy/potential/rotation.hpp"

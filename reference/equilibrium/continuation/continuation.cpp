@@ -277,9 +277,10 @@ Trial try_step(Continuation& continuation, double t) {
              !directions_are_kept(system, continuation.here.x, next.x))
         trial.verdict = Verdict::out_of_reach;
     else if (const auto exit =
-                 first_exit(continuation.here.curves, next.curves, h, continuation.pieces))
-        trial.verdict = Verdict::past_knot, trial.knot = continuation.here.t + *exit * h;
-    else if (!(std::isfinite(correction) && correction <= last_correction))
+                 first_exit(continuation.here.curves, next.curves, h, continuation.pieces)) {
+        trial.verdict = Verdict::past_knot;
+        trial.knot = continuation.here.t + *exit * h;
+    } else if (!(std::isfinite(correction) && correction <= last_correction))
         trial.verdict = Verdict::unsettled;
     else if (continuation.stage == Stage::branch &&
              !(moved_by_rounding(continuation, next) <= last_correction))

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
 #include "models/eigen/dense.hpp"
 #include "reference/equilibrium/continuation/continuation.hpp"

@@ -36,18 +36,18 @@ Sparse constraint_rows(const System& system, const Sparse& J) {
 
 // Extremes of the eigenvalues μ of M, for Stiffness.
 struct Spectrum {
-    double least = std::numeric_limits<double>::infinity(), modulus = least;
+    double lowest = std::numeric_limits<double>::infinity(), modulus = lowest;
     int negative = 0;
     double log_product = 0;
     void see(const std::complex<double>& mu) {
         log_product += std::log2(std::abs(mu));
         const bool real = mu.imag() == 0;
-        least = std::min(least, real ? mu.real() : std::abs(mu));
+        lowest = std::min(lowest, real ? mu.real() : std::abs(mu));
         modulus = std::min(modulus, std::abs(mu));
         negative += real && mu.real() < 0;
     }
     Stiffness of(const System& system, double round_off) const {
-        if (system.conservative) return {least, round_off};
+        if (system.conservative) return {lowest, round_off};
         return {negative % 2 == 0 ? modulus : -modulus, round_off, negative};
     }
 };
@@ -105,8 +105,10 @@ std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
         double size = 0;
         for (Sparse::InnerIterator at(modes, k); at; ++at)
             if (at.row() < n && std::abs(at.value()) > size &&
-                std::ranges::find(held, at.row()) == held.end())
-                largest = at.row(), size = std::abs(at.value());
+                std::ranges::find(held, at.row()) == held.end()) {
+                largest = at.row();
+                size = std::abs(at.value());
+            }
         if (largest >= 0) held.push_back(largest);
     }
     return held;

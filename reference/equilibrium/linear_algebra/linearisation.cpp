@@ -2,7 +2,6 @@
 #include "models/eigen/dense.hpp"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 

@@ -92,8 +92,10 @@ VectorXd put_on_branches(const Scene& scene, const Model& model, std::vector<Fig
         const VectorXd here_values = compare::figure_values(scene, here).value;
         for (std::size_t k = 0; k < points.size(); ++k)
             if (const auto i = static_cast<Index>(k);
-                std::isnan(values[i]) && !std::isnan(here_values[i]))
-                points[k].branch = branch.name, values[i] = here_values[i];
+                std::isnan(values[i]) && !std::isnan(here_values[i])) {
+                points[k].branch = branch.name;
+                values[i] = here_values[i];
+            }
     }
     return values;
 }
@@ -102,7 +104,7 @@ void add_curve(const Cursor& entry, const LoadedScene& loaded, const std::string
                Goal& goal) {
     const Model& model = loaded.model;
     const double from = entry.require("from").number(), to = entry.require("to").number();
-    if (!(from < to)) entry.fail("from is not below to");
+    if (!(from < to)) entry.fail(fmt::format("from {:g} is not below to {:g}", from, to));
     const auto count = entry.optional("points"), branch = entry.optional("branch"),
                over = entry.optional("over");
     const int points = count ? count->whole_number(2, 1000) : default_points;
@@ -205,7 +207,7 @@ GoalsFile read_goals(const std::string& file, const LoadedScene& loaded) {
         result.minimised_line = minimised->value->line;
     }
     if (result.goals.empty() && !result.minimised)
-        whole.fail("neither goals nor a figure to minimise");
+        whole.fail("neither goals nor a figure to minimise; required: goals, minimise or both");
     return result;
 }
 
@@ -220,8 +222,10 @@ struct GoalFigures {
         figures.push_back(figure);
         bands.goal.push_back(goal);
         const auto n = std::ssize(figures);
-        bands.low.conservativeResize(n), bands.high.conservativeResize(n);
-        bands.low[n - 1] = low, bands.high[n - 1] = high;
+        bands.low.conservativeResize(n);
+        bands.high.conservativeResize(n);
+        bands.low[n - 1] = low;
+        bands.high[n - 1] = high;
     }
 };
 GoalFigures figures_of(const std::vector<Goal>& goals, const std::optional<Figure>& minimised) {
@@ -299,7 +303,8 @@ struct Searching {
             compare::Optimum next = search(goal_figures, {optimised.optimum.p});
             if (!next.met) next = search(goal_figures, starts);
             if (next.best < 0) return;  // an added point has no value in the scene as it is
-            optimised.goals = std::move(goals), optimised.figures = goal_figures.figures,
+            optimised.goals = std::move(goals);
+            optimised.figures = goal_figures.figures;
             optimised.optimum = std::move(next);
         }
     }

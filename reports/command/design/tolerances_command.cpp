@@ -33,7 +33,7 @@ void add_correlation(const Cursor& entry, compare::ToleratedNumbers& tolerated) 
     for (std::size_t i = 0; i < 2; ++i)
         k[i] = static_cast<Index>(parts[i].one_of("a number with a tolerance", tolerated.numbers));
     const double rho = parts[2].number();
-    if (k[0] == k[1]) entry.fail("a number with itself");
+    if (k[0] == k[1]) entry.fail("a number with itself; required: two different numbers");
     if (!(std::abs(rho) <= 1)) parts[2].fail(fmt::format("{:g}; allowed: -1 to 1", rho));
     tolerated.correlation(k[0], k[1]) = tolerated.correlation(k[1], k[0]) = rho;
 }
@@ -62,7 +62,8 @@ compare::ToleratedNumbers read_tolerances(const std::string& file, const Scene& 
         if (!(value > 0)) size.fail(fmt::format("{:g}; allowed: more than zero", value));
         tolerated.numbers.push_back(name);
         const auto n = std::ssize(tolerated.numbers);
-        tolerated.sd.conservativeResize(n), tolerated.largest.conservativeResize(n);
+        tolerated.sd.conservativeResize(n);
+        tolerated.largest.conservativeResize(n);
         tolerated.sd[n - 1] = normal ? value : value / std::sqrt(3.0);
         tolerated.largest[n - 1] = normal ? 3 * value : value;
     }

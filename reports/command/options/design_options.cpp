@@ -75,7 +75,9 @@ void add_numbers(Varied& varied, const Scene& scene, const std::string& name, do
         const auto n = std::ssize(varied.numbers);
         for (VectorXd* each : {&varied.start, &varied.low, &varied.high})
             each->conservativeResize(n);
-        varied.start[n - 1] = number.value, varied.low[n - 1] = low, varied.high[n - 1] = high;
+        varied.start[n - 1] = number.value;
+        varied.low[n - 1] = low;
+        varied.high[n - 1] = high;
     }
 }
 

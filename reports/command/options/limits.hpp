@@ -23,8 +23,7 @@ struct RunSize {
     std::size_t channels = 0;  // 0: those of the model
 };
 
-// Throws std::invalid_argument with the largest possible number of steps if this exceeds
-// `max_memory`.
+// Throws std::invalid_argument with the largest possible number of steps above `max_memory`.
 void check_memory(const Model& model, const RunSize& run);
 
 // The same for output row by row with `channels` outputs: only the first of two branch sides is

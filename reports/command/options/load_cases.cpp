@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/csv_table.hpp"
@@ -57,27 +56,27 @@ CaseColumn column_of(std::string_view heading, const std::vector<Known>& known,
                      const std::string& file, int line) {
     const auto [name, unit] = split_heading(heading);
     if (name == "case") return {.is_name = true, .heading = name};
-    const auto found = std::ranges::find(known, name, &Known::name);
-    if (found == known.end()) {
+    const auto input = std::ranges::find(known, name, &Known::name);
+    if (input == known.end()) {
         std::vector<std::string> names{"case"};
         for (const auto& one : known) names.push_back(one.name);
         fail_at(file, line,
                 fmt::format("there is no input {}{}", reader::quote(name),
                             reader::did_you_mean(name, names, "allowed")));
     }
-    if (found->input.kind == Kind::acceleration) {
+    if (input->input.kind == Kind::acceleration) {
         if (!unit.empty() && unit != "g")
             fail_at(
                 file, line,
                 fmt::format("{}: {} is not a unit of it; allowed: g", name, reader::quote(unit)));
-        return {.input = found->input, .heading = name};
+        return {.input = input->input, .heading = name};
     }
-    const auto factor = factor_of(unit, found->unit);
+    const auto factor = factor_of(unit, input->unit);
     if (!factor)
         fail_at(file, line,
                 fmt::format("{}: {} is not a unit of it; allowed: {}", name, reader::quote(unit),
-                            allowed_units(found->unit)));
-    return {.input = found->input, .factor = *factor * found->si, .heading = name};
+                            allowed_units(input->unit)));
+    return {.input = input->input, .factor = *factor * input->si, .heading = name};
 }
 
 }  // namespace

@@ -10,12 +10,12 @@
 
 namespace elastocheck::reports {
 
-// Columns, with a unit as in other tables ("left.patch_force_z [kN]", "travel_mm"); an empty cell is no
-// input, and of a scene with one wheel without a name WHEEL. is left out:
+// Columns, with a unit as in other tables ("left.patch_force_z [kN]", "travel_mm"). An empty cell
+// is no input. Where the scene has a single wheel without a name, "WHEEL." is left out:
 //
 //   case                            name of the case, once each
-//   WHEEL.patch_force_x, _y, _z     force of the road on the tyre [N]: the whole, in place of a static
-//                                   load; along x a brake on the carrier takes its torque
+//   WHEEL.patch_force_x, _y, _z     force of the road on the tyre [N], all of it (no static load);
+//                                   along x its torque is taken by a brake on the carrier
 //   WHEEL.centre_force_x, _y, _z    force at the wheel centre [N]
 //   WHEEL.moment_x, _y, _z          moment on the wheel carrier [N·m]
 //   WHEEL.travel                    height of the wheel centre above the design position, held [mm]

@@ -1,4 +1,4 @@
-// `elastocheck study`: many variants of a scene, by the Python package beside the program
+// `elastocheck study`: many variants of a scene, by the Python package
 // (reports/python/package/study/).
 #include <unistd.h>
 

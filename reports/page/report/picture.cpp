@@ -14,7 +14,7 @@ std::string picture(const Drawing& drawing, const std::string& view) {
     if (drawing.points.empty()) throw std::invalid_argument("the scene has no point to draw");
     const Suspension suspension{drawing};
     const bool right = is_right(suspension);
-    const auto from = [&] {
+    const View chosen = [&] {
         if (view == "axonometric") return axonometric_view(right);
         for (const View& one : {front_view, side_view, top_view})
             if (one.id == "view-" + view) return one;
@@ -22,9 +22,9 @@ std::string picture(const Drawing& drawing, const std::string& view) {
             fmt::format("view '{}'; allowed: axonometric, front, side, top", view));
     }();
     const std::string noun = noun_of(suspension);
-    const auto figures = draw_views(suspension, {from}, large_frame(suspension));
+    const auto figures = draw_views(suspension, {chosen}, large_frame(suspension));
     return illustrate(draw(figures.front()), "drawing", fmt::format("The {}", noun),
-                      fmt::format("The {} seen {}, to scale.", noun, from.from))
+                      fmt::format("The {} seen {}, to scale.", noun, chosen.from))
         .alone;
 }
 

@@ -164,7 +164,8 @@ Table summary(const std::list<ScenePart>& parts) {
     for (std::size_t c = 1; c < table.columns.size(); ++c)
         table.columns[c].words = c == 2;  // numbers, some with their unit
     for (const auto& part : parts) {
-        const auto apart = compare::worst_disagreement(part.scene.comparison, compare::Unit::mm);
+        const auto disagreement =
+            compare::worst_disagreement(part.scene.comparison, compare::Unit::mm);
         const auto rows = method_rows(part.scene);
         const auto chosen = std::ranges::find_if(rows, &MethodRow::chosen);
         const bool none = chosen == rows.end();
@@ -178,7 +179,7 @@ Table summary(const std::list<ScenePart>& parts) {
         const auto& rate = judgement.wheel_rate;
         table.rows.push_back({part.scene.scene.name,
                               !part.scene.conclusive() ? "not judged"
-                              : apart                  ? number(apart->max, 2)
+                              : disagreement           ? number(disagreement->max, 2)
                                                        : "–",
                               none ? "–" : chosen->method + ", " + chosen->setting,
                               none ? "–" : percent(chosen->cost), size(judgement.position),

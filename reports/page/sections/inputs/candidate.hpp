@@ -1,4 +1,4 @@
-// Section and curves of an external solver.
+// Curves of external solvers beside the calculated ones.
 #pragma once
 
 #include <string>

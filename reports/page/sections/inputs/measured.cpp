@@ -32,7 +32,10 @@ bool measured_over_parameter(const SceneAnalyses& scene, const Sweep& sweep) {
     if (!measured.abscissa) return true;
     bool points = false, travel = false;
     for (std::size_t k = 0; k < measured.at.size(); ++k)
-        if (is_on(scene, sweep, k)) points = true, travel = travel || std::isfinite(measured.at[k]);
+        if (is_on(scene, sweep, k)) {
+            points = true;
+            travel = travel || std::isfinite(measured.at[k]);
+        }
     return points && !travel;
 }
 
@@ -46,8 +49,10 @@ std::optional<Series> measured_series(const SceneAnalyses& scene, const Sweep& s
     Series series{.title = "measured", .style = Series::Style::rings, .colour = purple, .mark = 5};
     bool any = false;
     for (std::size_t k = 0; k < x->size(); ++k)
-        if (is_on(scene, sweep, k) && std::isfinite((*x)[k]))
-            series.rows.push_back({(*x)[k], (*y)[k]}), any = any || std::isfinite((*y)[k]);
+        if (is_on(scene, sweep, k) && std::isfinite((*x)[k])) {
+            series.rows.push_back({(*x)[k], (*y)[k]});
+            any = any || std::isfinite((*y)[k]);
+        }
     if (!any) return std::nullopt;
     return series;
 }

@@ -74,7 +74,8 @@ json motion_of(const SceneAnalyses& scene, const View& first) {
     for (const char* part : {"points", "links", "faces", "symbols", "wheels"})
         list[part] = drawing[part];
     for (json& point : list["points"]) point.erase("design_mm");
-    for (json& symbol : list["symbols"]) symbol.erase("at_mm"), symbol.erase("axis");
+    for (json& symbol : list["symbols"])
+        for (const char* member : {"at_mm", "axis"}) symbol.erase(member);
     const auto leading = leading_sweep(scene);
     for (const bool of_leading : {true, false})
         for (const auto& branch : branches_of(scene)) {

@@ -84,7 +84,10 @@ std::vector<Series> given_of(const SceneAnalyses& scene, const Family& family, c
     const double push = family.by == By::push ? push_of(scene, c, of.wheel).factor : 1;
     for (auto& points : given)
         for (auto& row : points.rows)
-            if (!row.empty()) row[0] *= push, row[1] = scale(row[1]);
+            if (!row.empty()) {
+                row[0] *= push;
+                row[1] = scale(row[1]);
+            }
     return given;
 }
 

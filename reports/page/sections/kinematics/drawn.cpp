@@ -62,9 +62,9 @@ void Bundle::add(const std::string& whose, Rows rows) {
 FigureGroup drawn(Figure figure, std::vector<Bundle> bundles, const std::vector<Wheel>& wheels,
                   std::string caption) {
     const bool several = bundles.size() > 1;
-    const bool apart = wheels.size() > 1 && std::ranges::any_of(bundles, [](const Bundle& bundle) {
-                           return bundle.lines.size() > 1;
-                       });
+    const bool by_wheel =
+        wheels.size() > 1 &&
+        std::ranges::any_of(bundles, [](const Bundle& bundle) { return bundle.lines.size() > 1; });
     using enum Series::Style;
     const auto entry = [&](const std::string& title, Series::Style style, Colour colour) {
         figure.legend.push_back({.title = title, .style = style, .colour = colour});
@@ -73,7 +73,7 @@ FigureGroup drawn(Figure figure, std::vector<Bundle> bundles, const std::vector<
     for (std::size_t k = 0; several && k < bundles.size(); ++k)
         entry(bundles[k].title, k == 0 ? heavy : line, case_colours[k % std::size(case_colours)]);
     const std::size_t sides = figure.legend.size();
-    if (apart) {
+    if (by_wheel) {
         entry(wheels[0].name, line, several ? ink : vermilion);
         entry(wheels[1].name, dashed, several ? ink : blue);
     }
@@ -82,7 +82,7 @@ FigureGroup drawn(Figure figure, std::vector<Bundle> bundles, const std::vector<
             const auto& [whose, rows] = bundles[k].lines[j];
             std::vector<std::size_t> keys;
             if (several) keys.push_back(k);
-            if (apart && !whose.empty()) keys.push_back(sides + std::min<std::size_t>(j, 1));
+            if (by_wheel && !whose.empty()) keys.push_back(sides + std::min<std::size_t>(j, 1));
             figure.series.push_back({.title = several && !whose.empty()
                                                   ? bundles[k].title + ", " + whose
                                               : several       ? bundles[k].title

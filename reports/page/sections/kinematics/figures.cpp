@@ -23,7 +23,7 @@ struct CurveRange {
 Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Scale scale,
              const Quantity& quantity, CurveRange& extent) {
     Rows rows;
-    double least = INFINITY, most = -INFINITY, farthest = 0;
+    double low = INFINITY, high = -INFINITY, farthest = 0;
     for (const double at : x) farthest = std::max(farthest, std::abs(at));
     const double middle = quantity.shown == Shown::off_centre ? 0.2 * farthest : -1;
     const compare::Entry* entry = compare::find_entry(quantity.name);
@@ -36,10 +36,12 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
         if ((!shown || turned) && !rows.empty() && !rows.back().empty()) rows.emplace_back();
         if (!shown) continue;
         rows.push_back({at_rest(x[j]), at_rest(y)});
-        least = std::min(least, y), most = std::max(most, y);
+        low = std::min(low, y);
+        high = std::max(high, y);
     }
-    extent.low = std::min(extent.low, least), extent.high = std::max(extent.high, most);
-    if (most > least) extent.moved = std::max(extent.moved, most - least);
+    extent.low = std::min(extent.low, low);
+    extent.high = std::max(extent.high, high);
+    if (high > low) extent.moved = std::max(extent.moved, high - low);
     return rows;
 }
 

@@ -42,8 +42,10 @@ FittedLine line_of(const std::vector<double>& x, const std::vector<double>& y, d
     std::vector<double> at, values;
     for (const auto& [a, value] : points) {
         if (at.size() >= 3 && !(std::abs(a) <= range * (1 + 1e-9))) break;
-        at.push_back(a), values.push_back(value);
-        line.from = std::min(line.from, a), line.to = std::max(line.to, a);
+        at.push_back(a);
+        values.push_back(value);
+        line.from = std::min(line.from, a);
+        line.to = std::max(line.to, a);
     }
     line.slope = compare::finite_or_nan(compare::slope(at, values));
     return line;
@@ -78,13 +80,18 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
             // forces per mm, not per 100 mm
             const bool of_force = output.unit == "N" && over.by == By::travel;
             const double value = at_rest(scale.factor * line.slope * (of_force ? 1 : over.per));
-            range.from = std::min(range.from, line.from), range.to = std::max(range.to, line.to);
+            range.from = std::min(range.from, line.from);
+            range.to = std::max(range.to, line.to);
             row.unit = fmt::format("{}/{}", output.unit, of_force ? "mm" : over.per_unit);
             for (std::size_t w = 0; w < wheels.size() && !output.of_all; ++w)
                 if (wheels[w].name == output.wheel.name) row.values[w] = value;
-            sum += value, ++count;
+            sum += value;
+            ++count;
         }
-        if (count > 0) row.mean = sum / count, rows.push_back(std::move(row));
+        if (count > 0) {
+            row.mean = sum / count;
+            rows.push_back(std::move(row));
+        }
     }
     using R = GradientRow;
     std::vector<compare::ColumnOf<R>> columns{
