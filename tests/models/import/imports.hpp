@@ -73,6 +73,20 @@ inline Eigen::Matrix3d euler(double a, double b, double c) {
         .toRotationMatrix();
 }
 
+// A branch, the first without a name, which a leg solves.
+inline EquilibriumPath solved(const Scene& scene, const std::string& branch = "", int steps = 0,
+                              compare::Leg leg = compare::Leg::equilibrium) {
+    const Model model = compile(scene);
+    for (const Branch& each : model.branches) {
+        if (!branch.empty() && each.name != branch) continue;
+        auto path = compare::solve_branch(
+            compare::sides_of(model, each, steps > 0 ? steps : each.steps), {.leg = leg});
+        if (path.outcome != Outcome::converged) throw std::runtime_error(path.detail);
+        return path;
+    }
+    throw std::runtime_error("no branch " + branch);
+}
+
 // The start of the first branch, settled under the start values.
 inline Equilibrium at_rest(const Scene& scene, compare::Leg leg) {
     const Model model = compile(scene);

@@ -1,0 +1,43 @@
+// Facts about scenes that come from other programs' files, in facts/*.facts: of a sample, of mistakes/linkage.adm,
+// and of fixtures/beside_files.yaml with what it names.
+#include "tests/models/facts.hpp"
+
+#include "tests/models/import/imports.hpp"
+
+namespace elastocheck {
+namespace {
+
+using namespace tests;
+namespace fs = std::filesystem;
+
+std::vector<ReadClaim> all_claims() {
+    std::vector<ReadClaim> all;
+    for (const auto& entry : fs::directory_iterator(import_folder / "facts"))
+        for (auto& claim : claims_in(entry.path())) all.push_back(std::move(claim));
+    return all;
+}
+
+class ImportFacts : public testing::TestWithParam<ReadClaim> {};
+
+TEST_P(ImportFacts, Hold) {
+    for (const char* place : {"samples", "mistakes", "fixtures"})
+        for (const std::string ending : {".json", ".adm", ".yaml"}) {
+            const fs::path file = import_folder / place / (GetParam().file + ending);
+            if (!exists(file)) continue;
+            const support::Folder beside;
+            fs::copy(file.parent_path(), beside.path);
+            const auto read = [&](const std::string& text, const std::vector<Setting>& set) {
+                if (ending == ".yaml") return read_scene(beside.write("s.yaml", text), set);
+                const auto imported = importer::import_text(text, "model" + ending, {});
+                return parse_scene(imported.yaml, "scene", set);
+            };
+            expect_facts(GetParam(), support::text_of(file), read, false);
+            return;
+        }
+    FAIL() << "no text of " << GetParam().file;
+}
+INSTANTIATE_TEST_SUITE_P(Files, ImportFacts, testing::ValuesIn(all_claims()),
+                         [](const auto& one) { return one.param.file + "_" + one.param.name; });
+
+}  // namespace
+}  // namespace elastocheck
