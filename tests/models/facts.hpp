@@ -77,6 +77,19 @@ inline std::vector<ReadClaim> claims_in(const std::filesystem::path& file) {
     return all;
 }
 
+// Of all files of facts in a folder.
+inline std::vector<ReadClaim> claims_beside(const std::filesystem::path& folder) {
+    std::vector<ReadClaim> all;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".facts")
+            for (auto& claim : claims_in(entry.path())) all.push_back(std::move(claim));
+    return all;
+}
+// As a suite of tests names it.
+inline std::string name_of(const testing::TestParamInfo<ReadClaim>& claim) {
+    return claim.param.file + "_" + claim.param.name;
+}
+
 inline std::string edited(std::string text, const ReadClaim& claim) {
     for (const auto& [from, to] : claim.edits)
         text = from.empty() ? to : support::replaced(text, from, to);

@@ -9,9 +9,7 @@
 #include <filesystem>
 #include <numbers>
 #include <regex>
-#include <utility>
 
-#include "compare/comparison/legs.hpp"
 #include "compare/studies/formulations.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
@@ -109,7 +107,7 @@ TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
 // K δ = FORCE and KT θ = TORQUE, δ and θ of I in the axes of J, independent of the drawn position.
 TEST(Adm, BushingRestsWhereItsLawBalancesTheLoadForAnyMarkers) {
     const Scene scene = imported_fixture("bushing_at_rest");
-    const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
+    const Equilibrium rest = at_rest(scene);
     // The markers as drawn, moved with the part.
     const Matrix3d A_part = euler(10, 20, 30), A_I = A_part * euler(24, 5, 0),
                    A_J = euler(10, 20, 66);
@@ -141,7 +139,7 @@ TEST(Adm, JointsOfTheSamplesCarryTheWeightAtRest) {
         const Scene scene = imported_scene(text);
         const Model model = compile(scene);
         ASSERT_EQ(model.joints.size(), 1u) << file;
-        const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
+        const Equilibrium rest = at_rest(scene);
         const double on_part = model.joints[0].i == ground ? -1 : 1;
         EXPECT_LE((on_part * rest.reactions.at(0).force + g).norm(), 1e-8)
             << file << ": " << rest.reactions.at(0).force;
@@ -155,7 +153,7 @@ TEST(Adm, PendulumOnATorsionSpringRestsAtItsEquilibriumAngle) {
     double phi = 0.3;
     for (int n = 0; n < 50; ++n)
         phi -= (2 * m_g * std::cos(phi) - k * phi) / (-2 * m_g * std::sin(phi) - k);
-    const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
+    const Equilibrium rest = at_rest(scene);
     EXPECT_NEAR(rest.poses.at(0).r.x(), 2 * std::cos(phi), 1e-9);
     EXPECT_NEAR(rest.poses.at(0).r.z(), -2 * std::sin(phi), 1e-9);
 }
@@ -171,7 +169,7 @@ TEST(Adm, BeamHasTheDeflectionOfTimoshenkosTheory) {
     for (const auto& [gravity, down, about, I, shear, turn] :
          {Plane{"KGRAV", 2, 1, 4e-7, 1.5, +1}, Plane{"JGRAV", 1, 2, 5e-7, 1.2, -1}}) {
         const Scene scene = imported_fixture("beam", "KGRAV", gravity);
-        const Pose end = at_rest(scene, compare::Leg::equilibrium).poses.at(0);
+        const Pose end = at_rest(scene).poses.at(0);
         EXPECT_NEAR(end.r[down] / (-0.1 * (8 / (3 * 2e11 * I) + 2 * shear / (8e10 * 1e-3))), 1,
                     1e-6);
         EXPECT_NEAR(2 * end.p.vec()[about] / (turn * 0.1 * 4 / (2 * 2e11 * I)), 1, 1e-5) << gravity;
@@ -217,8 +215,7 @@ TEST(Adm, ExportedAndImportedAgainHasTheSameEquilibrium) {
     const Scene first = imported_fixture("two_parts");
     const importer::Exported exported = importer::export_adm(first, false);
     const Scene second = imported_scene(exported.text);
-    const Equilibrium a = at_rest(first, compare::Leg::equilibrium),
-                      b = at_rest(second, compare::Leg::equilibrium);
+    const Equilibrium a = at_rest(first), b = at_rest(second);
     ASSERT_EQ(a.poses.size(), 2u);
     ASSERT_EQ(b.poses.size(), 2u);
     for (std::size_t k = 0; k < 2; ++k) {

@@ -10,13 +10,6 @@ namespace {
 using namespace tests;
 namespace fs = std::filesystem;
 
-std::vector<ReadClaim> all_claims() {
-    std::vector<ReadClaim> all;
-    for (const auto& entry : fs::directory_iterator(import_folder / "facts"))
-        for (auto& claim : claims_in(entry.path())) all.push_back(std::move(claim));
-    return all;
-}
-
 class ImportFacts : public testing::TestWithParam<ReadClaim> {};
 
 TEST_P(ImportFacts, Hold) {
@@ -36,8 +29,8 @@ TEST_P(ImportFacts, Hold) {
         }
     FAIL() << "no text of " << GetParam().file;
 }
-INSTANTIATE_TEST_SUITE_P(Files, ImportFacts, testing::ValuesIn(all_claims()),
-                         [](const auto& one) { return one.param.file + "_" + one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Files, ImportFacts,
+                         testing::ValuesIn(claims_beside(import_folder / "facts")), name_of);
 
 }  // namespace
 }  // namespace elastocheck

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <regex>
@@ -16,17 +15,13 @@
 #include "models/import/import.hpp"
 #include "models/laws.hpp"
 #include "tests/models/import/imports.hpp"
-#include "tests/support/pipe.hpp"
 
 namespace elastocheck {
 namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
-using importer::Options;
 using namespace tests;
-
-const fs::path folder = import_folder;
 
 Scene chrono(const std::string& text) {
     return parse_scene(importer::import_text(text, "model.json", {}).yaml, "scene");
@@ -37,7 +32,7 @@ std::vector<Vector3d> wheels_in_travel(const Scene& scene, int steps,
                                        compare::Leg leg = compare::Leg::equilibrium) {
     std::vector<Vector3d> all;
     const Model model = compile(scene);
-    for (const auto& point : solved(scene, "", steps, leg).points)
+    for (const auto& point : solved(model, "", steps, leg).points)
         for (const Wheel& wheel : model.wheels) {
             const Pose& pose = point.poses.at(static_cast<std::size_t>(wheel.body));
             all.push_back(pose.r + pose.p * wheel.centre_local);
@@ -81,7 +76,7 @@ TEST(Chrono, MisspeltKeyIsReported) {
         "//[^\n]*|\"Visualization\"\\s*:\\s*\\{[^{}]*(\\{[^{}]*\\}[^{}]*)*\\}|\"([^\"\n]+)\"[ "
         "\t]*:");
     int changed = 0;
-    for (const auto& entry : fs::directory_iterator(folder / "samples")) {
+    for (const auto& entry : fs::directory_iterator(import_folder / "samples")) {
         const std::string name = entry.path().filename().string(), text = sample(name);
         if (entry.path().extension() != ".json" || !refusal_of(text, name).empty()) continue;
         for (std::sregex_iterator found(text.begin(), text.end(), pattern), none; found != none;
@@ -128,9 +123,9 @@ TEST(Chrono, SaysWhatIsWrongAndWhere) {
 
 TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
     const std::string scene =
-        replaced(support::text_of(folder / "fixtures/beside_files.yaml"), "# elements",
+        replaced(support::text_of(import_folder / "fixtures/beside_files.yaml"), "# elements",
                  "bushings: {mount: {bodies: [ground, block], at: o, rates: mount.bus}}");
-    expect_refusals("mount", support::text_of(folder / "fixtures/mount.bus"), "mount.bus",
+    expect_refusals("mount", support::text_of(import_folder / "fixtures/mount.bus"), "mount.bus",
                     [&](const std::string& text) {
                         const support::Folder here;
                         here.write("mount.bus", text);
@@ -212,34 +207,24 @@ TEST(Chrono, SceneElementWithoutAChronoFieldIsRefusedOnExport) {
 
 // ---- Samples
 
-TEST(Import, PipeIsRefused) {
-    const support::Folder place;
-    for (const char* ending : {".adm", ".json", ".sub"}) {
-        const fs::path pipe = place.path / (std::string("model") + ending);
-        const support::Pipe nobody(pipe);
-        ASSERT_TRUE(nobody.is_there());
-        EXPECT_EQ(refusal_of([&] { importer::import_file(pipe, {}); }),
-                  pipe.string() + ": a pipe or a device; a regular file is needed");
-    }
-}
-
 // A row that differs is printed as it should be recorded.
 TEST(Import, EverySampleIsImportedOrRefusedAsRecorded) {
-    std::istringstream recorded(support::text_of(folder / "outcomes.md"));
+    std::istringstream recorded(support::text_of(import_folder / "outcomes.md"));
     int rows = 0;
     for (std::string line; std::getline(recorded, line);) {
         if (!line.starts_with("| ") || line.starts_with("| file")) continue;
         const std::string name = line.substr(2, line.find(" |") - 2);
         std::string row;
         try {
-            const auto result = importer::import_file(folder / "samples" / name, {});
+            const auto result = importer::import_file(import_folder / "samples" / name, {});
             std::string outcome = "imported";
             if (const auto n = result.notes.warnings.size())
                 outcome += fmt::format(", {} warning{}", n, n == 1 ? "" : "s");
             row = fmt::format("| {} | {} | {} | {} | {} |", name, result.bodies, result.joints,
                               result.elements, outcome);
         } catch (const SceneError& error) {
-            const std::string said = error.what(), file = (folder / "samples" / name).string();
+            const std::string said = error.what(),
+                              file = (import_folder / "samples" / name).string();
             row = fmt::format("| {} | - | - | - | refused: {}{} |", name, name,
                               said.substr(file.size(), said.find('\n') - file.size()));
         }
@@ -247,7 +232,8 @@ TEST(Import, EverySampleIsImportedOrRefusedAsRecorded) {
         ++rows;
     }
     int files = 0;
-    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder / "samples")) ++files;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(import_folder / "samples"))
+        ++files;
     EXPECT_EQ(rows, files);
 }
 

@@ -36,7 +36,7 @@ importer::Options axle_of_a_file(const char* axle, bool both_wheels = false) {
 
 // The wheel at the end of a branch.
 Pose wheel(const Scene& scene, const std::string& branch) {
-    return solved(scene, branch)
+    return solved(compile(scene), branch)
         .points.back()
         .poses[static_cast<std::size_t>(scene.wheels.at(0).body)];
 }
@@ -148,7 +148,7 @@ TEST(Mechanism, AssettoCorsaFileGivesSpringsAndBars) {
         const auto& of = *std::ranges::find(model.branches, branch, &Branch::name);
         const auto& channel =
             channels.at(static_cast<std::size_t>(compare::find_channel(channels, element)));
-        return compare::evaluate(model, of, {&channel, 1}, solved(scene, branch).points.back())
+        return compare::evaluate(model, of, {&channel, 1}, solved(model, branch).points.back())
             .at(0);
     };
     EXPECT_NEAR(std::abs(force(pair, "opposite", "antiroll_bar.elastic_force_z")), 720, 1e-6);
