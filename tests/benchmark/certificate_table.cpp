@@ -5,9 +5,6 @@
 //   certificate_table [POINTS [SCENE.yaml ...]]      20 points a branch, the McPherson strut of the paper
 #include <fmt/format.h>
 
-#include <ctime>
-
-#include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"

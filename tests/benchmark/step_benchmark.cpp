@@ -7,7 +7,6 @@
 #include <klu.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <string>
 #include <vector>

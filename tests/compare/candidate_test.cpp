@@ -10,6 +10,7 @@
 
 #include "compare/comparison/compare.hpp"
 #include "elastocheck/compile.hpp"
+#include "tests/support/command.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -333,7 +334,7 @@ TEST(Candidate, ConstantColumnsAreNotJudged) {
     }
     const auto judgement = judged(candidate);
     EXPECT_EQ(judgement.verdict, Grade::not_judged);
-    EXPECT_NE(texts(judgement).find("nothing moves in it"), std::string::npos) << texts(judgement);
+    support::expect_parts(texts(judgement), {"nothing moves in it"});
     // A single constant output is a wrong output.
     Candidate one = table_of(Leg::equilibrium);
     std::ranges::fill(values(one, "toe"), values(one, "toe").front());
@@ -351,8 +352,7 @@ TEST(Candidate, CandidateWhoseOnlyOutputIsUndefinedIsNotJudged) {
     std::erase_if(candidate.points.columns, [&](const auto& c) { return c.channel != toe; });
     const auto judgement = judge_candidate(solved().model, comparison, candidate);
     EXPECT_EQ(judgement.verdict, Grade::not_judged);
-    EXPECT_NE(texts(judgement).find("its 'toe' is not compared"), std::string::npos)
-        << texts(judgement);
+    support::expect_parts(texts(judgement), {"its 'toe' is not compared"});
     EXPECT_EQ(texts(judgement).find("all where the branches begin"), std::string::npos);
 }
 
@@ -363,9 +363,7 @@ TEST(Candidate, PointsAtZeroParameterAloneAreNotJudged) {
     ASSERT_FALSE(right.points.a.empty());
     const auto judgement = judged(right);
     EXPECT_EQ(judgement.verdict, Grade::not_judged);
-    EXPECT_NE(texts(judgement).find("its points are all where the branches begin"),
-              std::string::npos)
-        << texts(judgement);
+    support::expect_parts(texts(judgement), {"its points are all where the branches begin"});
     Candidate wrong = right;
     for (double& v : values(wrong, "toe")) v += 1;
     EXPECT_EQ(judged(wrong).verdict, Grade::fail);

@@ -16,6 +16,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -27,10 +28,13 @@ using std::numbers::pi;
 constexpr double deg = 180 / pi;
 constexpr std::array all_legs{Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive};
 
-Model model_of(const std::string& text,
-               const std::string& units = "{length: m, angle: rad, force: N}") {
-    return compile(
-        parse_scene("elastocheck: 1\nname: test\nunits: " + units + "\n" + text, "test.yaml"));
+std::string point(double x, double y, double z) {
+    return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", x, y, z);
+}
+std::string point(const Vector3d& p) { return point(p.x(), p.y(), p.z()); }
+
+Model filled(const std::string& name, const support::Places& places) {
+    return compile(support::filled_scene("compare/scenes/" + name, places));
 }
 
 // Characteristics at a = 0 of a branch, the first by default, by one leg.
@@ -90,25 +94,17 @@ struct Arm {
 };
 const Arm trailing{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
 
-std::string arm_scene(const Arm& arm, const std::string& more = "") {
-    const auto point = [](const Vector3d& p) {
-        return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", p.x(), p.y(), p.z());
-    };
-    return fmt::format(
-        "points: {{a: {}, b: {}, c: {}, p: {}, top: [0.1, 1.0, 0.4], low: [0.1, 1.0, 0.0]}}\n"
-        "bodies: {{arm: {{origin: c}}}}\n"
-        "joints: {{axis: {{type: revolute, bodies: [arm, ground], at: a, axis: [a, b]}}}}\n"
-        "springs: {{coil: {{bodies: [arm, ground], from: low, to: top, rate: 50e3}}}}\n"
-        "loads: {{up: {{on: arm, at: p, force: [0, 0, 1]}}}}\n"
-        "branches: {{up: {{load: up, to: 500, steps: 2}}}}\n"
-        "wheel: {{body: arm, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
-        "left}}\n{}",
-        point(arm.a), point(arm.b), point(arm.centre), point(arm.patch), more);
+Model arm_scene(const Arm& arm, const std::string& more = "") {
+    return filled("wheel_on_an_arm", {{"A", point(arm.a)},
+                                      {"B", point(arm.b)},
+                                      {"C", point(arm.centre)},
+                                      {"P", point(arm.patch)},
+                                      {"MORE", more}});
 }
 
 TEST(Characteristics, SemiTrailingArmEqualsRotationAboutItsAxisInEveryLeg) {
     const Arm arm{{0.5, 0.9, 0.02}, {0.42, 0.5, -0.05}, {0, 1.1, 0}, {0.03, 1.12, -0.3}};
-    const Model model = model_of(arm_scene(arm));
+    const Model model = arm_scene(arm);
     const Vector3d v_c = arm.v(arm.centre), v_p = arm.v(arm.patch), n = arm.n(), e(0, 1, 0),
                    de = n.cross(e);
     const double dz = v_c.z();
@@ -139,7 +135,7 @@ TEST(Characteristics, SemiTrailingArmEqualsRotationAboutItsAxisInEveryLeg) {
 
 TEST(Characteristics, TrailingArmHasRollCentreOnTheRoadAndInfiniteFrontViewArm) {
     for (const Leg leg : all_legs) {
-        const Read is(model_of(arm_scene(trailing)), leg);
+        const Read is(arm_scene(trailing), leg);
         EXPECT_NEAR(is["roll_centre_height"], 0, 1e-9);
         EXPECT_EQ(is["front_view_swing_arm"], undefined);
         EXPECT_NEAR(is["side_view_swing_arm"], 500, 1e-9);
@@ -147,26 +143,11 @@ TEST(Characteristics, TrailingArmHasRollCentreOnTheRoadAndInfiniteFrontViewArm) 
     }
 }
 
-// Both wheels on one body, which one joint leaves one motion.
-Model axle_on(const std::string& joint) {
-    return model_of(R"(
-points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4],
-         beside: [0, -2, 0]}
-bodies: {axle: {origin: mid}}
-joints: {guide: {bodies: [axle, ground], )" +
-                    joint + R"(}}
-springs: {coil: {bodies: [axle, ground], from: mid, to: top, rate: 50e3}}
-branches: {travel: {drive: left.travel, to: 0.01, steps: 2}}
-wheels:
-  left: {body: axle, centre: l, contact_patch: pl, contact: carrier, spin_axis: y, side: left}
-  right: {body: axle, centre: r, contact_patch: pr, contact: carrier, spin_axis: -y, side: right}
-)");
-}
-
 // On an oblique slide both wheels move together: back by a quarter and across by a tenth
 // of their rise.
 TEST(Characteristics, RigidAxleFiguresAreThoseOfItsHeave) {
-    const Model model = axle_on("type: translational, at: mid, axis: [-0.25, 0.1, 1]");
+    const Model model = filled("axle_on_a_joint",
+                               {{"JOINT", "type: translational, at: mid, axis: [-0.25, 0.1, 1]"}});
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
         const Read is(model, leg);
@@ -189,7 +170,8 @@ TEST(Characteristics, RigidAxleFiguresAreThoseOfItsHeave) {
 // About an axis beside the right wheel the left one rises by 2.8, the right one by 1.2: each value
 // is per metre of its own wheel's travel.
 TEST(Characteristics, WheelsOfARigidAxleHaveTheirOwnTravel) {
-    const Model model = axle_on("type: revolute, at: beside, axis: x");
+    const Model model =
+        filled("axle_on_a_joint", {{"JOINT", "type: revolute, at: beside, axis: x"}});
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
         const Read is(model, leg);
@@ -205,11 +187,10 @@ TEST(Characteristics, WheelsOfARigidAxleHaveTheirOwnTravel) {
 // ahead and above.
 TEST(Characteristics, AntiFiguresFollowFromTheAngleOfTheArm) {
     const auto with = [](const char* axle) {
-        return model_of(arm_scene(
-            trailing,
-            fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, brake_share: 0.4, "
-                        "drive_share: 1}}\n",
-                        axle)));
+        return arm_scene(trailing,
+                         fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, "
+                                     "brake_share: 0.4, drive_share: 1}}\n",
+                                     axle));
     };
     const Read rear(with("rear"), Leg::equilibrium), front(with("front"), Leg::equilibrium);
     EXPECT_NEAR(rear["anti_lift"], 100 * 0.4 * 0.8 * 5, 1e-9);
@@ -222,7 +203,7 @@ TEST(Characteristics, AntiFiguresFollowFromTheAngleOfTheArm) {
 // An unresisted motion has an undefined rate; a failed solve gives NaN, and the two
 // are never confused.
 TEST(Characteristics, FailedResponseIsNotReportedAsAMissingRate) {
-    const Model model = model_of(arm_scene(trailing));
+    const Model model = arm_scene(trailing);
     Read is(model, Leg::equilibrium);
     const auto list = characteristics(model);
     const auto& rate = list[static_cast<std::size_t>(find_channel(list, "wheel_rate"))];
@@ -238,32 +219,14 @@ TEST(Characteristics, FailedResponseIsNotReportedAsAMissingRate) {
 
 // ---- Two arms in the transverse plane: the wheel rotates about the intersection of their lines.
 
-std::string wishbones(const std::string& upper_inner, const std::string& upper_outer,
-                      const std::string& lower_inner, const std::string& lower_outer) {
-    return fmt::format(
-        "points: {{ui: {}, uo: {}, li: {}, lo: {}, c: [0, 0.8, 0.3], p: [0, 0.8, 0], top: [0, 0.6, "
-        "0.8]}}\n"
-        "bodies: {{upper: {{origin: ui}}, lower: {{origin: li}}, wheel: {{origin: c}}}}\n"
-        "joints:\n"
-        "  ui: {{type: revolute, bodies: [upper, ground], at: ui, axis: x}}\n"
-        "  li: {{type: revolute, bodies: [lower, ground], at: li, axis: x}}\n"
-        "  uo: {{type: revolute, bodies: [wheel, upper], at: uo, axis: x}}\n"
-        "  lo: {{type: revolute, bodies: [wheel, lower], at: lo, axis: x}}\n"
-        "springs: {{coil: {{bodies: [wheel, ground], from: lo, to: top, rate: 30e3}}}}\n"
-        "loads: {{up: {{on: wheel, at: p, force: [0, 0, 1]}}}}\n"
-        "branches: {{up: {{load: up, to: 100, steps: 2}}}}\n"
-        "wheel: {{body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
-        "left}}\n",
-        upper_inner, upper_outer, lower_inner, lower_outer);
-}
-
 TEST(Characteristics, EqualParallelArmsHaveNoCamberGainAndInfiniteFrontViewArm) {
     // Both arms fall by 0.1 over 0.4 towards the wheel: its points move inwards by a quarter of the
     // rise; with rising arms outwards.
     for (const double fall : {0.0, 0.1, -0.1}) {
-        const Model model =
-            model_of(wishbones("[0, 0.3, 0.45]", fmt::format("[0, 0.7, {}]", 0.45 - fall),
-                               "[0, 0.3, 0.15]", fmt::format("[0, 0.7, {}]", 0.15 - fall)));
+        const Model model = filled("arms_in_a_plane", {{"UI", point(0, 0.3, 0.45)},
+                                                       {"UO", point(0, 0.7, 0.45 - fall)},
+                                                       {"LI", point(0, 0.3, 0.15)},
+                                                       {"LO", point(0, 0.7, 0.15 - fall)}});
         for (const Leg leg : all_legs) {
             const Read is(model, leg);
             EXPECT_NEAR(is["bump_camber"], 0, 1e-9) << fall;
@@ -275,8 +238,10 @@ TEST(Characteristics, EqualParallelArmsHaveNoCamberGainAndInfiniteFrontViewArm) 
 }
 
 TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
-    const Model model = model_of(
-        wishbones("[0, 0.35, 0.42]", "[0, 0.68, 0.46]", "[0, 0.3, 0.18]", "[0, 0.72, 0.14]"));
+    const Model model = filled("arms_in_a_plane", {{"UI", "[0, 0.35, 0.42]"},
+                                                   {"UO", "[0, 0.68, 0.46]"},
+                                                   {"LI", "[0, 0.3, 0.18]"},
+                                                   {"LO", "[0, 0.72, 0.14]"}});
     // Where the lines z = 0.42 + 0.04/0.33 (y - 0.35) and z = 0.18 - 0.04/0.42 (y - 0.3) meet.
     const double m = 0.04 / 0.33, n = -0.04 / 0.42,
                  y = (0.18 - n * 0.3 - 0.42 + m * 0.35) / (m - n), z = 0.42 + m * (y - 0.35);
@@ -300,28 +265,17 @@ TEST(Characteristics, SteeringAxisPassesThroughBothBallJoints) {
     // A vertical line may lie beside the wheel centre, whose height is constant as well.
     for (const auto& [caster, inclination, inboard] : {Line{0.1, 0.2, 0}, Line{0, 0, 0.08}})
         for (const int side : {1, -1}) {
-            const auto point = [&](double x, double y, double z) {
-                return fmt::format("[{}, {}, {}]", x, side * y, z);
-            };
-            const Model model = model_of(fmt::format(
-                "points: {{top: {}, low: {}, c: {}, p: {}, outer: {}, inner: {}, above: {}}}\n"
-                "bodies: {{wheel: {{origin: c}}, rack: {{origin: inner}}, link: {{origin: "
-                "above}}}}\n"
-                "joints:\n"
-                "  top: {{type: spherical, bodies: [wheel, link], at: top}}\n"
-                "  low: {{type: spherical, bodies: [wheel, link], at: low}}\n"
-                "  slide: {{type: translational, bodies: [link, ground], at: above, axis: z}}\n"
-                "  tie: {{type: distance, bodies: [wheel, rack], from: outer, to: inner}}\n"
-                "  rack: {{type: translational, bodies: [rack, ground], at: inner, axis: y, held: "
-                "true}}\n"
-                "springs: {{coil: {{bodies: [link, ground], from: above, to: c, rate: 30e3}}}}\n"
-                "branches: {{steer: {{drive: joints.rack, to: 0.01, steps: 2}}}}\n"
-                "wheel: {{body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: "
-                "{}y, side: {}}}\n",
-                point(-0.2 * caster, 0.8 - inboard - 0.2 * inclination, 0.5),
-                point(0.2 * caster, 0.8 - inboard + 0.2 * inclination, 0.1), point(0, 0.8, 0.3),
-                point(0, 0.8, 0), point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3),
-                point(0, 0.5, 0.9), side > 0 ? "" : "-", side > 0 ? "left" : "right"));
+            const auto at = [&](double x, double y, double z) { return point(x, side * y, z); };
+            const Model model = filled(
+                "steered_by_a_rack",
+                {{"TOP", at(-0.2 * caster, 0.8 - inboard - 0.2 * inclination, 0.5)},
+                 {"LOW", at(0.2 * caster, 0.8 - inboard + 0.2 * inclination, 0.1)},
+                 {"C", at(0, 0.8, 0.3)},
+                 {"P", at(0, 0.8, 0)},
+                 {"OUTER", at(-0.15, 0.75, 0.3)},
+                 {"INNER", at(-0.15, 0.4, 0.3)},
+                 {"ABOVE", at(0, 0.5, 0.9)},
+                 {"SIDE", side > 0 ? "spin_axis: y, side: left" : "spin_axis: -y, side: right"}});
             for (const Leg leg : all_legs) {
                 const Read is(model, leg);
                 EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
@@ -343,25 +297,16 @@ TEST(Characteristics, ScrubAndTrailAreMeasuredInAxesOfTheSteeredWheel) {
                 return Vector3d(std::cos(steered) * x - std::sin(steered) * side * y,
                                 std::sin(steered) * x + std::cos(steered) * side * y, 0);
             };
-            const auto point = [&](double x, double y, double z) {  // from the kingpin
-                const Vector3d r = turned(x, y);
-                return fmt::format("[{:.17g}, {:.17g}, {}]", r.x(), side * 0.7 + r.y(), z);
+            const auto at = [&](double x, double y, double z) {  // from the kingpin
+                return point(turned(x, y) + Vector3d(0, side * 0.7, z));
             };
-            const Vector3d spin = turned(0, 1);
-            const Model model = model_of(fmt::format(
-                "points: {{low: {}, up: {}, c: {}, p: {}}}\n"
-                "bodies: {{slider: {{origin: low}}, wheel: {{origin: c}}}}\n"
-                "joints:\n"
-                "  lift: {{type: translational, bodies: [slider, ground], at: low, axis: z}}\n"
-                "  kingpin: {{type: revolute, bodies: [wheel, slider], at: low, axis: [low, up], "
-                "held: true}}\n"
-                "springs: {{coil: {{bodies: [slider, ground], from: low, to: up, rate: 30e3}}}}\n"
-                "branches: {{steer: {{drive: joints.kingpin, to: 0.1, steps: 2}}}}\n"
-                "wheel: {{body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: "
-                "[{:.17g}, "
-                "{:.17g}, 0], side: {}}}\n",
-                point(0, 0, -0.1), point(0, 0, 0.2), point(0, 0.05, 0), point(-0.03, 0.1, -0.3),
-                spin.x(), spin.y(), side > 0 ? "left" : "right"));
+            const Model model = filled("steered_about_a_kingpin",
+                                       {{"LOW", at(0, 0, -0.1)},
+                                        {"UP", at(0, 0, 0.2)},
+                                        {"C", at(0, 0.05, 0)},
+                                        {"P", at(-0.03, 0.1, -0.3)},
+                                        {"AXIS", point(turned(0, 1))},
+                                        {"SIDE", side > 0 ? "side: left" : "side: right"}});
             const Read is(model, Leg::equilibrium);
             EXPECT_NEAR(is["scrub_radius_steered"], 100, 1e-6) << side << " " << steered;
             EXPECT_NEAR(is["mechanical_trail_steered"], 30, 1e-6) << side << " " << steered;
@@ -372,15 +317,7 @@ TEST(Characteristics, ScrubAndTrailAreMeasuredInAxesOfTheSteeredWheel) {
 
 // One body on one bushing: closed form of the response to a wrench at a point at r, from r and K.
 TEST(Characteristics, ComplianceOfOneBushingIsItsInverseStiffnessAtTheWheel) {
-    const Model model = model_of(
-        "points: {m: [0.1, 0.7, 0.4], c: [0, 1, 0.3], p: [0, 1, 0]}\nbodies: {wheel: {origin: c}}\n"
-        "bushings: {mount: {bodies: [wheel, ground], at: m, rates: [2e6, 5e6, 4e6], "
-        "rotational_rates: [9e3, "
-        "7e3, 8e3]}}\n"
-        "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, "
-        "steps: 2}}\n"
-        "wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
-        "left}\n");
+    const Model model = compile(support::scene_of("compare/scenes/wheel_on_a_bushing"));
     const Vector3d lever = Vector3d(0, 1, 0) - Vector3d(0.1, 0.7, 0.4);
     const auto tilde = [](const Vector3d& v) {
         Eigen::Matrix3d m;
@@ -437,10 +374,18 @@ TEST(Characteristics, HeldWheelHasTheComplianceOfOneUnderTheHoldingForce) {
         return std::pair{row_of(model, all, way, solver, path.points.back()).values,
                          c < 0 ? 0.0 : values[static_cast<std::size_t>(c)]};
     };
-    const auto scene = [&](const std::string& branches, const std::string& more) {
-        std::string text = arm_scene(trailing, more);
-        const auto from = text.find("branches:"), to = text.find('\n', from);
-        return model_of(text.replace(from, to - from, branches));
+    const std::string dead = "branches: {up: {load: up, to: 500, steps: 2}}";
+    std::string text = support::scene_text("compare/scenes/wheel_on_an_arm");
+    for (const auto& [word, by] : {std::pair{"$A", trailing.a},
+                                   {"$B", trailing.b},
+                                   {"$C", trailing.centre},
+                                   {"$P", trailing.patch}})
+        text = support::replaced(text, word, point(by));
+    const auto scene = [&](const std::string& branches, const std::string& more,
+                           const std::string& at = "p") {
+        std::string edited = support::replaced(text, dead, branches);
+        edited = support::replaced(edited, "at: p, force", "at: " + at + ", force");
+        return compile(parse_scene(support::replaced(edited, "$MORE", more), "arm"));
     };
     struct Case {
         std::string branches, more, force, at;
@@ -451,12 +396,12 @@ TEST(Characteristics, HeldWheelHasTheComplianceOfOneUnderTheHoldingForce) {
                "tyres: {front: {rate: 200e3, preload: 0}}\n", "front.force", "p"}}) {
         const auto [by_holding, force] = rates_at_end(scene(held.branches, held.more), held.force);
         ASSERT_GT(force, 1000) << held.force;
-        std::string text = arm_scene(trailing, held.more);
-        text.replace(text.find("at: p, force"), 5, "at: " + held.at);
-        const auto from = text.find("branches:"), to = text.find('\n', from);
-        text.replace(from, to - from,
-                     fmt::format("branches: {{t: {{load: up, to: {:.17g}, steps: 2}}}}", force));
-        const auto by_load = rates_at_end(model_of(text), "").first;
+        const auto by_load =
+            rates_at_end(
+                scene(fmt::format("branches: {{t: {{load: up, to: {:.17g}, steps: 2}}}}", force),
+                      held.more, held.at),
+                "")
+                .first;
         ASSERT_EQ(by_load.size(), by_holding.size());
         for (std::size_t c = 0; c < by_load.size(); ++c)
             expect_alike(by_load[c], by_holding[c], 1e-7, fmt::format("{} {}", held.force, c));
@@ -552,9 +497,9 @@ TEST(Characteristics, RatesAreTheDerivativesOfTheCurves) {
 
 // The published matrix contains no spring force: its wheel rate is that of the unloaded suspension.
 TEST(Characteristics, PublishedTangentOmitsTheEffectOfPreload) {
-    const Model unloaded = model_of(arm_scene(trailing)),
-                loaded = model_of(arm_scene(
-                    trailing, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n"));
+    const Model unloaded = arm_scene(trailing),
+                loaded = arm_scene(
+                    trailing, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n");
     const double published = Read(loaded, Leg::recursive)["wheel_rate"],
                  truth = Read(loaded, Leg::equilibrium)["wheel_rate"];
     EXPECT_GT(std::abs(published - truth), 0.01 * truth);

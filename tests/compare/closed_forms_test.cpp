@@ -9,6 +9,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "tests/support/cantilever.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -20,16 +21,20 @@ using std::numbers::pi;
 constexpr double no_curve = 1e-8;
 constexpr double expansions = 1e-9;  // [mm] [deg] distance of the series from the equilibrium leg
 
-// A scene in metres, radians and newtons, solved by the series and both references,
+const std::string units = "\nunits: {length: m, angle: rad, force: N}\n";
+
+// A scene, in metres, radians and newtons where its text has no head, solved by the series and both references,
 // which must agree.
 class Solved {
   public:
     // `told`: tolerance of the series [m]; smaller for chains of many bodies.
     Solved(const std::string& text, const std::string& what,
            double told = recursive::Series{}.tolerance)
-        : model(compile(parse_scene("elastocheck: 1\nname: " + what +
-                                        "\nunits: {length: m, angle: rad, force: N}\n" + text,
-                                    what))) {
+        : model(compile(parse_scene(
+              (text.find("elastocheck: 1") != text.npos ? ""
+                                                        : "elastocheck: 1\nname: " + what + units) +
+                  text,
+              what))) {
         Options options;
         options.recursion.method = {"series", 0, recursive::Series{.tolerance = told}};
         all = compare(model, options);
@@ -119,19 +124,15 @@ branches: {{roll: {{load: roll, to: {}, steps: 8}}}}
 TEST(Cantilever, RoundRodUnderADeadMomentEndsOnlyInTheEnergyLeg) {
     const int n = 8, steps = 16;
     const double diameter = 0.022, EI_rod = E * pi * std::pow(diameter, 4) / 64;
-    const Model model = compile(parse_scene(fmt::format(
-                                                R"(elastocheck: 1
-name: rod
-units: {{length: m, angle: rad, force: N}}
-points: {{root: [0, 0, 0], tip: [{0}, 0, 0]}}
-bodies: {{tip: {{origin: tip}}}}
-beams: {{rod: {{bodies: [ground, tip], through: [root, tip], segments: {1}, E: {2}, G: {3}, diameter: {4}}}}}
-probes: {{tip: {{on: tip, at: tip}}}}
-loads: {{roll: {{on: tip, moment: [0, 0, 1]}}}}
-branches: {{roll: {{load: roll, to: {5}, steps: {6}}}}}
-)",
-                                                L, n, E, G, diameter, 2 * pi * EI_rod / L, steps),
-                                            "rod.yaml"));
+    const auto number = [](double x) { return fmt::format("{}", x); };
+    const Model model =
+        compile(support::filled_scene("compare/scenes/rod", {{"L", number(L)},
+                                                             {"N", number(n)},
+                                                             {"E", number(E)},
+                                                             {"G", number(G)},
+                                                             {"DIAMETER", number(diameter)},
+                                                             {"TO", number(2 * pi * EI_rod / L)},
+                                                             {"STEPS", number(steps)}}));
     const auto ways = sides_of(model, model.branches[0]);
     for (const Leg leg : {Leg::equilibrium, Leg::series, Leg::energy}) {
         const auto path = solve_branch(ways, {.leg = leg});
@@ -249,27 +250,10 @@ TEST(AntiRollBar, RateIsTheTextbookSumOfCompliances) {
     const double rate = 1 / (2 * a * a * a / (3 * EI_rod) + a * a * b / GJ_rod);  // 45 kN/m
     for (const int n : {3, 7, 21}) {
         const auto text = [&](double force) {
-            return fmt::format(
-                "points: {{end_left: [0, {0}, 0], bearing_left: [{1}, {0}, 0], bearing_right: "
-                "[{1}, -{0}, "
-                "0], "
-                "end_right: [0, -{0}, 0]}}\n"
-                "bodies: {{link_left: {{origin: end_left}}, link_right: {{origin: end_right}}}}\n"
-                "beams: {{bar: {{bodies: [link_left, link_right], through: [end_left, "
-                "bearing_left, "
-                "bearing_right, "
-                "end_right], segments: {2}, {3}}}}}\n"
-                "joints:\n  left: {{type: spherical, bodies: [bar.bearing_left, ground], at: "
-                "bearing_left}}\n"
-                "  right: {{type: in_line, bodies: [bar.bearing_right, ground], at: bearing_right, "
-                "axis: "
-                "y}}\n"
-                "  link: {{type: in_plane, bodies: [link_right, ground], at: end_right, normal: "
-                "z}}\n"
-                "loads: {{lift: {{on: link_left, at: end_left, force: [0, 0, 1]}}}}\n"
-                "probes: {{end: {{on: link_left, at: end_left}}}}\n"
-                "branches: {{lift: {{load: lift, to: {4}, steps: 4}}}}\n",
-                b / 2, a, n, steel_rod, force);
+            return support::filled_text("compare/scenes/anti_roll_bar",
+                                        {{"SEGMENTS", fmt::format("{}", n)},
+                                         {"ROD", steel_rod},
+                                         {"FORCE", fmt::format("{}", force)}});
         };
         std::vector<double> more;
         for (const double F : {5., 50., 500.}) {
@@ -294,19 +278,9 @@ struct Block {
     double k = 20e3, c = 0.03, s = 300e3, d = 0.05, r = 120e3;
 
     std::string text(double to) const {
-        return fmt::format(
-            "points: {{low: [0, 0, 0], high: [0, 0, 0.4]}}\nbodies: {{block: {{origin: high}}}}\n"
-            "joints: {{guide: {{type: translational, bodies: [block, ground], at: high, axis: "
-            "z}}}}\n"
-            "springs:\n  coil: {{bodies: [block, ground], from: high, to: low, rate: {}, "
-            "bump_stop: "
-            "{{clearance: {}, rate: "
-            "{}}}, rebound_stop: {{clearance: {}, rate: {}}}}}\n"
-            "loads: {{push: {{on: block, at: high, force: [0, 0, -1]}}}}\nprobes: {{top: {{on: "
-            "block, at: "
-            "high}}}}\n"
-            "branches: {{push: {{load: push, from: {}, to: {}, steps: 30}}}}\n",
-            k, c, s, d, r, -to, to);
+        return support::filled_text(
+            "compare/scenes/block_between_stops",
+            {{"FROM", fmt::format("{}", -to)}, {"TO", fmt::format("{}", to)}});
     }
     // Displacement under a force F.
     double down(double F) const {
@@ -321,9 +295,7 @@ struct Block {
 TEST(Stop, IsPassedByEveryMethod) {
     const Block block;
     const double to = 3100;
-    const Model model = compile(parse_scene(
-        "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n" + block.text(to),
-        "block"));
+    const Model model = compile(parse_scene(block.text(to), "block"));
     for (const auto& method : recursive::methods)
         for (const int steps : {20, 40, 80, 160}) {
             const LegRun done =

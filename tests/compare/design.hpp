@@ -1,8 +1,6 @@
 // Figures in closed form and of scenes, for the tests of compare/design/.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <functional>
 #include <limits>

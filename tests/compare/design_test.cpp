@@ -13,10 +13,8 @@
 #include "compare/design/optimise.hpp"
 #include "compare/design/results.hpp"
 #include "compare/design/tolerances.hpp"
-#include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
-#include "elastocheck/trim.hpp"
 
 namespace elastocheck::compare {
 namespace {

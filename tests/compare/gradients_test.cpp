@@ -17,9 +17,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
-#include "models/branch.hpp"
-#include "tests/support/folder.hpp"
-#include "tests/support/mistakes.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -412,46 +410,30 @@ TEST(GradientsClosedForm, OfASemiTrailingArm) {
     const double W_c = W(0, 1.1), W_p = W(0.03, 1.12), W_low = W(0.1, 1.0);
     const double v_x = dy * (0 - az) - dz * (1.0 - ay);  // of `low`
     const double rate = k * W_low * W_low / (W_p * W_c);
-    each_leg(
-        "elastocheck: 1\nname: arm\nunits: {length: m, angle: deg, force: N}\n"
-        "points: {a: [0.5, 0.9, 0.02], b: [0.42, 0.5, -0.05], c: [0, 1.1, 0],\n"
-        "         p: [0.03, 1.12, -0.3], top: [0.1, 1.0, 0.4], low: [0.1, 1.0, 0.0]}\n"
-        "bodies: {arm: {origin: c}}\n"
-        "joints: {axis: {type: revolute, bodies: [arm, ground], at: a, axis: [a, b]}}\n"
-        "springs: {coil: {bodies: [arm, ground], from: low, to: top, rate: 50e3}}\n"
-        "loads: {up: {on: arm, at: p, force: [0, 0, 1]}}\n"
-        "branches: {up: {load: up, to: 500, steps: 2}}\n"
-        "wheel: {body: arm, centre: c, contact_patch: p, contact: carrier, spin_axis: y, side: "
-        "left}\n",
-        {"bump_steer", "wheel_rate"},
-        {"points.b.z", "points.a.x", "springs.coil.rate", "points.low.x"}, 0,
-        [&](const Eigen::MatrixXd& by) {
-            EXPECT_NEAR(by(0, 0), in_deg * -1 / W_c, 1e-9);
-            // d_x falls by one, and a_x grows: dW = -(c_y - a_y) + d_y
-            EXPECT_NEAR(by(0, 1), in_deg * dz * (dy - (1.1 - ay)) / (W_c * W_c), 1e-8);
-            EXPECT_NEAR(by(0, 2), 0, 1e-12);
-            EXPECT_NEAR(by(1, 2), 1e-3 * rate / k, 1e-12);
-            EXPECT_NEAR(by(1, 3), 1e-3 * 2 * rate / W_low * (-dy - v_x / 0.4), 1e-7);
-        });
+    each_leg(support::filled_text("compare/scenes/wheel_on_an_arm", {{"A", "[0.5, 0.9, 0.02]"},
+                                                                     {"B", "[0.42, 0.5, -0.05]"},
+                                                                     {"C", "[0, 1.1, 0]"},
+                                                                     {"P", "[0.03, 1.12, -0.3]"},
+                                                                     {"MORE", ""}}),
+             {"bump_steer", "wheel_rate"},
+             {"points.b.z", "points.a.x", "springs.coil.rate", "points.low.x"}, 0,
+             [&](const Eigen::MatrixXd& by) {
+                 EXPECT_NEAR(by(0, 0), in_deg * -1 / W_c, 1e-9);
+                 // d_x falls by one, and a_x grows: dW = -(c_y - a_y) + d_y
+                 EXPECT_NEAR(by(0, 1), in_deg * dz * (dy - (1.1 - ay)) / (W_c * W_c), 1e-8);
+                 EXPECT_NEAR(by(0, 2), 0, 1e-12);
+                 EXPECT_NEAR(by(1, 2), 1e-3 * rate / k, 1e-12);
+                 EXPECT_NEAR(by(1, 3), 1e-3 * 2 * rate / W_low * (-dy - v_x / 0.4), 1e-7);
+             });
 }
 
 std::string equal_arms(const std::string& branch) {
-    return "elastocheck: 1\nname: arms\nunits: {length: m, angle: deg, force: N}\n"
-           "points: {ui: [0, 0.3, 0.45], uo: [0, 0.7, 0.45], li: [0, 0.3, 0.15],\n"
-           "         lo: [0, 0.7, 0.15], c: [0, 0.8, 0.3], p: [0, 0.8, 0], top: [0, 0.6, 0.8]}\n"
-           "bodies: {upper: {origin: ui}, lower: {origin: li}, wheel: {origin: c}}\n"
-           "joints:\n"
-           "  ui: {type: revolute, bodies: [upper, ground], at: ui, axis: x}\n"
-           "  li: {type: revolute, bodies: [lower, ground], at: li, axis: x}\n"
-           "  uo: {type: revolute, bodies: [wheel, upper], at: uo, axis: x}\n"
-           "  lo: {type: revolute, bodies: [wheel, lower], at: lo, axis: x}\n"
-           "springs: {coil: {bodies: [wheel, ground], from: lo, to: top, rate: 30e3}}\n"
-           "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\n"
-           "branches: {" +
-           branch +
-           "}\n"
-           "wheel: {body: wheel, centre: c, contact_patch: p, contact: carrier, spin_axis: y, "
-           "side: left}\n";
+    const std::string text =
+        support::filled_text("compare/scenes/arms_in_a_plane", {{"UI", "[0, 0.3, 0.45]"},
+                                                                {"UO", "[0, 0.7, 0.45]"},
+                                                                {"LI", "[0, 0.3, 0.15]"},
+                                                                {"LO", "[0, 0.7, 0.15]"}});
+    return support::replaced(text, "up: {load: up, to: 100, steps: 2}", branch);
 }
 
 // The upper inner joint raised by t: the lines of the arms meet at y - 0.3 = 0.4 (0.3 + t) / t, and
@@ -497,16 +479,7 @@ TEST(Gradients, UndefinedEntryAtACornerHasItsReason) {
 // A spring of 20 N/mm that a stop of 80 N/mm joins at 10 mm: z = F / 20 below the knot and
 // 10 + (F - 200) / 100 above. At F = 200 N the force itself, a number of the scene, has two rates.
 TEST(Gradients, OneSidedDerivativesAtACornerAreThoseOfTheLawOnEitherSide) {
-    const std::string text =
-        "elastocheck: 1\nname: stop\nunits: {length: mm, angle: deg, force: N}\n"
-        "points: {low: [0, 0, 0], top: [0, 0, 400]}\n"
-        "bodies: {block: {origin: top}}\n"
-        "joints: {guide: {type: translational, bodies: [block, ground], at: top, axis: z}}\n"
-        "springs: {coil: {bodies: [block, ground], from: top, to: low, rate: 20,\n"
-        "                 rebound_stop: {clearance: 10, rate: 80}}}\n"
-        "loads: {up: {on: block, at: top, force: [0, 0, 1]}}\n"
-        "branches: {up: {load: up, to: 400, steps: 2}}\n"
-        "probes: {tip: {on: block, at: top}}\n";
+    const std::string text = support::scene_text("compare/scenes/block_on_a_stop");
     const auto every = outputs_of(compile(parse_scene(text, "stop.yaml", {})));
     const int z = find_channel(every, "tip_z");
     ASSERT_GE(z, 0);

@@ -9,7 +9,6 @@
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/studies/study.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"
 #include "compare/studies/order_study.hpp"
 #include "elastocheck/compile.hpp"

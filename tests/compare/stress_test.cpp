@@ -8,7 +8,6 @@
 #include "compare/stress/stress.hpp"
 #include "compare/stress/transforms.hpp"
 #include "elastocheck/compile.hpp"
-#include "elastocheck/read_scene.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {

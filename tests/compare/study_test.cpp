@@ -10,6 +10,7 @@
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/compile.hpp"
+#include "tests/support/quadrature.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -23,19 +24,10 @@ StudyOptions options(std::vector<std::string_view> names = {"published"}) {
     return o;
 }
 
-template <class F>
-double root(F&& f, double low, double high) {
-    for (int k = 0; k < 200; ++k) {
-        const double middle = (low + high) / 2;
-        (f(middle) < 0 ? low : high) = middle;
-    }
-    return low;
-}
-
 TEST(Study, SeparatesStepErrorFromFormulationGap) {
     // Pinned bar: own limit k L θ = F cos θ, truth k L tan θ = F; both in closed form.
     const Study s = study(compile(support::scene("pinned_bar")), options());
-    const double own = root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5),
+    const double own = support::root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5),
                  truth = std::atan(0.5);
     const auto& z = s.branches[0].methods[0].equal_parameter[2];
     EXPECT_EQ(s.channels[2].name, "tip_z");

@@ -10,7 +10,6 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare::variants {
 namespace {

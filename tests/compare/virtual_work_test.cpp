@@ -19,17 +19,14 @@
 
 #include <cmath>
 
-#include "compare/comparison/legs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/channels.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
-#include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
 #include "models/overloaded.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/path.hpp"
 #include "tests/support/quadrature.hpp"
 #include "tests/support/scenes.hpp"

@@ -1,9 +1,6 @@
 // Branches driven by lengths, offsets, angles, free lengths and preloads, alone and together,
 // against closed forms.
 #include "elastocheck/compile.hpp"
-#include "elastocheck/energy.hpp"
-#include "elastocheck/equilibrium.hpp"
-#include "elastocheck/recursive.hpp"
 #include "tests/legs/legs.hpp"
 #include "tests/support/scenes.hpp"
 

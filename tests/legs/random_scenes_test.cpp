@@ -1,6 +1,5 @@
 // Property-based test on small random scenes: the result does not depend on the number of steps.
 #include "tests/support/random_scenes.hpp"
-#include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "tests/legs/legs.hpp"
 

@@ -1,8 +1,6 @@
 // Ends of branches at bifurcations and loss of stability, independent of the requested points.
 #include "elastocheck/compile.hpp"
-#include "elastocheck/read_scene.hpp"
 #include "tests/legs/legs.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace elastocheck::legs {
 namespace {

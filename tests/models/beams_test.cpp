@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <cmath>
 
 #include "elastocheck/read_scene.hpp"
 #include "tests/models/fixtures.hpp"

@@ -6,13 +6,14 @@
 //   : key = values           a fact, exactly; `~`: each number within 1e-15 of it, or of 0 (`~1e-13`:
 //                            within that); `is`: the values are those of another key
 //   = accepted, ~ part       instead: it is read, or refused with this part of the message
+//   = the same scene         instead: it is read as the text without the edits
 //
 // A key is that of a number (scene_numbers.hpp), or of all that begin with it and a dot: "branch up.to",
 // "joint jack.i", a point: its body and place. Units count from newton, newton_metre, metre, radian.
 // Others: the names in "bodies", "joints", "elements", "branches", "wheels", "dampers", "loads" (static);
 // "adjusted" and "conditions" of a trim; "number PATH", its value and unit; "omissions", and the reason in
 // "omitted WHAT". "kept KEY" is of the model by compile(), "whole KEY" of that with Detail::everything.
-// Every claim sets each number of its scene to its own value as well, which must change nothing.
+// Every claim of tests/models sets each number of its scene to its own value as well, which must change nothing.
 #pragma once
 
 #include <fmt/format.h>
@@ -74,6 +75,19 @@ inline std::vector<ReadClaim> claims_in(const std::filesystem::path& file) {
     }
     EXPECT_FALSE(all.empty()) << file;
     return all;
+}
+
+// Of all files of facts in a folder.
+inline std::vector<ReadClaim> claims_beside(const std::filesystem::path& folder) {
+    std::vector<ReadClaim> all;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".facts")
+            for (auto& claim : claims_in(entry.path())) all.push_back(std::move(claim));
+    return all;
+}
+// As a suite of tests names it.
+inline std::string name_of(const testing::TestParamInfo<ReadClaim>& claim) {
+    return claim.param.file + "_" + claim.param.name;
 }
 
 inline std::string edited(std::string text, const ReadClaim& claim) {
@@ -139,7 +153,8 @@ inline bool agree(const std::string& is, const std::string& expected, double tol
 // `read` makes the scene of a text, or throws a SceneError.
 inline void expect_facts(
     const ReadClaim& claim, const std::string& valid,
-    const std::function<Scene(const std::string&, const std::vector<Setting>&)>& read) {
+    const std::function<Scene(const std::string&, const std::vector<Setting>&)>& read,
+    bool set_each_number = true) {
     std::string refusal = "accepted";
     Scene scene;
     try {
@@ -151,13 +166,17 @@ inline void expect_facts(
     std::set<std::string> paths;
     for (const Number& number : scene.numbers)
         EXPECT_TRUE(paths.insert(number.path).second) << number.path << " is the name of two";
-    if (claim.settings.empty())
+    if (set_each_number && claim.settings.empty())
         for (const Number& number : scene.numbers) {
             const auto again = read(edited(valid, claim), {setting(number.path, number.value)});
             EXPECT_EQ(numbers(again), numbers(scene)) << number.path << ", set to its value";
         }
     for (const std::string& fact : claim.facts) {
         SCOPED_TRACE(claim.file + ".facts: " + fact);
+        if (fact == "= the same scene") {
+            EXPECT_EQ(as_read.all, Facts(read(valid, {})).all) << refusal;
+            continue;
+        }
         if (fact.starts_with("~ ") || fact.starts_with("= ")) {
             EXPECT_NE(refusal.find(fact.substr(2)), refusal.npos) << refusal;
             continue;

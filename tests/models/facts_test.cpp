@@ -1,18 +1,8 @@
 // Facts about the scenes of tests/models/fixtures and models/scenes, in fixtures/*.facts.
 #include "tests/models/facts.hpp"
 
-#include "tests/models/fixtures.hpp"
-
 namespace elastocheck {
 namespace {
-
-std::vector<ReadClaim> all_claims() {
-    std::vector<ReadClaim> all;
-    for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_FIXTURES))
-        if (entry.path().extension() == ".facts")
-            for (auto& claim : claims_in(entry.path())) all.push_back(std::move(claim));
-    return all;
-}
 
 class ReaderFacts : public testing::TestWithParam<ReadClaim> {};
 
@@ -25,8 +15,8 @@ TEST_P(ReaderFacts, Hold) {
         return parse_scene(text, stem + ".yaml", set);
     });
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, ReaderFacts, testing::ValuesIn(all_claims()),
-                         [](const auto& one) { return one.param.file + "_" + one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenes, ReaderFacts,
+                         testing::ValuesIn(claims_beside(ELASTOCHECK_FIXTURES)), name_of);
 
 }  // namespace
 }  // namespace elastocheck

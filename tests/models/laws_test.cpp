@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "models/laws.hpp"
 #include "tests/models/fixtures.hpp"

@@ -8,7 +8,6 @@
 #include "models/kinds.hpp"
 #include "models/reader/document/text_file.hpp"
 #include "models/reader/parsed_scene.hpp"
-#include "tests/support/builders.hpp"
 
 namespace elastocheck {
 namespace {

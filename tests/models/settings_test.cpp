@@ -1,8 +1,6 @@
 // Settings: the named numbers of a scene can be listed and varied.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 

@@ -1,5 +1,4 @@
 // Tyres act on the branches that move or hold their road (what they are: fixtures/tyres.facts).
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

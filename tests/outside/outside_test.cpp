@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "elastocheck/compile.hpp"

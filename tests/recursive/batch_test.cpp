@@ -8,8 +8,6 @@
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/kinds.hpp"
-#include "models/structure.hpp"
 #include "recursive/batch/kernels.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/sides.hpp"

@@ -19,7 +19,7 @@
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/pattern.hpp"
 #include "recursive/linear_algebra/saddle_point.hpp"
-#include "tests/recursive/walks.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -27,20 +27,7 @@ namespace {
 
 // Two bars on one ground: the first on two hinges of one line, the second on one.
 TEST(Diagnosis, OnlyReactionsOfRedundantJointsAreUndetermined) {
-    Scene scene = parse_scene(R"(elastocheck: 1
-name: bar
-units: {length: m, angle: rad, force: N}
-points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}
-bodies: {bar: {origin: a}}
-branches: {out: {load: load, to: 100, steps: 10}}
-probes: {tip: {on: bar, at: b}}
-joints:
-  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}
-  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}
-bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}
-loads: {load: {on: bar, at: c, force: [0, 0, 1]}}
-)",
-                              "bar");
+    Scene scene = support::scene_of("recursive/scenes/bar_on_two_hinges");
     scene.bodies.push_back({"other", {{0, 1, 0}, Eigen::Quaterniond::Identity()}});
     const Direction x{ground, Eigen::Vector3d::UnitX()}, own_x{1, Eigen::Vector3d::UnitX()};
     scene.joints.push_back(

@@ -1,14 +1,13 @@
 // Joint reactions on driven branches, against the equilibrium leg: every kind of driver with every
 // method that converges to the true equilibrium. A driven length or angle changes the lines along
 // which the multipliers act; an error in that term need not appear in the positions.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/equilibrium.hpp"
-#include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -28,8 +27,8 @@ constexpr Kind kinds[] = {
     {"length of a distance", "drive: joints.rod, to: 15"},
     {.name = "offset of a plane",
      .branch = "drive: joints.plane, to: -25",
-     .joint = "  plane: {type: in_plane, bodies: [knuckle, ground], at: centre, normal: [0.1, 0.2, "
-              "1]}\n"},
+     .joint = "  plane: {type: in_plane, bodies: [knuckle, ground], at: centre, "
+              "normal: [0.1, 0.2, 1]}"},
     {"angle of a revolute", "drive: joints.hinge, to: 6"},
     {"angle of a cylindrical", "drive: joints.hinge, to: 6", "cylindrical"},
     {"travel of a rack", "drive: joints.rack, to: 20", "revolute",
@@ -45,50 +44,16 @@ constexpr Kind kinds[] = {
      "drive: joints.rod, to: 15, hold: {travel: 30, springs.coil.free_length: 8}"},
     {.name = "road under a tyre",
      .branch = "drive: tyres.t.road, to: 30",
-     .tyre = "tyres: {t: {rate: 200, preload: 8000}}\n"},
+     .tyre = "tyres: {t: {rate: 200, preload: 8000}}"},
 };
 
-// An arm, a knuckle and a rod to a rack, with weight and preload at the start of the branch;
-// bushings resist the remaining motions.
 Model driven(const Kind& kind) {
-    const std::string text = fmt::format(
-        R"(
-elastocheck: 1
-name: driven
-units: {{length: mm, angle: deg, force: N}}
-points:
-  o: [0, 0, 0]
-  ball: [20, 300, -20]
-  inner: [-100, 60, 40]
-  outer: [-90, 290, 60]
-  low: [10, 150, -10]
-  high: [30, 120, 320]
-  top: [0, 240, 380]
-  centre: [10, 340, 40]
-  patch: [10, 350, -260]
-bodies: {{arm: {{origin: o}}, knuckle: {{origin: ball}}, rack: {{origin: inner}}}}
-joints:
-  hinge: {{type: {}, bodies: [arm, ground], at: o, axis: [1, 0.1, 0.05]}}
-  ball: {{type: spherical, bodies: [knuckle, arm], at: ball}}
-  rod: {{type: distance, bodies: [knuckle, rack], from: outer, to: inner}}
-  rack: {{type: {}}}
-{}springs:
-  coil: {{bodies: [arm, ground], from: low, to: high, rate: 40, preload: 2500}}
-torsion_springs:
-  bar: {{bodies: [arm, ground], at: o, axis: x, rate: 2000}}
-bushings:
-  front: {{bodies: [arm, ground], at: o, frame: {{z: [1, 0.1, 0.05]}}, rates: [0, 0, 800], rotational_rates: [0, 0, 0]}}
-  mount: {{bodies: [ground, knuckle], at: top, rates: [60, 80, 10], rotational_rates: [4000, 3000, 2000]}}
-{}static_loads: {{weight: {{on: knuckle, at: patch, force: [200, 400, 2000]}}}}
-loads:
-  force: {{on: knuckle, at: patch, force: [0.3, 0.5, 1]}}
-  moment: {{on: knuckle, moment: [0.2, 0.1, 0.3]}}
-  thrust: {{on: knuckle, at: patch, force: [0.3, 0.5, 1], follows: true}}
-wheel: {{body: knuckle, centre: centre, contact_patch: patch, contact: carrier, spin_axis: y, side: left}}
-branches: {{b: {{{}, steps: 4}}}}
-)",
-        kind.hinge, kind.rack, kind.joint, kind.tyre, kind.branch);
-    return compile(parse_scene(text, "driven.yaml"));
+    return compile(
+        support::filled_scene("recursive/scenes/every_driver", {{"HINGE", kind.hinge},
+                                                                {"RACK", kind.rack},
+                                                                {"JOINT", kind.joint},
+                                                                {"TYRE", kind.tyre},
+                                                                {"BRANCH", kind.branch}}));
 }
 
 // Largest difference of joint forces, and of moments over 0.3 m, and the largest such value [N].

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-
-#include "models/laws.hpp"
 #include "tests/recursive/elements.hpp"
 
 namespace elastocheck::recursive {

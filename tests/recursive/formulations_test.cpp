@@ -1,8 +1,6 @@
 // Curves and angles of the formulations; forces are tested in tests/legs.
 #include <gtest/gtest.h>
 
-#include "models/laws.hpp"
-#include "recursive/formula/elastic.hpp"
 #include "recursive/stepping/knots.hpp"
 #include "tests/recursive/elements.hpp"
 

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "elastocheck/compile.hpp"
-#include "elastocheck/read_scene.hpp"
-#include "elastocheck/recursive.hpp"
 #include "recursive/series/path.hpp"
 #include "tests/recursive/walks.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -50,20 +49,8 @@ TEST(Series, ExpansionLimitAppliesPerKnot) {
         const double x = 0.1 * k / rows;
         table += fmt::format("{}[{}, {}]", k > 0 ? ", " : "", x, 1e4 * x * (1 + 10 * x));
     }
-    const Model model = compile(parse_scene(fmt::format(
-                                                R"(elastocheck: 1
-name: rows
-units: {{length: m, angle: rad, force: N}}
-points: {{a: [0, 0, 0], b: [0, 0, 0.5]}}
-bodies: {{m: {{origin: a}}}}
-joints: {{g: {{type: translational, bodies: [m, ground], at: a, axis: z}}}}
-springs: {{s: {{bodies: [m, ground], from: a, to: b, curve: {{table: [{}], symmetric: true}}}}}}
-loads: {{f: {{on: m, at: a, force: [0, 0, 1]}}}}
-branches: {{d: {{load: f, to: 1900, steps: 10}}}}
-probes: {{a: {{on: m, at: a}}}}
-)",
-                                                table),
-                                            "rows.yaml"));
+    const Model model =
+        compile(support::filled_scene("recursive/scenes/long_table", {{"ROWS", table}}));
     const auto path = series::follow(model, model.branches[0], {.expansions = 5});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     EXPECT_GT(path.expansions.size(), 900u);

@@ -5,10 +5,8 @@
 #include "elastocheck/recursive.hpp"
 #include "models/laws.hpp"
 #include "recursive/diagnosis/analysis.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/stepping/knots.hpp"
 #include "tests/recursive/elements.hpp"
-#include "tests/recursive/walks.hpp"
 
 namespace elastocheck::recursive {
 namespace {

@@ -12,6 +12,7 @@
 #include "recursive/series/path.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/cantilever.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -30,22 +31,14 @@ Scene springs_in_series(int n) {
             "300]}}\n",
             i, i, i == 1 ? std::string("ground") : fmt::format("b{}", i - 1), i - 1, k);
     }
-    return parse_scene(fmt::format(
-                           R"(elastocheck: 1
-name: springs in series
-units: {{length: m, angle: rad, force: N}}
-points:
-{}bodies:
-{}bushings:
-{}loads:
-  pull: {{on: b{}, at: p{}, force: [1, 0, 0]}}
-branches:
-  pull: {{load: pull, to: {}, steps: 5}}
-probes:
-  end: {{on: b{}, at: p{}}}
-)",
-                           points, bodies, bushings, n, n, F, n, n),
-                       "springs");
+    const std::string last = fmt::format("on: b{0}, at: p{0}", n);
+    return support::filled_scene("recursive/scenes/springs_in_series",
+                                 {{"POINTS", points},
+                                  {"BODIES", bodies},
+                                  {"BUSHINGS", bushings},
+                                  {"LAST", last},
+                                  {"TO", fmt::format("{}", F)},
+                                  {"END", last}});
 }
 
 TEST(Large, CompliancesOfSpringsInSeriesAddUpInEveryMethod) {
@@ -119,22 +112,12 @@ Scene carriers_and_rods(int n) {
         joints +=
             fmt::format("  b{}: {{type: spherical, bodies: [rod{}, c{}], at: e{}}}\n", i, i, i, i);
     }
-    return parse_scene(fmt::format(R"(elastocheck: 1
-name: carriers and rods
-units: {{length: m, angle: rad, force: N}}
-points:
-{}bodies:
-{}joints:
-{}bushings:
-{}loads:
-  push: {{on: c0, at: p0, force: [0.3, 1, 0.2]}}
-branches:
-  push: {{load: push, to: 500, steps: 5}}
-probes:
-  end: {{on: c{}, at: p{}}}
-)",
-                                   points, bodies, joints, bushings, n - 1, n - 1),
-                       "rods");
+    return support::filled_scene("recursive/scenes/carriers_and_rods",
+                                 {{"POINTS", points},
+                                  {"BODIES", bodies},
+                                  {"JOINTS", joints},
+                                  {"BUSHINGS", bushings},
+                                  {"END", fmt::format("on: c{0}, at: p{0}", n - 1)}});
 }
 
 TEST(Large, BorderOfEachSpinningRodInvolvesOnlyItsBody) {
@@ -181,24 +164,10 @@ TEST(Large, BorderOfRedundantJointsInvolvesOnlyTheirLoop) {
         bodies += fmt::format("  link{}: {{origin: q{}}}\n", i, i);
         joints += stiff_link(i);
     }
-    const Model model = compile(parse_scene(fmt::format(R"(elastocheck: 1
-name: repeated hinges
-units: {{length: m, angle: rad, force: N}}
-points:
-{}bodies:
-{}joints:
-{}torsion_springs:
-  t: {{bodies: [link0, ground], at: q0, axis: y, rate: 50}}
-loads:
-  push: {{on: link0, at: r0, force: [1, 0, 0]}}
-branches:
-  push: {{load: push, to: 1, steps: 2}}
-probes:
-  end: {{on: link0, at: r0}}
-)",
-                                                        points, bodies, joints),
-                                            "hinges"),
-                                Detail::everything);
+    const Model model =
+        compile(support::filled_scene("recursive/scenes/repeated_hinges",
+                                      {{"POINTS", points}, {"BODIES", bodies}, {"JOINTS", joints}}),
+                Detail::everything);
     const std::vector<int> loop = loops(model);
     ASSERT_EQ(loop.size(), static_cast<std::size_t>(10 * n));
     for (std::size_t row = 0; row < loop.size(); ++row)

@@ -8,7 +8,7 @@
 #include "elastocheck/recursive.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/pattern.hpp"
-#include "tests/recursive/walks.hpp"
+#include "tests/support/quadrature.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -27,16 +27,6 @@ Vector3d leading_point(const Model& model, const Equilibrium& state) {
     return place(state, model.probes.front().at);
 }
 
-// Solution x of increasing f(x) = 0 in [low, high].
-template <class F>
-double root(F&& f, double low, double high) {
-    for (int k = 0; k < 200; ++k) {
-        const double middle = (low + high) / 2;
-        (f(middle) < 0 ? low : high) = middle;
-    }
-    return low;
-}
-
 // ---- Limit of the published recursion, derived by hand. For N → ∞ the sum of K(qⁿ)Δqⁿ becomes an
 // integral in ground axes along the path; the stored force is never rotated. For a single rotation
 // θ it is a sum of torques K_θθ dθ.
@@ -51,18 +41,20 @@ struct OwnLimit {
 std::vector<OwnLimit> own_limits() {
     std::vector<OwnLimit> limits;
     {  // k L² θ = F L cos θ; true: k L² sin θ = F L cos θ
-        const double t = root([](double x) { return 20e3 * 0.5 * x - 5000 * std::cos(x); }, 0, 1.5);
+        const double t =
+            support::root([](double x) { return 20e3 * 0.5 * x - 5000 * std::cos(x); }, 0, 1.5);
         limits.push_back({"pinned_bar", 5000, {0.5 * std::cos(t), 0, 0.5 * std::sin(t)}});
     }
     {  // (2 k a² + 2 k_R) θ = F e cos θ; true: 2 k a² sin θ + 2 k_R θ
-        const double t =
-            root([](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); },
-                 0, 1.5);
+        const double t = support::root(
+            [](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); }, 0,
+            1.5);
         limits.push_back(
             {"bushing_pair", 6000, {0.25 * std::cos(t), 0, 6000 / 4e5 + 0.25 * std::sin(t)}});
     }
     {  // k_R θ = F L cos θ: exact, no force is stored with a lever
-        const double t = root([](double x) { return 600 * x - 1500 * 0.4 * std::cos(x); }, 0, 1.5);
+        const double t =
+            support::root([](double x) { return 600 * x - 1500 * 0.4 * std::cos(x); }, 0, 1.5);
         limits.push_back(
             {"pendulum", 1500, {0.32 * std::cos(t), 0.24 * std::cos(t), 0.4 * std::sin(t)}});
     }
@@ -70,11 +62,12 @@ std::vector<OwnLimit> own_limits() {
         const auto F = [](double z) {
             return 2e5 * (z - 0.08 - 0.3 * (std::atan(z / 0.3) - std::atan(0.08 / 0.3)));
         };
-        limits.push_back(
-            {"two_spring_arch", -200, {0, 0, root([&](double z) { return F(z) + 200; }, 0, 0.08)}});
+        limits.push_back({"two_spring_arch",
+                          -200,
+                          {0, 0, support::root([&](double z) { return F(z) + 200; }, 0, 0.08)}});
         limits.push_back({"two_spring_arch",
                           2000,
-                          {0, 0, root([&](double z) { return F(z) - 2000; }, 0.08, 0.5)}});
+                          {0, 0, support::root([&](double z) { return F(z) - 2000; }, 0.08, 0.5)}});
     }
     limits.push_back({"single_bushing", 4000,
                       Vector3d(0.1, 0.2, 0.3) + 4000 * Vector3d(0.6 / 2e5, 0.48 / 3e5, 0.64 / 5e5),

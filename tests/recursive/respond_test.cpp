@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/slopes.hpp"

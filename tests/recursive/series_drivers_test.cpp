@@ -7,7 +7,6 @@
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/pattern.hpp"
-#include "recursive/series/expand.hpp"
 #include "recursive/series/path.hpp"
 #include "tests/recursive/random.hpp"
 #include "tests/recursive/walks.hpp"

@@ -3,10 +3,8 @@
 
 #include <cmath>
 
-#include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/series/pieces.hpp"
 #include "tests/recursive/random.hpp"
 #include "tests/recursive/walks.hpp"
 

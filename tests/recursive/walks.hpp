@@ -2,8 +2,6 @@
 // of tests/recursive/found (regressions) and tests/recursive/scenes.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -2,7 +2,6 @@
 // environment. The locale of the environment is active for C and C++, as in a program that calls
 // the library, and the clock advances by a millisecond per call, so that two runs can be compared
 // byte by byte.
-#include <ctime>
 
 #include <atomic>
 #include <clocale>

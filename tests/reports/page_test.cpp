@@ -138,18 +138,28 @@ support::Said in_a_browser(const Folder& folder, const std::string& html,
         folder.write("page.html", html));
 }
 
-// In a browser: a script added by the test measures the page and writes the result into the body.
-json measured_in_a_browser(std::string html, const std::string& script, const std::string& width,
-                           const std::string& scheme = "1") {
+std::string pdf_of(const std::string& html) {
     const Folder folder;
+    const std::string pdf = (folder.path / "page.pdf").string();
+    EXPECT_EQ(in_a_browser(folder, html, "--no-pdf-header-footer --print-to-pdf=" + pdf).code, 0);
+    return text_of(pdf);
+}
+
+// In a browser: scripts of browser/ measure the page, and the last writes the result, `seen`, into the body.
+json measured_in_a_browser(std::string html, const std::vector<std::string>& scripts,
+                           const std::string& width, const std::string& scheme = "1") {
+    const Folder folder;
+    std::string script;
+    for (const auto& name : scripts)
+        script += text_of(ELASTOCHECK_CLAIMS "/../browser/" + name + ".js");
     const std::string policy = all(html, "(<meta http-equiv[^>]*>)").at(0);
     html.replace(html.find(policy), policy.size(), "");
     html.insert(
         html.find("</head>"),
         "<script>window.wrong=[];addEventListener('error',e=>wrong.push(e.message));</script>");
-    html.insert(html.find("</body>"), "<script>" + script + R"(
-document.body.innerHTML='<pre>'+JSON.stringify(seen)+'</pre>';
-</script>)");
+    html.insert(html.find("</body>"),
+                "<script>" + script +
+                    "document.body.innerHTML='<pre>'+JSON.stringify(seen)+'</pre>';</script>");
     const auto said =
         in_a_browser(folder, html,
                      "--window-size=" + width +
@@ -157,40 +167,20 @@ document.body.innerHTML='<pre>'+JSON.stringify(seen)+'</pre>';
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_EQ(said.err.find(":CONSOLE"), said.err.npos) << said.err;
     const auto found = all(said.out, "<pre>(\\{.*\\})</pre>");
-    if (found.size() != 1) {
-        ADD_FAILURE() << said.out.substr(0, 2000) << said.err;
-        return nullptr;
-    }
+    if (found.size() != 1) throw std::runtime_error(said.out.substr(0, 2000) + said.err);
     return json::parse(found[0]);
 }
 
-const std::string layout = R"(
-document.querySelectorAll('details.evidence').forEach(d=>d.open=true);
-const boxes=[...document.querySelectorAll('svg')].filter(s=>s.checkVisibility()).map(s=>{const b=s.getBoundingClientRect();return [b.width,b.height]});
-const luminance=c=>{const v=c.match(/[\d.]+/g).slice(0,3).map(x=>x/255).map(x=>x<=.04045?x/12.92:((x+.055)/1.055)**2.4);
-  return .2126*v[0]+.7152*v[1]+.0722*v[2]};
-const paper=luminance(getComputedStyle(document.body).backgroundColor);
-const contrast=e=>{const l=luminance(getComputedStyle(e)[e.closest('svg')?'fill':'color']);
-  return (Math.max(l,paper)+.05)/(Math.min(l,paper)+.05)};
-const words=[...document.querySelectorAll('p,h1,h2,h3,h4,td,th,dt,dd,figcaption,caption,summary,svg text')];
-const clashes=[];
-for(const s of document.querySelectorAll('svg')){const all=s.getBoundingClientRect(),
-  t=[...s.querySelectorAll('text')].filter(e=>e.textContent.trim()).map(e=>[e.textContent.trim(),e.getBoundingClientRect()]);
-  t.forEach(([a,p],i)=>{if(p.left<all.left-1||p.right>all.right+1||p.top<all.top-1||p.bottom>all.bottom+1)clashes.push(a+' leaves '+s.querySelector('title')?.textContent);
-    t.slice(0,i).forEach(([b,q])=>{if(p.left<q.right-.5&&q.left<p.right-.5&&p.top<q.bottom-1.5&&q.top<p.bottom-1.5)clashes.push(s.querySelector('title')?.textContent+': '+a+' on '+b)})})}
-const outside=[...document.querySelectorAll('table,pre,svg,p,dl,h1,h2,h3,h4')].filter(e=>!e.closest('.scroll,pre')&&e.getBoundingClientRect().right>innerWidth+1).map(e=>e.tagName);
-const seen={boxes,wrong,clashes,outside,requests:performance.getEntriesByType('resource').length,
-  page:document.documentElement.scrollWidth,window:innerWidth,dark:paper<.2,
-  contrast:Math.min(...words.map(contrast)),words:words.length};
-)";
+struct Browser : testing::Test {
+    void SetUp() override {
+        if (support::says("command -v chromium").code != 0)
+            GTEST_SKIP() << "chromium is not installed";
+    }
+};
 
-bool no_browser() { return support::says("command -v chromium").code != 0; }
-
-TEST(Report, BrowserOpensThePageWithoutAnErrorOrARequest) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+TEST_F(Browser, OpensThePageWithoutAnErrorOrARequest) {
     for (const auto& [width, scheme] : {std::pair{"1280", "1"}, std::pair{"390", "0"}}) {
-        const json seen = measured_in_a_browser(page(), layout, width, scheme);
-        ASSERT_TRUE(seen.is_object());
+        const json seen = measured_in_a_browser(page(), {"layout"}, width, scheme);
         EXPECT_TRUE(seen["wrong"].empty()) << seen["wrong"];
         EXPECT_EQ(seen["requests"], 0);
         EXPECT_GE(seen["boxes"].size(), 20u);
@@ -210,25 +200,9 @@ TEST(Report, BrowserOpensThePageWithoutAnErrorOrARequest) {
 
 // Values under the pointer, and curves switched by the legend. The policy of the page lets this
 // script run: it names its hash.
-TEST(Report, BrowserShowsTheValueUnderThePointerAndSwitchesCurves) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+TEST_F(Browser, ShowsTheValueUnderThePointerAndSwitchesCurves) {
     const std::string html = page({compared_scene("front_axle")});
-    const json seen = measured_in_a_browser(html, R"(
-const svg=[...document.querySelectorAll('svg[data-x]')].find(s=>s.querySelector('title')?.textContent=='Toe angle');
-const box=svg.getBoundingClientRect(),[x0,x1,low,high]=svg.dataset.x.split(' ').map(Number);
-const at=box.left+(x0+(0-low)/(high-low)*(x1-x0))*box.width/svg.viewBox.baseVal.width;
-const point=()=>{svg.dispatchEvent(new PointerEvent('pointermove',{clientX:at,clientY:box.top+50}));return document.querySelector('.tip').textContent};
-const before=point();
-const entry=[...svg.querySelectorAll('g[data-e]')].find(g=>g.textContent=='vertical');
-entry.dispatchEvent(new MouseEvent('click'));
-const hidden=point();
-entry.dispatchEvent(new MouseEvent('click'));
-svg.dispatchEvent(new PointerEvent('pointerleave'));
-const seen={before,hidden,again:point(),plots:document.querySelectorAll('svg[data-x]').length,
-  silent:[...document.querySelectorAll('svg[data-x]')].filter(s=>!s.querySelector('g[data-k] path')).length};
-)",
-                                            "1280");
-    ASSERT_TRUE(seen.is_object());
+    const json seen = measured_in_a_browser(html, {"values"}, "1280");
     EXPECT_TRUE(seen["before"].get<std::string>().starts_with("wheel travel [mm]: 0\ntoe [deg]\n"))
         << seen;
     for (const char* name : {"\nparallel: ", "\nopposite: ", "\nvertical: ", "\nroll: "})
@@ -242,33 +216,9 @@ const seen={before,hidden,again:point(),plots:document.querySelectorAll('svg[dat
     EXPECT_NE(said.out.find("<html lang=\"en\" class=\"js\">"), std::string::npos) << said.err;
 }
 
-// Functions on the drawing that is turned by hand: its controls, and the places of the wheel centres
-// on the sheet, by the thick lines that end there.
-const std::string turned = R"(
-const d=JSON.parse(document.querySelector('script.motion').textContent),svg=document.querySelector('.turn svg');
-const fixed=document.querySelector('svg.still'),slider=document.querySelector('.turn input');
-const shown=()=>document.querySelector('.turn output').textContent;
-const press=name=>[...document.querySelectorAll('.turn button')].find(b=>b.textContent==name).click();
-const slide=v=>{slider.value=v;slider.dispatchEvent(new Event('input'))};
-const thick=d.list.links.filter(l=>['body','rod','beam'].includes(l.kind)).map(l=>l.points);
-const place=k=>{const n=thick.findIndex(l=>l.includes(k)),ends=svg.querySelectorAll('path[stroke-width="3"]')[n].getAttribute('d').slice(1).split('L');
-  return ends[thick[n][0]==k?0:1].split(',').map(Number)};
-const centres=()=>d.list.wheels.map(w=>place(w.centre));
-const drag=(x,y)=>{const at=(e,t,x,y)=>e.dispatchEvent(new PointerEvent(t,{pointerId:1,clientX:x,clientY:y,bubbles:true}));
-  at(svg,'pointerdown',200,200);at(window,'pointermove',200+x,200+y);at(window,'pointerup',200+x,200+y);at(window,'pointermove',0,0)};
-const key=k=>svg.dispatchEvent(new KeyboardEvent('keydown',{key:k}));
-)";
-
-TEST(Report, BrowserTurnsTheDrawingByPointerAndKeys) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const json seen = measured_in_a_browser(page({compared_scene("front_axle")}), turned + R"(
-const seen={wrong,requests:performance.getEntriesByType('resource').length,hidden:getComputedStyle(fixed).display};
-press('Front');seen.front=centres();drag(60,0);seen.dragged=centres();drag(-60,0);seen.back=centres();
-key('ArrowRight');seen.key=centres();press('Top');seen.top=centres();press('+');seen.near=centres();
-seen.focus=svg.tabIndex;seen.buttons=[...document.querySelectorAll('.turn button')].map(b=>b.ariaLabel);
-)",
-                                            "390", "0");
-    ASSERT_TRUE(seen.is_object());
+TEST_F(Browser, TurnsTheDrawingByPointerAndKeys) {
+    const json seen = measured_in_a_browser(page({compared_scene("front_axle")}),
+                                            {"drawing", "turn"}, "390", "0");
     EXPECT_TRUE(seen["wrong"].empty()) << seen["wrong"];
     EXPECT_EQ(seen["requests"], 0);
     EXPECT_EQ(seen["hidden"], "none");
@@ -285,18 +235,9 @@ seen.focus=svg.tabIndex;seen.buttons=[...document.querySelectorAll('.turn button
     EXPECT_NEAR(across("near", 0) / across("top", 0), 1.25, 2e-3);
 }
 
-TEST(Report, BrowserMovesTheDrawingByTheDisplacementsOfTheBranch) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+TEST_F(Browser, MovesTheDrawingByTheDisplacementsOfTheBranch) {
     const SceneAnalyses& scene = compared_scene("front_axle");
-    const json seen = measured_in_a_browser(page({scene}), turned + R"(
-press('Front');
-const seen={wrong,branch:d.branches[0].name,a:d.branches[0].a,at:[],marks:document.querySelectorAll('.here[d^=M]').length};
-d.branches[0].a.forEach((a,k)=>{slide(k);seen.at.push([shown(),...centres().map(p=>p[1])])});
-const [l,r]=d.list.wheels.map(w=>w.centre),last=d.branches[0].d.at(-1),y=k=>d.points[3*k+1]+last[3*k+1];
-seen.px_per_mm=(centres()[0][0]-centres()[1][0])/(y(l)-y(r))*100;
-)",
-                                            "1280");
-    ASSERT_TRUE(seen.is_object());
+    const json seen = measured_in_a_browser(page({scene}), {"drawing", "move"}, "1280");
     EXPECT_TRUE(seen["wrong"].empty()) << seen["wrong"];
     EXPECT_EQ(seen["branch"], "parallel");
     EXPECT_GT(seen["marks"], 5) << "the present position on the figures over travel";
@@ -328,28 +269,18 @@ seen.px_per_mm=(centres()[0][0]-centres()[1][0])/(y(l)-y(r))*100;
     }
 }
 
-TEST(Report, BrowserShowsTheFixedViewsWithoutScripts) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+TEST_F(Browser, ShowsTheFixedViewsWithoutScripts) {
     std::string html = page({compared_scene("front_axle")});
     const std::string whole = html;
     for (auto at = html.find("<script>"); at != html.npos; at = html.find("<script>"))
         html.erase(at, html.find("</script>", at) + 9 - at);
-    const json seen = measured_in_a_browser(html, R"(
-const views=[...document.querySelectorAll('section[id$=first] .plot svg,section[id$=drawing] .plot svg')];
-const seen={wrong,views:views.map(s=>s.getBoundingClientRect().height),controls:document.querySelectorAll('button,select,input,.turn').length};
-)",
-                                            "1280");
-    ASSERT_TRUE(seen.is_object());
+    const json seen = measured_in_a_browser(html, {"fixed_views"}, "1280");
     ASSERT_EQ(seen["views"].size(), 4u);
     for (const double height : seen["views"]) EXPECT_GT(height, 100);
     EXPECT_EQ(seen["controls"], 0);
     // In print they are the same, with scripts too.
     const auto printed = [](const std::string& text) {
-        const Folder folder;
-        const std::string pdf = (folder.path / "page.pdf").string();
-        EXPECT_EQ(in_a_browser(folder, text, "--no-pdf-header-footer --print-to-pdf=" + pdf).code,
-                  0);
-        return static_cast<double>(std::filesystem::file_size(pdf));
+        return static_cast<double>(pdf_of(text).size());
     };
     std::string without = whole;
     without.replace(without.find("@media screen{.plot svg.still"), 13, "@media print ");
@@ -358,24 +289,15 @@ const seen={wrong,views:views.map(s=>s.getBoundingClientRect().height),controls:
     EXPECT_GT(std::abs(printed(without) / no_scripts - 1), 2e-3) << "a page without them differs";
 }
 
-TEST(Report, BrowserRunsTheScriptsOfThePolicy) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+TEST_F(Browser, RunsTheScriptsOfThePolicy) {
     const Folder folder;
     const auto said = in_a_browser(folder, page({compared_scene("front_axle")}), "--dump-dom");
     EXPECT_NE(said.out.find("<div class=\"turn\"><svg"), std::string::npos) << said.err;
     EXPECT_EQ(said.err.find("Content Security Policy"), std::string::npos) << said.err;
 }
 
-TEST(Report, BrowserRowsOfRatesFitAPhone) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const json seen = measured_in_a_browser(page({compared_scene("front_axle")}), R"(
-const rows=[...document.querySelectorAll('section[id$=rates] tr,section[id$=first] tr')];
-const cells=[...document.querySelectorAll('section[id$=rates] td')];
-const seen={rows:rows.length,tallest:Math.max(...rows.map(r=>r.getBoundingClientRect().height)),
-  right:Math.max(...cells.map(c=>c.getBoundingClientRect().right)),window:innerWidth};
-)",
-                                            "390");
-    ASSERT_TRUE(seen.is_object());
+TEST_F(Browser, RowsOfRatesFitAPhone) {
+    const json seen = measured_in_a_browser(page({compared_scene("front_axle")}), {"rates"}, "390");
     EXPECT_GT(seen["rows"], 30);
     EXPECT_LE(seen["tallest"], 100) << "px";
     EXPECT_LE(seen["right"], seen["window"]) << "unit and definition are on the screen";
@@ -383,14 +305,10 @@ const seen={rows:rows.length,tallest:Math.max(...rows.map(r=>r.getBoundingClient
 
 // Pages of A4, by the objects of the PDF.
 int printed_pages(const std::string& html) {
-    const Folder folder;
-    const std::string pdf = (folder.path / "page.pdf").string();
-    EXPECT_EQ(in_a_browser(folder, html, "--no-pdf-header-footer --print-to-pdf=" + pdf).code, 0);
-    return static_cast<int>(all(text_of(pdf), "(/Type /Page)[^s]").size());
+    return static_cast<int>(all(pdf_of(html), "(/Type /Page)[^s]").size());
 }
 
-TEST(Report, BrowserPartOneOfAnAxlePrintsOnFivePages) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+TEST_F(Browser, PartOneOfAnAxlePrintsOnFivePages) {
     std::string html = page({compared_scene("front_axle")});
     EXPECT_LE(html.size(), 950'000u);
     const int whole = printed_pages(html);
@@ -404,8 +322,7 @@ TEST(Report, BrowserPartOneOfAnAxlePrintsOnFivePages) {
     EXPECT_LE(whole, first + 15);
 }
 
-TEST(Report, BrowserPrintsTheFirstScreenBelowTheTitleAndPartOneOnANewPage) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+TEST_F(Browser, PrintsTheFirstScreenBelowTheTitleAndPartOneOnANewPage) {
     std::string html = page({compared_scene("mcpherson_strut")});  // without studies
     const auto evidence = html.find("<details class=\"evidence\"");
     ASSERT_NE(evidence, html.npos);

@@ -20,7 +20,6 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace elastocheck::support {

@@ -1,4 +1,4 @@
-// Integrals over an interval, by Gauss and Legendre's points.
+// Integrals over an interval, by Gauss and Legendre's points, and roots in one.
 #pragma once
 
 #include <cmath>
@@ -31,6 +31,16 @@ inline std::vector<Node> gauss(double from, double to, int n) {
         nodes.push_back({from + half * (1 + x), half * 2 / ((1 - x * x) * slope * slope)});
     }
     return nodes;
+}
+
+// Solution x of increasing f(x) = 0 in [low, high].
+template <class F>
+double root(F&& f, double low, double high) {
+    for (int k = 0; k < 200; ++k) {
+        const double middle = (low + high) / 2;
+        (f(middle) < 0 ? low : high) = middle;
+    }
+    return low;
 }
 
 }  // namespace elastocheck::support

@@ -16,7 +16,6 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
-#include "models/compile/parts.hpp"
 #include "tests/engines/simbody/engine.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"

@@ -73,14 +73,22 @@ inline Eigen::Matrix3d euler(double a, double b, double c) {
         .toRotationMatrix();
 }
 
+// A branch, the first without a name, which a leg solves.
+inline EquilibriumPath solved(const Model& model, const std::string& branch = "", int steps = 0,
+                              compare::Leg leg = compare::Leg::equilibrium) {
+    for (const Branch& each : model.branches) {
+        if (!branch.empty() && each.name != branch) continue;
+        auto path = compare::solve_branch(
+            compare::sides_of(model, each, steps > 0 ? steps : each.steps), {.leg = leg});
+        if (path.outcome != Outcome::converged) throw std::runtime_error(path.detail);
+        return path;
+    }
+    throw std::runtime_error("no branch " + branch);
+}
+
 // The start of the first branch, settled under the start values.
-inline Equilibrium at_rest(const Scene& scene, compare::Leg leg) {
-    const Model model = compile(scene);
-    const auto path =
-        compare::solve_branch(compare::sides_of(model, model.branches.front(), 1), {.leg = leg});
-    if (path.points.empty())
-        throw std::runtime_error(std::string(name(path.outcome)) + ": " + path.detail);
-    return path.points.front();
+inline Equilibrium at_rest(const Scene& scene) {
+    return solved(compile(scene), "", 1).points.front();
 }
 
 }  // namespace elastocheck::tests

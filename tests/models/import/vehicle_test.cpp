@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <numbers>
 
-#include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/import/import.hpp"
@@ -51,31 +50,22 @@ std::size_t position(const auto& list, const std::string& name) {
     return 0;
 }
 
-// Every point of a branch by both references, which agree.
-std::vector<Equilibrium> solved(const Model& model, const std::string& branch, int steps) {
-    for (const Branch& each : model.branches) {
-        if (each.name != branch) continue;
-        const auto ways = compare::sides_of(model, each, steps);
-        const auto a = compare::solve_branch(ways, {.leg = compare::Leg::equilibrium}),
-                   b = compare::solve_branch(ways, {.leg = compare::Leg::series});
-        EXPECT_EQ(a.outcome, Outcome::converged) << a.detail;
-        EXPECT_EQ(b.outcome, Outcome::converged) << b.detail;
-        EXPECT_EQ(a.points.size(), b.points.size());
-        for (std::size_t n = 0; n < std::min(a.points.size(), b.points.size()); ++n)
-            for (std::size_t k = 0; k < a.points[n].poses.size(); ++k)
-                EXPECT_LE((a.points[n].poses[k].r - b.points[n].poses[k].r).norm(), 1e-9);
-        return a.points;
-    }
-    ADD_FAILURE() << "no branch " << branch;
-    return {};
+// Every point of a branch by the equilibrium leg and the series, which agree.
+std::vector<Equilibrium> solved_twice(const Model& model, const std::string& branch) {
+    const auto a = solved(model, branch, 4).points,
+               b = solved(model, branch, 4, compare::Leg::series).points;
+    EXPECT_EQ(a.size(), b.size());
+    for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n)
+        for (std::size_t k = 0; k < a[n].poses.size(); ++k)
+            EXPECT_LE((a[n].poses[k].r - b[n].poses[k].r).norm(), 1e-9);
+    return a;
 }
 
 TEST(ChronoVehicle, TheRackMovesTheSteeringLinkByThePinionsAngleTimesItsRadius) {
     const Data data;
     const Model model =
         compile(parse_scene(data.import(with_rack, "front").yaml, "scene"), Detail::everything);
-    const auto path = solved(model, "steer", 4);
-    ASSERT_FALSE(path.empty());
+    const auto path = solved_twice(model, "steer");
     // Orientation: about y; so the rack moves along y.
     const double range = 0.1 * 30 * std::numbers::pi / 180;
     const std::size_t link = position(model.bodies, "steering_link");
@@ -97,8 +87,7 @@ TEST(ChronoVehicle, ThePitmanArmTurnsAboutItsAxisAndTheIdlerKeepsItsLength) {
     const Data data;
     const Model model =
         compile(parse_scene(data.import(with_bar, "1").yaml, "scene"), Detail::everything);
-    const auto path = solved(model, "steer", 4);
-    ASSERT_FALSE(path.empty());
+    const auto path = solved_twice(model, "steer");
     const double angle = 30 * std::numbers::pi / 180;
     const std::size_t arm = position(model.bodies, "pitman_arm"),
                       link = position(model.bodies, "steering_link");
@@ -136,8 +125,7 @@ TEST(ChronoVehicle, TheAntiRollBarActsInRollOnly) {
     const auto twist = [&](const Equilibrium& point) {
         return point.poses[left].p.angularDistance(point.poses[right].p);
     };
-    const auto travel = solved(model, "travel", 4), roll = solved(model, "roll", 4);
-    ASSERT_FALSE(travel.empty() || roll.empty());
+    const auto travel = solved_twice(model, "travel"), roll = solved_twice(model, "roll");
     EXPECT_LE(twist(travel.back()), 1e-9);
     EXPECT_GT(twist(roll.back()), 0.05);
     // The left link's force on its arm balances the spring about the axis.

@@ -8,22 +8,11 @@
 namespace elastocheck::reference::certificate {
 namespace {
 
-std::string swing(const std::string& joints, const std::string& elements = "") {
-    return R"(elastocheck: 1
-name: swing
-units: {length: mm, angle: deg, force: N}
-points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}
-bodies: {arm: {origin: p}}
-joints: {)" +
-           joints + "}\n" +
-           (elements.empty()
-                ? "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}"
-                : elements) +
-           R"(
-loads: {push: {on: arm, at: p, force: [0, 0, 1]}}
-branches: {up: {load: push, to: 1000, steps: 10}}
-probes: {tip: {on: arm, at: p}}
-)";
+const std::string coil =
+    "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}";
+std::string swing(const std::string& joints, const std::string& elements = coil) {
+    return support::filled_text("reference/scenes/swing",
+                                {{"JOINTS", joints}, {"ELEMENTS", elements}});
 }
 const std::string hinge = "a: {type: revolute, bodies: [arm, ground], at: o, axis: y}",
                   hinge_again = "b: {type: revolute, bodies: [arm, ground], at: q, axis: y}";
@@ -167,24 +156,13 @@ TEST(CertificateEquations, StateOnTheKnotOfAStopAndABranchAcrossItAreProved) {
 
 // A cambered wheel that rolls, on a skewed hinge: on a tyre over its lift-off, on a jack, and braked.
 TEST(CertificateEquations, RollingWheelIsProvedAndExcludedWhenMovedByAMicrometre) {
-    const std::string scene =
-        R"(elastocheck: 1
-name: arm
-units: {length: mm, angle: rad, force: N}
-points: {o: [450, 600, 10], c: [0, 750, 0], p: [3, 730, -319]}
-bodies: {arm: {origin: c}}
-joints: {hinge: {type: revolute, bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1]}}
-torsion_springs: {bar: {bodies: [arm, ground], at: o, axis: [0.3, 1, 0.1], rate: 4050e3, preload_moment: -1500e3}}
-tyres: {t: {rate: 200, preload: 3500}}
-loads: {brake: {on: arm, at: p, force: [-1, 0, 0.2]}}
-wheel: {body: arm, centre: c, contact_patch: p, spin_axis: [0.03, 1, -0.06], side: left, contact: rolling}
-branches: )";
     int lifted = 0, corners = 0;
     for (const auto& [branch, to] : {std::pair{"{drive: tyres.t.road, to: -400, steps: 20}", -0.4},
                                      {"{drive: tyres.t.road, to: 100, steps: 20}", 0.1},
                                      {"{drive: patch_travel, to: 80, steps: 20}", 0.08},
                                      {"{load: brake, to: 3000, steps: 20}", 3000.}}) {
-        const Side side(scene + "{b: " + branch + "}\n");
+        const Side side(
+            support::filled_text("reference/scenes/cambered_wheel", {{"BRANCH", branch}}));
         std::vector<Equilibrium> states;
         for (int k = 0; k <= 4; ++k) {
             Equilibrium state = states.emplace_back(side.solved(to * k / 4));

@@ -5,6 +5,7 @@
 #include "models/branch.hpp"
 #include "reference/equilibrium/statement/system.hpp"
 #include "tests/reference/equilibrium/scenes.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
 namespace {
@@ -28,19 +29,11 @@ void expect_points_in_balance(const Model& model, const Branch& branch, const Eq
 TEST(EquilibriumOutcome, MotionThirteenDecadesSofterIsNotIdle) {
     const Vector3d along = Vector3d(1, 2, 3).normalized();
     const auto pulled = [&](double stiff) {
-        const Model model = compile(parse_scene(fmt::format(R"(
-elastocheck: 1
-name: soft
-units: {{length: m, angle: rad, force: N}}
-points: {{o: [0, 0, 0]}}
-bodies: {{b: {{origin: o}}}}
-bushings: {{k: {{bodies: [ground, b], at: o, frame: {{z: [1, 2, 3], x: [3, 0, -1]}}, rates: [{0}, {0}, 1e-4], rotational_rates: [50, 50, 50]}}}}
-loads: {{f: {{on: b, at: o, force: [{1:.17g}, {2:.17g}, {3:.17g}]}}}}
-branches: {{pull: {{load: f, to: 1e-6, steps: 10}}}}
-probes: {{tip: {{on: b, at: o}}}}
-)",
-                                                            stiff, along.x(), along.y(), along.z()),
-                                                "soft.yaml"));
+        const Model model = compile(support::filled_scene(
+            "reference/scenes/soft_axis",
+            {{"RATES", fmt::format("{0}, {0}, 1e-4", stiff)},
+             {"FORCE",
+              fmt::format("{:.17g}, {:.17g}, {:.17g}", along.x(), along.y(), along.z())}}));
         return solve(model, model.branches[0], every_point(model.branches[0]));
     };
     for (const double stiff : {1e2, 1e5, 1e7, 1e9, 1e10}) {

@@ -1,0 +1,13 @@
+// The value under the pointer at 0, with all curves, without one, and after the pointer left.
+const svg=[...document.querySelectorAll('svg[data-x]')].find(s=>s.querySelector('title')?.textContent=='Toe angle');
+const box=svg.getBoundingClientRect(),[x0,x1,low,high]=svg.dataset.x.split(' ').map(Number);
+const at=box.left+(x0+(0-low)/(high-low)*(x1-x0))*box.width/svg.viewBox.baseVal.width;
+const point=()=>{svg.dispatchEvent(new PointerEvent('pointermove',{clientX:at,clientY:box.top+50}));return document.querySelector('.tip').textContent};
+const before=point();
+const entry=[...svg.querySelectorAll('g[data-e]')].find(g=>g.textContent=='vertical');
+entry.dispatchEvent(new MouseEvent('click'));
+const hidden=point();
+entry.dispatchEvent(new MouseEvent('click'));
+svg.dispatchEvent(new PointerEvent('pointerleave'));
+const seen={before,hidden,again:point(),plots:document.querySelectorAll('svg[data-x]').length,
+  silent:[...document.querySelectorAll('svg[data-x]')].filter(s=>!s.querySelector('g[data-k] path')).length};
