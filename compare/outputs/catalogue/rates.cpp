@@ -7,6 +7,7 @@
 
 #include "compare/outputs/catalogue/motions.hpp"
 #include "compare/outputs/catalogue/wishbones.hpp"
+#include "compare/outputs/fixed_bodies.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::compare {
@@ -122,7 +123,8 @@ double drive_share(const Subject& x) { return x.model.vehicle->drive_share; }
 // Point at which a driving force acts on the links: the patch where an axle housing carries the drive
 // torque, the wheel centre where the car body carries it through a shaft.
 Placed driven_at(const Subject& x) {
-    const bool housing = is_axle(x.model) && x.of(0).wheel().body == x.of(1).wheel().body;
+    const bool housing = is_axle(x.model) &&
+                         FixedBodies(x.model).are_one(x.of(0).wheel().body, x.of(1).wheel().body);
     return housing ? x.braked() : x.centre();
 }
 
