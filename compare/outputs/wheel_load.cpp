@@ -119,4 +119,17 @@ int steering_joint(const Model& model) {
     return -1;
 }
 
+double rack_per_hand_wheel(const Model& model) {
+    const int rack = steering_joint(model);
+    if (rack < 0) return 0;
+    const int moved = model.joints[static_cast<std::size_t>(rack)].driven;
+    if (moved >= 0 && is_angle(model.constraints[static_cast<std::size_t>(moved)].kind)) return 0;
+    for (const auto& branch : model.branches)
+        for (const auto& driver : branch.drivers)
+            if (branch.unit == ParameterUnit::radian && driver.rate != 0 &&
+                driven_joint(driver.what) == rack)
+                return driver.rate;
+    return 0;
+}
+
 }  // namespace elastocheck::compare

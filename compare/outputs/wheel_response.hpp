@@ -44,5 +44,8 @@ bool is_jack(const Model& model, std::size_t joint);
 // Position of the steering joint in Model::joints: the first joint, other than a jack, that some
 // branch drives; -1 if none.
 int steering_joint(const Model& model);
+// Displacement of the steering joint per angle of the hand wheel, the parameter of a branch that moves
+// it by an angle [m/rad]; 0 if there is none, or if that joint is itself turned.
+double rack_per_hand_wheel(const Model& model);
 
 }  // namespace elastocheck::compare

@@ -44,6 +44,7 @@ bool has_what_it_needs(const Model& model, Owner owner) {
         case Owner::steered_wheel: return steering_joint(model) >= 0;
         case Owner::wheel_on_rack: return steers(false);
         case Owner::wheel_on_column: return steers(true);
+        case Owner::hand_wheel: return !model.wheels.empty() && rack_per_hand_wheel(model) != 0;
         case Owner::wheel_of_vehicle: return model.vehicle.has_value();
         case Owner::front_wheel: return is_at(Axle::front);
         case Owner::rear_wheel: return is_at(Axle::rear);
@@ -93,6 +94,7 @@ std::vector<Named> owners(const Model& model, Owner owner) {
     if (!has_what_it_needs(model, owner)) return list;
     switch (owner) {
         case Owner::wheels:
+        case Owner::hand_wheel:
         case Owner::two_wheels:
         case Owner::axle:
         case Owner::front_axle: list.push_back({"", 0}); break;
