@@ -17,13 +17,6 @@ using Kind = CaseInput::Kind;
 constexpr const char* of_gravity = "gravity.";
 constexpr double same_point = 1e-6;  // [m]
 
-bool acts_at(const Model& model, const Load& load, const Point& point) {
-    if (is_moment(load.kind) || is_follower(load.kind)) return false;
-    const Point& at = *member<Point>(load.kind);
-    return FixedBodies(model).are_one(at.body, point.body) &&
-           (drawn(model, at) - drawn(model, point)).norm() < same_point;
-}
-
 // The jack under the wheel centre; added where no branch of the scene has needed it.
 int jack_under(const Wheel& wheel, Scene& scene) {
     const std::string name = (wheel.name.empty() ? "" : wheel.name + ".") + "jack";
@@ -65,9 +58,15 @@ Load unit_load(const Scene& scene, const CaseInput& input) {
 
 // What the static loads of the scene put on a patch along an axis.
 double static_force(const Model& model, const Point& patch, int axis) {
+    const FixedBodies fixed(model);
     double sum = 0;
-    for (const Load& load : model.static_loads)
-        if (acts_at(model, load, patch)) sum += load_vector(load.kind)[axis];
+    for (const Load& load : model.static_loads) {
+        if (is_moment(load.kind) || is_follower(load.kind)) continue;
+        const Point& at = *member<Point>(load.kind);
+        if (fixed.are_one(at.body, patch.body) &&
+            (drawn(model, at) - drawn(model, patch)).norm() < same_point)
+            sum += load_vector(load.kind)[axis];
+    }
     return sum;
 }
 

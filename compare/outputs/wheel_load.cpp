@@ -110,20 +110,29 @@ bool is_jack(const Model& model, std::size_t joint) {
            });
 }
 
+bool drives_an_angle(const Model& model, int joint) {
+    const int driven = model.joints[static_cast<std::size_t>(joint)].driven;
+    return driven >= 0 && is_angle(model.constraints[static_cast<std::size_t>(driven)].kind);
+}
+
 int steering_joint(const Model& model) {
-    for (const auto& branch : model.branches)
+    int steering = -1;
+    for (const auto& branch : model.branches) {
         for (const auto& driver : branch.drivers)
             if (const int joint = driven_joint(driver.what);
-                joint >= 0 && driver.rate != 0 && !is_jack(model, static_cast<std::size_t>(joint)))
-                return joint;
-    return -1;
+                joint >= 0 && driver.rate != 0 &&
+                !is_jack(model, static_cast<std::size_t>(joint)) &&
+                (steering < 0 ||
+                 (drives_an_angle(model, steering) && !drives_an_angle(model, joint))))
+                steering = joint;
+        if (steering >= 0) break;
+    }
+    return steering;
 }
 
 double rack_per_hand_wheel(const Model& model) {
     const int rack = steering_joint(model);
-    if (rack < 0) return 0;
-    const int moved = model.joints[static_cast<std::size_t>(rack)].driven;
-    if (moved >= 0 && is_angle(model.constraints[static_cast<std::size_t>(moved)].kind)) return 0;
+    if (rack < 0 || drives_an_angle(model, rack)) return 0;
     for (const auto& branch : model.branches)
         for (const auto& driver : branch.drivers)
             if (branch.unit == ParameterUnit::radian && driver.rate != 0 &&

@@ -161,18 +161,16 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
 void add_hand_wheel(const Cursor& scene, const Units& units, Drivables& drivables) {
     const auto section = scene.optional("joints");
     if (!section) return;
-    for (const auto& [name, field] : section->entries()) {
-        const auto per_turn = field.optional("per_turn");
-        if (!per_turn) continue;
-        const double length = units.length.si(per_turn->number(units.length.name));
-        if (length == 0) per_turn->fail("zero: the hand wheel would not steer; allowed: a length");
-        if (!drivables.table
-                 .emplace("hand_wheel",
-                          Drivable{ParameterUnit::radian, units.angle, Motion{-1},
-                                   length / (2 * std::numbers::pi), std::nullopt, "joints." + name})
-                 .second)
-            per_turn->fail("a second joint of the hand wheel; allowed: one joint with per_turn");
-    }
+    for (const auto& [name, field] : section->entries())
+        if (const auto per_turn = field.optional("per_turn")) {
+            const double length = units.length.si(per_turn->number(units.length.name));
+            if (length == 0)
+                per_turn->fail("zero: the hand wheel would not steer; allowed: a length");
+            const Drivable angle{ParameterUnit::radian,           units.angle,  Motion{-1},
+                                 length / (2 * std::numbers::pi), std::nullopt, "joints." + name};
+            if (!drivables.table.emplace("hand_wheel", angle).second)
+                per_turn->fail("a second joint of the hand wheel; allowed: one with per_turn");
+        }
 }
 
 // The names that the reader gives to stops must be unused.

@@ -28,11 +28,6 @@ std::vector<Entry> whole_catalogue() {
     return entries;
 }
 
-bool drives_an_angle(const Model& model, int joint) {
-    const int driven = model.joints[static_cast<std::size_t>(joint)].driven;
-    return driven >= 0 && is_angle(model.constraints[static_cast<std::size_t>(driven)].kind);
-}
-
 // Whether a model has what figures of this owner need beside it.
 bool has_what_it_needs(const Model& model, Owner owner) {
     const auto steers = [&](bool by_angle) {
