@@ -28,6 +28,7 @@ constexpr int calls_at_one_point = 20;    // the step of SLSQP has vanished: it 
 constexpr double min_step = 1e-12;        // of x
 constexpr double active_within = 1e-6;    // of c
 constexpr double optimal_within = 1e-4;   // of |∇F|
+constexpr double ends_within = 1e-6;      // likewise, where a run of SLSQP ends
 constexpr double min_residual = 1e-7;     // of the conditions of the optimum, where ∇F vanishes
 constexpr double multiplier_pull = 1e-7;  // makes the multipliers of parallel ∇c unique
 
@@ -117,12 +118,55 @@ struct Problem {
     }
 };
 
+// The bounds that hold at the evaluated point, c ≥ -1e-6, with their prices, and the remainder of
+// the conditions, |∇F + Σ λ ∇c| with the λ ≥ 0 that make it least.
+void set_conditions(Problem& problem, Search& search) {
+    problem.differentiate();
+    const VectorXd F_x = problem.cost_gradient();
+    MatrixXd A(F_x.size(), 0);  // ∇c
+    search.active.clear();
+    for (const auto* bounds : {&problem.bands, &problem.limits}) {
+        const VectorXd c = problem.excess(*bounds);
+        const MatrixXd c_x = problem.excess_gradient(*bounds);
+        for (Index k = 0; k < c.size(); ++k) {
+            if (!(c[k] >= -active_within)) continue;
+            search.active.push_back((*bounds)[static_cast<std::size_t>(k)]);
+            A.conservativeResize(Eigen::NoChange, A.cols() + 1);
+            A.rightCols(1) = c_x.row(k).transpose();
+        }
+    }
+    const VectorXd zero = VectorXd::Zero(A.cols());
+    const Minimum multipliers =
+        minimise({[&](const VectorXd& lambda) -> VectorXd { return A * lambda + F_x; },
+                  [&](const VectorXd&) { return A; },
+                  {zero, VectorXd::Constant(A.cols(), unbounded)},
+                  zero,
+                  multiplier_pull},
+                 zero);
+    const double remainder = multipliers.residual.norm(), size = F_x.norm();
+    search.converged = remainder <= optimal_within * size + min_residual;
+    search.optimality = size > 0 ? remainder / size : 0;
+    // dF per unit of the shown cost
+    const double unit =
+        problem.minimised < 0 ? problem.current.norm() : 1 / problem.scale[problem.minimised];
+    for (std::size_t k = 0; k < search.active.size(); ++k)
+        if (Bound& one = search.active[k]; unit > 0)
+            one.price = multipliers.x[static_cast<Index>(k)] / problem.unit_of(one) / unit;
+    std::ranges::stable_sort(search.active, std::ranges::greater{},
+                             [&](const Bound& one) { return one.price * problem.unit_of(one); });
+}
+
 double slsqp_cost(unsigned n, const double* x, double* gradient, void* data) {
     Problem& problem = *static_cast<Problem*>(data);
     double cost = HUGE_VAL;  // SLSQP then shortens its step
     problem.called(n, x, gradient != nullptr, [&] {
         if (problem.has_value()) cost = problem.cost();
-        if (gradient) Eigen::Map<VectorXd>(gradient, n) = problem.cost_gradient();
+        if (!gradient) return;
+        Eigen::Map<VectorXd>(gradient, n) = problem.cost_gradient();
+        if (problem.best.size() == 0 || problem.current != problem.best) return;
+        Search here;
+        set_conditions(problem, here);
+        if (here.optimality <= ends_within) nlopt_force_stop(problem.run);
     });
     return cost;
 }
@@ -161,44 +205,6 @@ void run_slsqp(Problem& problem, VectorXd x) {
     nlopt_optimize(run.get(), x.data(), &cost);
     problem.run = nullptr;
     if (problem.failed) std::rethrow_exception(problem.failed);
-}
-
-// The bounds that hold at the evaluated point, c ≥ -1e-6, with their prices, and the remainder of
-// the conditions, |∇F + Σ λ ∇c| with the λ ≥ 0 that make it least.
-void set_conditions(Problem& problem, Search& search) {
-    problem.differentiate();
-    const VectorXd F_x = problem.cost_gradient();
-    MatrixXd A(F_x.size(), 0);  // ∇c
-    search.active.clear();
-    for (const auto* bounds : {&problem.bands, &problem.limits}) {
-        const VectorXd c = problem.excess(*bounds);
-        const MatrixXd c_x = problem.excess_gradient(*bounds);
-        for (Index k = 0; k < c.size(); ++k) {
-            if (!(c[k] >= -active_within)) continue;
-            search.active.push_back((*bounds)[static_cast<std::size_t>(k)]);
-            A.conservativeResize(Eigen::NoChange, A.cols() + 1);
-            A.rightCols(1) = c_x.row(k).transpose();
-        }
-    }
-    const VectorXd zero = VectorXd::Zero(A.cols());
-    const Minimum multipliers =
-        minimise({[&](const VectorXd& lambda) -> VectorXd { return A * lambda + F_x; },
-                  [&](const VectorXd&) { return A; },
-                  {zero, VectorXd::Constant(A.cols(), unbounded)},
-                  zero,
-                  multiplier_pull},
-                 zero);
-    const double remainder = multipliers.residual.norm(), size = F_x.norm();
-    search.converged = remainder <= optimal_within * size + min_residual;
-    search.optimality = size > 0 ? remainder / size : 0;
-    // dF per unit of the shown cost
-    const double unit =
-        problem.minimised < 0 ? problem.current.norm() : 1 / problem.scale[problem.minimised];
-    for (std::size_t k = 0; k < search.active.size(); ++k)
-        if (Bound& one = search.active[k]; unit > 0)
-            one.price = multipliers.x[static_cast<Index>(k)] / problem.unit_of(one) / unit;
-    std::ranges::stable_sort(search.active, std::ranges::greater{},
-                             [&](const Bound& one) { return one.price * problem.unit_of(one); });
 }
 
 // Within the bands and of less cost, or nearer to them; by more than rounding, so that the first of

@@ -4,6 +4,9 @@
 #include <stdexcept>
 
 #include "compare/loads/loads.hpp"
+#include "compare/outputs/fixed_bodies.hpp"
+#include "compare/outputs/positions.hpp"
+#include "elastocheck/compile.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::compare {
@@ -13,12 +16,6 @@ using Kind = CaseInput::Kind;
 
 constexpr const char* of_gravity = "gravity.";
 constexpr double same_point = 1e-6;  // [m]
-
-bool acts_at(const Load& load, const Point& point) {
-    if (is_moment(load.kind) || is_follower(load.kind)) return false;
-    const Point& at = *member<Point>(load.kind);
-    return at.body == point.body && (at.s_local - point.s_local).norm() < same_point;
-}
 
 // The jack under the wheel centre; added where no branch of the scene has needed it.
 int jack_under(const Wheel& wheel, Scene& scene) {
@@ -60,10 +57,16 @@ Load unit_load(const Scene& scene, const CaseInput& input) {
 }
 
 // What the static loads of the scene put on a patch along an axis.
-double static_force(const Scene& scene, const Point& patch, int axis) {
+double static_force(const Model& model, const Point& patch, int axis) {
+    const FixedBodies fixed(model);
     double sum = 0;
-    for (const Load& load : scene.static_loads)
-        if (acts_at(load, patch)) sum += load_vector(load.kind)[axis];
+    for (const Load& load : model.static_loads) {
+        if (is_moment(load.kind) || is_follower(load.kind)) continue;
+        const Point& at = *member<Point>(load.kind);
+        if (fixed.are_one(at.body, patch.body) &&
+            (drawn(model, at) - drawn(model, patch)).norm() < same_point)
+            sum += load_vector(load.kind)[axis];
+    }
     return sum;
 }
 
@@ -94,7 +97,7 @@ void check_heights(const LoadCase& load_case, const Scene& scene) {
                     load_case.name, scene.wheels[held.of].name));
 }
 
-Branch branch_of(const LoadCase& load_case, Scene& scene) {
+Branch branch_of(const LoadCase& load_case, const Model& drawn, Scene& scene) {
     check_heights(load_case, scene);
     Branch branch;
     branch.name = load_case.name;
@@ -110,7 +113,7 @@ Branch branch_of(const LoadCase& load_case, Scene& scene) {
             // static loads stay: the case adds what they lack
             const double before =
                 input.kind == Kind::patch_force
-                    ? static_force(scene, scene.wheels[input.of].contact, input.axis)
+                    ? static_force(drawn, scene.wheels[input.of].contact, input.axis)
                     : 0;
             branch.drivers.push_back({unit_load(scene, input), 0, input.value - before});
         }
@@ -121,8 +124,9 @@ Branch branch_of(const LoadCase& load_case, Scene& scene) {
 }  // namespace
 
 Scene with_cases(Scene scene, const std::vector<LoadCase>& cases) {
+    const Model drawn = compile(scene, Detail::everything);
     std::vector<Branch> branches;
-    for (const auto& load_case : cases) branches.push_back(branch_of(load_case, scene));
+    for (const auto& load_case : cases) branches.push_back(branch_of(load_case, drawn, scene));
     scene.branches = std::move(branches);
     return scene;
 }

@@ -24,13 +24,14 @@ inline Eigen::Vector3d position(const std::vector<Pose>& poses, const Point& poi
     return position(poses, point.body, point.s_local);
 }
 
-// From the wheel's centre to its patch at the design position, ground axes [m].
+// At the design position, ground axes [m]; and from the wheel's centre to its patch.
+inline Eigen::Vector3d drawn(const Model& model, const Point& point) {
+    if (point.body == ground) return point.s_local;
+    const Pose& on = model.bodies[static_cast<std::size_t>(point.body)].design;
+    return on.r + on.p * point.s_local;
+}
 inline Eigen::Vector3d drawn_arm(const Model& model, const Wheel& wheel) {
-    const auto drawn = [&](const Point& p) -> Eigen::Vector3d {
-        const Pose& on = model.bodies[static_cast<std::size_t>(p.body)].design;
-        return on.r + on.p * p.s_local;
-    };
-    return drawn(wheel.contact) - drawn({wheel.body, wheel.centre_local});
+    return drawn(model, wheel.contact) - drawn(model, {wheel.body, wheel.centre_local});
 }
 
 }  // namespace elastocheck::compare

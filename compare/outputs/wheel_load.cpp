@@ -6,6 +6,8 @@
 #include <set>
 
 #include "compare/outputs/deformation.hpp"
+#include "compare/outputs/fixed_bodies.hpp"
+#include "compare/outputs/positions.hpp"
 #include "compare/outputs/wheel_response.hpp"
 #include "elastocheck/channels.hpp"
 #include "models/kinds.hpp"
@@ -13,17 +15,25 @@
 namespace elastocheck::compare {
 namespace {
 
-// From the nearer of centre and patch on the point's body; infinite if neither is on it.
-double away(const Wheel& wheel, const Point& point) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Point& own : {Point{wheel.body, wheel.centre_local}, wheel.contact})
-        if (own.body == point.body) least = std::min(least, (own.s_local - point.s_local).norm());
-    return least;
-}
+// From the nearer of a wheel's centre and patch on the point's body, or on one fixed to it, as drawn;
+// infinite if neither is on it.
+struct Away {
+    const Model& model;
+    FixedBodies fixed{model};
+
+    double operator()(const Wheel& wheel, const Point& point) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Point& own : {Point{wheel.body, wheel.centre_local}, wheel.contact})
+            if (fixed.are_one(own.body, point.body))
+                least = std::min(least, (drawn(model, own) - drawn(model, point)).norm());
+        return least;
+    }
+};
 
 }  // namespace
 
 std::optional<std::size_t> wheel_near(const Model& model, const Point& point) {
+    const Away away{model};
     std::optional<std::size_t> found;
     for (std::size_t w = 0; w < model.wheels.size(); ++w)
         if (const double here = away(model.wheels[w], point);
@@ -35,7 +45,7 @@ std::optional<std::size_t> wheel_near(const Model& model, const Point& point) {
 std::optional<std::size_t> wheel_at(const Model& model, const Point& point) {
     constexpr double same = 1e-6;  // [m]
     const auto wheel = wheel_near(model, point);
-    return wheel && away(model.wheels[*wheel], point) < same ? wheel : std::nullopt;
+    return wheel && Away{model}(model.wheels[*wheel], point) < same ? wheel : std::nullopt;
 }
 
 std::optional<std::size_t> wheel_on_jack(const Model& model, int joint) {
@@ -54,6 +64,7 @@ std::optional<std::size_t> wheel_on_tyre(const Model& model, int elastic) {
 double wheel_load(const Model& model, const Branch& branch, const Equilibrium& state,
                   std::size_t wheel) {
     double road = 0;
+    const Away away{model};
     const auto add = [&](const LoadKind& load, double factor) {
         if (is_moment(load)) return;
         const Point& point = *member<Point>(load);
@@ -92,26 +103,42 @@ double wheel_load(const Model& model, const Branch& branch, const Equilibrium& s
 }
 
 bool is_jack(const Model& model, std::size_t joint) {
-    const ModelJoint& j = model.joints[joint];
-    return j.active_only_where_driven && j.j == ground &&
-           std::ranges::any_of(model.constraints,
-                               [&](const Constraint& c) {
-                                   return c.joint == static_cast<int>(joint) &&
-                                          std::holds_alternative<PointInPlane>(c.kind);
-                               }) &&
-           std::ranges::any_of(model.wheels, [&](const Wheel& wheel) {
-               return (wheel.body == j.i && wheel.centre_local == j.at.s_local) ||
-                      (wheel.contact.body == j.i && wheel.contact.s_local == j.at.s_local);
+    return wheel_on_jack(model, static_cast<int>(joint)) &&
+           std::ranges::any_of(model.constraints, [&](const Constraint& c) {
+               return c.joint == static_cast<int>(joint) &&
+                      std::holds_alternative<PointInPlane>(c.kind);
            });
 }
 
+bool drives_an_angle(const Model& model, int joint) {
+    const int driven = model.joints[static_cast<std::size_t>(joint)].driven;
+    return driven >= 0 && is_angle(model.constraints[static_cast<std::size_t>(driven)].kind);
+}
+
 int steering_joint(const Model& model) {
-    for (const auto& branch : model.branches)
+    int steering = -1;
+    for (const auto& branch : model.branches) {
         for (const auto& driver : branch.drivers)
             if (const int joint = driven_joint(driver.what);
-                joint >= 0 && driver.rate != 0 && !is_jack(model, static_cast<std::size_t>(joint)))
-                return joint;
-    return -1;
+                joint >= 0 && driver.rate != 0 &&
+                !is_jack(model, static_cast<std::size_t>(joint)) &&
+                (steering < 0 ||
+                 (drives_an_angle(model, steering) && !drives_an_angle(model, joint))))
+                steering = joint;
+        if (steering >= 0) break;
+    }
+    return steering;
+}
+
+double rack_per_hand_wheel(const Model& model) {
+    const int rack = steering_joint(model);
+    if (rack < 0 || drives_an_angle(model, rack)) return 0;
+    for (const auto& branch : model.branches)
+        for (const auto& driver : branch.drivers)
+            if (branch.unit == ParameterUnit::radian && driver.rate != 0 &&
+                driven_joint(driver.what) == rack)
+                return driver.rate;
+    return 0;
 }
 
 }  // namespace elastocheck::compare

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compare/outputs/catalogue/catalogue.hpp"
+#include "compare/outputs/fixed_bodies.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/kinds.hpp"
 
@@ -37,8 +38,9 @@ bool is_under(const Elastic& elastic, const Wheel& wheel) {
            (patch.s_local - wheel.contact.s_local).norm() <= 1e-9;
 }
 
-bool carries(const Wheel& wheel, BodyId body) {
-    return body == wheel.body || body == wheel.contact.body;
+bool carries(const Model& model, const Wheel& wheel, BodyId body) {
+    const FixedBodies fixed(model);
+    return fixed.are_one(body, wheel.body) || fixed.are_one(body, wheel.contact.body);
 }
 
 // The only driver that moves, if it is vertical and acts on this wheel's body.
@@ -55,7 +57,8 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
         const Lifted by_driver = std::visit(
             overloaded{[&](const Load& load) {
                            const auto* force = std::get_if<DeadForce>(&load.kind);
-                           const bool lifts = force != nullptr && carries(wheel, force->at.body) &&
+                           const bool lifts = force != nullptr &&
+                                              carries(model, wheel, force->at.body) &&
                                               vertical(force->f);
                            return Lifted{lifts ? Lift::load : Lift::none, -1,
                                          lifts ? driver.rate * force->f.z() : 0, 0};
@@ -63,7 +66,7 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
                        [&](const Motion& motion) {
                            const ModelJoint& joint =
                                model.joints[static_cast<std::size_t>(motion.joint)];
-                           if (joint.driven < 0 || !carries(wheel, joint.i)) return Lifted{};
+                           if (joint.driven < 0 || !carries(model, wheel, joint.i)) return Lifted{};
                            const auto* plane = std::get_if<PointInPlane>(
                                &model.constraints[static_cast<std::size_t>(joint.driven)].kind);
                            const bool lifts =

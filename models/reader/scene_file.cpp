@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -156,6 +157,22 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
     return drives;
 }
 
+// The angle of the hand wheel, which displaces the joint with `per_turn` by that length in a turn.
+void add_hand_wheel(const Cursor& scene, const Units& units, Drivables& drivables) {
+    const auto section = scene.optional("joints");
+    if (!section) return;
+    for (const auto& [name, field] : section->entries())
+        if (const auto per_turn = field.optional("per_turn")) {
+            const double length = units.length.si(per_turn->number(units.length.name));
+            if (length == 0)
+                per_turn->fail("zero: the hand wheel would not steer; allowed: a length");
+            const Drivable angle{ParameterUnit::radian,           units.angle,  Motion{-1},
+                                 length / (2 * std::numbers::pi), std::nullopt, "joints." + name};
+            if (!drivables.table.emplace("hand_wheel", angle).second)
+                per_turn->fail("a second joint of the hand wheel; allowed: one with per_turn");
+        }
+}
+
 // The names that the reader gives to stops must be unused.
 void require_own_names(const Cursor& scene, const Definitions& defs,
                        const std::vector<Elastic>& elastics) {
@@ -255,6 +272,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     for (const Load& load : loads) by_name.emplace(load.name, load);
     const auto drives = add_held(scene, defs, result);
     Drivables drivable = drivables(result, defs.units, drives, named);
+    add_hand_wheel(scene, defs.units, drivable);
     add_rolling_joints(scene, result);
     add_joints_of_bars(scene, defs, result);
     read_beams(scene, defs, result.elastics);

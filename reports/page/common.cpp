@@ -7,6 +7,7 @@
 
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/not_a_number.hpp"
+#include "compare/outputs/wheel_response.hpp"
 #include "reports/document/document.hpp"
 #include "reports/given/wheels.hpp"
 #include "reports/text/numbers.hpp"
@@ -61,6 +62,8 @@ std::string parameter_word(const Model& model, const Sweep& sweep) {
     const std::string word = compare::parameter_word(sweep.unit);
     if (word == "load") return word;
     if (sweep.lifts()) return "travel";
+    if (sweep.kind == "steering" && sweep.unit == "deg" && compare::rack_per_hand_wheel(model) != 0)
+        return "hand wheel";
     auto moved = drivers_of(model, *sweep.branches.front().requested, true);
     for (auto& joint : moved)
         joint = as_words(joint.ends_with(".drive") ? joint.substr(0, joint.rfind('.')) : joint);

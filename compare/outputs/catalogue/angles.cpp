@@ -343,6 +343,28 @@ const Entry of_patch[] = {
           {.elsewhere = "damper travel", .drawn = {compressed}}),
 };
 
+// Needs the branch, whose drivers move the rack.
+Entry hand_wheel_entry() {
+    Entry entry(Owner::hand_wheel, "hand_wheel_angle", Unit::deg,
+                "angle of the hand wheel, in proportion to the displacement of the rack, with the "
+                "sign of the parameter of the branch that turns it",
+                not_steered,
+                [](const Subject& x) {
+                    if (x.branch == nullptr) return nan;
+                    const int rack = steering_joint(x.model);
+                    const double rate = rack_per_hand_wheel(x.model);
+                    for (const auto& driver : x.branch->drivers)
+                        if (driven_joint(driver.what) == rack)
+                            return driver.start / rate + driver.rate / rate * x.state->load;
+                    const auto joint = static_cast<std::size_t>(rack);
+                    return x.model.joints[joint].active_only_where_driven ? undefined : 0;
+                },
+                {.elsewhere = "ISO 8855: steering-wheel angle",
+                 .rig = "steering wheel angle, hand wheel angle, handwheel angle"});
+    entry.kind = ChannelKind::element;
+    return entry;
+}
+
 // Needs the branch, of which it counts the loads and drivers.
 Entry wheel_load_entry() {
     Entry entry(
@@ -553,6 +575,7 @@ void add_angles(std::vector<Entry>& entries) {
                  "the point of the carrier that is the contact patch at the design position",
                  patch_of);
     std::ranges::copy(of_patch, std::back_inserter(entries));
+    entries.push_back(hand_wheel_entry());
     entries.push_back(wheel_load_entry());
     entries.push_back(roll_moment_entry());
 }

@@ -28,11 +28,6 @@ std::vector<Entry> whole_catalogue() {
     return entries;
 }
 
-bool drives_an_angle(const Model& model, int joint) {
-    const int driven = model.joints[static_cast<std::size_t>(joint)].driven;
-    return driven >= 0 && is_angle(model.constraints[static_cast<std::size_t>(driven)].kind);
-}
-
 // Whether a model has what figures of this owner need beside it.
 bool has_what_it_needs(const Model& model, Owner owner) {
     const auto steers = [&](bool by_angle) {
@@ -44,6 +39,7 @@ bool has_what_it_needs(const Model& model, Owner owner) {
         case Owner::steered_wheel: return steering_joint(model) >= 0;
         case Owner::wheel_on_rack: return steers(false);
         case Owner::wheel_on_column: return steers(true);
+        case Owner::hand_wheel: return !model.wheels.empty() && rack_per_hand_wheel(model) != 0;
         case Owner::wheel_of_vehicle: return model.vehicle.has_value();
         case Owner::front_wheel: return is_at(Axle::front);
         case Owner::rear_wheel: return is_at(Axle::rear);
@@ -93,6 +89,7 @@ std::vector<Named> owners(const Model& model, Owner owner) {
     if (!has_what_it_needs(model, owner)) return list;
     switch (owner) {
         case Owner::wheels:
+        case Owner::hand_wheel:
         case Owner::two_wheels:
         case Owner::axle:
         case Owner::front_axle: list.push_back({"", 0}); break;

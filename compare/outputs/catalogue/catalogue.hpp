@@ -35,6 +35,7 @@ enum class Owner {
     wheel_without_axle,  // of another scene
     // one figure for all wheels together
     wheels,
+    hand_wheel,  // of a scene that moves the rack by its angle
     two_wheels,
     axle,
     front_axle,  // of a scene with a `vehicle`

@@ -7,6 +7,7 @@
 
 #include "compare/outputs/catalogue/motions.hpp"
 #include "compare/outputs/catalogue/wishbones.hpp"
+#include "compare/outputs/fixed_bodies.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::compare {
@@ -17,7 +18,6 @@ constexpr double pneumatic_trail = 0.03;  // [m]
 constexpr auto never = "";
 constexpr auto no_vertical = "the wheel does not rise";
 constexpr auto does_not_steer = "the steering does not turn the wheel about an upright axis here";
-constexpr auto not_steered = "the steering is not driven or held on this branch";
 constexpr auto unresisted = "the travel of the wheel is unresisted";
 constexpr auto endless_in_front =
     "the carrier does not rotate as seen from the front: the arm is infinite";
@@ -80,6 +80,14 @@ double trail_steered(const Subject& x) {
 double steer_gradient(const Subject& x) {
     return x.response->steering.empty() ? undefined : x.toe(x.response->steering);
 }
+double overall_steering_ratio(const Subject& x) {
+    if (x.response->steering.empty()) return undefined;
+    double to_the_left = 0;  // mean of the wheels, per displacement of the rack
+    for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
+        to_the_left -= x.of(w).side() * x.of(w).toe(x.response->steering);
+    const auto n = static_cast<double>(x.model.wheels.size());
+    return ratio(n / rack_per_hand_wheel(x.model), to_the_left, nowhere);
+}
 
 // ---- Stiffness and rates.
 
@@ -122,7 +130,8 @@ double drive_share(const Subject& x) { return x.model.vehicle->drive_share; }
 // Point at which a driving force acts on the links: the patch where an axle housing carries the drive
 // torque, the wheel centre where the car body carries it through a shaft.
 Placed driven_at(const Subject& x) {
-    const bool housing = is_axle(x.model) && x.of(0).wheel().body == x.of(1).wheel().body;
+    const bool housing = is_axle(x.model) &&
+                         FixedBodies(x.model).are_one(x.of(0).wheel().body, x.of(1).wheel().body);
     return housing ? x.braked() : x.centre();
 }
 
@@ -270,6 +279,16 @@ const Entry of_response[] = {
           "positive towards toe-in",
           not_steered, steer_gradient,
           {.key = true, .live = {.steering = 2}, .cause = "steering", .drawn = {steering_ratio}}),
+    Entry(Owner::hand_wheel, "steering_ratio", Unit::none,
+          "change of the angle of the hand wheel over the mean change of the steer angles of the "
+          "wheels, wheel centres held at their height; positive where a positive angle steers to "
+          "the left",
+          not_steered, overall_steering_ratio,
+          {.elsewhere = "ISO 8855, SAE J670: overall steering ratio",
+           .key = true,
+           .cause = "steering",
+           .drawn = {{Over::steering, 7, "Overall steering ratio",
+                      "hand wheel over the mean of the wheels"}}}),
     Entry(
         Owner::steered_wheel, "caster_steered", Unit::deg,
         "angle to the vertical seen from the side of the axis about which the carrier turns when "

@@ -130,6 +130,8 @@ inline double ratio(double value, double by, double limit) {
     return std::abs(value) <= limit * std::abs(by) && by != 0 ? value / by : undefined;
 }
 
+inline constexpr auto not_steered = "the steering is not driven or held on this branch";
+
 // One left and one right wheel.
 inline bool is_axle(const Model& model) {
     return model.wheels.size() == 2 && model.wheels[0].side * model.wheels[1].side < 0;

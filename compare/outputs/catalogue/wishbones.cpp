@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "compare/outputs/fixed_bodies.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 
@@ -10,20 +11,19 @@ namespace elastocheck::compare {
 namespace {
 
 // Points at which a body is held to another, in ground axes.
-std::vector<Vector3d> points_between(const Subject& x, BodyId body, BodyId other) {
+std::vector<Vector3d> points_between(const Subject& x, const FixedBodies& fixed, BodyId body,
+                                     BodyId other) {
     std::vector<Vector3d> points;
     for (const Constraint& constraint : x.model.constraints)
         std::visit(overloaded{[&](const CoincidentPoints& c) {
-                                  if ((c.i.body == body && c.j.body == other) ||
-                                      (c.i.body == other && c.j.body == body))
+                                  if (fixed.are_two(c.i.body, c.j.body, body, other))
                                       points.push_back(x.placed(c.i).at);
                               },
                               [](const auto&) {}},
                    constraint.kind);
     for (const auto& elastic : x.model.elastics)
         std::visit(overloaded{[&](const Bushing& b) {
-                                  if ((b.i.body == body && b.j.body == other) ||
-                                      (b.i.body == other && b.j.body == body))
+                                  if (fixed.are_two(b.i.body, b.j.body, body, other))
                                       points.push_back(x.placed(b.i.body, b.i.s_local).at);
                               },
                               [](const auto&) {}},
@@ -32,15 +32,14 @@ std::vector<Vector3d> points_between(const Subject& x, BodyId body, BodyId other
 }
 
 // The axis of a joint that two of its constraints keep perpendicular to two directions.
-std::optional<Vector3d> axis_between(const Subject& x, BodyId body, BodyId other) {
+std::optional<Vector3d> axis_between(const Subject& x, const FixedBodies& fixed, BodyId body,
+                                     BodyId other) {
     std::optional<Vector3d> axis;
     std::optional<PerpendicularDirections> first;
     int of_first = -1;
     for (const Constraint& constraint : x.model.constraints)
         std::visit(overloaded{[&](const PerpendicularDirections& c) {
-                                  if (!((c.i.body == body && c.j.body == other) ||
-                                        (c.i.body == other && c.j.body == body)))
-                                      return;
+                                  if (!fixed.are_two(c.i.body, c.j.body, body, other)) return;
                                   if (of_first == constraint.joint && first) {
                                       if (c.i.u_local == first->i.u_local) axis = x.direction(c.i);
                                       if (c.j.u_local == first->j.u_local) axis = x.direction(c.j);
@@ -57,15 +56,18 @@ std::optional<Vector3d> axis_between(const Subject& x, BodyId body, BodyId other
 
 std::vector<Plane> wishbone_planes(const Subject& x) {
     const BodyId wheel = x.wheel().body;
+    const FixedBodies fixed(x.model);
     std::vector<Plane> planes;
     for (BodyId arm = 0; arm < static_cast<BodyId>(x.model.bodies.size()); ++arm) {
-        if (arm == wheel) continue;
-        const auto outer = points_between(x, arm, wheel), inner = points_between(x, arm, ground);
+        if (!fixed.is_first(arm) || fixed.are_one(arm, wheel) || fixed.are_one(arm, ground))
+            continue;
+        const auto outer = points_between(x, fixed, arm, wheel),
+                   inner = points_between(x, fixed, arm, ground);
         if (outer.size() != 1 || inner.empty()) continue;
         Vector3d line;
         if (inner.size() == 2)
             line = inner[1] - inner[0];
-        else if (const auto axis = axis_between(x, arm, ground); axis)
+        else if (const auto axis = axis_between(x, fixed, arm, ground); axis)
             line = *axis;
         else
             continue;

@@ -75,6 +75,8 @@ Parameter read_driven(const Cursor& field, Drivables& drivables, Scene& scene, B
         if (!parameter) parameter = Parameter{quantity.kind, quantity.unit};
         const double rate =
             weight_of(term, "rate zero drives nothing; a constant value belongs in hold");
+        if (term.name == "hand_wheel" && (rate != 1 || !branch.drivers.empty()))
+            term.at.fail("the parameter of the branch is its angle; allowed: first, with rate 1");
         // Rate in quantity units per unit of a; exactly 1 for equal units.
         const double si = quantity.unit.name == parameter->unit.name
                               ? rate

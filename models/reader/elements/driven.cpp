@@ -192,6 +192,7 @@ const Drivable& drivable(const Cursor& field, const std::string& name, Drivables
         result.what = Motion{add_joint(field, *result.joint, scene)};
         result.joint.reset();
     }
+    if (!result.as.empty()) result.what = drivable(field, result.as, drivables, scene).what;
     return result;
 }
 

@@ -18,6 +18,7 @@ struct Drivable {
     Driven what;                 // a Motion without joint until the joint is created
     double factor = 1;           // of `what` per SI unit of the quantity
     std::optional<Joint> joint;  // created when it is first driven
+    std::string as = {};         // of the hand wheel: the quantity that it drives in proportion
 };
 
 // All such quantities by their names in the file, and why other joints and elements

@@ -101,7 +101,7 @@ const std::vector<JointType>& joint_types() {
         {Kind<Revolute>::name, {"at", "axis", "held"}, along_axis<Revolute>},
         {Kind<Universal>::name, {"at", "axis_i", "axis_j"}, universal},
         {Kind<Cylindrical>::name, {"at", "axis", "held"}, along_axis<Cylindrical>},
-        {Kind<Translational>::name, {"at", "axis", "held"}, along_axis<Translational>},
+        {Kind<Translational>::name, {"at", "axis", "held", "per_turn"}, along_axis<Translational>},
         {Kind<Planar>::name, {"at", "normal"}, planar},
         {Kind<Fixed>::name, {"at"}, fixed},
         {Kind<Distance>::name, {"from", "to", "length"}, distance},
