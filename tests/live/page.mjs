@@ -19,6 +19,21 @@ const tests = {
       'no request: ' + browser.requests);
     await pictureOf('wishbone', true);
   },
+  async firstPictureIsThePrograms() {
+    const html = readFileSync(path.join(folder, 'wishbone.html'), 'utf8'), damaged = path.join(folder, 'damaged.html');
+    writeFileSync(damaged, html.replace(/(id="solver">)[^<]*/, '$1'));
+    await browser.send('Page.navigate', {url: 'file://' + damaged});
+    await browser.until(`document.body.dataset.status === 'failed'`, 'a page without its solver says so');
+    check(await run(`document.querySelectorAll('#charts path.now').length`) >= 4 && await run(`document.querySelectorAll('#scenery .body').length`) > 4, 'and has its drawing and curves');
+    const toe = byProgram(scene('double_wishbone'), 'travel', ['toe'], []);
+    (await run(`state.now.curve(state.now.branch('travel'), 'toe')`)).forEach(([a, v], k) => { near(a, toe[k][0], 1e-9, 'position'); near(v, toe[k][1], 1e-7, 'toe'); });
+    // A program that reads the scene otherwise than the solver of the page.
+    writeFileSync(damaged, html.replace('"title":"Double wishbone"', '"title":"Another"'));
+    await browser.open(damaged);
+    check(await run('state.info.title') === 'Double wishbone' && await run(`document.title`) === 'Double wishbone – elastocheck live', 'the solver of the page decides: ' + await run('document.title'));
+    await browser.open(path.join(folder, 'wishbone.html'));
+    check(await run('state.base.branches.length === 7 && state.base.branches.every(b => b.whole)'), 'which solves the scene as opened itself');
+  },
   async policyForbidsScriptsAndNetwork() {
     const blocked = await run(`new Promise(done => { const seen = []; document.addEventListener('securitypolicyviolation', e => seen.push(e.effectiveDirective));
       const script = document.createElement('script'); script.textContent = 'window.broken = true'; document.body.append(script); script.remove();

@@ -4,14 +4,18 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/text_file.hpp"
 #include "models/reader/document/yaml.hpp"
 #include "models/reader/parsed_scene.hpp"
 #include "reports/files/files.hpp"
+#include "reports/live/engine.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -32,14 +36,6 @@ std::string built_page() {
         "the source tree builds it");
 }
 
-// As JSON within a script element, which ends at the first "</script" and knows comments "<!--".
-std::string in_markup(const nlohmann::ordered_json& value) {
-    std::string text = value.dump(-1, ' ', true);
-    for (std::size_t at = 0; (at = text.find('<', at)) != text.npos;)
-        text.replace(at, 1, "\\u003c");
-    return text;
-}
-
 // The tables that a valid scene refers to, by their names in it: what stands at a key `file`.
 void add_files(const reader::Value& value, const fs::path& folder, nlohmann::ordered_json& files) {
     for (std::size_t k = 0; k < value.items.size(); ++k) {
@@ -49,6 +45,37 @@ void add_files(const reader::Value& value, const fs::path& folder, nlohmann::ord
             files[item.text] = reader::read_text(folder / item.text, reader::Pipes::refused).text;
         add_files(item, folder, files);
     }
+}
+
+// RFC 4648
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t k = 0; k < bytes.size(); k += 3) {
+        unsigned block = 0;
+        for (std::size_t i = k; i < k + 3; ++i)
+            block = block << 8 | (i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u);
+        for (std::size_t i = 0; i < 4; ++i)
+            text += k + i <= bytes.size() ? digits[block >> (18 - 6 * i) & 63] : '=';
+    }
+    return text;
+}
+
+// The scene and its first branch as the page gets them from its solver, for the picture before that has started; null
+// where there are none.
+nlohmann::ordered_json first_answer(const std::string& text, const std::string& name,
+                                    const fs::path& folder) {
+    live::Session session;
+    nlohmann::ordered_json open = live::open(session, text, name, folder);
+    if (open["branches"].empty()) return nullptr;
+    live::Answer answer =
+        live::solve(session, {.only = open["branches"][0]["name"].get<std::string>()});
+    if (answer.head.contains("trouble")) return nullptr;
+    const auto bytes = std::as_bytes(std::span(answer.numbers));
+    return {{"open", std::move(open)},
+            {"head", std::move(answer.head)},
+            {"numbers", base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()})}};
 }
 
 }  // namespace
@@ -64,11 +91,14 @@ std::string live_page(const std::string& scene, const Settings& settings) {
         settings.empty() ? read.text : rewrite_scene(read.text, scene, settings);
     const fs::path folder = fs::path(scene).parent_path();
     (void)reader::ParsedScene(text, scene, folder).read({});
-    nlohmann::ordered_json data = {{"name", fs::path(scene).filename().string()}, {"text", text}},
+    const std::string name = fs::path(scene).filename().string();
+    nlohmann::ordered_json data = {{"name", name},
+                                   {"text", text},
+                                   {"first", first_answer(text, name, folder)}},
                            files = nlohmann::ordered_json::object();
     add_files(reader::parse_yaml(text, scene), folder, files);
     if (!files.empty()) data["files"] = std::move(files);
-    page.replace(place, scene_goes_here.size(), in_markup(data));
+    page.replace(place, scene_goes_here.size(), for_script(data.dump(-1, ' ', true)));
     return page;
 }
 

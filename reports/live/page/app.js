@@ -1,10 +1,10 @@
 // ---- The page: what is drawn when, its tools, and its start
 import {$, make, shown, trouble, write, writeAttributes} from './base.js';
 import {
-  begin, openScene, settle, showBranch, showFailure, showPublished, showStation, state,
-  stationOf, stepBack, takeSettings
+  begin, isMoving, openScene, settle, showBranch, showFailure, showPublished, showRun, showStation,
+  state, stationOf, stepBack, takeSettings
 } from './state.js';
-import {openIn, solvers, startSolvers} from './solver.js';
+import {bytesOf, openIn, solvers, startSolvers} from './solver.js';
 import {changed, drawStatus, requestOf, restSoon} from './solve.js';
 import {draw3d, drawHandles, axesOf, fitView, makeHandles, makeView, view} from './view.js';
 import {letGo, makeHand, release} from './hand.js';
@@ -39,12 +39,12 @@ export const draw = () => {
   drawTables();
   drawMotion();
   drawVariants();
-  listEffects();
+  if (!isMoving()) listEffects();
 };
 const drawMotion = () => {
   const [branch, k] = stationOf(state.now), slider = $('motion');
   if (!branch?.points) return;
-  slider.max = branch.points - 1;
+  writeAttributes(slider, {max: String(branch.points - 1)});
   slider.value = k;
   write($('motion-name'), branch.name);
   write($('motion-at'), `${shown(state.now.a(branch, k))} ${branch.unit}`);
@@ -106,19 +106,34 @@ const drawScene = () => {
   resetWishes();
   $('point').hidden = $('target').hidden = $('effects').hidden = true;
 };
-const openText = async (source, file, files, work) => {
-  const head = await openIn({source, name: file, files});
+const enterScene = (head, source, file, files) => {
   letGo();
   openScene(head, source, file, files);
   view.size = 1;
   drawScene();
-  restoreWork(work);
-  changed();
 };
-export const tryOpen = async (source, file, files, work) => {
-  try { await openText(source, file, files, work); } catch (error) {
+// `first`: the scene and its first branch as the program solved them, on the screen until the
+// solver has started and solved them itself.
+const openText = async (source, file, files, work, first) => {
+  const answer = openIn({source, name: file, files}), enter = head => {
+    enterScene(head, source, file, files);
+    if (head === first?.open) showFirst(first);
+    restoreWork(work);
+    changed();
+  };
+  if (first) enter(first.open);
+  const head = await answer;
+  if (JSON.stringify(head) !== JSON.stringify(first?.open)) enter(head);
+};
+const showFirst = ({head, numbers}) => {
+  showRun(state.base.take({head, numbers: new Float64Array(bytesOf(numbers).buffer)}, false));
+  draw();
+  window.live.ready = performance.now();
+};
+export const tryOpen = async (source, file, files, work, first) => {
+  try { await openText(source, file, files, work, first); } catch (error) {
     trouble(error.message);
-    if (!state.info) showFailure(error);
+    if (!state.info || first) showFailure(error);
     drawStatus();
   }
 };
@@ -168,9 +183,9 @@ const start = async () => {
   makeCharts();
   makeFiles();
   try {
-    await startSolvers();
-    const {text, name, files, work} = JSON.parse($('scene').textContent);
-    await tryOpen(text, name, files, work);
+    startSolvers();
+    const {text, name, files, work, first} = JSON.parse($('scene').textContent);
+    await tryOpen(text, name, files, work, first);
     await warmUp();
   } catch (error) {
     if (state.info) return;

@@ -1,5 +1,6 @@
 // ---- Elements, numbers, units
-export const wholePage = document.documentElement.outerHTML;  // as it was read
+const asRead = document.documentElement.cloneNode(true);
+export const wholePage = () => asRead.outerHTML;
 export const $ = id => document.getElementById(id);
 const assign = (element, name, value) => typeof value === 'function' ? element[name] = value :
     value === false ? element.removeAttribute(name) :
