@@ -62,15 +62,16 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-// The scene and its first branch as the page gets them from its solver, for the picture before that has started; null
-// where there are none.
+// The scene and its first branch as the page gets them from its solver, for the picture before that
+// has started; null where there are none.
 nlohmann::ordered_json first_answer(const std::string& text, const std::string& name,
                                     const fs::path& folder) {
     live::Session session;
     nlohmann::ordered_json open = live::open(session, text, name, folder);
     if (open["branches"].empty()) return nullptr;
-    live::Answer answer =
-        live::solve(session, {.only = open["branches"][0]["name"].get<std::string>()});
+    live::Request request;
+    request.only = open["branches"][0]["name"];
+    live::Answer answer = live::solve(session, request);
     if (answer.head.contains("trouble")) return nullptr;
     const auto bytes = std::as_bytes(std::span(answer.numbers));
     return {{"open", std::move(open)},
