@@ -1,13 +1,16 @@
 #include "reports/command/live/live_page.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/text_file.hpp"
@@ -47,36 +50,53 @@ void add_files(const reader::Value& value, const fs::path& folder, nlohmann::ord
     }
 }
 
-// RFC 4648
-std::string base64(std::string_view bytes) {
+// Compressed (RFC 1950), in base64 (RFC 4648).
+std::string packed(const std::string& text) {
     constexpr std::string_view digits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    uLongf size = compressBound(text.size());
+    std::vector<Bytef> bytes(size);
+    compress2(bytes.data(), &size, reinterpret_cast<const Bytef*>(text.data()), text.size(), 9);
+    bytes.resize(size);
+    std::string coded;
+    for (std::size_t k = 0; k < size; k += 3) {
         unsigned block = 0;
-        for (std::size_t i = k; i < k + 3; ++i)
-            block = block << 8 | (i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u);
+        for (std::size_t i = k; i < k + 3; ++i) block = block << 8 | (i < size ? bytes[i] : 0u);
         for (std::size_t i = 0; i < 4; ++i)
-            text += k + i <= bytes.size() ? digits[block >> (18 - 6 * i) & 63] : '=';
+            coded += k + i <= size ? digits[block >> (18 - 6 * i) & 63] : '=';
     }
-    return text;
+    return coded;
 }
 
 // The scene and its first branch as the page gets them from its solver, for the picture before that
-// has started; null where there are none.
+// has started: all numbers of the start, and at the other points what is drawn over the branch; the
+// rest is NaN. Null where there are none.
 nlohmann::ordered_json first_answer(const std::string& text, const std::string& name,
                                     const fs::path& folder) {
     live::Session session;
-    nlohmann::ordered_json open = live::open(session, text, name, folder);
+    const nlohmann::ordered_json open = live::open(session, text, name, folder);
     if (open["branches"].empty()) return nullptr;
     live::Request request;
     request.only = open["branches"][0]["name"];
     live::Answer answer = live::solve(session, request);
     if (answer.head.contains("trouble")) return nullptr;
-    const auto bytes = std::as_bytes(std::span(answer.numbers));
-    return {{"open", std::move(open)},
-            {"head", std::move(answer.head)},
-            {"numbers", base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()})}};
+    const auto& branch = answer.head["branches"][0];
+    const auto& usual = open["branches"][0]["usual"];
+    const std::size_t points = branch["points"], start = branch["start"];
+    const std::size_t wide = points == 0 ? 0 : answer.numbers.size() / points;
+    for (std::size_t c = 1; c < wide; ++c) {
+        if (c <= open["channels"].size()) {
+            const auto& channel = open["channels"][c - 1];
+            if (channel["main"] == true || std::ranges::count(usual, channel["figure"]) > 0 ||
+                channel["name"].get<std::string>().find("stop.") != std::string::npos)
+                continue;
+        }
+        for (std::size_t k = 0; k < points; ++k)
+            if (k != start) answer.numbers[k * wide + c] = NAN;
+    }
+    const nlohmann::ordered_json first = {
+        {"open", open}, {"head", answer.head}, {"numbers", answer.numbers}};
+    return packed(first.dump());
 }
 
 }  // namespace

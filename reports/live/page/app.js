@@ -4,7 +4,7 @@ import {
   begin, isMoving, openScene, settle, showBranch, showFailure, showPublished, showRun, showStation,
   state, stationOf, stepBack, takeSettings
 } from './state.js';
-import {bytesOf, openIn, solvers, startSolvers} from './solver.js';
+import {openIn, solvers, startSolvers, unpacked} from './solver.js';
 import {changed, drawStatus, requestOf, restSoon} from './solve.js';
 import {draw3d, drawHandles, axesOf, fitView, makeHandles, makeView, view} from './view.js';
 import {letGo, makeHand, release} from './hand.js';
@@ -15,6 +15,15 @@ import {fillNumbers, makeNumbers, markInvalid} from './numbers.js';
 import {makeFiles} from './files.js';
 import {drawVariants, restoreWork} from './variants.js';
 import {drawPreview, resetWishes} from './wish.js';
+
+// ---- While a number is moved, what is out of sight is not drawn.
+const unseen = new WeakSet();
+const sight = new IntersectionObserver(list => {
+  for (const {target, isIntersecting} of list) unseen[isIntersecting ? 'delete' : 'add'](target);
+  if (isMoving()) draw();
+});
+export const watchSight = element => sight.observe(element);
+export const isLeftOut = element => isMoving() && unseen.has(element);
 
 // After a change of a number, before it is solved.
 export const drawChange = () => {
@@ -51,6 +60,7 @@ const drawMotion = () => {
   writeAttributes(slider, {'aria-valuetext': $('motion-at').textContent});
 };
 export const moveTo = (branchName, a) => {
+  if (state.now.seconds === undefined) return;  // of the first picture only the start is known
   if (state.branch !== '' || branchName === stationOf(state.now)[0].name)
     showStation(state.now.branch(branchName), a);
   else return select(branchName);
@@ -126,9 +136,12 @@ const openText = async (source, file, files, work, first) => {
   if (JSON.stringify(head) !== JSON.stringify(first?.open)) enter(head);
 };
 const showFirst = ({head, numbers}) => {
-  showRun(state.base.take({head, numbers: new Float64Array(bytesOf(numbers).buffer)}, false));
+  showRun(state.base.take({head, numbers: Float64Array.from(numbers, v => v ?? NaN)}, false));
   draw();
   window.live.ready = performance.now();
+};
+const readFirst = async packed => {
+  try { return await (await unpacked(packed, 'deflate')).json(); } catch { return null; }
 };
 export const tryOpen = async (source, file, files, work, first) => {
   try { await openText(source, file, files, work, first); } catch (error) {
@@ -178,6 +191,7 @@ const warmUp = async () => {
 };
 
 const start = async () => {
+  watchSight($('tables'));
   makeView();
   makeHand();
   makeCharts();
@@ -185,7 +199,7 @@ const start = async () => {
   try {
     startSolvers();
     const {text, name, files, work, first} = JSON.parse($('scene').textContent);
-    await tryOpen(text, name, files, work, first);
+    await tryOpen(text, name, files, work, await readFirst(first));
     await warmUp();
   } catch (error) {
     if (state.info) return;

@@ -7,7 +7,7 @@ import {
 import {proofStrip} from './proof.js';
 import {drawNotes, stopsOf} from './notes.js';
 import {saveChart} from './picture.js';
-import {moveTo} from './app.js';
+import {isLeftOut, moveTo, watchSight} from './app.js';
 
 export const words = name => name.replaceAll('_', ' ').replace('@', ', ');
 const range = curve => {
@@ -294,11 +294,15 @@ const onEnd = (branchName, a) => {
   const b = state.info.branches.find(entry => entry.name === branchName);
   return b && [b.from, b.to].some(end => Math.abs(a - end) <= 1e-9 * Math.max(1, Math.abs(end)));
 };
+let drawnCharts = [];
 export const drawCharts = () => {
   if (!state.now) return;
-  const list =
-      shownBranches().flatMap(branch => curvesOf(branch).map(name => chartOf(branch.name, name)));
-  show($('charts'), ...list);
+  const list = shownBranches().flatMap(branch => curvesOf(branch).map(key => [branch.name, key])),
+        {children} = $('charts'), same = list.length === children.length;
+  drawnCharts = list.map(
+      (chart, k) => same && isLeftOut(children[k]) ? drawnCharts[k] : chartOf(...chart));
+  show($('charts'), ...drawnCharts);
+  for (const chart of children) watchSight(chart);
   drawNotes();
 };
 

@@ -9,11 +9,12 @@ const simd = new Uint8Array([
 ]);
 export const browsers = 'Chrome and Edge from 91, Firefox from 113, Safari from 16.4';
 
-// Bytes from base64
-export const bytesOf = text => {
+// What is compressed and in base64.
+export const unpacked = async (text, format) => {
   const coded = atob(text), bytes = new Uint8Array(coded.length);
   for (let k = 0; k < coded.length; ++k) bytes[k] = coded.charCodeAt(k);
-  return bytes;
+  const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format));
+  return new Response(plain, {headers: {'Content-Type': 'application/wasm'}});
 };
 
 export class Solver {
@@ -87,10 +88,7 @@ const compiled = async () => {
       typeof DecompressionStream !== 'function')
     throw new Error(
         `this browser cannot run the solver, which needs WebAssembly with SIMD: ${browsers}`);
-  const plain = new Blob([bytesOf($('solver').textContent.trim())]).stream()
-    .pipeThrough(new DecompressionStream('gzip'));
-  return WebAssembly.compileStreaming(
-      new Response(plain, {headers: {'Content-Type': 'application/wasm'}}));
+  return WebAssembly.compileStreaming(unpacked($('solver').textContent.trim(), 'gzip'));
 };
 export const startSolvers = () => {
   const module = compiled();
