@@ -24,7 +24,7 @@ const tests = {
     const html = readFileSync(path.join(folder, 'wishbone.html'), 'utf8'), damaged = path.join(folder, 'damaged.html');
     writeFileSync(damaged, html.replace(/(id="solver">)[^<]*/, '$1'));
     await browser.send('Page.navigate', {url: 'file://' + damaged});
-    await browser.until(`document.body.dataset.status === 'failed'`, 'a page without its solver says so');
+    await browser.until(`document.body?.dataset.status === 'failed'`, 'a page without its solver says so');
     check(await run(`document.querySelectorAll('#charts path.now').length`) >= 4 && await run(`document.querySelectorAll('#scenery .body').length`) > 4, 'and has its drawing and curves');
     const toe = byProgram(scene('double_wishbone'), 'travel', ['toe'], []);
     (await run(`state.now.curve(state.now.branch('travel'), 'toe')`)).forEach(([a, v], k) => { near(a, toe[k][0], 1e-9, 'position'); near(v, toe[k][1], 1e-7, 'toe'); });
