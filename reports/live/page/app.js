@@ -5,7 +5,7 @@ import {
   state, stationOf, stepBack, takeSettings
 } from './state.js';
 import {openIn, solvers, startSolvers, unpacked} from './solver.js';
-import {changed, drawStatus, requestOf, restSoon} from './solve.js';
+import {changed, drawStatus, nextFrame, requestOf, restSoon} from './solve.js';
 import {draw3d, drawHandles, axesOf, fitView, makeHandles, makeView, view} from './view.js';
 import {letGo, makeHand, release} from './hand.js';
 import {choosePreset, drawCharts, makeCharts, makeChoice} from './charts.js';
@@ -197,9 +197,10 @@ const start = async () => {
   makeCharts();
   makeFiles();
   try {
-    startSolvers();
     const {text, name, files, work, first} = JSON.parse($('scene').textContent);
-    await tryOpen(text, name, files, work, await readFirst(first));
+    const read = readFirst(first);
+    startSolvers(read.then(nextFrame).then(nextFrame));
+    await tryOpen(text, name, files, work, await read);
     await warmUp();
   } catch (error) {
     if (state.info) return;

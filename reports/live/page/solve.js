@@ -55,7 +55,7 @@ export const changed = () => {
   showChange();
 };
 // A hidden page gets no frames.
-const nextFrame = () =>
+export const nextFrame = () =>
   new Promise(resolve => { requestAnimationFrame(resolve); setTimeout(resolve, 100); });
 const newest = () => {
   const {published, now} = state, settings = [...state.settings], key = keyOf(settings);

@@ -83,15 +83,17 @@ export class Solver {
 
 // One for what the hand moves, one for the rest: the same where there is one core.
 export const solvers = {front: null, back: null};
-const compiled = async () => {
+const compiled = async after => {
+  await after;
   if (typeof WebAssembly !== 'object' || !WebAssembly.validate(simd) ||
       typeof DecompressionStream !== 'function')
     throw new Error(
         `this browser cannot run the solver, which needs WebAssembly with SIMD: ${browsers}`);
   return WebAssembly.compileStreaming(unpacked($('solver').textContent.trim(), 'gzip'));
 };
-export const startSolvers = () => {
-  const module = compiled();
+// Compiles the solver after the first picture, which would share the processor with it.
+export const startSolvers = after => {
+  const module = compiled(after);
   solvers.front = new Solver(module);
   solvers.back = navigator.hardwareConcurrency > 1 ? new Solver(module) : solvers.front;
 };
