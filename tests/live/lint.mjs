@@ -1,10 +1,11 @@
 // The modules of the live page: each imports what it uses and nothing else, what is imported is exported; lines below 100
 // characters, functions below 60 lines; only state.js changes the state.
-// node lint.mjs PAGE-FOLDER SUSPENSION
+// node lint.mjs PAGE-FOLDER SHARED-SCRIPT...
 import {readFileSync, readdirSync} from 'node:fs';
 import path from 'node:path';
 
-const [folder, suspension] = process.argv.slice(2);
+const [folder, ...shared] = process.argv.slice(2);
+const others = shared.map(file => [path.basename(file), readFileSync(file, 'utf8')]);  // with the page of a report
 const failures = [];
 const sources = new Map(readdirSync(folder).filter(name => name.endsWith('.js')).map(name =>
   [name, readFileSync(path.join(folder, name), 'utf8')]));
@@ -35,7 +36,7 @@ for (const [name, {imports, body}] of modules) {
 }
 // One script has them all: no name stands for two things.
 const first = new Map();
-for (const [name, text] of [['suspension', readFileSync(suspension, 'utf8')], ...sources])
+for (const [name, text] of [...others, ...sources])
   for (const [, item] of name === 'worker.js' ? [] : text.matchAll(/^(?:export )?(?:const|let|class|function) ([\w$]+)/gm))
     if (first.has(item)) failures.push(`${name}: ${item} is a name of ${first.get(item)}, too`);
     else first.set(item, name);
@@ -44,10 +45,10 @@ for (const [name, {body}] of modules)
   for (const [change] of name === 'state.js' ? [] : body.matchAll(/\bstate\.\w+ (?:\|\|)?= |Object\.assign\(state\b|\bstate\.\w+\.(?:set|delete|clear|push|splice)\(/g))
     failures.push(`${name}: changes the state: ${change}`);
 const longest = {line: 100, function: 60};
-for (const [name, text] of [...sources, ['suspension', readFileSync(suspension, 'utf8')]]) {
+for (const [name, text] of [...sources, ...others]) {
   let begin = 0;
   text.split('\n').forEach((line, k) => {
-    if (line.length >= longest.line && name !== 'suspension')
+    if (line.length >= longest.line && sources.has(name))
       failures.push(`${name}:${k + 1}: ${line.length} characters`);
     if (/^(export )?(const|class|function|\$)/.test(line)) begin = k;
     if (/^\};?$/.test(line) && k - begin >= longest.function && !/class/.test(text.split('\n')[begin]))

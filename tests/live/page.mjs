@@ -3,6 +3,7 @@
 import {execFileSync} from 'node:child_process';
 import {mkdirSync, readFileSync, statSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
+import {deflateSync, inflateSync} from 'node:zlib';
 import {browser, byProgram, check, folder, handleOf, idle, near, pageOf, percentile, pictureOf, program, report, run,
   runTests, scene, scenes, settings, wait} from './harness.mjs';
 
@@ -18,6 +19,22 @@ const tests = {
     check(browser.requests.every(url => url.startsWith('file:') || url.startsWith('blob:')) && browser.requests.filter(url => url.startsWith('file:')).length === 1,
       'no request: ' + browser.requests);
     await pictureOf('wishbone', true);
+  },
+  async firstPictureIsThePrograms() {
+    const html = readFileSync(path.join(folder, 'wishbone.html'), 'utf8'), damaged = path.join(folder, 'damaged.html');
+    writeFileSync(damaged, html.replace(/(id="solver">)[^<]*/, '$1'));
+    await browser.send('Page.navigate', {url: 'file://' + damaged});
+    await browser.until(`document.body?.dataset.status === 'failed'`, 'a page without its solver says so');
+    check(await run(`document.querySelectorAll('#charts path.now').length`) >= 4 && await run(`document.querySelectorAll('#scenery .body').length`) > 4, 'and has its drawing and curves');
+    const toe = byProgram(scene('double_wishbone'), 'travel', ['toe'], []);
+    (await run(`state.now.curve(state.now.branch('travel'), 'toe')`)).forEach(([a, v], k) => { near(a, toe[k][0], 1e-9, 'position'); near(v, toe[k][1], 1e-7, 'toe'); });
+    // A program that reads the scene otherwise than the solver of the page.
+    const [, first] = html.match(/"first":"([^"]*)"/), read = inflateSync(Buffer.from(first, 'base64')).toString();
+    writeFileSync(damaged, html.replace(first, () => deflateSync(read.replace('Double wishbone', 'Another')).toString('base64')));
+    await browser.open(damaged);
+    check(await run('state.info.title') === 'Double wishbone' && await run(`document.title`) === 'Double wishbone – elastocheck live', 'the solver of the page decides: ' + await run('document.title'));
+    await browser.open(path.join(folder, 'wishbone.html'));
+    check(await run('state.base.branches.length === 7 && state.base.branches.every(b => b.whole)'), 'which solves the scene as opened itself');
   },
   async policyForbidsScriptsAndNetwork() {
     const blocked = await run(`new Promise(done => { const seen = []; document.addEventListener('securitypolicyviolation', e => seen.push(e.effectiveDirective));
@@ -91,11 +108,17 @@ const tests = {
     };
     await set('motion', 21, 'input');
     await set('table-at', 'shown', 'change');
-    const [x, y] = await handleOf('upper_rear');
+    // What is out of sight is not drawn while a number is moved.
+    const windowOf = async height => { await browser.send('Emulation.setDeviceMetricsOverride', {width: 1280, height, deviceScaleFactor: 1, mobile: false}); await wait(.3); };
+    const camber = () => run(`document.querySelector('#static [data-channel=camber]').textContent`);
+    const [x, y] = await handleOf('upper_rear'), before = await camber();
     const to = async (...heights) => { for (const up of heights) { await browser.mouse('mouseMoved', x, y - up); await idle(); } };
     await browser.mouse('mousePressed', x, y);
     await to(3, 6, 3, 0, 4, 8);
+    check(await camber() === before, 'a table out of sight waits: ' + await camber());
+    await windowOf(2400);
     await expectChange('while held');
+    await windowOf(900);
     await browser.mouse('mouseReleased', x, y - 8);
     await idle();
     await expectChange('released');

@@ -1,17 +1,24 @@
 #include "reports/command/live/live_page.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/text_file.hpp"
 #include "models/reader/document/yaml.hpp"
 #include "models/reader/parsed_scene.hpp"
 #include "reports/files/files.hpp"
+#include "reports/live/engine.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -32,14 +39,6 @@ std::string built_page() {
         "the source tree builds it");
 }
 
-// As JSON within a script element, which ends at the first "</script" and knows comments "<!--".
-std::string in_markup(const nlohmann::ordered_json& value) {
-    std::string text = value.dump(-1, ' ', true);
-    for (std::size_t at = 0; (at = text.find('<', at)) != text.npos;)
-        text.replace(at, 1, "\\u003c");
-    return text;
-}
-
 // The tables that a valid scene refers to, by their names in it: what stands at a key `file`.
 void add_files(const reader::Value& value, const fs::path& folder, nlohmann::ordered_json& files) {
     for (std::size_t k = 0; k < value.items.size(); ++k) {
@@ -49,6 +48,55 @@ void add_files(const reader::Value& value, const fs::path& folder, nlohmann::ord
             files[item.text] = reader::read_text(folder / item.text, reader::Pipes::refused).text;
         add_files(item, folder, files);
     }
+}
+
+// Compressed (RFC 1950), in base64 (RFC 4648).
+std::string packed(const std::string& text) {
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    uLongf size = compressBound(text.size());
+    std::vector<Bytef> bytes(size);
+    compress2(bytes.data(), &size, reinterpret_cast<const Bytef*>(text.data()), text.size(), 9);
+    bytes.resize(size);
+    std::string coded;
+    for (std::size_t k = 0; k < size; k += 3) {
+        unsigned block = 0;
+        for (std::size_t i = k; i < k + 3; ++i) block = block << 8 | (i < size ? bytes[i] : 0u);
+        for (std::size_t i = 0; i < 4; ++i)
+            coded += k + i <= size ? digits[block >> (18 - 6 * i) & 63] : '=';
+    }
+    return coded;
+}
+
+// The scene and its first branch as the page gets them from its solver, for the picture before that
+// has started: all numbers of the start, and at the other points what is drawn over the branch; the
+// rest is NaN. Null where there are none.
+nlohmann::ordered_json first_answer(const std::string& text, const std::string& name,
+                                    const fs::path& folder) {
+    live::Session session;
+    const nlohmann::ordered_json open = live::open(session, text, name, folder);
+    if (open["branches"].empty()) return nullptr;
+    live::Request request;
+    request.only = open["branches"][0]["name"];
+    live::Answer answer = live::solve(session, request);
+    if (answer.head.contains("trouble")) return nullptr;
+    const auto& branch = answer.head["branches"][0];
+    const auto& usual = open["branches"][0]["usual"];
+    const std::size_t points = branch["points"], start = branch["start"];
+    const std::size_t wide = points == 0 ? 0 : answer.numbers.size() / points;
+    for (std::size_t c = 1; c < wide; ++c) {
+        if (c <= open["channels"].size()) {
+            const auto& channel = open["channels"][c - 1];
+            if (channel["main"] == true || std::ranges::count(usual, channel["figure"]) > 0 ||
+                channel["name"].get<std::string>().find("stop.") != std::string::npos)
+                continue;
+        }
+        for (std::size_t k = 0; k < points; ++k)
+            if (k != start) answer.numbers[k * wide + c] = NAN;
+    }
+    const nlohmann::ordered_json first = {
+        {"open", open}, {"head", answer.head}, {"numbers", answer.numbers}};
+    return packed(first.dump());
 }
 
 }  // namespace
@@ -64,11 +112,14 @@ std::string live_page(const std::string& scene, const Settings& settings) {
         settings.empty() ? read.text : rewrite_scene(read.text, scene, settings);
     const fs::path folder = fs::path(scene).parent_path();
     (void)reader::ParsedScene(text, scene, folder).read({});
-    nlohmann::ordered_json data = {{"name", fs::path(scene).filename().string()}, {"text", text}},
+    const std::string name = fs::path(scene).filename().string();
+    nlohmann::ordered_json data = {{"name", name},
+                                   {"text", text},
+                                   {"first", first_answer(text, name, folder)}},
                            files = nlohmann::ordered_json::object();
     add_files(reader::parse_yaml(text, scene), folder, files);
     if (!files.empty()) data["files"] = std::move(files);
-    page.replace(place, scene_goes_here.size(), in_markup(data));
+    page.replace(place, scene_goes_here.size(), for_script(data.dump(-1, ' ', true)));
     return page;
 }
 

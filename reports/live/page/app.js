@@ -1,11 +1,11 @@
 // ---- The page: what is drawn when, its tools, and its start
 import {$, make, shown, trouble, write, writeAttributes} from './base.js';
 import {
-  begin, openScene, settle, showBranch, showFailure, showPublished, showStation, state,
-  stationOf, stepBack, takeSettings
+  begin, isMoving, openScene, settle, showBranch, showFailure, showPublished, showRun, showStation,
+  state, stationOf, stepBack, takeSettings
 } from './state.js';
-import {openIn, solvers, startSolvers} from './solver.js';
-import {changed, drawStatus, requestOf, restSoon} from './solve.js';
+import {openIn, solvers, startSolvers, unpacked} from './solver.js';
+import {changed, drawStatus, nextFrame, requestOf, restSoon} from './solve.js';
 import {draw3d, drawHandles, axesOf, fitView, makeHandles, makeView, view} from './view.js';
 import {letGo, makeHand, release} from './hand.js';
 import {choosePreset, drawCharts, makeCharts, makeChoice} from './charts.js';
@@ -15,6 +15,15 @@ import {fillNumbers, makeNumbers, markInvalid} from './numbers.js';
 import {makeFiles} from './files.js';
 import {drawVariants, restoreWork} from './variants.js';
 import {drawPreview, resetWishes} from './wish.js';
+
+// ---- While a number is moved, what is out of sight is not drawn.
+const unseen = new WeakSet();
+const sight = new IntersectionObserver(list => {
+  for (const {target, isIntersecting} of list) unseen[isIntersecting ? 'delete' : 'add'](target);
+  if (isMoving()) draw();
+});
+export const watchSight = element => sight.observe(element);
+export const isLeftOut = element => isMoving() && unseen.has(element);
 
 // After a change of a number, before it is solved.
 export const drawChange = () => {
@@ -39,18 +48,19 @@ export const draw = () => {
   drawTables();
   drawMotion();
   drawVariants();
-  listEffects();
+  if (!isMoving()) listEffects();
 };
 const drawMotion = () => {
   const [branch, k] = stationOf(state.now), slider = $('motion');
   if (!branch?.points) return;
-  slider.max = branch.points - 1;
+  writeAttributes(slider, {max: String(branch.points - 1)});
   slider.value = k;
   write($('motion-name'), branch.name);
   write($('motion-at'), `${shown(state.now.a(branch, k))} ${branch.unit}`);
   writeAttributes(slider, {'aria-valuetext': $('motion-at').textContent});
 };
 export const moveTo = (branchName, a) => {
+  if (state.now.seconds === undefined) return;  // of the first picture only the start is known
   if (state.branch !== '' || branchName === stationOf(state.now)[0].name)
     showStation(state.now.branch(branchName), a);
   else return select(branchName);
@@ -106,19 +116,37 @@ const drawScene = () => {
   resetWishes();
   $('point').hidden = $('target').hidden = $('effects').hidden = true;
 };
-const openText = async (source, file, files, work) => {
-  const head = await openIn({source, name: file, files});
+const enterScene = (head, source, file, files) => {
   letGo();
   openScene(head, source, file, files);
   view.size = 1;
   drawScene();
-  restoreWork(work);
-  changed();
 };
-export const tryOpen = async (source, file, files, work) => {
-  try { await openText(source, file, files, work); } catch (error) {
+// `first`: the scene and its first branch as the program solved them, on the screen until the
+// solver has started and solved them itself.
+const openText = async (source, file, files, work, first) => {
+  const answer = openIn({source, name: file, files}), enter = head => {
+    enterScene(head, source, file, files);
+    if (head === first?.open) showFirst(first);
+    restoreWork(work);
+    changed();
+  };
+  if (first) enter(first.open);
+  const head = await answer;
+  if (JSON.stringify(head) !== JSON.stringify(first?.open)) enter(head);
+};
+const showFirst = ({head, numbers}) => {
+  showRun(state.base.take({head, numbers: Float64Array.from(numbers, v => v ?? NaN)}, false));
+  draw();
+  window.live.ready = performance.now();
+};
+const readFirst = async packed => {
+  try { return await (await unpacked(packed, 'deflate')).json(); } catch { return null; }
+};
+export const tryOpen = async (source, file, files, work, first) => {
+  try { await openText(source, file, files, work, first); } catch (error) {
     trouble(error.message);
-    if (!state.info) showFailure(error);
+    if (!state.info || first) showFailure(error);
     drawStatus();
   }
 };
@@ -163,14 +191,16 @@ const warmUp = async () => {
 };
 
 const start = async () => {
+  watchSight($('tables'));
   makeView();
   makeHand();
   makeCharts();
   makeFiles();
   try {
-    await startSolvers();
-    const {text, name, files, work} = JSON.parse($('scene').textContent);
-    await tryOpen(text, name, files, work);
+    const {text, name, files, work, first} = JSON.parse($('scene').textContent);
+    const read = readFirst(first);
+    startSolvers(read.then(nextFrame).then(nextFrame));
+    await tryOpen(text, name, files, work, await read);
     await warmUp();
   } catch (error) {
     if (state.info) return;

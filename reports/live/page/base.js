@@ -1,5 +1,6 @@
 // ---- Elements, numbers, units
-export const wholePage = document.documentElement.outerHTML;  // as it was read
+const asRead = document.documentElement.cloneNode(true);
+export const wholePage = () => asRead.outerHTML;
 export const $ = id => document.getElementById(id);
 const assign = (element, name, value) => typeof value === 'function' ? element[name] = value :
     value === false ? element.removeAttribute(name) :
@@ -29,7 +30,8 @@ const change = (parent, before, after) => {
   let node = parent.firstChild;
   for (let k = 0; k < Math.max(before.length, after.length); ++k) {
     const was = before[k], is = after[k], next = node?.nextSibling;
-    if (was === undefined) parent.append(elementOf(is));
+    if (was === is) { /* drawn before */ }
+    else if (was === undefined) parent.append(elementOf(is));
     else if (is === undefined) node.remove();
     else if (typeof is === 'string' && typeof was === 'string') { if (is !== was) node.data = is; }
     else if (is.tag !== was.tag) node.replaceWith(elementOf(is));

@@ -7,7 +7,7 @@ import {
 import {proofStrip} from './proof.js';
 import {drawNotes, stopsOf} from './notes.js';
 import {saveChart} from './picture.js';
-import {moveTo} from './app.js';
+import {isLeftOut, moveTo, watchSight} from './app.js';
 
 export const words = name => name.replaceAll('_', ' ').replace('@', ', ');
 const range = curve => {
@@ -110,10 +110,8 @@ const scaleOf = ({all, channel, target}) => {
   if (y1 - y0 < least) [y0, y1] = [y0 - least, y1 + least];
   [y0, y1] = [y0 - .06 * (y1 - y0), y1 + .06 * (y1 - y0)];
   const high = y1 - y0, seen = v => Math.min(y1 + high, Math.max(y0 - high, v));
-  const at = ([a, v]) => [left + (W - left - right) * (a - x0) / (x1 - x0),
-    H - footroom - (H - headroom - footroom) * (seen(v) - y0) / high];
-  const parameter = x => x0 + (x1 - x0) * (x - left) / (W - left - right);
-  return {x0, x1, y0, y1, at, parameter, cut, whole};
+  const x = axisBetween(left, W - right, x0, x1), y = axisBetween(H - footroom, headroom, y0, y1);
+  return {x, x0, x1, y0, y1, at: ([a, v]) => [x.place(a), y.place(seen(v))], cut, whole};
 };
 const gridOf = ({branchName, now}, {x0, x1, y0, y1, at, cut, whole}) => {
   const list = [];
@@ -296,11 +294,15 @@ const onEnd = (branchName, a) => {
   const b = state.info.branches.find(entry => entry.name === branchName);
   return b && [b.from, b.to].some(end => Math.abs(a - end) <= 1e-9 * Math.max(1, Math.abs(end)));
 };
+let drawnCharts = [];
 export const drawCharts = () => {
   if (!state.now) return;
-  const list =
-      shownBranches().flatMap(branch => curvesOf(branch).map(name => chartOf(branch.name, name)));
-  show($('charts'), ...list);
+  const list = shownBranches().flatMap(branch => curvesOf(branch).map(key => [branch.name, key])),
+        {children} = $('charts'), same = list.length === children.length;
+  drawnCharts = list.map(
+      (chart, k) => same && isLeftOut(children[k]) ? drawnCharts[k] : chartOf(...chart));
+  show($('charts'), ...drawnCharts);
+  for (const chart of children) watchSight(chart);
   drawNotes();
 };
 
@@ -309,8 +311,8 @@ const pointed = event => {
   const svg = event.target.closest('#charts .chart > svg'),
         scale = svg && scales.get(keyOfChart(svg.closest('.chart')));
   if (!scale) return null;
-  const box = svg.getBoundingClientRect(), x = (event.clientX - box.left) * W / box.width;
-  return x < left || x > W - right ? null : {...scale, box, a: scale.parameter(x)};
+  const [x] = pointerIn(svg, event);
+  return scale.x.has(x) ? {...scale, svg, a: scale.x.value(x)} : null;
 };
 const nearest = (curve, a) => curve.reduce(
     (best, p) => Math.abs(p[0] - a) < Math.abs(best[0] - a) ? p : best, [Infinity, NaN]);
@@ -318,7 +320,7 @@ const readOut = event => {
   const there = pointed(event), line = $('cursor');
   line.hidden = !there?.series[0].curve.length;
   if (line.hidden) { readAt($('readout'), event, ''); return; }
-  const {box, at, y0} = there, size = box.width / W;
+  const {svg, at, y0} = there, box = svg.getBoundingClientRect(), size = box.width / W;
   const {series, channel, now} = there, [a] = nearest(series[0].curve, there.a);
   const [b] = nearest(series[0].before, a),
             same = isChanged() && Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(a));

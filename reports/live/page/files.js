@@ -28,9 +28,10 @@ $('save').onclick = async () => {
 };
 // The whole page with its scene, its numbers and its variants.
 $('save-page').onclick = () => {
-  const {source: text, file: name, files} = state;
-  const [head, tail] = wholePage.split($('scene').textContent);
-  const scene = JSON.stringify({text, name, files, work: workOf()}).replaceAll('<', '\\u003c');
+  const {source: text, file: name, files} = state, read = $('scene').textContent;
+  const [head, tail] = wholePage().split(read), {text: own, first} = JSON.parse(read);
+  const scene = JSON.stringify({text, name, files, work: workOf(), ...own === text && {first}})
+    .replaceAll('<', '\\u003c');
   window.live.saved = `<!doctype html>\n${head}${scene}${tail}`;
   save(window.live.saved, `${stem()}.html`, 'text/html');
   markSaved(keyOf(state.settings));

@@ -5,7 +5,7 @@ import {$} from './base.js';
 import {abandon, begin, hold, letGoOfAll, settle, state, toggleInGroup} from './state.js';
 import {axesOf, draw3d, drawHandles, linkAt, view, zoomView, panView} from './view.js';
 import {coordinatesOf, groupOf, movePoints} from './points.js';
-import {changed, showChange, solveSoon} from './solve.js';
+import {changed, showChangeSoon, solveSoon} from './solve.js';
 import {choose} from './numbers.js';
 
 const pointers = new Map();  // pressed: id -> [x, y] in pixels of the window
@@ -37,10 +37,6 @@ export const movedBy = (held, dx, dy, fine = false) => {
     if (size > .03) d[k] = pixel * (s[0] * dx + s[1] * dy) / size;
   }
   return d.map(v => step ? Math.round(v / step) * step : v);
-};
-const inDrawing = ([x, y]) => {
-  const box = $('drawing').getBoundingClientRect();
-  return [(x - box.left) * view.wide / box.width, (y - box.top) * view.high / box.height];
 };
 const activate = on => $('drawing').classList.toggle('active', on);
 
@@ -90,18 +86,19 @@ const turn3d = (held, dx, dy) => {
 };
 const pinch = (event, before) => {
   const other = [...pointers].find(([id]) => id !== event.pointerId)[1],
-        to = [event.clientX, event.clientY];
-  zoomView((apart(to, other) || 1) / (apart(before, other) || 1), ...inDrawing(other));
+        to = [event.clientX, event.clientY], [clientX, clientY] = other;
+  zoomView((apart(to, other) || 1) / (apart(before, other) || 1),
+    ...pointerIn($('drawing'), {clientX, clientY}));
 };
 const moveGroup = (group, by) => movePoints(group.map(([name, from]) => [name, add(from, 1, by)]));
-// Moves what is held to the pointer; `ahead`: it is not drawn there yet.
+// Moves what is held to the pointer.
 const follow = (held, event) => {
   const by = movedBy(held, event.clientX - held.x, event.clientY - held.y, event.shiftKey);
   if (by.every((v, k) => v === (held.by?.[k] ?? 0))) return;
   held.by = by;
-  held.ahead = true;
   moveGroup(held.group, by);
   solveSoon();
+  showChangeSoon();
 };
 // As soon as the pointer has moved; the page gets its other moves with the next frame.
 const moveAhead = event => {
@@ -115,8 +112,6 @@ const move = event => {
   if (pointers.size === 2) pinch(event, before);
   else if (held?.name) {
     follow(held, event);
-    if (held.ahead) showChange();
-    held.ahead = false;
     return;
   } else if (held?.turn) turn3d(held, event.clientX - held.x, event.clientY - held.y);
   else if (held) panView(event.clientX - before[0], event.clientY - before[1]);
@@ -156,7 +151,7 @@ export const makeHand = () => {
       release();
     });
   svg.addEventListener('pointermove', event => {
-    const words = event.buttons ? '' : linkAt(...inDrawing([event.clientX, event.clientY]));
+    const words = event.buttons ? '' : linkAt(...pointerIn(svg, event));
     readAt($('readout'), event, words);
   });
   svg.addEventListener('pointerleave', event => readAt($('readout'), event, ''));
@@ -164,7 +159,7 @@ export const makeHand = () => {
   svg.addEventListener('wheel', event => {
     if (!svg.classList.contains('active')) return;
     event.preventDefault();
-    zoomView(Math.exp(-event.deltaY * .0015), ...inDrawing([event.clientX, event.clientY]));
+    zoomView(Math.exp(-event.deltaY * .0015), ...pointerIn(svg, event));
     draw3d();
   }, {passive: false});
   svg.addEventListener('keydown', pressKey);

@@ -41,16 +41,21 @@ export const solveSoon = () => {
   demandSolve();
   pump();
 };
+let later = 0;
 export const showChange = () => {
+  clearTimeout(later);
+  later = 0;
   if (!isSolved()) dropProofs();
   drawChange();
 };
+// A move is drawn with its answer, in one frame, and before it where the answer is late.
+export const showChangeSoon = () => { later ||= setTimeout(showChange, 50); };
 export const changed = () => {
   solveSoon();
   showChange();
 };
 // A hidden page gets no frames.
-const nextFrame = () =>
+export const nextFrame = () =>
   new Promise(resolve => { requestAnimationFrame(resolve); setTimeout(resolve, 100); });
 const newest = () => {
   const {published, now} = state, settings = [...state.settings], key = keyOf(settings);
@@ -70,6 +75,7 @@ const present = ({asked, info, run}, error) => {
   if (info !== state.info) return;
   error ? showFailure(error) : showRun(run);
   const begun = performance.now();
+  if (later) showChange();
   draw();
   const done = performance.now();
   if (error) return;
@@ -149,7 +155,7 @@ const solvedWords = ({branches, id, seconds, settings}) => {
       `${some === all ? '' : `${some} of `}${counted(all, 'branch', 'branches')} solved`;
   return [
     `solve ${id}`, solved + (early ? `, ${early} ${early === 1 ? 'ends' : 'end'} early` : ''),
-    `shown in ${(1e3 * seconds).toFixed(0)} ms`,
+    seconds === undefined ? 'starting the solver…' : `shown in ${(1e3 * seconds).toFixed(0)} ms`,
     ...settings.length ? [`${counted(settings.length, 'number')} changed`] : []
   ].join(' · ');
 };

@@ -9,9 +9,18 @@ const simd = new Uint8Array([
 ]);
 export const browsers = 'Chrome and Edge from 91, Firefox from 113, Safari from 16.4';
 
+// What is compressed and in base64.
+export const unpacked = async (text, format) => {
+  const coded = atob(text), bytes = new Uint8Array(coded.length);
+  for (let k = 0; k < coded.length; ++k) bytes[k] = coded.charCodeAt(k);
+  const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format));
+  return new Response(plain, {headers: {'Content-Type': 'application/wasm'}});
+};
+
 export class Solver {
+  // Calls wait until the module is compiled, while the worker starts.
   constructor(module) {
-    this.module = module;
+    this.compiled = module.then(compiled => { this.module = compiled; });
     this.calls = 0;
     this.waiting = new Map();  // in the order of the calls
     this.scene = null;
@@ -24,7 +33,7 @@ export class Solver {
     worker.onerror = event => this.worker === worker && this.restart(event.message);
     worker.onmessageerror = () =>
         this.worker === worker && this.restart('its answer cannot be read');
-    const again = [this.ask('start', {module: this.module})];
+    const again = [this.ask('start')];
     if (this.scene) again.push(this.ask('open', this.scene));
     for (const call of again) call.catch(() => 0);  // whoever asks next is told
     this.watch ??= setInterval(() => this.check(), 200);
@@ -39,11 +48,13 @@ export class Solver {
     else call.reject(Object.assign(new Error(data.error), {kind: data.kind}));
   }
   ask(what, data = {}) {
-    return new Promise((resolve, reject) => {
+    const post = (resolve, reject) => {
       if (!this.waiting.size) this.since = performance.now();
       this.waiting.set(++this.calls, {resolve, reject, what});
-      this.worker.postMessage({id: this.calls, what, ...data});
-    });
+      const more = what === 'start' ? {module: this.module} : data;
+      this.worker.postMessage({id: this.calls, what, ...more});
+    };
+    return this.module ? new Promise(post) : this.compiled.then(() => new Promise(post));
   }
   async open(scene) {
     const answer = await this.ask('open', scene);
@@ -72,21 +83,23 @@ export class Solver {
 
 // One for what the hand moves, one for the rest: the same where there is one core.
 export const solvers = {front: null, back: null};
-export const startSolvers = async () => {
+const compiled = async after => {
+  await after;
   if (typeof WebAssembly !== 'object' || !WebAssembly.validate(simd) ||
       typeof DecompressionStream !== 'function')
     throw new Error(
         `this browser cannot run the solver, which needs WebAssembly with SIMD: ${browsers}`);
-  const coded = atob($('solver').textContent.trim()),
-        packed = Uint8Array.from(coded, c => c.charCodeAt(0));
-  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
-  const module = await WebAssembly.compile(await new Response(plain).arrayBuffer());
+  return WebAssembly.compileStreaming(unpacked($('solver').textContent.trim(), 'gzip'));
+};
+// Compiles the solver after the first picture, which would share the processor with it.
+export const startSolvers = after => {
+  const module = compiled(after);
   solvers.front = new Solver(module);
   solvers.back = navigator.hardwareConcurrency > 1 ? new Solver(module) : solvers.front;
 };
 // Opens a scene in both; what was open stays where it is refused.
 export const openIn = async scene => {
-  const {head} = await solvers.front.open(scene);
-  if (solvers.back !== solvers.front) await solvers.back.open(scene);
+  const [{head}] = await Promise.all(
+      [...new Set([solvers.front, solvers.back])].map(solver => solver.open(scene)));
   return head;
 };

@@ -8,6 +8,7 @@ import {
 import {solvers} from './solver.js';
 import {resting} from './solve.js';
 import {words} from './charts.js';
+import {isLeftOut} from './app.js';
 
 const tableHead = (...columns) =>
     sketch('thead', {}, sketch('tr', {}, ...columns.map(t => sketch('th', {scope: 'col'}, t))));
@@ -45,6 +46,7 @@ const placeOfTable = () => {
 export const drawTables = () => {
   const {now, info} = state, base = reference(),
               [is, k, old, j, where] = now ? placeOfTable() : [];
+  if (isLeftOut($('tables'))) return;
   // While a drag solves another branch alone.
   $('tables').classList.toggle('stale', now !== null && !is);
   if (!is) return;

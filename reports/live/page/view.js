@@ -117,23 +117,28 @@ const drawArrows = axes => {
   }
   show($('arrows'), ...arrows);
 };
+// Each layer of the scenery a group, which stays while its text does.
+let drawnLayers = [];
+const drawLayers = layers => {
+  layers.forEach((text, k) => {
+    if (text !== drawnLayers[k]) $('scenery').children[k].innerHTML = text;
+  });
+  drawnLayers = layers;
+};
 export const draw3d = () => {
   const svg = $('drawing'), {now} = state;
   if (!now) return;
   writeAttributes(svg, {viewBox: `0 0 ${view.wide} ${view.high}`});
   svg.dataset.solve = now.id;
-  const axes = axesOf(), [branch, k] = stationOf(now), layers = [];
-  if (isChanged() && branch) {
-    const [old, j] = stationInReference();
-    if (j >= 0) layers.push(scenery(reference(), old, j, axes, true));
-  }
-  if (branch?.points)
-    layers.push(
-        guides(now, branch, k, {flat: p => flat(p, axes), axes, wide: view.wide}),
-        scenery(now, branch, k, axes, false));
+  const axes = axesOf(), [branch, k] = stationOf(now);
+  const [old, j] = isChanged() && branch ? stationInReference() : [null, -1];
   const axisName = (x, y, name) => `<text x="${px(x)}" y="${px(y)}">${name}</text>`;
-  layers.push(`<g class="axes">${triad(axes, [30, view.high - 30], axisName)}</g>`);
-  $('scenery').innerHTML = layers.join('');
+  drawLayers([
+    j < 0 ? '' : scenery(reference(), old, j, axes, true),
+    branch?.points ?
+      guides(now, branch, k, {flat: p => flat(p, axes), axes, wide: view.wide}) : '',
+    branch?.points ? scenery(now, branch, k, axes, false) : '',
+    `<g class="axes">${triad(axes, [30, view.high - 30], axisName)}</g>`]);
   drawHandles(axes);
   for (const button of $('views').children)
     writeAttributes(button, {'aria-pressed': String(button.textContent === view.name)});
@@ -175,7 +180,8 @@ export const linkAt = (x, y) => {
 export const makeView = () => {
   measureView();
   $('drawing').append(
-      make('g', {id: 'scenery'}), make('g', {id: 'arrows'}), make('g', {id: 'handles'}));
+      make('g', {id: 'scenery'}, ...Array.from({length: 4}, () => make('g'))),
+      make('g', {id: 'arrows'}), make('g', {id: 'handles'}));
   for (const name of Object.keys(views)) {
     const button = make('button', {type: 'button'}, name);
     button.onclick = () => { [view.yaw, view.pitch] = views[name]; view.name = name; draw3d(); };

@@ -7,7 +7,7 @@ part=$(mktemp -d)
 trap 'rm -rf "$part"' EXIT
 # The digest of a file in base64, as a policy names it.
 digest() { env printf "$(sha256sum "$1" | cut -c 1-64 | sed 's/../\\x&/g')" | base64 -w 0; }
-cat "$page/style.css" >"$part/style"
+cat "$page/../../page/templates/html/colours.css.mustache" "$page/style.css" >"$part/style"
 "$(dirname "$0")/bundle.sh" "$page" >"$part/script"
 cat "$page/worker.js" >"$part/worker"
 gzip -9 -n -c "$wasm" | base64 -w 0 >"$part/solver"

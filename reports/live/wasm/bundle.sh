@@ -4,7 +4,7 @@
 set -eu
 page=$1
 echo "'use strict';"
-cat "$page/../../page/templates/html/suspension.js.mustache"
+cat "$page/../../page/templates/html/suspension.js.mustache" "$page/../../page/templates/html/chart.js.mustache"
 for module in base run state solver solve points guides view numbers hand effects proof notes charts tables files picture wish variants app; do
     sed -e '/^import .*;$/d' -e '/^import /,/;$/d' -e 's/^export //' "$page/$module.js"
 done
