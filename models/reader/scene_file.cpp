@@ -271,8 +271,9 @@ Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* tw
     std::map<std::string, Load> by_name;
     for (const Load& load : loads) by_name.emplace(load.name, load);
     const auto drives = add_held(scene, defs, result);
-    Drivables drivable =
-        drives_parts(scene) ? drivables(result, defs.units, drives, named) : Drivables{};
+    Drivables drivable = scene.is_first || drives_parts(scene)
+                             ? drivables(result, defs.units, drives, named)
+                             : Drivables{};
     add_rolling_joints(scene, result);
     add_joints_of_bars(scene, defs, result);
     read_beams(scene, defs, result.elastics);
