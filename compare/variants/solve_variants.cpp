@@ -35,9 +35,20 @@ int point_at(double at, double to, int increments) {
 
 bool is_extreme(const VariantFigure& figure) { return figure.over != Over::station; }
 
-// Whether the channel holds numbers of the design position, of which a variant has its own.
-bool holds_numbers(const Channel& channel) {
-    return std::holds_alternative<Coordinate>(channel.reads);
+// Of a channel that reads a coordinate: of which point, in any variant.
+std::function<Point(const Model&)> point_read(const Channel& channel, const Model& design) {
+    if (!std::holds_alternative<Coordinate>(channel.reads)) return {};
+    for (const Entry& entry : catalogue())
+        for (const Named& owner : owners(design, entry.owner))
+            if (entry.point != nullptr && channel_of(design, entry, owner).name == channel.name)
+                return [read = entry.point, k = owner.k](const Model& model) {
+                    return read(model.wheels[k]);
+                };
+    const std::string probe = channel.name.substr(0, channel.name.rfind('_'));
+    const auto found = std::ranges::find(design.probes, probe, &Probe::name);
+    return [k = found - design.probes.begin()](const Model& model) {
+        return model.probes[static_cast<std::size_t>(k)].at;
+    };
 }
 
 // Whether a leg ended a branch that another may follow further. At a limit point or a bifurcation the
@@ -45,18 +56,6 @@ bool holds_numbers(const Channel& channel) {
 bool declines(Outcome outcome) {
     return outcome != Outcome::converged && outcome != Outcome::limit_point &&
            outcome != Outcome::bifurcation_point;
-}
-
-// What the numbers of channels depend on.
-Model without_joints(const Model& model) {
-    Model result;
-    result.bodies = model.bodies;
-    result.elastics = model.elastics;
-    result.wheels = model.wheels;
-    result.probes = model.probes;
-    result.dampers = model.dampers;
-    result.vehicle = model.vehicle;
-    return result;
 }
 
 // Whether redundant joints share this reaction at the design position.
@@ -91,24 +90,20 @@ VariantFigure parse_variant_figure(const std::string& name, std::string words, c
 
 VariantSolver::VariantSolver(const Model& design, std::vector<VariantFigure> figures)
     : figures_(std::move(figures)) {
-    const auto all = figure_outputs(design);
-    std::vector<Channel> own;
-    for (const VariantFigure& figure : figures_) {
-        const int c = find_channel(all, figure.output);
-        if (c < 0)
-            throw std::invalid_argument(
-                fmt::format("{}: the scene has no output '{}'", figure.name, figure.output));
-        own.push_back(all[static_cast<std::size_t>(c)]);
-        only_motion_ = only_motion_ && own.back().kinematic();
-        with_sums_ = with_sums_ || std::holds_alternative<Total>(own.back().reads);
-    }
-    outputs_ = std::make_shared<const std::vector<Channel>>(std::move(own));
+    auto found = outputs(design);
+    if (!found) throw std::invalid_argument("a figure reads an output that the scene has not");
+    outputs_ = std::move(*found);
+    for (const Channel& output : outputs_) points_read_.push_back(point_read(output, design));
+    only_motion_ = std::ranges::all_of(outputs_, &Channel::kinematic);
+    with_sums_ = std::ranges::any_of(outputs_, [](const Channel& output) {
+        return std::holds_alternative<Total>(output.reads);
+    });
     elastocheck::structure(design, structure_);
     place(design);
     for (Group& group : groups_) {
         for (Way& way : group.ways)
             if (std::ranges::any_of(way.readings, [&](const Reading& reading) {
-                    return (*outputs_)[reading.figure].kind() == ChannelKind::characteristic;
+                    return outputs_[reading.figure].kind() == ChannelKind::characteristic;
                 })) {
                 const Branch side = branch_sides(design.branches[way.branch])[way.side];
                 const BranchSide whole{side.name, on_branch(design, side), side};
@@ -193,19 +188,22 @@ bool VariantSolver::is_as_design(const Model& variant) const {
     return structure == structure_;
 }
 
-// Those of the design with the numbers of the variant, one a figure; none where it has others.
-std::shared_ptr<const std::vector<Channel>> VariantSolver::outputs(const Model& variant,
-                                                                   bool same) const {
-    if (same && std::ranges::none_of(*outputs_, holds_numbers)) return outputs_;
-    const auto all = same ? channels(without_joints(variant)) : figure_outputs(variant, with_sums_);
-    auto own = std::make_shared<std::vector<Channel>>(*outputs_);
-    for (std::size_t k = 0; k < own->size(); ++k) {
-        if (same && !holds_numbers((*own)[k])) continue;
-        const int c = find_channel(all, figures_[k].output);
-        if (c < 0) return nullptr;
-        (*own)[k] = all[static_cast<std::size_t>(c)];
+// One a figure; none where the model has others.
+std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& model) const {
+    const auto all = figure_outputs(model, with_sums_);
+    std::vector<Channel> own;
+    for (const VariantFigure& figure : figures_) {
+        const int c = find_channel(all, figure.output);
+        if (c < 0) return std::nullopt;
+        own.push_back(all[static_cast<std::size_t>(c)]);
     }
     return own;
+}
+
+// Outputs of the design as those of a variant.
+void VariantSolver::take_points(const Model& variant, std::vector<Channel>& outputs) const {
+    for (std::size_t k = 0; k < outputs.size(); ++k)
+        if (points_read_[k]) std::get<Coordinate>(outputs[k].reads).at = points_read_[k](variant);
 }
 
 void VariantSolver::read(const Followed& followed, const std::vector<Channel>& outputs,
@@ -291,15 +289,14 @@ void VariantSolver::finish(VariantFigures& figures) const {
 std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants) const {
     std::vector<VariantFigures> results(variants.size(),
                                         {.values = std::vector<double>(figures_.size(), nan)});
-    std::vector<std::shared_ptr<const std::vector<Channel>>> all_outputs;
-    std::vector<std::size_t> which;  // have these outputs
-    std::vector<bool> as_design;     // of these
+    std::vector<Channel> as_design = outputs_;
+    std::vector<std::vector<Channel>> own;  // none of a variant as the design
+    std::vector<std::size_t> which;         // have the outputs of the figures
     for (std::size_t v = 0; v < variants.size(); ++v) {
         const bool same = is_as_design(variants[v]);
-        if (auto own = outputs(variants[v], same)) {
-            all_outputs.push_back(std::move(own));
+        if (auto found = same ? std::vector<Channel>() : outputs(variants[v])) {
+            own.push_back(std::move(*found));
             which.push_back(v);
-            as_design.push_back(same);
         } else {
             results[v].outcome = outcome::no_value;
             results[v].reason = other_outputs;
@@ -308,13 +305,17 @@ std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants
     std::vector<bool> declined(which.size(), false);
     for (const Group& group : groups_) {
         std::vector<Model> models;
+        models.reserve(which.size());
         for (const std::size_t v : which) models.push_back(followed(variants[v], group.ways));
         recursive::solve_batch(
             group.design, group.analysis, models, {.points = points_, .wrenches = !only_motion_},
             [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
                 declined[v] = declined[v] || declines(path.outcome);
-                read({variants[which[v]], models[v].branches[w], group.ways[w], path},
-                     *all_outputs[v], as_design[v] ? group.ways[w].responses : Analyses{},
+                const Model& variant = variants[which[v]];
+                const bool same = own[v].empty();
+                if (same) take_points(variant, as_design);
+                read({variant, models[v].branches[w], group.ways[w], path},
+                     same ? as_design : own[v], same ? group.ways[w].responses : Analyses{},
                      results[which[v]]);
             });
     }
@@ -332,7 +333,7 @@ std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants
 
 VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
     VariantFigures result{.values = std::vector<double>(figures_.size(), nan), .leg = leg};
-    const auto own = outputs(variant, is_as_design(variant));
+    const auto own = outputs(variant);
     if (!own) {
         result.outcome = outcome::no_value;
         result.reason = other_outputs;

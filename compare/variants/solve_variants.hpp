@@ -6,7 +6,8 @@
 // parameter, as few as have all stations among them; extremes are those of at least 21 points.
 #pragma once
 
-#include <memory>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -88,7 +89,8 @@ class VariantSolver {
 
     void place(const Model& design);
     Model followed(const Model& model, const std::vector<Way>& ways) const;
-    std::shared_ptr<const std::vector<Channel>> outputs(const Model& model, bool same) const;
+    std::optional<std::vector<Channel>> outputs(const Model& model) const;
+    void take_points(const Model& variant, std::vector<Channel>& outputs) const;
     struct Followed {  // a way of a variant
         const Model& model;
         const Branch& side;
@@ -101,10 +103,11 @@ class VariantSolver {
     void finish(VariantFigures& figures) const;
 
     std::vector<VariantFigure> figures_;
-    std::shared_ptr<const std::vector<Channel>> outputs_ = {};  // of the design, one a figure
-    std::vector<int> structure_ = {};                           // of the design
+    std::vector<Channel> outputs_ = {};  // of the design, one a figure
+    std::vector<std::function<Point(const Model&)>> points_read_ = {};  // of coordinates
+    std::vector<int> structure_ = {};                                   // of the design
     bool only_motion_ = true;  // every output is a position or an angle
-    bool with_sums_ = false;   // an output is a sum of redundant joints
+    bool with_sums_ = true;    // an output is a sum of redundant joints
     bool together_ = true;
     int points_ = 1;
     std::vector<Group> groups_ = {};

@@ -2,11 +2,13 @@
 // is most of the time of read_scene().
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "elastocheck/model.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/yaml.hpp"
 #include "models/reader/one_side.hpp"
@@ -34,16 +36,18 @@ class ParsedScene {
     Folder folder_;
 };
 
-// A scene that is read many times with other values of the same numbers, in half the time of
-// ParsedScene::read(): values are not written as text, and the numbers of the scene have no paths.
+// A scene that is read again at other values of the same numbers, in a fraction of the time: what does
+// not depend on numbers is not checked again, and the scene has no list of its numbers.
+// Pre: the scene has been read.
 class VariedScene {
   public:
     // `paths`: the numbers that vary; `settings`: of other values, the same at each reading. Throws
     // SceneError for a path that is not one of a value, or is given twice.
     VariedScene(const ParsedScene& scene, std::vector<std::string> paths,
                 std::vector<Setting> settings = {});
-    // The values in the units of the file. Throws SceneError, as ParsedScene::read().
-    Scene read(std::span<const double> values);
+    // The values in the units of the file. `model`: the scene compiled, where its reader did that.
+    // Throws SceneError, as ParsedScene::read().
+    Scene read(std::span<const double> values, std::optional<Model>* model = nullptr);
 
   private:
     const ParsedScene& scene_;

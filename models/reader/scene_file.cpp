@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "models/decimal.hpp"
 #include "models/kinds.hpp"
 #include "models/reader/definitions/beams.hpp"
 #include "models/reader/definitions/mirror.hpp"
@@ -219,9 +220,24 @@ void keep_each_once(std::vector<Number>& numbers) {
     std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
 }
 
-// `twins`: definitions of the other side; its own are written to `own`.
-Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::string>* warnings,
-                const Definitions* twins, Definitions* own) {
+// Whether a trim or a branch may refer to a joint or an element.
+bool drives_parts(const Cursor& scene) {
+    if (scene.optional("trim") || scene.optional("tyres")) return true;
+    return std::ranges::any_of(scene.require("branches").entries(), [](const auto& branch) {
+        return branch.at.optional("drive") || branch.at.optional("hold");
+    });
+}
+
+// What the reader of a tree returns beside the scene.
+struct Beside {
+    std::vector<std::string>* warnings = nullptr;  // null: not looked for
+    Definitions defs = {};
+    Model model = {};  // the scene compiled
+};
+
+// `twins`: definitions of the other side.
+Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* twins,
+                Beside& beside) {
     if (scene.value->kind == Value::Kind::empty)
         scene.fail("empty; a scene begins with `elastocheck: 1`");
     scene.only_keys({"elastocheck",     "name",     "units",    "mirror",      "gravity",
@@ -229,8 +245,10 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
                      "torsion_springs", "bushings", "beams",    "tyres",       "static_loads",
                      "loads",           "trim",     "branches", "wheel",       "wheels",
                      "probes",          "dampers",  "vehicle",  "definitions", "one_side"});
-    check_version(scene);
-    (void)requested_definitions(scene);
+    if (scene.is_first) {
+        check_version(scene);
+        (void)requested_definitions(scene);
+    }
     Scene result;
     result.source = *scene.file;
     result.name = scene.require("name").text("the name of the scene");
@@ -239,7 +257,6 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     read_wheels(scene, defs, result.wheels);
     add_bodies_of_bars(scene, result.wheels, defs);
     if (twins != nullptr) take_twin_bodies(*twins, defs);
-    if (own != nullptr) *own = defs;
     result.bodies = defs.bodies;
     for (const auto& [name, position] : defs.points) result.hardpoints.push_back({name, position});
 
@@ -254,7 +271,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     read_elements(scene, "bushings", defs, result.elastics, named, read_bushing);
     read_section(scene, "stops", defs, Sides::both, result.elastics, read_stops);
     read_elements(scene, "torsion_springs", defs, result.elastics, named, read_torsion_spring);
-    require_own_names(scene, defs, result.elastics);
+    if (scene.is_first) require_own_names(scene, defs, result.elastics);
     read_section(scene, "static_loads", defs, Sides::both, result.static_loads,
                  with_wheels(read_static_load));
     read_gravity(scene, defs, result);
@@ -262,7 +279,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     read_section(scene, "loads", defs, Sides::any, loads, with_wheels(read_load));
     read_section(scene, "probes", defs, Sides::any, result.probes, read_probe);
     read_section(scene, "dampers", defs, Sides::both, result.dampers, read_damper);
-    require_own_names(scene, result);
+    if (scene.is_first) require_own_names(scene, result);
     if (const auto vehicle = scene.optional("vehicle"))
         result.vehicle = read_vehicle(*vehicle, defs);
     if (result.wheels.empty() && result.probes.empty())
@@ -271,38 +288,43 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     std::map<std::string, Load> by_name;
     for (const Load& load : loads) by_name.emplace(load.name, load);
     const auto drives = add_held(scene, defs, result);
-    Drivables drivable = drivables(result, defs.units, drives, named);
+    Drivables drivable = scene.is_first || drives_parts(scene)
+                             ? drivables(result, defs.units, drives, named)
+                             : Drivables{};
     add_hand_wheel(scene, defs.units, drivable);
     add_rolling_joints(scene, result);
     add_joints_of_bars(scene, defs, result);
     read_beams(scene, defs, result.elastics);
     read_tyres(scene, defs, drivable, result);
-    check_all_held(scene, result);
+    if (scene.is_first) check_all_held(scene, result);
     read_trim(scene, defs.units, by_name, drivable, result);
-    read_branches(scene, defs.units, by_name, drivable, result);
-    if (warnings) *warnings = implausible(scene, defs.units, result);
+    beside.model = read_branches(scene, defs.units, by_name, drivable, result);
+    if (beside.warnings) *beside.warnings = implausible(scene, defs.units, result);
+    beside.defs = std::move(defs);
     return result;
 }
 
-// Without `record` the numbers are not listed, and nothing says where it is.
-Scene read_trees(const Trees& trees, const std::string& name, const Folder& folder, bool record,
-                 std::vector<std::string>* warnings) {
+// Of a scene that is not read for the first time `model` has the model, unless a trim or another
+// side is still to change it.
+Scene read_trees(const Trees& trees, const std::string& name, const Folder& folder, bool is_first,
+                 std::vector<std::string>* warnings, std::optional<Model>* model = nullptr) {
     std::vector<Number> numbers, of_twins;
     const auto cursor = [&](const Value& tree, std::vector<Number>& list) {
         return Cursor{
-            .value = &tree, .path = "", .file = &name, .numbers = &list, .has_path = record};
+            .value = &tree, .path = "", .file = &name, .numbers = &list, .is_first = is_first};
     };
-    Definitions twins, own;
+    Beside of_other, own{.warnings = warnings};
     std::optional<Scene> other;
     if (!trees.twins.empty())
-        other = read_tree(cursor(trees.twins.front(), of_twins), folder, nullptr, nullptr, &twins);
+        other = read_tree(cursor(trees.twins.front(), of_twins), folder, nullptr, of_other);
     Scene scene =
-        read_tree(cursor(trees.written, numbers), folder, warnings, other ? &twins : nullptr, &own);
-    if (other) take_twins(*own.mirror, *other, scene);
-    if (!record) return scene;
+        read_tree(cursor(trees.written, numbers), folder, other ? &of_other.defs : nullptr, own);
+    if (other) take_twins(*own.defs.mirror, *other, scene);
+    if (model != nullptr && !other && !scene.trim) *model = std::move(own.model);
+    if (!is_first) return scene;
     keep_each_once(numbers);
     keep_each_once(of_twins);
-    const Mirror* mirror = own.mirror ? &*own.mirror : nullptr;
+    const Mirror* mirror = own.defs.mirror ? &*own.defs.mirror : nullptr;
     for (std::size_t k = 0; k < numbers.size(); ++k)
         if (sides_of(mirror, numbers[k].path))
             numbers[k].sides = {{mirror->from, numbers[k].value},
@@ -330,6 +352,18 @@ Scene ParsedScene::read(std::span<const Setting> settings,
     return read_trees(with_settings(tree_, settings, name_), name_, folder_, true, warnings);
 }
 
+namespace {
+// Converts the numbers of a tree from text, once for all readings of it.
+void convert_numbers(Value& value) {
+    for (Value& item : value.items) convert_numbers(item);
+    const char *const begin = value.text.data(), *const end = begin + value.text.size();
+    double x = 0;
+    if (value.kind != Value::Kind::scalar || value.is_string || value.number) return;
+    if (const auto read = read_decimal(begin, end, x); read.ec == std::errc() && read.ptr == end)
+        value.number = x;
+}
+}  // namespace
+
 VariedScene::VariedScene(const ParsedScene& scene, std::vector<std::string> paths,
                          std::vector<Setting> settings)
     : scene_(scene), settings_(std::move(settings)) {
@@ -337,13 +371,15 @@ VariedScene::VariedScene(const ParsedScene& scene, std::vector<std::string> path
     for (std::string& path : paths) settings_.push_back(setting(std::move(path), 0));
     trees_ = with_settings(scene.tree_, settings_, scene.name_, &places_);
     places_.erase(places_.begin(), places_.begin() + fixed);
+    convert_numbers(trees_.written);
+    for (Value& twins : trees_.twins) convert_numbers(twins);
 }
 
-Scene VariedScene::read(std::span<const double> values) {
+Scene VariedScene::read(std::span<const double> values, std::optional<Model>* model) {
     for (std::size_t k = 0; k < places_.size(); ++k)
         for (Value* place : places_[k]) place->number = values[k];
     try {
-        return read_trees(trees_, scene_.name_, scene_.folder_, false, nullptr);
+        return read_trees(trees_, scene_.name_, scene_.folder_, false, nullptr, model);
     } catch (const SceneError&) {  // again, to say where
         std::vector<Setting> settings = settings_;
         for (std::size_t k = 0; k < places_.size(); ++k) {

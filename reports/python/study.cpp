@@ -37,15 +37,21 @@ struct Field {
     Field with(const Cursor& other) const { return {whole, other}; }
 };
 
-// Columns: name, heading, digits.
-Table table_of(const std::string& id, const std::string& caption, const Columns& columns,
-               std::vector<std::vector<Cell>> rows) {
+// Name, caption, columns (name, heading, digits), rows.
+using TableWords = std::tuple<std::string, std::string, Columns, std::vector<std::vector<Cell>>>;
+// Kind, title, table, abscissa, ordinates, rows, heading of the axis, limits.
+using ChartWords =
+    std::tuple<std::string, std::string, std::string, std::string, std::vector<std::string>,
+               std::string, std::string, std::vector<double>>;
+
+Table table_of(const TableWords& of) {
     using enum compare::Digits;
     static const std::map<std::string, compare::Digits> digits{
         {"hidden", hidden}, {"words", words}, {"whole", whole},     {"given", given},
         {"size", size},     {"three", three}, {"percent", percent},
     };
-    Table table{.rows = std::move(rows), .id = id, .caption = caption};
+    const auto& [id, caption, columns, rows] = of;
+    Table table{.rows = rows, .id = id, .caption = caption};
     for (const auto& [name, heading, shown] : columns)
         table.columns.push_back({.name = name,
                                  .words = shown == "words",
@@ -54,34 +60,35 @@ Table table_of(const std::string& id, const std::string& caption, const Columns&
     return table;
 }
 
-Chart chart_of(const std::string& kind, const std::string& title, const std::string& table,
-               const std::string& x, std::vector<std::string> y) {
+Chart chart_of(const ChartWords& words, std::size_t number) {
+    const auto& [kind, title, table, x, y, only, axis, marks] = words;
     const auto known = std::ranges::find(compare::chart_kinds, kind);
-    return {.title = title,
+    return {.id = fmt::format("f{}", number),
+            .title = title,
             .table = table,
             .x = x,
-            .y = std::move(y),
-            .kind = static_cast<Chart::Kind>(known - compare::chart_kinds)};
+            .y = y,
+            .kind = static_cast<Chart::Kind>(known - compare::chart_kinds),
+            .only = only,
+            .axis = axis,
+            .marks = marks};
 }
 
-compare::Verdict verdict_of(bool fine, const std::string& sentence,
-                            std::vector<std::string> reasons, int compared) {
-    return {.grade = fine ? compare::Grade::pass : compare::Grade::not_judged,
-            .sentence = sentence,
-            .reasons = std::move(reasons),
-            .compared = compared,
-            .requested = compared > 0};
-}
-
-compare::Result findings_of(compare::Verdict verdict, std::vector<Table> tables,
-                            std::vector<Chart> charts, std::vector<std::string> notes) {
-    int number = 0;
-    for (Chart& chart : charts) chart.id = fmt::format("f{}", ++number);
-    return {.analysis = "study",
-            .verdict = std::move(verdict),
-            .tables = std::move(tables),
-            .charts = std::move(charts),
-            .notes = std::move(notes)};
+compare::Result findings_of(const std::string& sentence, const std::vector<std::string>& reasons,
+                            int compared, const std::vector<TableWords>& tables,
+                            const std::vector<ChartWords>& charts, const std::string& note) {
+    compare::Result result{
+        .analysis = "study",
+        .verdict = {.grade = reasons.empty() ? compare::Grade::pass : compare::Grade::not_judged,
+                    .sentence = sentence,
+                    .reasons = reasons,
+                    .compared = compared,
+                    .requested = compared > 0},
+        .notes = {note}};
+    for (const TableWords& words : tables) result.tables.push_back(table_of(words));
+    for (const ChartWords& words : charts)
+        result.charts.push_back(chart_of(words, result.charts.size() + 1));
+    return result;
 }
 
 }  // namespace
@@ -131,21 +138,9 @@ void bind_study(py::module_& module) {
         [](const std::string& wrong, const std::vector<std::string>& right,
            const std::string& label) { return reader::did_you_mean(wrong, right, label.c_str()); },
         py::arg("wrong"), py::arg("right"), py::arg("label"));
-    py::class_<Table>(module, "Table")
-        .def(py::init(&table_of), py::arg("id"), py::arg("caption"), py::arg("columns"),
-             py::arg("rows"));
-    py::class_<Chart>(module, "Chart")
-        .def(py::init(&chart_of), py::arg("kind"), py::arg("title"), py::arg("table"), py::arg("x"),
-             py::arg("y"))
-        .def_readwrite("only", &Chart::only)
-        .def_readwrite("axis", &Chart::axis)
-        .def_readwrite("marks", &Chart::marks);
-    py::class_<compare::Verdict>(module, "Verdict")
-        .def(py::init(&verdict_of), py::arg("fine"), py::arg("sentence"), py::arg("reasons"),
-             py::arg("compared"));
     py::class_<compare::Result>(module, "Findings")
-        .def(py::init(&findings_of), py::arg("verdict"), py::arg("tables"), py::arg("charts"),
-             py::arg("notes"))
+        .def(py::init(&findings_of), py::arg("sentence"), py::arg("reasons"), py::arg("compared"),
+             py::arg("tables"), py::arg("charts"), py::arg("note"))
         .def_property_readonly("text",
                                [](const compare::Result& found) { return reports::text(found); })
         .def_property_readonly("document",

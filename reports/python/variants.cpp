@@ -104,7 +104,9 @@ class Variants {
     std::optional<Model> model_of(reader::VariedScene& varied, const double* values,
                                   VariantFigures& figures) const {
         try {
-            const Scene scene = varied.read(with_settings(values));
+            std::optional<Model> model;
+            const Scene scene = varied.read(with_settings(values), &model);
+            if (model) return model;
             if (!scene.trim) return compile(scene);
             const compare::Trimmed trimmed = compare::trim(scene);
             if (!trimmed.record || trimmed.record->reached()) return compile(trimmed.scene);

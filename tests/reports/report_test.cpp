@@ -60,8 +60,7 @@ TEST(Report, EqualScenesGiveEqualFilesByteByByte) {
 TEST(Report, EveryFigureIsWellFormed) {
     const Folder folder;
     write_report(report_of({sample_scene()}), folder.path / "r");
-    expect_said(
-        support::says("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg"), 0);
+    expect_said(support::read_xml((folder.path / "r" / "figures").string() + "/*.svg"), 0);
 }
 
 TEST(Report, NamesWithMarkupAreShownAsText) {
@@ -88,8 +87,7 @@ TEST(Report, FigureIsWellFormedForAnyText) {
         figure.bands.push_back({0, 1, evil});
         figure.y_ticks = {{0.5, evil}};
         EXPECT_EQ(draw({{&figure, "f"}}, folder.path).size(), 1u) << evil;
-        expect_said(
-            support::says("xmllint --noout " + (folder.path / "figures" / "f.svg").string()), 0);
+        expect_said(support::read_xml((folder.path / "figures" / "f.svg").string()), 0);
         expect_parts(text_of(folder.path / "figures" / "f.svg"), {}, {"<script"});
     }
 }

@@ -22,9 +22,8 @@ std::vector<std::string> names_of(const std::map<std::string, T>& table) {
 // The table entry that `field` names; the error message suggests the nearest name. `kind` names the
 // kind of entry, e.g. "hardpoint".
 template <class T>
-const T& look_up(const Cursor& field, const std::string& kind,
-                 const std::map<std::string, T>& table) {
-    const std::string& name = field.text("the name of a " + kind);
+const T& look_up(const Cursor& field, const char* kind, const std::map<std::string, T>& table) {
+    const std::string& name = field.text("the name of a ", kind);
     if (const auto found = table.find(name); found != table.end()) return found->second;
     field.fail(fmt::format("there is no {} called {}{}", kind, quote(name),
                            did_you_mean(name, names_of(table), "defined")));

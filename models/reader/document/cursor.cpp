@@ -38,11 +38,11 @@ void Cursor::fail(const std::string& what) const {
 }
 
 Cursor Cursor::at(const Value& other, const std::string& its_path) const {
-    return {&other, its_path, file, numbers, {}, accesses, has_path};
+    return {&other, its_path, file, numbers, {}, accesses, is_first};
 }
 
 std::string Cursor::path_of(std::string_view key) const {
-    return has_path ? child_path(path, key) : std::string();
+    return is_first ? child_path(path, key) : std::string();
 }
 
 std::string Cursor::found() const {
@@ -67,6 +67,10 @@ std::string kind_of_file(const std::string& field) {
 }
 }  // namespace
 
+void Cursor::only_keys(Words allowed) const {
+    if (is_first) only_keys(std::vector<std::string>(allowed.begin(), allowed.end()));
+}
+
 void Cursor::only_keys(const std::vector<std::string>& allowed) const {
     if (value->kind != Value::Kind::map)
         fail(fmt::format("expected a map with the fields {}, found {}", listed(allowed), found()));
@@ -80,14 +84,14 @@ void Cursor::only_keys(const std::vector<std::string>& allowed) const {
     }
 }
 
-std::optional<Cursor> Cursor::optional(const std::string& key) const {
-    if (accesses) accesses->looked_for[value].insert(key);
+std::optional<Cursor> Cursor::optional(std::string_view key) const {
+    if (accesses) accesses->looked_for[value].emplace(key);
     const auto found = std::find(value->keys.begin(), value->keys.end(), key);
     if (found == value->keys.end()) return std::nullopt;
     return at(value->items[static_cast<std::size_t>(found - value->keys.begin())], path_of(key));
 }
 
-Cursor Cursor::require(const std::string& key) const {
+Cursor Cursor::require(std::string_view key) const {
     if (auto field = optional(key)) return *field;
     reader::fail(*file, value->line, child_path(path, key), "missing; this field is required");
 }
@@ -96,10 +100,11 @@ std::vector<Cursor::Named> Cursor::entries(Keys keys) const {
     if (value->kind != Value::Kind::map && value->kind != Value::Kind::empty)
         fail(fmt::format("expected a map of names, found {}", found()));
     std::vector<Named> entries;
+    entries.reserve(value->keys.size());
     for (std::size_t k = 0; k < value->keys.size(); ++k) {
         const std::string& name = value->keys[k];
         const auto side = keys == Keys::numbers ? name.rfind('@') : name.npos;
-        if (!is_name(std::string_view(name).substr(0, side)))
+        if (is_first && !is_name(std::string_view(name).substr(0, side)))
             at(value->items[k], path)
                 .fail(fmt::format("{} cannot be a name; allowed: up to {} letters, digits, _ and, "
                                   "not first, - + . "
@@ -113,39 +118,42 @@ std::vector<Cursor::Named> Cursor::entries(Keys keys) const {
 std::vector<Cursor> Cursor::items() const {
     if (accesses) accesses->read.insert(value);
     std::vector<Cursor> items;
+    items.reserve(value->items.size());
     for (std::size_t k = 0; k < value->items.size(); ++k) {
         items.push_back(at(value->items[k], path));
-        if (has_path) items.back().item = item + '.' + place_in(*value, k);
+        if (is_first) items.back().item = item + '.' + place_in(*value, k);
     }
     return items;
 }
 
-std::vector<Cursor> Cursor::list(std::size_t size, const std::string& what) const {
+std::vector<Cursor> Cursor::list(std::size_t size, std::string_view what) const {
     if (!is_list() || value->items.size() != size)
         fail(fmt::format("expected a list of {} {}, found {}", size, what, found()));
     return items();
 }
 
-const std::string& Cursor::text(const std::string& what) const {
+const std::string& Cursor::text(std::string_view what, std::string_view kind) const {
     if (accesses) accesses->read.insert(value);
     if (value->kind != Value::Kind::scalar || value->text.empty())
-        fail(fmt::format("expected {}, found {}", what, found()));
-    if (std::any_of(value->text.begin(), value->text.end(), is_control))
+        fail(fmt::format("expected {}{}, found {}", what, kind, found()));
+    if (is_first && std::any_of(value->text.begin(), value->text.end(), is_control))
         fail(fmt::format("{} is not one line of plain text", found()));
     return value->text;
 }
 
 double Cursor::number(const std::string& unit) const {
     if (accesses) accesses->read.insert(value);
-    std::string_view digits = value->text;
-    if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
     double x = 0;
-    const char* const end = digits.data() + digits.size();
-    auto [stop, error] = read_decimal(digits.data(), end, x);
+    const char *const end = value->text.data() + value->text.size(), *stop = end;
+    std::errc error{};
     if (value->number) {
         x = *value->number;
-        stop = end;
-        error = {};
+    } else {
+        std::string_view digits = value->text;
+        if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+        const auto read = read_decimal(digits.data(), end, x);
+        stop = read.ptr;
+        error = read.ec;
     }
     if (value->kind != Value::Kind::scalar || stop != end || error == std::errc::invalid_argument ||
         std::isnan(x))
@@ -156,7 +164,7 @@ double Cursor::number(const std::string& unit) const {
     if (error != std::errc() || (size != 0 && !(size >= min_size && size <= largest_size)))
         fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(),
                          min_size, largest_size));
-    numbers->push_back({path + item, x, unit});
+    if (is_first) numbers->push_back({path + item, x, unit});
     return x;
 }
 
@@ -175,17 +183,25 @@ int Cursor::whole_number(int min, int max) const {
     if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < min ||
         n > max)
         fail(fmt::format("expected a whole number from {} to {}, found {}", min, max, found()));
-    numbers->push_back({path + item, static_cast<double>(n), ""});
+    if (is_first) numbers->push_back({path + item, static_cast<double>(n), ""});
     return n;
 }
 
-std::size_t Cursor::one_of(const std::string& what, const std::vector<std::string>& allowed) const {
+std::size_t Cursor::one_of(std::string_view what, Words allowed) const {
     const std::string& word = text(what);
-    const auto it = std::find(allowed.begin(), allowed.end(), word);
-    if (it == allowed.end())
+    const auto found = std::find(allowed.begin(), allowed.end(), word);
+    if (found == allowed.end())
+        return one_of(what, std::vector<std::string>(allowed.begin(), allowed.end()));
+    return static_cast<std::size_t>(found - allowed.begin());
+}
+
+std::size_t Cursor::one_of(std::string_view what, const std::vector<std::string>& allowed) const {
+    const std::string& word = text(what);
+    const auto found = std::find(allowed.begin(), allowed.end(), word);
+    if (found == allowed.end())
         fail(fmt::format("{} is not {}{}", quote(word), what,
                          did_you_mean(word, allowed, "allowed")));
-    return static_cast<std::size_t>(it - allowed.begin());
+    return static_cast<std::size_t>(found - allowed.begin());
 }
 
 }  // namespace elastocheck::reader

@@ -1,10 +1,12 @@
 // Cursor: one value of a scene file, with its path and line for error messages.
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "elastocheck/scene.hpp"
@@ -28,14 +30,18 @@ struct Cursor {
     std::vector<Number>* numbers;  // records every number that is read
     std::string item{};            // place in a list, ".y" or ".4.2": part of a number's path only
     Accesses* accesses = nullptr;  // if not null, records every access
-    bool has_path = true;          // else paths are empty: errors and numbers do not say where
+    // Else the same file was read before with other numbers: what does not depend on them is not
+    // checked again, numbers are not recorded, errors do not say where.
+    bool is_first = true;
 
     [[noreturn]] void fail(const std::string& what) const;
 
     // ---- maps
+    using Words = std::initializer_list<std::string_view>;
+    void only_keys(Words allowed) const;
     void only_keys(const std::vector<std::string>& allowed) const;
-    Cursor require(const std::string& key) const;
-    std::optional<Cursor> optional(const std::string& key) const;
+    Cursor require(std::string_view key) const;
+    std::optional<Cursor> optional(std::string_view key) const;
 
     // The entries of a section, each with its user-defined name, or that of a number, which may be of
     // one side. An empty section has none.
@@ -44,18 +50,20 @@ struct Cursor {
     std::vector<Named> entries(Keys keys = Keys::names) const;
 
     // ---- lists; `what` completes "expected a list of 3 ..."
-    std::vector<Cursor> list(std::size_t size, const std::string& what) const;
+    std::vector<Cursor> list(std::size_t size, std::string_view what) const;
     bool is_list() const { return value->kind == Value::Kind::list; }
     std::vector<Cursor> items() const;
 
     // ---- scalars; `what` completes "expected ..." and "'text' is not ..."
-    const std::string& text(const std::string& what) const;  // one line, not empty
+    const std::string& text(std::string_view what,
+                            std::string_view kind = {}) const;  // one line, not empty
     // 0, or 1e-30 to 1e30 in size; locale-independent
     double number(const std::string& unit = "") const;
     bool yes_or_no() const;  // true, false
     int whole_number(int min, int max) const;
     // position in `allowed`
-    std::size_t one_of(const std::string& what, const std::vector<std::string>& allowed) const;
+    std::size_t one_of(std::string_view what, Words allowed) const;
+    std::size_t one_of(std::string_view what, const std::vector<std::string>& allowed) const;
 
     Cursor at(const Value& value, const std::string& path) const;  // the same file at another place
     std::string found() const;                        // "'text'", "a list of 3", "a map", "nothing"

@@ -212,8 +212,8 @@ void require_lengths(const Cursor& branch, const Model& model, std::size_t b) {
     }
 }
 
-void require_moving(const Cursor& section, const Scene& scene) {
-    const Model model = compile(scene);
+Model moving_model(const Cursor& section, const Scene& scene) {
+    Model model = compile(scene);
     const auto moves = [](const Driver& driver) { return driver.rate != 0; };
     for (std::size_t b = 0; b < scene.branches.size(); ++b) {
         require_lengths(section.require(scene.branches[b].name), model, b);
@@ -224,6 +224,7 @@ void require_moving(const Cursor& section, const Scene& scene) {
         section.require(scene.branches[b].name)
             .fail("changes nothing that an output depends on: " + why);
     }
+    return model;
 }
 
 void note_unused_loads(const Cursor& file, const Cursor& section, const Loads& loads,
@@ -242,15 +243,16 @@ void note_unused_loads(const Cursor& file, const Cursor& section, const Loads& l
 
 }  // namespace
 
-void read_branches(const Cursor& file, const Units& units, const std::map<std::string, Load>& loads,
-                   Drivables& drivables, Scene& scene) {
+Model read_branches(const Cursor& file, const Units& units,
+                    const std::map<std::string, Load>& loads, Drivables& drivables, Scene& scene) {
     const Cursor section = file.require("branches");
     for (const auto& [name, field] : section.entries())
         scene.branches.push_back(read_branch(name, field, units, loads, drivables, scene));
     if (scene.branches.empty()) section.fail("empty; at least one branch is needed");
-    require_moving(section, scene);
-    if (const auto load_section = file.optional("loads"))
+    Model model = moving_model(section, scene);
+    if (const auto load_section = file.optional("loads"); load_section)
         note_unused_loads(file, *load_section, loads, scene);
+    return model;
 }
 
 }  // namespace elastocheck::reader

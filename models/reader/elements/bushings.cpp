@@ -149,7 +149,7 @@ Matrix6 read_rates(const Cursor& bushing, const Units& units) {
 
 // A curve replaces the rate of its axis.
 PerAxis read_curves(const Cursor& field, const Matrix6& K, const Definitions& defs) {
-    field.only_keys({std::begin(axis_names), std::end(axis_names)});
+    field.only_keys(std::vector<std::string>(std::begin(axis_names), std::end(axis_names)));
     if (field.value->keys.empty()) field.fail("empty; a curve for at least one axis is needed");
     PerAxis law;
     for (std::size_t k = 0; k < 6; ++k) {

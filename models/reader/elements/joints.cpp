@@ -113,14 +113,23 @@ const std::vector<JointType>& joint_types() {
     return types;
 }
 
+// The names of all types, and the fields of a joint of any type.
+const std::pair<std::vector<std::string>, std::vector<std::string>>& names_and_fields() {
+    static const auto both = [] {
+        std::pair<std::vector<std::string>, std::vector<std::string>> lists{{}, {"type", "bodies"}};
+        auto& [names, fields] = lists;
+        for (const JointType& type : joint_types()) {
+            names.push_back(type.name);
+            for (const std::string& field : type.fields)
+                if (std::ranges::find(fields, field) == fields.end()) fields.push_back(field);
+        }
+        return lists;
+    }();
+    return both;
+}
+
 const JointType& joint_type(const Cursor& joint) {
-    std::vector<std::string> names, fields{"type", "bodies"};
-    for (const JointType& type : joint_types()) {
-        names.push_back(type.name);
-        for (const std::string& field : type.fields)
-            if (std::find(fields.begin(), fields.end(), field) == fields.end())
-                fields.push_back(field);
-    }
+    const auto& [names, fields] = names_and_fields();
     // Check against the fields of all types first: a misspelt `type` is then an unknown field, not
     // a missing one.
     joint.only_keys(fields);
@@ -131,9 +140,11 @@ const JointType& joint_type(const Cursor& joint) {
 
 Joint read_joint(const std::string& name, const Cursor& field, const Definitions& defs) {
     const JointType& type = joint_type(field);
-    std::vector<std::string> fields{"type", "bodies"};
-    fields.insert(fields.end(), type.fields.begin(), type.fields.end());
-    field.only_keys(fields);
+    if (field.is_first) {
+        std::vector<std::string> fields{"type", "bodies"};
+        fields.insert(fields.end(), type.fields.begin(), type.fields.end());
+        field.only_keys(fields);
+    }
     const BodyPair bodies = body_pair(field.require("bodies"), defs);
     return {name, type.read({field, defs, bodies})};
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"
 #include "models/reader/definitions/definitions.hpp"
 #include "models/reader/document/cursor.hpp"
@@ -55,8 +56,8 @@ void read_trim(const Cursor& scene, const Units& units, const std::map<std::stri
                Drivables& drivables, Scene& result);
 
 // Reads the last section: all other parts must be read. Adds the branches, the joints that their
-// drives need, and lists unused loads in omitted.
-void read_branches(const Cursor& file, const Units& units, const std::map<std::string, Load>& loads,
-                   Drivables& drivables, Scene& scene);
+// drives need, and lists unused loads in omitted. Returns the scene compiled, without that list.
+Model read_branches(const Cursor& file, const Units& units,
+                    const std::map<std::string, Load>& loads, Drivables& drivables, Scene& scene);
 
 }  // namespace elastocheck::reader

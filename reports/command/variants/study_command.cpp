@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* program = R"(import json, sys
 try:
-    from elastocheck.study.__main__ import main
+    from elastocheck.study.command import main
 except ImportError as error:
     print(f"elastocheck: study: {error}; `./dev study` builds and installs what it needs", file=sys.stderr)
     sys.exit(2)
@@ -28,13 +28,15 @@ sys.exit(main(**json.loads(sys.argv[1])))
 // to find it.
 std::string package_folder() {
     const fs::path package =
-        beside_program({"reports/python/package/elastocheck/study/__main__.py",
-                        "lib/python3/dist-packages/elastocheck/study/__main__.py"});
+        beside_program({"reports/python/package/elastocheck/study/command.py",
+                        "lib/python3/dist-packages/elastocheck/study/command.py"});
     return package.empty() ? "" : package.parent_path().parent_path().parent_path().string();
 }
 
-// Becomes the Python program, with the options of elastocheck.study.run().
-int study(const nlohmann::json& options) {
+using Options = nlohmann::json;  // of elastocheck.study.run()
+
+// Becomes the Python program.
+int study(const Options& options) {
     const std::string python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
     if (std::string path = package_folder(); !path.empty()) {
         if (const char* const before = std::getenv("PYTHONPATH"); before != nullptr)
@@ -46,11 +48,9 @@ int study(const nlohmann::json& options) {
 }
 
 struct Study {
-    std::string file, folder, shard, scheduler, csv, hdf5;
-    std::vector<std::string> merge;
-    int count = 0;
-    bool show = false, rare = false, as_json = false;
+    Options options;
     Running running;
+    bool as_json = false;
 };
 
 }  // namespace
@@ -61,55 +61,50 @@ const Command study_command{
     "figures; the same command goes on where it was interrupted",
     [](CLI::App& command) -> Run {
         const auto s = std::make_shared<Study>();
-        as_file(command.add_option("STUDY", s->file, "file with variables, design and figures"))
-            ->required();
-        as_folder(command.add_option(
-                      "-o,--output", s->folder,
-                      "folder of the ledger (ledger.sqlite), statistics.json and study.html"))
+        const auto word = [&](const char* name, const char* key, const char* description) {
+            return command.add_option_function<std::string>(
+                name, [s, key](const std::string& given) { s->options[key] = given; }, description);
+        };
+        const auto flag = [&](const char* name, const char* key, const char* description) {
+            command.add_flag_callback(
+                name, [s, key] { s->options[key] = true; }, description);
+        };
+        as_file(word("STUDY", "file", "file with variables, design and figures"))->required();
+        as_folder(word("-o,--output", "folder",
+                       "folder of the ledger (ledger.sqlite), statistics.json and study.html"))
             ->required();
         command
-            .add_option("--count", s->count,
-                        "number of variants, instead of that in the file; more than before "
-                        "extends the study")
+            .add_option_function<int>(
+                "--count", [s](int count) { s->options["count"] = count; },
+                "number of variants, instead of that in the file; more than before extends the "
+                "study")
             ->check(CLI::Range(1, 1'000'000'000));
-        command
-            .add_option("--shard", s->shard,
-                        "compute part K of N, into ledger-K-of-N.sqlite: a job of an array, as "
-                        "models/studies/study.sbatch submits it to Slurm")
+        word("--shard", "shard",
+             "compute part K of N, into ledger-K-of-N.sqlite: a job of an array, as "
+             "models/studies/study.sbatch submits it to Slurm")
             ->type_name("K/N");
-        as_folder(
-            command.add_option("--merge", s->merge,
-                               "add the rows of all shards in these folders, and compute nothing"))
+        as_folder(command.add_option_function<std::vector<std::string>>(
+                      "--merge",
+                      [s](const std::vector<std::string>& from) { s->options["merge"] = from; },
+                      "add the rows of all shards in these folders, and compute nothing"))
             ->expected(1, -1);
-        command
-            .add_option("--scheduler", s->scheduler,
-                        "compute on the workers of a dask cluster (`./dev study` installs "
-                        "python3-distributed)")
+        word("--scheduler", "scheduler",
+             "compute on the workers of a dask cluster (`./dev study` installs "
+             "python3-distributed)")
             ->type_name("tcp://HOST:8786");
-        command.add_flag("--show", s->show, "compute nothing, write nothing: show what there is");
-        command.add_flag(
-            "--rare", s->rare,
-            "probabilities that figures leave their limits, by FORM and importance sampling");
-        as_file(command.add_option("--csv", s->csv,
-                                   "write variables and figures of all variants as CSV"));
-        as_file(command.add_option("--hdf5", s->hdf5, "write the same as HDF5"));
+        flag("--show", "show", "compute nothing, write nothing: show what there is");
+        flag("--rare", "rare",
+             "probabilities that figures leave their limits, by FORM and importance sampling");
+        as_file(word("--csv", "csv", "write variables and figures of all variants as CSV"));
+        as_file(word("--hdf5", "hdf5", "write the same as HDF5"));
         add_json(command, s->as_json);
         add_running(command, s->running);
         return [s](const std::string& line) {
-            return study({{"file", s->file},
-                          {"folder", s->folder},
-                          {"count", s->count},
-                          {"threads", s->running.jobs},
-                          {"scheduler", s->scheduler},
-                          {"shard", s->shard},
-                          {"merge", s->merge},
-                          {"show", s->show},
-                          {"rare", s->rare},
-                          {"csv", s->csv},
-                          {"hdf5", s->hdf5},
-                          {"quiet", s->running.quiet},
-                          {"as_json", s->as_json},
-                          {"reproduce", line}});
+            s->options.update({{"threads", s->running.jobs},
+                               {"quiet", s->running.quiet},
+                               {"as_json", s->as_json},
+                               {"reproduce", line}});
+            return study(s->options);
         };
     }};
 

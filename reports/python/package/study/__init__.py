@@ -79,14 +79,21 @@ def _missing(ledger, count, shard):
     return [ks for ks in batches if len(ks)]
 
 
+def _drawn(design, batches):
+    """Each batch with the values of its variables; neighbours are drawn at once, which is faster."""
+    for _, some in itertools.groupby(batches, lambda ks: ks[0] // (16 * BATCH)):
+        some = list(some)
+        values = design.values(some[0][0], some[-1][-1] + 1)
+        yield from ((ks, values[ks - some[0][0]]) for ks in some)
+
+
 def _compute(study, ledger, batches, solvers, progress, say):
     """Solves and records batch after batch; each is one transaction, and its rows do not depend on the others."""
-    design, running, done, begin, total = Design(study), set(), 0, time.monotonic(), sum(map(len, batches))
-    waiting = iter(batches)
+    running, done, begin, total = set(), 0, time.monotonic(), sum(map(len, batches))
+    waiting = _drawn(Design(study), batches)
     with solvers as (submit, most):
         while done < total:
-            for ks in itertools.islice(waiting, most - len(running)):
-                values = design.values(ks[0], ks[-1] + 1)[ks - ks[0]]
+            for ks, values in itertools.islice(waiting, most - len(running)):
                 witnesses = np.flatnonzero(ks % study.witness == 0) if study.witness else []
                 running.add(submit(ks.tolist(), study.numbers(values), witnesses))
             finished, running = concurrent.futures.wait(running, return_when="FIRST_COMPLETED")
@@ -125,15 +132,14 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
     if rare and not all(v.continuous for v in study.variables):
         raise ArgumentError("--rare needs continuous distributions")
     name = os.path.join(folder, "ledger-{}-of-{}.sqlite".format(*part) if shard else "ledger.sqlite")
-    exports = [(kind, os.fspath(to)) for kind, to in [("csv", csv), ("hdf5", hdf5)] if to and not shard]
-    for kind, to in exports:
+    exports = {} if shard else {kind: os.fspath(to) for kind, to in [("csv", csv), ("hdf5", hdf5)] if to}
+    reports = {} if shard or show else {kind: os.path.join(folder, kind) for kind in ("statistics.json", "study.html")}
+    for kind, to in (exports | reports).items():
         _core.check_may_write(to, *output.KINDS[kind])
         os.makedirs(os.path.dirname(to) or ".", exist_ok=True)
     if not show:
         os.makedirs(folder, exist_ok=True)
-        for kind in ("statistics.json", "study.html") if not shard else ():
-            _core.check_may_write(os.path.join(folder, kind), *output.KINDS[kind])
-    with naming(name), locked(name) if not show else contextlib.nullcontext():
+    with naming(name), contextlib.nullcontext() if show else locked(name):
         ledger = Ledger(name, study, write=not show, same_version=not show)
         for table, k in ledger.damaged:
             say(f"{name}: row {k} of {table}: its content is not that of its checksum; it is computed again")
@@ -154,10 +160,10 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
             say(f"Shard {shard}: {int(ledger.present(study.count).sum())} variants in {name}")
             return None
         report = Report(study, ledger, reproduce, statistics.rare_rows(study, threads) if rare else (), sum(map(len, left)))
-        for kind, to in exports:
+        for kind, to in exports.items():
             output.write_rows(report, to, kind)
             say(f"Written: {to}")
-        if not show:
+        if reports:
             report.write(folder)
-            say("Written: " + ", ".join(os.path.join(folder, kind) for kind in ("statistics.json", "study.html")))
+            say("Written: " + ", ".join(reports.values()))
         return report

@@ -32,7 +32,7 @@ class Design:
         u = x = self.points(k)
         if self.factor is not None:  # a normal copula
             x = np.clip(ndtr(ndtri(u) @ self.factor.T), _LEAST, _MOST)
-        return np.column_stack([v.distribution().ppf(x[:, j]) if v.continuous
+        return np.column_stack([v.distribution.ppf(x[:, j]) if v.continuous
                                 else np.array(v.numbers)[(u[:, j] * len(v.numbers)).astype(int)]
                                 for j, v in enumerate(study.variables)])
 

@@ -11,20 +11,20 @@ from scipy import stats
 
 from elastocheck import _core, read
 from elastocheck._errors import ArgumentError, FileError, SheetError
+from elastocheck.study.design import Design
 
 MOST = 1_000_000_000  # variants
-# Of a distribution: the fields besides low and high, how it is described by its numbers, SciPy's.
+# Of a distribution: its numbers, how it is described by them, SciPy's.
 DISTRIBUTIONS = {
-    "normal": (["mean", "sd"], "normal, {:g}, sd {:g}", stats.norm),
-    "uniform": ([], "uniform, {:g} to {:g}", lambda low, high: stats.uniform(low, high - low)),
-    "triangular": (["mode"], "triangular, {0:g} to {2:g}, mode {1:g}",
+    "normal": (["mean", "sd"], "normal, {:g}, sd {:g}".format, stats.norm),
+    "uniform": (["low", "high"], "uniform, {:g} to {:g}".format, lambda low, high: stats.uniform(low, high - low)),
+    "triangular": (["low", "mode", "high"], "triangular, {0:g} to {2:g}, mode {1:g}".format,
                    lambda low, mode, high: stats.triang((mode - low) / (high - low), low, high - low)),
-    "truncated_normal": (["mean", "sd"], "normal, {:g}, sd {:g}, between {:g} and {:g}",
+    "truncated_normal": (["mean", "sd", "low", "high"], "normal, {:g}, sd {:g}, between {:g} and {:g}".format,
                          lambda mean, sd, low, high: stats.truncnorm((low - mean) / sd, (high - mean) / sd, mean, sd)),
-    "list": ([], "list of {count}, {low:g} to {high:g}", None),
-    "": ([], "as listed", None)}
+    "list": ([], lambda *values: f"list of {len(values)}, {min(values):g} to {max(values):g}", None),
+    "": ([], lambda: "as listed", None)}
 DRAWN = ["monte_carlo", "latin_hypercube", "sobol"]
-_SIZED = "not of a grid or a list, which say how many variants there are"
 
 
 @dataclass
@@ -41,20 +41,18 @@ class Variable:
     def continuous(self):
         return self.kind not in ("", "list")
 
+    @functools.cached_property
     def distribution(self):
         return DISTRIBUTIONS[self.kind][2](*self.numbers)
 
     @property
     def ends(self):
         """Of a bounded distribution; the mean of an unbounded one."""
-        if self.kind == "normal":
-            return self.numbers[:1]
-        bounded = self.numbers[2:] if self.kind == "truncated_normal" else self.numbers
-        return (min(bounded), max(bounded)) if bounded else ()
+        bounds = self.numbers[{"normal": 2, "truncated_normal": 2}.get(self.kind, 0):]
+        return (min(bounds), max(bounds)) if bounds else self.numbers[:1]
 
     def __str__(self):
-        low, high = self.ends if len(self.ends) == 2 else (0, 0)
-        return DISTRIBUTIONS[self.kind][1].format(*self.numbers, count=len(self.numbers), low=low, high=high)
+        return DISTRIBUTIONS[self.kind][1](*self.numbers)
 
 
 @dataclass
@@ -84,25 +82,21 @@ def _positive(at):
 def _distribution(kind, at, nominal):
     if kind == "list":
         return tuple(value.number() for value in at.items("values")) or at.fail("no value in it")
-    fields = DISTRIBUTIONS[kind][0]
-    at.only(fields + (["half_width", "low", "high"] if kind != "normal" else []))
-    first = [_positive(at.need(key)) if key == "sd" else _number(at, key, nominal) for key in fields]
-    if kind == "normal":
-        return tuple(first)
+    fields, given = DISTRIBUTIONS[kind][0], {"mean": nominal, "mode": nominal}
+    at.only(fields + ["half_width"] * ("low" in fields))
     if half := at.get("half_width"):
         if at.get("low") or at.get("high"):
             half.fail("given together with low or high; allowed: one of the two forms")
-        low, high = nominal - _positive(half), nominal + _positive(half)
-    else:
-        low, high = _number(at, "low"), _number(at, "high")
+        given |= {"low": nominal - _positive(half), "high": nominal + _positive(half)}
+    numbers = {key: _positive(at.need(key)) if key == "sd" else _number(at, key, given.get(key)) for key in fields}
+    low, high = numbers.get("low", -math.inf), numbers.get("high", math.inf)
     if not low < high:
         at.fail(f"low {low:g} is not below high {high:g}")
-    if kind == "triangular":
-        return (low, *first, high) if low <= first[0] <= high else at.fail(
-            f"mode {first[0]:g} is not between low {low:g} and high {high:g}")
-    if first and not (low < first[0] + 8 * first[1] and high > first[0] - 8 * first[1]):
+    if kind == "triangular" and not low <= numbers["mode"] <= high:
+        at.fail(f"mode {numbers['mode']:g} is not between low {low:g} and high {high:g}")
+    if "sd" in fields and not (low - 8 * numbers["sd"] < numbers["mean"] < high + 8 * numbers["sd"]):
         at.fail("the ends lie more than eight standard deviations beside the mean")
-    return (*first, low, high)
+    return tuple(numbers.values())
 
 
 def _short_hash(content):
@@ -153,16 +147,18 @@ class Study:
             self.solver = _core.Variants(self.scene, self.paths, self.words)
         except ArgumentError as error:
             figures.fail(str(error))
-        self._check_ends(variables)
+        # Each variable at its ends, the others as written; tails and combinations are rows.
+        self.nominal = np.array([[v.nominal for v in self.variables]])
+        for j, end in ((j, end) for j, v in enumerate(self.variables) for end in v.ends):
+            values = self.nominal.copy()
+            values[0, j] = end
+            if wrong := self.solver.invalid(self.numbers(values)[0]):
+                variables.need(self.names[j]).fail(f"{end:g} can be drawn, and with it the scene is invalid: {wrong}")
 
     def numbers(self, values):
         """The numbers of the scene [n x paths] by values of the variables [n x variables]."""
         return np.column_stack([values[:, j] * nominal for j, v in enumerate(self.variables)
                                 for nominal in (v.scaled.values() if v.scaled else [1.0])])
-
-    @property
-    def nominal(self):
-        return np.array([[v.nominal for v in self.variables]])
 
     @property
     def block(self):
@@ -203,46 +199,55 @@ class Study:
         correlation, grouped = np.eye(len(self.variables)), []
         for group in section.items("groups"):
             group.only(["variables", "correlation"])
-            names, rows = group.need("variables"), group.need("correlation")
-            for name in names.items("variables"):
+            names, rows = group.need("variables").items("variables"), group.need("correlation")
+            for name in names:
                 grouped.append(self.names.index(name.one_of("a variable", self.names)))
                 if not self.variables[grouped[-1]].continuous:
                     name.fail("has no continuous distribution, so that it cannot be correlated")
                 if grouped[-1] in grouped[:-1]:
                     name.fail("is in a group already")
-            size = len(names.items("variables"))
-            if size < 2:
-                names.fail("a group needs two variables")
+            if len(names) < 2:
+                group.need("variables").fail("a group needs two variables")
             cells = [[cell.number() for cell in row.items("correlations")] for row in rows.items("rows")]
-            if [len(row) for row in cells] != [size] * size:
-                rows.fail(f"expected {size} rows of {size} correlations, one for each variable")
+            if [len(row) for row in cells] != [len(names)] * len(names):
+                rows.fail(f"expected {len(names)} rows of {len(names)} correlations, one for each variable")
             R = np.array(cells)
             if (np.abs(R) > 1).any() or (np.diag(R) != 1).any() or (R != R.T).any():
                 rows.fail("is not symmetric, or has other numbers than -1 to 1, and 1 on the diagonal")
             if not np.linalg.eigvalsh(R)[0] > 1e-12:
                 rows.fail("is not positive definite: these correlations contradict each other, "
                           "or a variable is a function of others")
-            correlation[np.ix_(grouped[-size:], grouped[-size:])] = R
+            correlation[np.ix_(grouped[-len(names):], grouped[-len(names):])] = R
         return correlation
 
     def _read_design(self, whole, at, count):
         at.only(["kind", "count", "seed", "indices", "file"])
-        self.kind = at.need("kind").one_of("a design", ["grid", "list", *DRAWN])
-        for key, kinds, why in [("file", ["list"], "only of a list"), ("count", DRAWN, _SIZED), ("seed", DRAWN, _SIZED),
+        kind, variables = at.need("kind"), whole.need("variables")
+        self.kind = kind.one_of("a design", ["grid", "list", *DRAWN])
+        sized = "not of a grid or a list, which say how many variants there are"
+        for key, kinds, why in [("file", ["list"], "only of a list"), ("count", DRAWN, sized), ("seed", DRAWN, sized),
                                 ("indices", ["monte_carlo", "sobol"], "only of a sobol or monte_carlo design")]:
             if at.get(key) and self.kind not in kinds:
                 at.get(key).fail(why)
         self.seed, self.indices, self.table = 0, False, None
         if self.kind not in DRAWN:
-            size = self._given(whole, at)
+            if self.correlation is not None:
+                whole.need("groups").fail("not of a grid or a list, which draw nothing")
+            if self.kind == "list":
+                self.table = self._read_table(at.need("file"))
+            for variable in self.variables if self.kind == "grid" else ():
+                if variable.kind != "list":
+                    kind.fail(f"a grid needs a list of values for each variable, and '{variable.name}' has none")
+            size = math.prod(len(v.numbers) for v in self.variables) if self.table is None else len(self.table)
+            if size > MOST:
+                kind.fail(f"a grid of more than {MOST} combinations")
             if count and count > size:
-                at.need("kind").fail(f"{count} variants are requested, and there are {size}")
+                kind.fail(f"{count} variants are requested, and there are {size}")
             self.count = count or size
             return
         for variable in self.variables:
             if not variable.kind:
-                whole.need("variables").need(variable.name).fail(
-                    "no distribution; allowed: normal, uniform, triangular, truncated_normal, list")
+                variables.need(variable.name).fail("no distribution; allowed: normal, uniform, triangular, truncated_normal, list")
         size, self.seed = at.need("count"), at.need("seed").whole(0, MOST)
         self.count = count or size.whole(1, MOST)
         if self.kind == "latin_hypercube" and self.count != size.whole(1, MOST):
@@ -254,40 +259,24 @@ class Study:
         if self.count < self.block:
             size.fail(f"{self.count} variants are less than one block of {self.block} for Sobol indices")
 
-    def _given(self, whole, at):
-        """How many variants a grid or a list has."""
-        if self.correlation is not None:
-            whole.need("groups").fail("not of a grid or a list, which draw nothing")
-        if self.kind == "list":
-            self.table = self._read_table(at.need("file"))
-            return len(self.table)
-        for variable in self.variables:
-            if variable.kind != "list":
-                at.need("kind").fail(f"a grid needs a list of values for each variable, and '{variable.name}' has none")
-        size = math.prod(len(v.numbers) for v in self.variables)
-        return size if size <= MOST else at.need("kind").fail(f"a grid of more than {MOST} combinations")
-
     def _read_table(self, at):
         """Values by a CSV file, columns by the names of the variables [variants x variables]."""
         import pandas
         file = os.path.join(os.path.dirname(self.file), at.text("a CSV file"))
         try:
-            table = pandas.read_csv(file, skipinitialspace=True, skip_blank_lines=False, dtype=str)
+            table = pandas.read_csv(file, skipinitialspace=True, skip_blank_lines=False, dtype=str, keep_default_na=False)
         except (OSError, ValueError) as error:
             at.fail(f"{file}: {error}")
-        for name in table.columns:
-            if name not in self.names:
-                raise SheetError(f"{file}:1: the study has no variable '{name}'" + _core.did_you_mean(name, self.names, "variables"))
+        for name in set(table.columns) - set(self.names):
+            raise SheetError(f"{file}:1: the study has no variable '{name}'" + _core.did_you_mean(name, self.names, "variables"))
         if len(table.columns) != len(self.names):
             raise SheetError(f"{file}:1: {len(table.columns)} columns, but the study has {len(self.names)} variables")
         values = np.empty((len(table), len(self.names)))
         for (row, column), cell in np.ndenumerate(table[self.names].to_numpy()):
             try:
-                values[row, column] = cell
+                values[row, column] = cell if math.isfinite(float(cell)) else "not finite"
             except ValueError:
-                raise SheetError(f"{file}:{row + 2}: {self.names[column]}: '{cell}' is not a number") from None
-            if not math.isfinite(values[row, column]):
-                raise SheetError(f"{file}:{row + 2}: {self.names[column]}: no value")
+                raise SheetError(f"{file}:{row + 2}: {self.names[column]}: " + (f"'{cell}' is not a number" if cell else "no value")) from None
         return values
 
     def _read_figures(self, section, limits):
@@ -310,19 +299,9 @@ class Study:
             if figure.low > figure.high:
                 at.fail("min is above max")
 
-    def _check_ends(self, section):
-        """With each variable at its ends, the others as written; tails and combinations are rows."""
-        for j, variable in enumerate(self.variables):
-            for end in variable.ends:
-                values = self.nominal
-                values[0, j] = end
-                if wrong := self.solver.invalid(self.numbers(values)[0]):
-                    section.need(variable.name).fail(f"{end:g} can be drawn, and with it the scene is invalid: {wrong}")
-
     @functools.cached_property
     def identity(self):
         """Of all that a row depends on: not of the number of variants, but of a Latin hypercube's, nor of the limits."""
-        from elastocheck.study.design import Design
         parts = [[(v.name, v.kind, v.numbers, list(v.scaled)) for v in self.variables],
                  self.correlation is not None and self.correlation.tolist(), self.kind, self.seed, self.indices,
                  self.witness, self.words, self.kind == "latin_hypercube" and self.count,

@@ -1,8 +1,7 @@
 """The ledger of a study: a row for each variant that was computed, in a file of SQLite.
 
 variants(k, outcome, method, reason, f1, f2, ..., checksum); witnesses likewise, by the equilibrium leg; the view
-`results` has the names of the figures. Rows are added in transactions, so that a process that is killed leaves a
-ledger without the rows of its open transaction.
+`results` has the names of the figures. A process that is killed leaves a ledger without the rows of its open transaction.
 """
 import contextlib
 import fcntl
@@ -24,10 +23,6 @@ def checksum(row):
     """Of the content of a row (k, outcome, method, reason, figures...), its types included."""
     content = marshal.dumps(row, 2)  # the last version in which equal values have equal bytes
     return int.from_bytes(hashlib.blake2b(content, digest_size=8).digest(), "little", signed=True)
-
-
-def _is_intact(row):
-    return checksum(row[:-1]) == row[-1]
 
 
 @contextlib.contextmanager
@@ -61,7 +56,7 @@ class Ledger:
     """
 
     def __init__(self, file, study, write=True, same_version=True):
-        self.file, self.figures = file, len(study.figures)
+        self.file, self.figures, self.damaged = file, len(study.figures), []
         if os.path.islink(file):
             raise FileError(f"{file}: is a symbolic link; a ledger is a regular file")
         if not write and not os.path.exists(file):
@@ -73,14 +68,14 @@ class Ledger:
             if write and not self.rows("SELECT 1 FROM sqlite_master"):
                 self._create(study)
             self._check_identity(study.identity, same_version)
-            self.damaged = [(table, row[0]) for table in TABLES
-                            for row in self.base.execute(f"SELECT * FROM {table} ORDER BY k") if not _is_intact(row)]
+            for table in TABLES:
+                self.damaged += [(table, row[0]) for row, intact in self._checked(table) if not intact]
             if self.damaged or self.rows("PRAGMA quick_check(1)") != [("ok",)]:
                 if not write:
                     rows = "; ".join(f"row {k} of {table}: its content is not that of its checksum" for table, k in self.damaged[:3])
                     raise FileError(f"{file}: is damaged: {rows}; the study without --show computes again what is")
                 for table in TABLES:  # written anew: in a damaged table rows are not found by their numbers
-                    rows = [row for row in self.base.execute(f"SELECT * FROM {table}") if _is_intact(row)]
+                    rows = [row for row, intact in self._checked(table) if intact]
                     with self.base:
                         self.base.execute(f"DELETE FROM {table}")
                         self._insert(table, rows)
@@ -90,6 +85,10 @@ class Ledger:
 
     def rows(self, sql, *values):
         return self.base.execute(sql, values).fetchall()
+
+    def _checked(self, table):
+        """Rows, and whether each is as it was written."""
+        return ((row, checksum(row[:-1]) == row[-1]) for row in self.base.execute(f"SELECT * FROM {table} ORDER BY k"))
 
     def _create(self, study):
         figures = "".join(f"f{j + 1} REAL, " for j in range(self.figures))
@@ -105,8 +104,7 @@ class Ledger:
 
     def _check_identity(self, identity, same_version):
         """Rows of several versions of the program are not added to each other."""
-        names = {name for name, in self.rows("SELECT name FROM sqlite_master")}
-        there = dict(self.rows("SELECT key, value FROM meta")) if {"meta", *TABLES} <= names else {}
+        there = dict(self.rows("SELECT key, value FROM meta"))
         if there.get("format") != FORMAT:
             raise FileError(f"{self.file}: not a ledger of a study")
         for key, what in [("scene", "scene"), ("study", "study file"), ("version", "version of the program")]:
@@ -126,12 +124,10 @@ class Ledger:
     def merge(self, other):
         """Rows of another ledger of this study that are not here yet; one with other values is an error."""
         self.base.execute("ATTACH ? AS other", (other.file,))
-        for table in TABLES:
-            if other_values := self.rows(f"SELECT k FROM other.{table} o JOIN main.{table} m USING (k) "
-                                         "WHERE o.checksum != m.checksum LIMIT 1"):
-                raise FileError(f"{other.file}: variant {other_values[0][0]} has other values than in {self.file}")
         with self.base:
             for table in TABLES:
+                for k, in self.rows(f"SELECT k FROM other.{table} o JOIN main.{table} m USING (k) WHERE o.checksum != m.checksum LIMIT 1"):
+                    raise FileError(f"{other.file}: variant {k} has other values than in {self.file}")
                 self.base.execute(f"INSERT OR IGNORE INTO main.{table} SELECT * FROM other.{table}")
         self.base.execute("DETACH other")
 

@@ -34,22 +34,7 @@ def heading(of):
 def _table(name, rows, caption):
     columns = [(key, key.split(" ")[-1] if key.endswith((" from", " to")) else key,
                 "hidden" if name in _DATA else _DIGITS.get(key, "hidden")) for key in rows[0]]
-    return _core.Table(name, caption, columns, [list(row.values()) for row in rows])
-
-
-def _chart(kind, title, table, x, y, only, axis="", marks=()):
-    chart = _core.Chart(kind, title, table, x, y)
-    chart.only, chart.axis, chart.marks = only, axis, marks
-    return chart
-
-
-def _sample(study, most=400):
-    """Numbers of independent variants, evenly spread, and the values of their variables. Not at equal distances: of a
-    Sobol sequence those leave gaps that it has not."""
-    bases, design = study.count // study.block, Design(study)
-    at = np.arange(min(most, bases))
-    k = np.minimum((at + at * 0.6180339887498949 % 1) / len(at) * bases, bases - 1).astype(int) * study.block
-    return k, pandas.DataFrame([design.values(i, i + 1)[0] for i in k], columns=map(heading, study.variables))
+    return name, caption, columns, [list(row.values()) for row in rows]
 
 
 class Report(Result):
@@ -69,34 +54,38 @@ class Report(Result):
             warnings.simplefilter("ignore", RuntimeWarning)
             rows, reasons, charts = self._rows(rare)
         reasons += [f"{left} variants are missing"] if left else []
-        self.exit_code = 0 if self.outcomes["solved"] and not reasons else 3
+        reasons += [] if self.outcomes["solved"] else ["no variant is solved"]
         captions = {"variables": "Variables", "figures": "Figures", "sobol": "Shares of the variance (Sobol indices)",
                     "rare": "Rare failures", "witnesses": f"Every {study.witness} variants by the equilibrium leg too",
                     "failed": "The first failed variants"} | dict.fromkeys(_DATA, "")
-        verdict = _core.Verdict(not self.exit_code, f"{self.rows} of {count} variants: {', '.join(parts)}.", reasons,
-                                sum(row["witnesses"] for row in rows["witnesses"]))
         self.found = _core.Findings(
-            verdict, [_table(name, rows[name], caption) for name, caption in captions.items() if rows[name]], charts, [f"Content {self.content}"])
+            f"{self.rows} of {count} variants: {', '.join(parts)}.", reasons, sum(row["witnesses"] for row in rows["witnesses"]),
+            [_table(name, rows[name], caption) for name, caption in captions.items() if rows[name]], charts, f"Content {self.content}")
         document = {"schema": "elastocheck/study/3", "reproduce": reproduce,
                     "provenance": {"version": _core.build, "compiler": _core.compiler}, "study": study.file, "scene": study.scene_file,
                     "identity": study.identity, "count": count, "rows": self.rows, "outcomes": self.outcomes,
                     "content": self.content} | json.loads(self.found.document)
         self.printed = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
-        super().__init__(self.exit_code, self.printed, self.found.text, "")
+        super().__init__(3 if reasons else 0, self.printed, self.found.text, "")
 
     def _rows(self, rare):
         """Of every table, reasons against the verdict, charts."""
-        study, ledger, count = self.study, self.ledger, self.study.count
+        study, ledger, count, design = self.study, self.ledger, self.study.count, Design(self.study)
         rows = {name: [] for name in ("figures", "sobol", "witnesses", "correlations", "histograms")} | {"rare": list(rare)}
         rows["variables"] = [{"variable": v.name, "unit": v.unit, "design": v.nominal, "distribution": str(v),
                               "scales": len(v.scaled)} for v in study.variables]
         rows["failed"] = [dict(zip(["variant", "outcome", "reason"], row)) for row in ledger.rows(
             "SELECT k, outcome, reason FROM variants WHERE outcome != 'solved' AND k < ? ORDER BY k LIMIT 10", count)]
-        reasons, charts, names = [], [], [v.name for v in study.variables]
-        k, sample = _sample(study)
-        varied = sample.set_axis(names, axis=1)
+        # Some independent variants.
+        bases = count // study.block
+        k = np.sort(np.random.default_rng(study.seed).choice(bases, min(400, bases), replace=False)) * study.block
+        sample = pandas.DataFrame([design.values(i, i + 1)[0] for i in k], columns=map(heading, study.variables))
+        varied, reasons, charts = sample.set_axis(study.names, axis=1), [], []
         nominal = study.solver.solve(study.numbers(study.nominal), "series", 1)[0][0]
         for j, figure in enumerate(study.figures):
+            def chart(kind, title, table, x, y, axis="", marks=(), of=figure.name):
+                charts.append((kind, title, table, x, y, of, axis, marks))
+
             values = ledger.values(j, count)
             drawn = independent(study, values)
             drawn, sample[heading(figure)] = drawn[np.isfinite(drawn)], values[k]
@@ -112,21 +101,17 @@ class Report(Result):
             counts, edges = np.histogram(drawn, bins)
             rows["histograms"] += [{"figure": figure.name, "from": low, "to": high, "variants": n}
                                    for low, high, n in zip(edges, edges[1:], counts)]
-            charts.append(_chart("bars", "Distribution", "histograms", "from", ["to", "variants"],
-                                 figure.name, heading(figure), [figure.low, figure.high]))
+            chart("bars", "Distribution", "histograms", "from", ["to", "variants"], heading(figure), [figure.low, figure.high])
             if shares := sobol_rows(study, figure, values):
                 rows["sobol"] += shares
                 rank = {row["variable"]: row["total"] for row in shares}
-                charts.append(_chart("ranked", "Shares of the variance", "sobol", "variable",
-                                     ["total", "total from", "total to"], figure.name, "total Sobol index"))
+                chart("ranked", "Shares of the variance", "sobol", "variable", ["total", "total from", "total to"], "total Sobol index")
             else:
                 rank = (varied.corrwith(sample[heading(figure)].where(np.isfinite)) ** 2).fillna(0)
                 rows["correlations"] += [{"figure": figure.name, "variable": name, "squared": x} for name, x in rank.items()]
-                charts.append(_chart("ranked", "Squared correlation", "correlations", "variable", ["squared"], figure.name,
-                                     "squared correlation"))
-            for name in sorted(names, key=lambda name, rank=rank: -rank[name])[:3]:
-                charts.append(_chart("points", "Over " + name, "sample", sample.columns[names.index(name)],
-                                     [heading(figure)], figure.name))
+                chart("ranked", "Squared correlation", "correlations", "variable", ["squared"], "squared correlation")
+            for name in sorted(study.names, key=rank.get, reverse=True)[:3]:
+                chart("points", "Over " + name, "sample", sample.columns[study.names.index(name)], [heading(figure)])
         rows["sample"] = sample.to_dict("records")
         return rows, reasons, charts
 

@@ -110,8 +110,9 @@ def rare_rows(study, threads=0, samples=4096):
             if not math.isfinite(limit):
                 continue
             event = ot.ThresholdEvent(ot.CompositeRandomVector(function, ot.RandomVector(joint)), holds, limit)
-            row = dict.fromkeys(["figure", "limit", "FORM", "beta", "sampled", "sampled from", "sampled to"], math.nan)
-            rows.append(row | {"figure": figure.name, "limit": f"{beyond} {limit:g} {figure.unit}"})
+            row = {"figure": figure.name, "limit": f"{beyond} {limit:g} {figure.unit}"}
+            row |= dict.fromkeys(["FORM", "beta", "sampled", "sampled from", "sampled to"], math.nan)
+            rows.append(row)
             try:
                 form = ot.FORM(ot.AbdoRackwitz(), event, joint.getMean())
                 form.run()
@@ -124,9 +125,9 @@ def rare_rows(study, threads=0, samples=4096):
                 sampling.run()
                 drawn = sampling.getResult()
                 p, half = drawn.getProbabilityEstimate(), drawn.getConfidenceLength(LEVEL) / 2
-                rows[-1] |= {"FORM": found.getEventProbability(), "beta": found.getGeneralisedReliabilityIndex(),
-                             "sampled": p, "sampled from": max(p - half, 0.0), "sampled to": p + half,
-                             "design point": ", ".join(f"{x:.6g}" for x in found.getPhysicalSpaceDesignPoint())}
+                row |= {"FORM": found.getEventProbability(), "beta": found.getGeneralisedReliabilityIndex(),
+                        "sampled": p, "sampled from": max(p - half, 0.0), "sampled to": p + half,
+                        "design point": ", ".join(f"{x:.6g}" for x in found.getPhysicalSpaceDesignPoint())}
             except (RuntimeError, TypeError) as error:
-                rows[-1]["design point"] = "none: " + str(error).splitlines()[0]
+                row["design point"] = "none: " + str(error).splitlines()[0]
     return rows

@@ -1,8 +1,9 @@
 """`elastocheck study`: exit codes 0, 2 for bad input, 3 where not all could be judged, 4 for a bug."""
-import json
 import sys
 import traceback
 import warnings
+
+from elastocheck import Error, study
 
 
 def _say(words):
@@ -17,16 +18,13 @@ def main(quiet=False, as_json=False, **options):
     """Options as those of elastocheck.study.run()."""
     warnings.showwarning = lambda message, *_: _say(f"{message} (warning)")
     try:
-        from elastocheck import Error, study
         report = study.run(**options, say=_say, progress=_progress if sys.stderr.isatty() and not quiet else None)
     except ImportError as error:
         _say(f"elastocheck: study: {error}; `./dev study` installs what it needs")
         return 2
-    except Error as error:
-        _say(f"elastocheck: {error}")
-        return 2
-    except OSError as error:
-        _say(f"elastocheck: {error.filename}: {error.strerror}" if error.filename else f"elastocheck: {error}")
+    except (Error, OSError) as error:
+        file = getattr(error, "filename", None)
+        _say(f"elastocheck: {file}: {error.strerror}" if file else f"elastocheck: {error}")
         return 2
     except KeyboardInterrupt:
         _say("\nelastocheck: interrupted; the same command goes on")
@@ -38,7 +36,3 @@ def main(quiet=False, as_json=False, **options):
         return 0
     print(report.printed if as_json else report.text, end="")
     return report.exit_code
-
-
-if __name__ == "__main__":
-    sys.exit(main(**json.loads(sys.argv[1])))
