@@ -344,6 +344,8 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
         const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
         piece.r = tube(step(Y, F).cwiseMax(joint), rest_along(Y, std::move(J)));
         if (piece.r.size() == 0 || !within(solver.system, piece.r, tolerance)) return false;
+        const auto R = piece.r.segment(7 * solver.system.bodies, solver.system.rows).array();
+        if (!(R < 0.5 * std::min(tolerance.force, tolerance.moment)).all()) return false;
         if ((piece.r.array() <= room.array()).all()) return true;
         room = 2 * piece.r;
     }
