@@ -102,7 +102,7 @@ void add_notes(std::vector<std::string>& notes, const CertifiedSide& side) {
         notes.push_back(fmt::format(
             "one curve of equilibria is proved from {:.10g} to {:.10g} {}{}",
             in_unit(side.unit) * side.curve->from + 0.0, in_unit(side.unit) * side.curve->to + 0.0,
-            unit, side.curve->corners > 0 ? ", over corners of laws" : ""));
+            unit, side.curve->knots > 0 ? ", over knots of laws" : ""));
     if (side.limit && side.limit->state == ProofState::proved)
         notes.push_back(fmt::format("a limit point is proved, between {:.16g} and {:.16g} {}",
                                     in_unit(side.unit) * side.limit->from,

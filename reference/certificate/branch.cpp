@@ -110,10 +110,10 @@ struct NodeSolver {
     const Interpolant& states;
     Border border;
 
-    // Interpolated between the states; corners from the poses.
+    // Interpolated between the states; x and f of curves from the poses.
     Predicted guess(double a) const {
         Predicted result = predicted(states, a);
-        set_corners(system, result.z, a);
+        set_separated(system, result.z, a);
         return result;
     }
     Problem problem(const VectorXd& z_g) const { return {system, border, z_g, false, {}, {}}; }
@@ -210,26 +210,30 @@ SparseRows<Interval> coefficient(const SparseRows<Jet<n>>& J, std::size_t k) {
         part.entries.push_back({row, column, value.c[k]});
     return part;
 }
-// Taylor coefficients of `evaluate` about s = 0, the last one over all s.
-template <int n, class Evaluate>
-std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
-    const std::vector<Jet<n>> about = evaluate(Interval(0)), over = evaluate(Interval(-1, 1));
-    std::vector<std::vector<Interval>> c(static_cast<std::size_t>(n) + 1,
-                                         std::vector<Interval>(about.size()));
-    for (std::size_t i = 0; i < about.size(); ++i)
-        for (std::size_t k = 0; k < c.size(); ++k)
-            c[k][i] = k < static_cast<std::size_t>(n) ? about[i].c[k] : over[i].c[k];
-    return c;
+// Taylor coefficients of F about s = 0, the last one over all s; the laws with the first. The gauge
+// is zero along the piece by definition.
+template <int n>
+std::vector<Values<Interval>> coefficients(const Problem& problem, const Piece& piece) {
+    const Interval middle = 0, all{-1, 1};
+    Values<Jet<n>> about =
+        residual(problem, along<n>(piece, middle, nullptr), parameter<n>(piece, middle));
+    const auto over =
+        evaluate_without_slopes(problem, along<n>(piece, all, nullptr), parameter<n>(piece, all));
+    std::vector<Values<Interval>> F(static_cast<std::size_t>(n) + 1);
+    for (std::size_t k = 0; k < F.size(); ++k) {
+        for (const Jet<n>& entry : (k + 1 < F.size() ? about : over).E)
+            F[k].E.push_back(entry.c[k]);
+        std::fill(F[k].E.begin() + problem.n(), F[k].E.end(), Interval());
+    }
+    F.front().laws = std::move(about.laws);
+    return F;
 }
 
-// |Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1. The gauge is zero along the piece by definition.
-VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>> F,
-              int gauge_from) {
+// |Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1.
+VectorXd step(const std::vector<MatrixXd>& Y, const std::vector<Values<Interval>>& F) {
     VectorXd sum = VectorXd::Zero(Y.front().rows());
-    for (auto& part : F) {
-        std::fill(part.begin() + gauge_from, part.end(), Interval());
+    for (const auto& part : F)
         for (const MatrixXd& factor : Y) sum += step(factor, part);
-    }
     return sum * (1 + 1e-14);
 }
 
@@ -278,15 +282,14 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
     return true;
 }
 
-// r ≤ `room` with `first` + rest(r) < r, by fixed-point iteration; empty if none is found.
-template <class Rest>
-VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
+// r with `first` + rest(r) < r, by fixed-point iteration; empty if none is found.
+VectorXd tube(const VectorXd& first, const RestAlong& rest) {
     constexpr double least = 1e-20;
     constexpr int max_iterations = 30;
     VectorXd r = first.cwiseMax(least) * 1.01;
     for (int k = 0; k < max_iterations; ++k) {
         const VectorXd next = ((first + rest(r)) * 1.02).cwiseMax(least);
-        if (!(next.array() <= room.array()).all()) return {};
+        if (!next.allFinite()) return {};
         if (all_less((first + rest(next)) * (1 + 1e-14), next)) return next;
         r = next.cwiseMax(r);
     }
@@ -298,14 +301,14 @@ void enclose(const NodeSolver& solver, Node& node) {
     if (node.box.size() > 0) return;
     const Problem problem = solver.problem(node.y.head(solver.system.n()));
     const Interval a = node.a;
-    const auto E = evaluate(problem, thin(node.y), a, Slopes::no).E;
+    const Values<Interval> F = residual(problem, thin(node.y), a);
     MatrixXd Y = node.Y;
-    VectorXd room = (3 * step(Y, E)).cwiseMax(1e-19);
+    VectorXd room = (3 * step(Y, F)).cwiseMax(1e-19);
     for (int trial = 0; trial < 4 && node.box.size() == 0 && room.allFinite(); ++trial) {
         const auto J = evaluate(problem, box(node.y, room), a, Slopes::yes).J;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return;
-        VectorXd r = passing(step(Y, E), rest);
+        VectorXd r = passing(step(Y, F), rest);
         if (r.size() == 0)
             // at a corner, where the inverse at ỹ belongs to one side
             Y = inverse(factors(middle(J)));
@@ -320,36 +323,37 @@ void enclose(const NodeSolver& solver, Node& node) {
 bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const VectorXd& joint,
            const Tolerance& tolerance) {
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
-    const int n = problem.n();
-    constexpr int F_order = order<Along>, J_order = order<SlopesAlong>;
-    const auto F = coefficients<F_order>([&](const Interval& S) {
-        return evaluate_without_slopes(problem, along<F_order>(piece, S, nullptr),
-                                       parameter<F_order>(piece, S))
-            .E;
-    });
-    VectorXd first = step({Y0}, F, n);
+    constexpr int J_order = order<SlopesAlong>;
+    const auto F = coefficients<order<Along>>(problem, piece);
+    const VectorXd first = step({Y0}, F);
     if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
-    // Range of the tube over which F' is evaluated.
-    const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
+    // Range of the tube over which F' is evaluated: larger where components depend on others.
+    VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
     const auto slopes = [&](const Interval& S) {
         return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
                         Slopes::yes)
             .J;
     };
-    const auto about = slopes(Interval(0)), over = slopes(Interval(-1, 1));
-    std::vector<Split> J;
-    for (std::size_t k = 0; k <= J_order; ++k) {
-        J.push_back(split(coefficient(k < J_order ? about : over, k)));
-        if (!J.back().finite) return false;
+    for (int trial = 0; trial < 2; ++trial) {
+        const auto about = slopes(Interval(0)), over = slopes(Interval(-1, 1));
+        std::vector<Split> J;
+        for (std::size_t k = 0; k <= J_order; ++k) {
+            J.push_back(split(coefficient(k < J_order ? about : over, k)));
+            if (!J.back().finite) return false;
+        }
+        const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
+        piece.r = tube(step(Y, F).cwiseMax(joint), rest_along(Y, std::move(J)));
+        if (piece.r.size() == 0 || !within(solver.system, piece.r, tolerance)) return false;
+        const auto R = piece.r.segment(7 * solver.system.bodies, solver.system.rows).array();
+        if (!(R < 0.5 * std::min(tolerance.force, tolerance.moment)).all()) return false;
+        if ((piece.r.array() <= room.array()).all()) return true;
+        room = 2 * piece.r;
     }
-    const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
-    const RestAlong rest = rest_along(Y, std::move(J));
-    piece.r = tube(step(Y, F, n).cwiseMax(joint), rest, room);
-    return piece.r.size() > 0 && within(solver.system, piece.r, tolerance);
+    return false;
 }
 
-// Whether the piece crosses a corner.
-bool over_a_corner(const System& system, const Piece& piece) {
+// Whether the piece crosses a knot of a separated curve.
+bool crosses_a_knot(const System& system, const Piece& piece) {
     for (std::size_t k = 0; k < system.separated.size(); ++k)
         if (over_a_knot(std::get<Curve>(law_of(system, system.separated[k])),
                         expanded<0>(powers(piece, system.deformation(k)), Interval(-1, 1)).c[0]))
@@ -361,10 +365,7 @@ bool over_a_corner(const System& system, const Piece& piece) {
 bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& joint,
                      const Tolerance& tolerance) {
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
-    const auto F = coefficients<1>([&](const Interval& S) {
-        return evaluate_without_slopes(problem, along<1>(piece, S, nullptr), parameter<1>(piece, S))
-            .E;
-    });
+    const auto F = coefficients<1>(problem, piece);
     const auto slopes = [&](const VectorXd& room) {
         std::vector<Interval> y;
         for (const auto& jet : along<1>(piece, Interval(-1, 1), &room)) y.push_back(jet.c[0]);
@@ -375,7 +376,7 @@ bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& joi
         const auto J = slopes(room);
         const MatrixXd Y = inverse(factors(middle(J)));
         if (!Y.allFinite()) return false;
-        const VectorXd first = step({Y}, F, problem.n()).cwiseMax(joint);
+        const VectorXd first = step({Y}, F).cwiseMax(joint);
         if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return false;
@@ -454,7 +455,7 @@ ProvedPiece prove_section(const NodeSolver& solver, Section& s, bool over_knots,
     const auto attempt = [&](const VectorXd& joint) {
         if (s.to.found && s.middle.found) {
             piece = quintic(s.from, s.middle, s.to);
-            result.proved = !over_a_corner(solver.system, piece) &&
+            result.proved = !crosses_a_knot(solver.system, piece) &&
                             prove(solver, piece, s.middle.Y, joint, tolerance);
         }
         result.over_knot = false;
@@ -525,7 +526,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         return tube;
     };
     if (states.size() < 2) return open("a path between states needs two of them");
-    const System system = make_system(model, branch, Corners::separated);
+    const System system = make_system(model, branch, Curves::separated);
     if (const auto why = why_not_tried(system, max_unknowns_of_curves); !why.empty()) {
         tube.tried = false;
         return open(why);
@@ -584,7 +585,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         held.gap = std::max(held.gap, proved_piece.held.gap);
         pushed = {};
         ++tube.pieces;
-        tube.corners += over_a_corner(system, proved_piece.piece) ? 1 : 0;
+        tube.knots += crosses_a_knot(system, proved_piece.piece) ? 1 : 0;
         tube.to = a1;
         section.from = section.to;
         h *= 1.6;

@@ -87,7 +87,7 @@ struct Tube {
     double from = 0, to = 0;  // range of a covered without a gap
     Extent width;  // of the tube: largest distance of the curve from the states at their a
     int pieces = 0;
-    int corners = 0;  // number of pieces across a stop that closes or opens
+    int knots = 0;  // number of pieces across a knot of a curve
 };
 Tube certify_branch(const Model& model, const Branch& branch, std::span<const Equilibrium> states,
                     const Tolerance& tolerance = {});

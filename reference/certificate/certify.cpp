@@ -50,7 +50,7 @@ struct Box {
 Box smallest(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 8, iterations = 4;
     constexpr double least = 1e-20;
-    const Residual F = residual(problem, thin(approximate.y), Interval(a));
+    const Values<Interval> F = residual(problem, thin(approximate.y), Interval(a));
     Box result;
     result.Y = inverse(approximate.J);
     VectorXd defect = step(result.Y, F);
@@ -182,7 +182,7 @@ double alone(const Problem& problem, const VectorXd& centre, double a, const Box
 
 // A radius that should pass, from solutions alone: |Y F| is not known before Y is. Y times random
 // signs of the rounding of F is about its root mean square.
-VectorXd foreseen(const Factors& factors, const Residual& F) {
+VectorXd foreseen(const Factors& factors, const Values<Interval>& F) {
     constexpr int samples = 8;
     constexpr double larger = 256;
     std::minstd_rand random;
@@ -219,7 +219,7 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 5, larger_boxes = 14;
     constexpr double least = 1e-20, largest = 2e-3, shorter = 0.25;
     const VectorXd& centre = approximate.y;
-    const Residual F = residual(problem, thin(centre), Interval(a));
+    const Values<Interval> F = residual(problem, thin(centre), Interval(a));
     Box result;
     result.r = foreseen(approximate.J, F).cwiseMax(least);
     for (int trial = 0; trial < trials && result.r.allFinite(); ++trial) {
@@ -505,11 +505,11 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
 Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
                     const Tolerance& tolerance, std::vector<ProvedBox>& known) {
     Certificate certificate = certify(make_system(model, branch), state, tolerance, known);
-    const bool shown = certificate.state == ProofState::excluded || certificate.stable;
-    if (shown || !has_corners(model)) return certificate;
+    if (certificate.state == ProofState::excluded || certificate.stable) return certificate;
     // At the corner of a stiff stop the slopes inside the element vary too independently.
-    Certificate separated =
-        certify(make_system(model, branch, Corners::separated), state, tolerance, known);
+    const System system = make_system(model, branch, Curves::separated);
+    if (system.separated.empty()) return certificate;
+    Certificate separated = certify(system, state, tolerance, known);
     return separated.state == ProofState::open ? certificate : separated;
 }
 

@@ -113,11 +113,12 @@ struct Parts {
     SparseMatrix D;
     bool finite = false;
 };
-Parts parts_of(const std::vector<Interval>& F, const Laws& laws) {
-    const auto n = static_cast<Index>(F.size());
+Parts parts_of(const Values<Interval>& F) {
+    const auto n = static_cast<Index>(F.E.size());
+    const Laws& laws = F.laws;
     Parts of{VectorXd(n), laws.rho, VectorXd(n), SparseMatrix(n, laws.rho.size())};
     for (Index k = 0; k < n; ++k) {
-        const Interval& entry = F[static_cast<std::size_t>(k)];
+        const Interval& entry = F.E[static_cast<std::size_t>(k)];
         if (!bounded(entry)) return of;
         of.f[k] = mid(entry);
         of.lost[k] = rad(entry);
@@ -146,16 +147,13 @@ VectorXd step(const MatrixXd& Y, const Parts& F) {
 
 }  // namespace
 
-VectorXd step(const MatrixXd& Y, const std::vector<Interval>& F) {
-    return step(Y, parts_of(F, Laws{}));
-}
-VectorXd step(const MatrixXd& Y, const Residual& F) { return step(Y, parts_of(F.E, F.laws)); }
+VectorXd step(const MatrixXd& Y, const Values<Interval>& F) { return step(Y, parts_of(F)); }
 
-OverRows over_rows(const Factors& factors, const Residual& F, const std::vector<Split>& J,
+OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std::vector<Split>& J,
                    const MatrixXd& r) {
     constexpr Index at_a_time = 32;
     const Index n = factors.size();
-    const Parts parts = parts_of(F.E, F.laws);
+    const Parts parts = parts_of(F);
     const SparseMatrix& M = J.front().M;
     const SparseMatrix size = M.cwiseAbs();
     MatrixXd lost(n, r.cols());

@@ -52,8 +52,7 @@ Contraction contraction(const Eigen::MatrixXd& Y, const SparseRows<Interval>& J)
 Eigen::VectorXd passing(const Eigen::VectorXd& first, const Contraction& rest);
 
 // Upper bound of |Y F|.
-Eigen::VectorXd step(const Eigen::MatrixXd& Y, const std::vector<Interval>& F);
-Eigen::VectorXd step(const Eigen::MatrixXd& Y, const Residual& F);
+Eigen::VectorXd step(const Eigen::MatrixXd& Y, const Values<Interval>& F);
 
 // All of this for a system too large to keep Y. Each row of the inequality needs the same row of Y
 // alone, which is solved for and discarded.
@@ -62,7 +61,7 @@ struct OverRows {
     Eigen::MatrixXd rest;    // |I - Y F'| r for each box, in columns
 };
 // J [box]: over each box, all with the M of the first; r [n × boxes].
-OverRows over_rows(const Factors& factors, const Residual& F, const std::vector<Split>& J,
+OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std::vector<Split>& J,
                    const Eigen::MatrixXd& r);
 // M ± R within of.M ± R.
 Split recentred(const Split& of, const SparseMatrix& M);

@@ -101,8 +101,8 @@ struct Segment {
     Contraction rest;
 };
 Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, double delta) {
-    std::vector<Interval> F = evaluate(problem, thin(y), Interval(0), Slopes::no).E;
-    F.back() += Interval(-delta, delta);
+    Values<Interval> F = residual(problem, thin(y), Interval(0));
+    F.E.back() += Interval(-delta, delta);
     const VectorXd defect = step(Y, F);
     Segment result;
     if (!defect.allFinite()) return result;

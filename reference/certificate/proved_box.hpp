@@ -12,7 +12,7 @@ namespace elastocheck::reference::certificate {
 // motion and redundant joint.
 struct ProvedBox {
     double a = 0;
-    bool separated = false;   // of the equations with separated corners
+    bool separated = false;   // of the equations with separated curves
     Eigen::VectorXd y, r;     // ỹ and r
     double alone = 0;         // t of the large box without another equilibrium
     Certificate certificate;  // `error` and `unique` are of a state

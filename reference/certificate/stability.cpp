@@ -118,7 +118,7 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const Sparse
                z[static_cast<std::size_t>(system.deformation(c))], 2, f.data());
         const double k = f[1].lo;
         if (!system.conservative || !(k >= 0)) return false;
-        add_square(H, k, row_of(system.corner(c)));
+        add_square(H, k, row_of(system.curve(c)));
     }
     H = by_rows(H, static_cast<int>(n)).entries;
     double most = 0;

@@ -102,7 +102,7 @@ StateAt state_at(const System& system, const Equilibrium& state) {
             mapped.z[7 * system.bodies + rows[k]] = R[static_cast<Index>(k)];
         mapped.from_wrench.push_back(P);
     }
-    set_corners(system, mapped.z, state.load);
+    set_separated(system, mapped.z, state.load);
     return mapped;
 }
 
@@ -115,7 +115,7 @@ StateAt state_at(const System& system, const Equilibrium& state) {
 // and the largest is at most that of the first three over 1 - ‖E‖. Reactions that are moments are
 // divided by L, as in w.
 //
-// Separated corners: their deformation over the box of poses, and the law over that interval.
+// Separated curves: their deformation over the box of poses, and the law over that interval.
 VectorXd radii(const StateAt& mapped, const Tolerance& near) {
     const System& system = mapped.system;
     VectorXd r = VectorXd::Zero(system.n());
@@ -186,11 +186,11 @@ VectorXd radii(const StateAt& mapped, const Tolerance& near) {
     if (system.separated.empty()) return r;
     const auto x = deformations(system, poses, Interval(mapped.state.load));
     for (std::size_t k = 0; k < system.separated.size(); ++k) {
-        const SeparatedCorner& corner = system.separated[k];
-        const Interval& x_of_corner = x[corner.element][corner.axis];
+        const SeparatedCurve& curve = system.separated[k];
+        const Interval& x_of_curve = x[curve.element][curve.axis];
         const Index to = system.deformation(k);
-        r[to] = mag(x_of_corner - Interval(mapped.z[to]));
-        r[to + 1] = mag(force(law_of(system, corner), x_of_corner) - Interval(mapped.z[to + 1]));
+        r[to] = mag(x_of_curve - Interval(mapped.z[to]));
+        r[to + 1] = mag(force(law_of(system, curve), x_of_curve) - Interval(mapped.z[to + 1]));
     }
     return r;
 }

@@ -26,19 +26,6 @@ bool over_a_knot(const Curve& curve, const Interval& x) {
     return piece_at(curve, x.lo) != piece_at(curve, x.hi);
 }
 
-bool has_corner(const ScalarLaw& law) {
-    constexpr double rounding = 1e-9;
-    const auto* curve = std::get_if<Curve>(&law);
-    if (curve == nullptr) return false;
-    for (std::size_t p = 0; p < curve->knots.size(); ++p) {
-        const double before = expand_piece(*curve, p, curve->knots[p])[1],
-                     behind = expand_piece(*curve, p + 1, curve->knots[p])[1];
-        if (std::abs(behind - before) > rounding * std::max(std::abs(before), std::abs(behind)))
-            return true;
-    }
-    return false;
-}
-
 void expand(const Curve& curve, double x, int count, double* f) {
     const auto of = expand_piece(curve, piece_at(curve, x), x);
     for (int j = 0; j < count; ++j) f[j] = j < 4 ? of[static_cast<std::size_t>(j)] : 0;

@@ -15,9 +15,6 @@ void expand(const Curve& curve, double x, int count, double* f);
 // Whether x contains a knot.
 bool over_a_knot(const Curve& curve, const Interval& x);
 
-// Whether the slope jumps at a knot by more than rounding, as in a stop that closes.
-bool has_corner(const ScalarLaw& law);
-
 template <class T>
 T force(const ScalarLaw& law, const T& x) {
     if (const auto* rate = std::get_if<LinearRate>(&law)) return x * Base<T>(rate->k);

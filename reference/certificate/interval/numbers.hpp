@@ -163,6 +163,27 @@ Jet<n> operator*(Jet<n> a, const Interval& b) {
     return a;
 }
 
+// x(s) for |s| ≤ 1, without the last coefficient, which `take_radius` leaves too: it replaces x by
+// doubles and returns the radius they leave.
+inline Interval along_curve(const Interval& x) { return x; }
+inline double take_radius(Interval& x) {
+    const double radius = rad(x);
+    x = mid(x);
+    return radius;
+}
+template <int n>
+Interval along_curve(const Jet<n>& x) {
+    Interval sum = x.c[0];
+    for (std::size_t k = 1; k + 1 < x.c.size(); ++k) sum += x.c[k] * Interval(-1, 1);
+    return sum;
+}
+template <int n>
+double take_radius(Jet<n>& x) {
+    Interval sum;
+    for (std::size_t k = 0; k + 1 < x.c.size(); ++k) sum += take_radius(x.c[k]);
+    return sum.hi;
+}
+
 // ---- Duals. Zero derivatives are skipped: an element has two bodies and a point one.
 
 template <class S, int N>

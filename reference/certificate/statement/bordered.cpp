@@ -350,12 +350,16 @@ Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, 
     if (problem.size() > problem.n()) values.J = bordered_slopes(problem, values);
     return values;
 }
-Residual residual(const Problem& problem, const std::vector<Interval>& y, const Interval& a) {
-    Residual at =
+template <class S>
+Values<S> residual(const Problem& problem, const std::vector<S>& y, const S& a) {
+    Values<S> values =
         residual(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a));
-    add_border(problem, y, at.E);
-    return at;
+    add_border(problem, y, values.E);
+    return values;
 }
+template Values<Interval> residual(const Problem&, const std::vector<Interval>&, const Interval&);
+template Values<Along> residual(const Problem&, const std::vector<Along>&, const Along&);
+template Values<Jet<1>> residual(const Problem&, const std::vector<Jet<1>>&, const Jet<1>&);
 template Values<double> evaluate(const Problem&, const std::vector<double>&, const double&, Slopes);
 template Values<Interval> evaluate(const Problem&, const std::vector<Interval>&, const Interval&,
                                    Slopes);

@@ -69,7 +69,8 @@ template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes);
 template <class S>
 Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a);
-Residual residual(const Problem& problem, const std::vector<Interval>& y, const Interval& a);
+template <class S>
+Values<S> residual(const Problem& problem, const std::vector<S>& y, const S& a);
 
 // The matrix, of intervals its middle.
 template <class S>

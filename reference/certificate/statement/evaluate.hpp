@@ -26,7 +26,6 @@ struct Assembly {
     const S& a;
     Values<S> out;
     std::vector<Slope<S>> slopes = {};  // of all parts, one after the other
-    Laws laws = {};                     // for InForces
     bool fixed_forces = false;          // elastic forces are constant: slopes of the geometry alone
     // Σ |force| + |moment| / L of the parts on each body; not computed if empty
     std::vector<double> acts = {};
@@ -75,10 +74,11 @@ struct Assembly {
     template <int N>
     void add(const Slots& slots, int row, const Dual<S, N>& x) {
         add(slots, row, x.v);
-        if constexpr (std::is_same_v<S, Interval> && N == 6) {
+        if constexpr (N == 6) {
             for (std::size_t k = 0; k < 6; ++k)
                 if (!is_zero(x.d[k]))
-                    laws.D.push_back({row, laws.column + static_cast<int>(k), x.d[k]});
+                    out.laws.D.push_back(
+                        {row, out.laws.column + static_cast<int>(k), along_curve(x.d[k])});
             return;
         }
         const auto columns = [&](BodyId body, int from) {
@@ -144,7 +144,7 @@ struct Assembly {
     template <class T>
     void element(std::size_t e) {
         const ElementPath& path = system.elements[e];
-        laws.column = 6 * static_cast<int>(e);
+        out.laws.column = 6 * static_cast<int>(e);
         std::visit(
             [&](const auto& kind) {
                 const Slots slots{kind.i.body, kind.j.body};
@@ -204,16 +204,14 @@ struct Assembly {
     // The force k of an element as one number for all equations.
     template <class T>
     T as_one(const T& f, std::size_t k) {
-        if constexpr (std::is_same_v<T, InForces<Interval>>) {
-            const double radius = rad(f.v);
-            if (!bounded(f.v) || radius == 0) return f;
-            laws.rho[laws.column + static_cast<int>(k)] = radius;
-            T one;
-            one.v = mid(f.v);
+        T one = f;
+        if constexpr (std::is_same_v<T, InForces<S>>) {
+            const double radius = take_radius(one.v);
+            if (!std::isfinite(radius)) return f;
+            out.laws.rho[out.laws.column + static_cast<int>(k)] = radius;
             one.d[k] = constant<S>(1.);
-            return one;
         }
-        return f;
+        return one;
     }
 
     static S constant_of(const S& x) { return x; }
@@ -276,10 +274,10 @@ struct Assembly {
                 acting(bushing, u, m, path.rotational, i, j)};
     }
     template <class T>
-    void corner(std::size_t c) {
-        const SeparatedCorner& separated = system.separated[c];
+    void curve(std::size_t c) {
+        const SeparatedCurve& separated = system.separated[c];
         const ScalarLaw& law = law_of(system, separated);
-        const int to = system.corner(c), x_at = system.deformation(c), f_at = x_at + 1;
+        const int to = system.curve(c), x_at = system.deformation(c), f_at = x_at + 1;
         const S &x = z[static_cast<std::size_t>(x_at)], &f = z[static_cast<std::size_t>(f_at)];
         std::visit(
             [&](const auto& kind) {
@@ -367,8 +365,8 @@ void assemble_others(Assembly<S>& sum) {
     const Model& model = *system.model;
     for (std::size_t c = 0; c < system.separated.size(); ++c)
         has_two_bodies(model.elastics[system.separated[c].element].kind)
-            ? sum.template corner<Two>(c)
-            : sum.template corner<One>(c);
+            ? sum.template curve<Two>(c)
+            : sum.template curve<One>(c);
     for (std::size_t c = 0; c < model.constraints.size(); ++c)
         has_two_bodies(model.constraints[c].kind) ? sum.template constraint<Two>(c)
                                                   : sum.template constraint<One>(c);
@@ -398,6 +396,15 @@ template <class S>
 Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a) {
     Assembly<S> sum{system, z, a, {}};
     assemble<S, S, S>(sum, Slopes::no);
+    return std::move(sum.out);
+}
+template <class S>
+Values<S> residual(const System& system, const std::vector<S>& z, const S& a) {
+    Assembly<S> sum{system, z, a, {}};
+    sum.out.E.assign(static_cast<std::size_t>(system.n()), constant<S>(0.));
+    sum.out.laws.rho.setZero(6 * static_cast<Eigen::Index>(system.elements.size()));
+    for (std::size_t e = 0; e < system.elements.size(); ++e) sum.template element<InForces<S>>(e);
+    assemble_others<S, S, S>(sum);
     return std::move(sum.out);
 }
 template <class S>

@@ -6,20 +6,12 @@ template Values<Interval> evaluate_without_slopes(const System&, const std::vect
                                                   const Interval&);
 template Values<Interval> evaluate(const System&, const std::vector<Interval>&, const Interval&,
                                    Slopes);
+template Values<Interval> residual(const System&, const std::vector<Interval>&, const Interval&);
 template std::vector<JointWrench<Interval>> wrenches(const System&, const std::vector<Interval>&,
                                                      const Interval&);
 template std::vector<JointWrench<Interval>> unit_wrenches(const System&, int,
                                                           const std::vector<Interval>&,
                                                           const Interval&);
-
-Residual residual(const System& system, const std::vector<Interval>& z, const Interval& a) {
-    Assembly<Interval> sum{system, z, a, {}};
-    sum.out.E.assign(static_cast<std::size_t>(system.n()), Interval());
-    sum.laws.rho.setZero(6 * static_cast<Eigen::Index>(system.elements.size()));
-    for (std::size_t e = 0; e < system.elements.size(); ++e) sum.element<InForces<Interval>>(e);
-    assemble_others<Interval, Interval, Interval>(sum);
-    return {std::move(sum.out.E), std::move(sum.laws)};
-}
 
 std::vector<std::array<Interval, 6>> deformations(const System& system,
                                                   const std::vector<Interval>& z,

@@ -82,15 +82,6 @@ void set_formulations(System& system) {
     }
 }
 
-template <class Visit>
-void for_corners(const Model& model, const Visit& visit) {
-    for (std::size_t e = 0; e < model.elastics.size(); ++e)
-        for (std::size_t k = 0; k < 6; ++k)
-            if (const ScalarLaw* law = scalar_law(model.elastics[e].kind, k);
-                law != nullptr && has_corner(*law))
-                visit(SeparatedCorner{e, k});
-}
-
 // Origin c, the mean of all origins and attachment points, and size L, the largest distance of one
 // from c [m]. The proof does not depend on them.
 void set_size(System& system) {
@@ -119,12 +110,6 @@ void set_size(System& system) {
 
 }  // namespace
 
-bool has_corners(const Model& model) {
-    bool any = false;
-    for_corners(model, [&](const SeparatedCorner&) { any = true; });
-    return any;
-}
-
 std::string why_not_tried(const System& system, int max_unknowns) {
     if (!arithmetic_is_as_proved())
         return "the arithmetic does not round to nearest, or flushes denormals to zero: nothing "
@@ -134,22 +119,22 @@ std::string why_not_tried(const System& system, int max_unknowns) {
                        max_unknowns);
 }
 
-const ScalarLaw& law_of(const System& system, const SeparatedCorner& corner) {
-    return *scalar_law(system.model->elastics[corner.element].kind, corner.axis);
+const ScalarLaw& law_of(const System& system, const SeparatedCurve& curve) {
+    return *scalar_law(system.model->elastics[curve.element].kind, curve.axis);
 }
 
-void set_corners(const System& system, Eigen::VectorXd& z, double a) {
+void set_separated(const System& system, Eigen::VectorXd& z, double a) {
     if (system.separated.empty()) return;
     const auto x = deformations(system, {z.data(), z.data() + z.size()}, Interval(a));
     for (std::size_t k = 0; k < system.separated.size(); ++k) {
-        const SeparatedCorner& corner = system.separated[k];
-        const double at = mid(x[corner.element][corner.axis]);
+        const SeparatedCurve& curve = system.separated[k];
+        const double at = mid(x[curve.element][curve.axis]);
         z[system.deformation(k)] = at;
-        z[system.deformation(k) + 1] = force(law_of(system, corner), at);
+        z[system.deformation(k) + 1] = force(law_of(system, curve), at);
     }
 }
 
-System make_system(const Model& model, const Branch& branch, Corners corners) {
+System make_system(const Model& model, const Branch& branch, Curves curves) {
     if (!stands_on(model, branch))
         throw std::invalid_argument(
             "branch '" + branch.name +
@@ -161,10 +146,10 @@ System make_system(const Model& model, const Branch& branch, Corners corners) {
     set_paths(system);
     set_formulations(system);
     set_size(system);
-    if (corners == Corners::separated)
-        for_corners(model, [&](const SeparatedCorner& corner) {
-            system.separated.push_back(corner);
-            system.elements[corner.element].separated[corner.axis] = true;
+    for (std::size_t e = 0; curves == Curves::separated && e < model.elastics.size(); ++e)
+        each_curve(model.elastics[e].kind, [&](std::size_t k, const Curve&) {
+            system.separated.push_back({e, k});
+            system.elements[e].separated[k] = true;
         });
     return system;
 }

@@ -2,17 +2,19 @@
 //
 //   unknowns z    per body    r - c [m], the quaternion (w, x, y, z) [-]
 //                 per row     its reaction R [N, N·m]
-//                 per corner  deformation x, force f
+//                 per curve   deformation x, force f
 //   equations E   per body    Σ forces [N], Σ moments about its origin [N·m]
 //                 per row     Φ [m, -]
-//                 per corner  x(r, p; a) - x, f - ∂u/∂x
+//                 per curve   x(r, p; a) - x, f - ∂u/∂x
 //                 per body    |p|² - 1
 //
-// A corner is a law whose slope jumps. It is separated: its deformation x and force f become
-// unknowns, so that its slope is in one entry of ∂E/∂z. Across the corner that entry is an
-// interval, and the rest of the matrix is numbers. Inside its element the interval would be in each
-// of the twelve rows and fourteen columns and vary in each independently, which fails for any stop
-// much stiffer than its surroundings. The solutions are the same: x and f are functions of (r, p).
+// A law of cubic pieces is separated where that helps: its deformation x and force f become
+// unknowns, so that its slope is in one entry of ∂E/∂z. Across a corner, where the slope jumps, that
+// entry is an interval, and the rest of the matrix is numbers. Inside its element the interval would
+// be in each of the twelve rows and fourteen columns and vary in each independently, which fails for
+// any stop much stiffer than its surroundings. Along a branch, x as a polynomial of s has a narrow
+// range; computed from the poses over a piece, x would be far wider, and reach knots that the piece
+// does not. The solutions are the same: x and f are functions of (r, p).
 //
 // c is a double near the model, the origin of all positions, so that the origin of the ground frame
 // does not matter. Every quantity that a driver may move is start + rate·a in intervals: stored
@@ -46,8 +48,8 @@ struct ElementPath : DrivenElement<Affine> {
     // forces unchanged.
     std::array<bool, 3> turns_freely{};
 };
-// A law with a corner, separated: its deformation and force are unknowns.
-struct SeparatedCorner {
+// A separated law: its deformation and force are unknowns.
+struct SeparatedCurve {
     std::size_t element = 0, axis = 0;
 };
 using LoadPath = DrivenLoad<Affine>;
@@ -55,68 +57,66 @@ using LoadPath = DrivenLoad<Affine>;
 struct System {
     const Model* model = nullptr;
     const Branch* branch = nullptr;
-    std::vector<Affine> values;              // per Model::constraints: its offset, length or angle
-    std::vector<int> first_row;              // per Model::constraints
-    std::vector<ElementPath> elements;       // per Model::elastics
-    std::vector<LoadPath> loads;             // static and driven
-    std::vector<SeparatedCorner> separated;  // separated corners
-    Eigen::Vector3d c = {0, 0, 0};           // [m]
-    double length = 1;  // L, size of the model: reference length of scaling [m]
+    std::vector<Affine> values;         // per Model::constraints: its offset, length or angle
+    std::vector<int> first_row;         // per Model::constraints
+    std::vector<ElementPath> elements;  // per Model::elastics
+    std::vector<LoadPath> loads;        // static and driven
+    std::vector<SeparatedCurve> separated;
+    Eigen::Vector3d c = {0, 0, 0};  // [m]
+    double length = 1;              // L, size of the model: reference length of scaling [m]
     // largest distance of a point from the origin of the stored coordinates, at least `length` [m]
     double farthest = 1;
     int bodies = 0, rows = 0;  // nb, m
     bool conservative = true;  // no follower, no formulation without energy
-    int corners() const { return 2 * static_cast<int>(separated.size()); }
-    int n() const { return 7 * bodies + rows + corners(); }
+    int curves() const { return 2 * static_cast<int>(separated.size()); }
+    int n() const { return 7 * bodies + rows + curves(); }
     int pose(BodyId body) const { return 7 * body; }
     int reaction(std::size_t constraint) const { return 7 * bodies + first_row[constraint]; }
     int balance(BodyId body) const { return 6 * body; }
     int closure(std::size_t constraint) const { return 6 * bodies + first_row[constraint]; }
-    int deformation(std::size_t corner) const {
-        return 7 * bodies + rows + 2 * static_cast<int>(corner);
+    int deformation(std::size_t curve) const {
+        return 7 * bodies + rows + 2 * static_cast<int>(curve);
     }
-    int corner(std::size_t corner) const {
-        return 6 * bodies + rows + 2 * static_cast<int>(corner);
-    }
-    int norm(BodyId body) const { return 6 * bodies + rows + corners() + body; }
+    int curve(std::size_t curve) const { return 6 * bodies + rows + 2 * static_cast<int>(curve); }
+    int norm(BodyId body) const { return 6 * bodies + rows + curves() + body; }
 };
 
 // Throws std::invalid_argument where model and branch do not fit, or a driver moves a quantity that
 // does not exist.
-enum class Corners {
-    in_place,  // a law with a corner is evaluated inside its element
+enum class Curves {
+    in_place,  // a curve is evaluated inside its element
     separated  // its deformation and its force are unknowns of their own
 };
-System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
-bool has_corners(const Model& model);
+System make_system(const Model& model, const Branch& branch, Curves curves = Curves::in_place);
 // Reason why no proof is tried, the size or the arithmetic of the thread; empty where one is.
 std::string why_not_tried(const System& system, int max_unknowns);
-const ScalarLaw& law_of(const System& system, const SeparatedCorner& corner);
-// Sets x and f of the corners from the poses of z.
-void set_corners(const System& system, Eigen::VectorXd& z, double a);
+const ScalarLaw& law_of(const System& system, const SeparatedCurve& curve);
+// Sets x and f of the separated curves from the poses of z.
+void set_separated(const System& system, Eigen::VectorXd& z, double a);
 
-// E, and if requested ∂E/∂z [n × n] and ∂E/∂a.
-template <class S>
-struct Values {
-    std::vector<S> E, E_a;
-    SparseRows<S> J;
-};
-enum class Slopes { no, yes };
-
-// E at a point in intervals. A law's force is evaluated to f̂ ± ρ and acts on two bodies at least:
-// as one number in all equations, which leaves far less to be proved than as independent ones,
+// A law's force is evaluated to f̂ ± ρ and acts on two bodies at least: as one number in all
+// equations, which leaves far less to be proved than as independent ones,
 //
 //   E ∈ E(f̂) + D [-ρ, ρ]     D: the actions of its unit, six columns per element, one entry a place
+//
+// Along a curve, E_k the Taylor coefficients below the last, Σ E_k sᵏ ∈ Σ E_k(f̂) sᵏ + D [-ρ, ρ] for
+// |s| ≤ 1: with f_j ∈ f̂_j ± ρ_j and the coefficients D_i, ρ = Σ ρ_j and D = D_0 + Σ D_i [-1, 1].
 struct Laws {
     std::vector<Slope<Interval>> D;
     Eigen::VectorXd rho;
     int column = 0;  // while assembling: the first of the element
 };
-struct Residual {
-    std::vector<Interval> E;
+// E, and if requested ∂E/∂z [n × n] and ∂E/∂a, or the laws.
+template <class S>
+struct Values {
+    std::vector<S> E, E_a;
+    SparseRows<S> J;
     Laws laws;
 };
-Residual residual(const System& system, const std::vector<Interval>& z, const Interval& a);
+enum class Slopes { no, yes };
+// E(f̂) and the laws, in intervals.
+template <class S>
+Values<S> residual(const System& system, const std::vector<S>& z, const S& a);
 template <class S>
 Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes);
 // Number types along a branch piece: for the equations and for their Jacobian.

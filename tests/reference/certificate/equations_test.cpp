@@ -151,7 +151,7 @@ TEST(CertificateEquations, StateOnTheKnotOfAStopAndABranchAcrossItAreProved) {
     };
     const Tube tube = tube_of(way);
     EXPECT_EQ(tube.state, ProofState::proved) << tube.detail;
-    EXPECT_GE(tube.corners, 1);
+    EXPECT_GE(tube.knots, 1);
 }
 
 // A cambered wheel that rolls, on a skewed hinge: on a tyre over its lift-off, on a jack, and braked.
@@ -179,7 +179,7 @@ TEST(CertificateEquations, RollingWheelIsProvedAndExcludedWhenMovedByAMicrometre
         }
         const Tube tube = certify_branch(side.model, side.branch, states);
         EXPECT_EQ(tube.state, ProofState::proved) << branch << tube.detail;
-        corners += tube.corners;
+        corners += tube.knots;
     }
     EXPECT_EQ(corners, 1);  // where the wheel leaves the road
     EXPECT_GT(lifted, 0);   // without a load the wheel stays where it is
