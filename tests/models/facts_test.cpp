@@ -1,5 +1,6 @@
 // Facts about the scenes of tests/models/fixtures and models/scenes, in fixtures/*.facts.
 #include "tests/models/facts.hpp"
+#include "tests/support/folder.hpp"
 
 namespace elastocheck {
 namespace {

@@ -16,6 +16,8 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
+#include "models/kinds.hpp"
+#include "models/overloaded.hpp"
 #include "tests/engines/simbody/engine.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
