@@ -23,18 +23,17 @@ const std::string kinds =
 
 // The files that implement one kind, and what for.
 const std::set<std::string> implement_a_kind{
-    "include/elastocheck/model.hpp",            // rows of a constraint
-    "models/kinds.hpp",                         // the list itself
-    "models/compile/welds.cpp",                 // fixed joints
-    "models/compile/links.cpp",                 // spherical joints of a link
-    "models/import/export/export_adm.cpp",      // weights as masses
-    "models/import/export/export_chrono.cpp",   // stops between the ends of a spring
-    "models/vanishing_length.cpp",              // lengths above zero
-    "recursive/linear_response.cpp",            // a disturbance, not a driver
-    "recursive/residuals.cpp",                  // lengths above zero
-    "recursive/series/term_values.hpp",         // series of the laws
-    "reference/certificate/interval/laws.cpp",  // laws in intervals
-    "reference/certificate/interval/laws.hpp",
+    "include/elastocheck/model.hpp",                        // rows of a constraint
+    "models/kinds.hpp",                                     // the list itself
+    "models/compile/welds.cpp",                             // fixed joints
+    "models/compile/links.cpp",                             // spherical joints of a link
+    "models/import/export/export_adm.cpp",                  // weights as masses
+    "models/import/export/export_chrono.cpp",               // stops between the ends of a spring
+    "models/vanishing_length.cpp",                          // lengths above zero
+    "recursive/linear_response.cpp",                        // a disturbance, not a driver
+    "recursive/residuals.cpp",                              // lengths above zero
+    "recursive/series/term_values.hpp",                     // series of the laws
+    "reference/certificate/interval/laws.hpp",              // laws in intervals
     "reference/certificate/statement/system.cpp",           // isotropic bushings
     "reference/energy/potential/potential.cpp",             // rotation of bushings
     "reference/energy/solve.cpp",                           // lengths above zero

@@ -1,8 +1,9 @@
 // The value under the pointer at 0, with all curves, without one, and after the pointer left.
 const svg=[...document.querySelectorAll('svg[data-x]')].find(s=>s.querySelector('title')?.textContent=='Toe angle');
-const box=svg.getBoundingClientRect(),[x0,x1,low,high]=svg.dataset.x.split(' ').map(Number);
-const at=box.left+(x0+(0-low)/(high-low)*(x1-x0))*box.width/svg.viewBox.baseVal.width;
-const point=()=>{svg.dispatchEvent(new PointerEvent('pointermove',{clientX:at,clientY:box.top+50}));return document.querySelector('.tip').textContent};
+// the pointer where the wheel travel is zero
+const [x0,x1,low,high]=svg.dataset.x.split(' ').map(Number);
+const at=new DOMPoint(x0+(0-low)/(high-low)*(x1-x0),50).matrixTransform(svg.getScreenCTM());
+const point=()=>{svg.dispatchEvent(new PointerEvent('pointermove',{clientX:at.x,clientY:at.y}));return document.querySelector('.tip').textContent};
 const before=point();
 const entry=[...svg.querySelectorAll('g[data-e]')].find(g=>g.textContent=='vertical');
 entry.dispatchEvent(new MouseEvent('click'));
