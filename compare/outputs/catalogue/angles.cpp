@@ -8,6 +8,7 @@
 #include "compare/outputs/catalogue/subject.hpp"
 #include "compare/outputs/catalogue/wishbones.hpp"
 #include "compare/outputs/wheel_load.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
