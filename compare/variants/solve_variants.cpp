@@ -25,8 +25,8 @@ namespace {
 
 constexpr const char* other_outputs = "the variant has other outputs than the scene";
 constexpr int points_for_extremes = 20, max_points = 1000;
-// Of the series: with 32, one expansion reaches the ends of fewer branches than its price is worth; of 16
-// to 32, 24 took least time on both McPherson struts (a third less).
+// Of the series: the ends of a branch are mostly beyond one expansion, also of order 32; of 16 to 32,
+// 24 took least time on the generic McPherson strut.
 constexpr int order = 24;
 
 // Whether the station is a recorded point of a way with so many increments: which one, or -1.
