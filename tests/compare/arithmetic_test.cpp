@@ -249,10 +249,10 @@ void expect_the_same(const char* name) {
     }
 }
 
-TEST(Arithmetic, RoundingModeDoesNotChangeAStrut) { expect_the_same("mcpherson"); }
+TEST(Arithmetic, RoundingModeDoesNotChangeTheSolutionsOfAStrut) { expect_the_same("mcpherson"); }
 
 // A single bushing: all its points coincide, and a rounding difference between them is no length.
-TEST(NightlyArithmetic, RoundingModeDoesNotChangeAnyScene) {
+TEST(NightlyArithmetic, RoundingModeDoesNotChangeTheSolutionsOfFourSmallScenes) {
     for (const char* name : {"pendulum", "arch_driven", "parallel_springs", "single_bushing"})
         expect_the_same(name);
 }
@@ -280,7 +280,7 @@ TEST(Arithmetic, PerturbedSceneDiffersByOneUlpPerNumber) {
 
 // Each number of the scene in turn is NaN, also of its geometry: it has no effect, or the outcome
 // reports it.
-TEST(NightlyArithmetic, NonFiniteNumberIsHarmlessOrReported) {
+TEST(NightlyArithmetic, NonFiniteNumberInASceneChangesNoResultOrIsReported) {
     for (const char* name : {"mcpherson", "tyre_on_road"}) {
         const Scene scene = small(name);
         const auto expected = answers(scene);

@@ -212,7 +212,7 @@ TEST(Candidate, ColumnWrongFromAPointOnIsReportedWithItsLastRightPoint) {
     EXPECT_EQ(found->at, last_right);
 }
 
-TEST(Candidate, SmoothErrorHasNoExplanation) {
+TEST(Candidate, SmoothErrorOfToeFailsWithoutANamedCause) {
     for (const double power : {1.5, 2., 3., 4., 5., 6.}) {
         Candidate candidate = table_of(Leg::equilibrium);
         auto& toe = values(candidate, "toe");
@@ -224,7 +224,7 @@ TEST(Candidate, SmoothErrorHasNoExplanation) {
     }
 }
 
-TEST(Candidate, NonNumericValueOrPlaceIsNotJudged) {
+TEST(Candidate, CandidateWithAnInfiniteOutputOrParameterIsNotJudged) {
     for (const char* name : {"toe", "wheel_centre_x", "travel"}) {
         Candidate candidate = table_of(Leg::equilibrium);
         values(candidate, name)[7] = INFINITY;  // as a reader passes a value that is not a number
@@ -236,7 +236,7 @@ TEST(Candidate, NonNumericValueOrPlaceIsNotJudged) {
     EXPECT_EQ(judged(candidate).verdict, Grade::not_judged);
 }
 
-TEST(Candidate, PartOfTheBranchesIsJudgedAndTheRestReportedAsMissing) {
+TEST(Candidate, CandidateOfSomeBranchesIsJudgedOnTheseAndTheOthersAreReportedAsMissing) {
     const Candidate all = table_of(Leg::equilibrium);
     Candidate part = only(all, [&](std::size_t k) {
         return all.points.branch[k] == "jounce" && all.points.a[k] <= 1500;
@@ -303,7 +303,7 @@ TEST(Candidate, MissingPointsColumnsAndEndsAreReported) {
 
 // With the default tolerance a given force is judged by a share of its extent; a force that is not
 // given does not count as correct.
-TEST(Candidate, WrongForceFailsBesideRightPositions) {
+TEST(Candidate, WrongForceFailsEvenIfAllPositionsAreRight) {
     const auto without = judged(table_of(Leg::equilibrium));
     EXPECT_EQ(without.others, 0);
     EXPECT_TRUE(without.has_forces);
@@ -325,7 +325,7 @@ TEST(Candidate, WrongForceFailsBesideRightPositions) {
     EXPECT_EQ(right.verdict, Grade::pass) << texts(right);
 }
 
-TEST(Candidate, ConstantColumnsAreNotJudged) {
+TEST(Candidate, CandidateOfConstantColumnsIsNotJudgedAndASingleConstantColumnFails) {
     Candidate candidate = table_of(Leg::equilibrium);
     const double all_over[] = {1, 2, 3, 4, 5, 6};
     std::size_t c = 0;
@@ -369,7 +369,7 @@ TEST(Candidate, PointsAtZeroParameterAloneAreNotJudged) {
     EXPECT_EQ(judged(wrong).verdict, Grade::fail);
 }
 
-TEST(Candidate, NothingComparedIsNotJudged) {
+TEST(Candidate, CandidateWithoutComparableNumbersIsNotJudged) {
     Candidate nowhere = table_of(Leg::equilibrium);
     for (double& a : nowhere.points.a) a += 1e6;
     for (double& t : values(nowhere, "travel")) t += 1e6;
@@ -448,7 +448,7 @@ TEST(Candidate, LegAsASolverFunctionIsJudgedAsThatLeg) {
     }
 }
 
-TEST(Candidate, DisplacedStateHasTheResidualOfItsStiffness) {
+TEST(Candidate, StateDisplacedByATenthOfAMillimetreHasAForceResidual) {
     const auto& all = solved().comparison;
     const BranchSide side = sides_of(solved().model, solved().model.branches[0], 4).front();
     const auto path = solve_branch(side, {.leg = Leg::equilibrium});
@@ -465,7 +465,7 @@ TEST(Candidate, DisplacedStateHasTheResidualOfItsStiffness) {
     EXPECT_EQ(moved.leftovers[0].truth.front().force, at_rest.leftovers[0].truth.front().force);
 }
 
-TEST(Candidate, SolverThatFailsIsNotJudged) {
+TEST(Candidate, CandidateOfAFailedSolverIsNotJudged) {
     const CandidateSolver nothing = [](const Model&, const Branch&, std::span<const double>) {
         return EquilibriumPath{Outcome::iteration_limit, "gave up", {}, {}};
     };

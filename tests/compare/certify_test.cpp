@@ -35,9 +35,9 @@ TEST(Certify, EverySideOfEveryBranchIsProvedForEachReference) {
     }
 }
 
-TEST(Certify, NothingProvedIsNotConclusive) { EXPECT_FALSE(CertifyStudy{}.conclusive()); }
+TEST(Certify, StudyWithoutBranchesIsNotConclusive) { EXPECT_FALSE(CertifyStudy{}.conclusive()); }
 
-TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {
+TEST(Certify, OneOpenPointMakesTheStudyInconclusiveAndIsNamed) {
     CertifyStudy study;
     CertifiedSide& side = study.sides.emplace_back();
     side.unit = Unit::newton;
@@ -75,7 +75,7 @@ TEST(Certify, ExcludedReferenceMakesTheComparisonInconclusive) {
         << objections.worst.front().what;
 }
 
-TEST(Certify, ComparisonWithoutARequestProvesNothing) {
+TEST(Certify, ComparisonWithoutTheProveOptionProvesNoPoint) {
     Options options;
     options.prove = false;
     EXPECT_EQ(

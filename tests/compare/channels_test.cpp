@@ -58,14 +58,14 @@ TEST(Channels, CamberIsPositiveWhenTheTopLeansOut) {
     }
 }
 
-TEST(Channels, WheelSpinDoesNotChangeTheOutputs) {
+TEST(Channels, SpinOfTheWheelDoesNotChangeItsOutputs) {
     const auto [model, state] = wheel(1, about(Vector3d::UnitY(), 77));
     EXPECT_NEAR(value(model, state, "toe"), 0, 1e-12);
     EXPECT_NEAR(value(model, state, "camber"), 0, 1e-12);
     EXPECT_NEAR(value(model, state, "wheel_centre_y"), 2100, 1e-9);
 }
 
-TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
+TEST(Channels, ListHasKinematicOutputsInMillimetresThenReactionsByJoint) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto list = channels(model);
     // Centre, toe, camber, travel; patch position, track and wheelbase change; four of the steering
@@ -83,7 +83,7 @@ TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
         EXPECT_TRUE(!list[c].main && list[c].kinematic()) << c;
 }
 
-TEST(Channels, EachHasAUnitADefinitionAndAUniqueName) {
+TEST(Channels, EveryOutputHasAUnitADefinitionWithItsSignAndAUniqueName) {
     for (const auto& name : support::small_scene_names()) {
         const auto list = channels(compile(support::scene(name)));
         for (std::size_t c = 0; c < list.size(); ++c) {
@@ -98,7 +98,7 @@ TEST(Channels, EachHasAUnitADefinitionAndAUniqueName) {
     }
 }
 
-TEST(Channels, NamesContainTheWheelWhereThereAreSeveral) {
+TEST(Channels, OutputNamesContainTheWheelIfThereAreSeveral) {
     auto [model, state] = wheel(1, about(Vector3d::UnitZ(), -2));
     model.bodies.push_back({"other", {}});
     model.wheels.push_back(
@@ -112,7 +112,7 @@ TEST(Channels, NamesContainTheWheelWhereThereAreSeveral) {
     EXPECT_EQ(find_channel(channels(model), "toe"), -1);
 }
 
-TEST(Travel, CountsFromTheDesignPositionUpwards) {
+TEST(Travel, IsPositiveUpwardsFromTheDesignPosition) {
     auto [model, state] = wheel(1, Eigen::Quaterniond::Identity());
     model.bodies[0].design.r = Vector3d(1, 2, 2.5);
     EXPECT_NEAR(value(model, state, "travel"), 500, 1e-9);
@@ -146,7 +146,7 @@ struct Steered {
     double operator[](const std::string& name) const { return value(model, state, name); }
 };
 
-TEST(SteeringAxis, FiguresEqualTheirDefinitions) {
+TEST(SteeringAxis, CasterInclinationScrubRadiusAndTrailEqualHandCalculation) {
     for (const int side : {+1, -1}) {
         Steered drawn(side);
         for (int order = 0; order < 2; ++order) {  // exchanging the ends of the axis has no effect
@@ -176,7 +176,7 @@ TEST(SteeringAxis, ScrubAndTrailAreMeasuredInAxesOfTheSteeredWheel) {
 }
 
 // The road is at the patch: raised by 50 mm, it meets the axis 5 mm further back and inboard.
-TEST(SteeringAxis, IntersectsTheRoadAtTheHeightOfThePatch) {
+TEST(SteeringAxis, ScrubAndTrailAreMeasuredAtTheHeightOfThePatch) {
     Steered risen(1);
     risen.state.poses[0].r.z() = 0.05;
     EXPECT_NEAR(risen["mechanical_trail"], 25, 1e-10);
@@ -274,7 +274,7 @@ TEST(Ackermann, IsUndefinedUnlessBothWheelsSteerInOneDirection) {
     EXPECT_EQ(find_channel(channels(rear.model), "ackermann"), -1);
 }
 
-TEST(Track, IsTheDistanceOfOppositeContactPatches) {
+TEST(Track, IsTheLateralDistanceOfOppositeContactPatches) {
     TwoSteered axle(0, 0);
     EXPECT_NEAR(axle["track"], 1400, 1e-10);
     axle.state.poses[0].r.y() += 0.004;
@@ -320,7 +320,7 @@ struct Driven {
     }
 };
 
-TEST(Effort, TimesTheDrivenDisplacementIsTheWork) {
+TEST(DriveEffort, IsTheReactionAlongTheDrivenMotionOfRodPlaneAndAngle) {
     // A rod between the origins, pushing them apart with 5 N; a plane whose normal is z of body j,
     // which is -y of the ground; and an angle about x.
     const Driven rod(DistanceBetween{Point{0}, Point{1}, 1}, {Vector3d(5, 0, 0), Vector3d::Zero()});
@@ -345,7 +345,7 @@ TEST(Effort, TimesTheDrivenDisplacementIsTheWork) {
               std::vector<double>{0});
 }
 
-TEST(Totals, SumTheWrenchesOnABodyAboutOnePoint) {
+TEST(ReactionTotals, SumTheWrenchesOfTwoJointsOnABodyAboutOnePoint) {
     Model model;
     model.bodies = {{"arm", {}}, {"knuckle", {}}};
     model.joints = {{"front", 0, ground, {0, {1, 0, 0}}},

@@ -145,7 +145,7 @@ TEST(Characteristics, TrailingArmHasRollCentreOnTheRoadAndInfiniteFrontViewArm) 
 
 // On an oblique slide both wheels move together: back by a quarter and across by a tenth
 // of their rise.
-TEST(Characteristics, RigidAxleFiguresAreThoseOfItsHeave) {
+TEST(Characteristics, FiguresOfAnAxleOnAnObliqueSlideAreThoseOfItsHeave) {
     const Model model = filled("axle_on_a_joint",
                                {{"JOINT", "type: translational, at: mid, axis: [-0.25, 0.1, 1]"}});
     for (const Leg leg : all_legs) {
@@ -185,7 +185,7 @@ TEST(Characteristics, WheelsOfARigidAxleHaveTheirOwnTravel) {
 
 // Per unit of rise the patch moves back by (0.1 + 0.3)/0.5, the centre by 0.1/0.5: the pivot is
 // ahead and above.
-TEST(Characteristics, AntiFiguresFollowFromTheAngleOfTheArm) {
+TEST(Characteristics, AntiDiveAndAntiSquatFollowFromTheAngleOfTheArm) {
     const auto with = [](const char* axle) {
         return arm_scene(trailing,
                          fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, "
@@ -360,7 +360,7 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseStiffnessAtTheWheel) {
 
 // A jack and a tyre act as the dead force they exert: the response equals that under this force at
 // the same place.
-TEST(Characteristics, HeldWheelHasTheComplianceOfOneUnderTheHoldingForce) {
+TEST(Characteristics, WheelOnAJackOrTyreRespondsAsUnderTheForceTheyExert) {
     const auto rates_at_end = [&](const Model& model, const std::string& force) {
         const auto all = characteristics(model);
         const BranchSide way = sides_of(model, model.branches[0]).front();
@@ -413,7 +413,7 @@ TEST(Characteristics, HeldWheelHasTheComplianceOfOneUnderTheHoldingForce) {
 // Trimmed where the scene requests it.
 Model standing(const Scene& scene) { return compile(trim(scene).scene); }
 
-TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
+TEST(Characteristics, LegsAgreeAndCompliancesAreReciprocalOnEverySuspension) {
     for (const char* scene :
          {"mcpherson", "mcpherson_strut", "double_wishbone", "double_wishbone_rigid", "multi_link",
           "semi_trailing_arm", "twist_beam", "solid_axle", "front_axle"}) {
@@ -431,7 +431,7 @@ TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
     }
 }
 
-TEST(Characteristics, MirrorImageAndUnitsDoNotMatter) {
+TEST(Characteristics, MirrorImageAndUnitsDoNotChangeTheFigures) {
     for (const char* name : {"double_wishbone", "semi_trailing_arm", "front_axle"}) {
         const Scene scene = support::scene(name);
         const Read is(standing(scene), Leg::equilibrium),
@@ -453,7 +453,7 @@ TEST(Characteristics, MirrorImageAndUnitsDoNotMatter) {
 
 // Virtual work: the lateral movement of the patch per wheel rise equals the jack force per lateral
 // force. The first is a motion, the second a force, from independent curves.
-TEST(Characteristics, RollCentreFromForcesEqualsThatFromMotion) {
+TEST(Characteristics, RollCentreFromJackForceEqualsThatFromPatchMotion) {
     for (const char* name :
          {"double_wishbone", "mcpherson_strut", "multi_link", "semi_trailing_arm"}) {
         Scene scene = support::scene(name);
@@ -496,7 +496,7 @@ TEST(Characteristics, RatesAreTheDerivativesOfTheCurves) {
 }
 
 // The published matrix contains no spring force: its wheel rate is that of the unloaded suspension.
-TEST(Characteristics, PublishedTangentOmitsTheEffectOfPreload) {
+TEST(Characteristics, WheelRateOfThePublishedTangentOmitsTheEffectOfPreload) {
     const Model unloaded = arm_scene(trailing),
                 loaded = arm_scene(
                     trailing, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n");

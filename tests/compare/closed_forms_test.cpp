@@ -292,7 +292,7 @@ struct Block {
 // step keep that error: the part of the step beyond the knot times the difference in flexibility,
 // of first order in the step. Methods that start each step from the true force recover it in the
 // next step.
-TEST(Stop, IsPassedByEveryMethod) {
+TEST(Stop, MethodsThatSumStepsKeepTheErrorOfTheStepThatClosesIt) {
     const Block block;
     const double to = 3100;
     const Model model = compile(parse_scene(block.text(to), "block"));

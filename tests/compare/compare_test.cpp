@@ -40,7 +40,7 @@ double share_of_rate(const Comparison& all, const BranchComparison& branch, std:
     return 1e-6 * largest;
 }
 
-TEST(Compare, EachReferenceSatisfiesTheEquationsOfTheOther) {
+TEST(Compare, StatesOfEachReferenceSatisfyTheEquationsOfTheOther) {
     for (const auto& branch : mcpherson().branches) {
         for (const auto& [run, by] : {std::pair{1, Leg::energy}, std::pair{2, Leg::equilibrium},
                                       std::pair{1, Leg::recursive}, std::pair{2, Leg::recursive}}) {
@@ -127,7 +127,7 @@ TEST(Compare, RecursionErrorIsLargerAlongThePathThanAcrossIt) {
 
 // ---- Inconclusive comparisons
 
-TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
+TEST(Compare, ReferencesThatDisagreeMakeTheComparisonInconclusive) {
     Options options;
     options.agreement.length = 0;  // no two solvers agree to the last bit
     const auto comparison = compare(compile(support::scene("pinned_bar")), options);
@@ -175,7 +175,7 @@ TEST(Compare, DeviationIsTheRecursionMinusTheReference) {
     }
 }
 
-TEST(Compare, NothingComparedIsNotConclusive) {
+TEST(Compare, ComparisonWithoutBranchesIsNotConclusive) {
     EXPECT_FALSE(Comparison{}.conclusive());
     Model model = compile(support::scene("pinned_bar"));
     model.branches.clear();
@@ -293,7 +293,7 @@ TEST(Judgement, VanishingReactionIsComparedRelativeToTheActingForces) {
     }
 }
 
-TEST(Judgement, StiffMountIsJudgedByTheRoundingOfPositions) {
+TEST(Judgement, ForceOfAStiffMountIsJudgedByTheRoundingOfPositions) {
     for (const double k : {1e7, 1e9, 1e11}) {
         const auto comparison = compare(compile(one_arm(k, 1000)));
         for (const auto& reason : comparison.branches[0].inconclusive.texts())
@@ -317,7 +317,7 @@ TEST(Judgement, BoundsAreFractionsOfTheActingForces) {
     EXPECT_GE(stiff.residual_force, 0.5 * 1e11 * std::numeric_limits<double>::epsilon());
 }
 
-TEST(Judgement, DisagreementOfTenBoundsIsNeverConclusive) {
+TEST(Judgement, DisagreementOfTenTimesItsBoundIsNeverConclusive) {
     // The references' own numbers, one of them changed by ten times its bound.
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto comparison = compare(model);
@@ -352,7 +352,7 @@ TEST(Judgement, DisagreementOfTenBoundsIsNeverConclusive) {
         }
 }
 
-TEST(Judgement, OutputUndefinedInOneReferenceIsAnObjection) {
+TEST(Judgement, OutputUndefinedInOneReferenceOnlyIsADisagreement) {
     const auto& comparison = mcpherson();
     const Model model = compile(support::scene("chrono_mcpherson"));
     const auto c = std::ranges::find_if(comparison.channels, &Channel::may_be_undefined) -
@@ -372,7 +372,7 @@ TEST(Judgement, OutputUndefinedInOneReferenceIsAnObjection) {
     }
 }
 
-TEST(Judgement, LegWrongByTenBoundsIsIdentified) {
+TEST(Judgement, LegThatIsOffByTenTimesTheBoundIsNamed) {
     // The energy leg solves a spring that is stiffer by 1e-6.
     const Scene right = support::scene("pinned_bar");
     Scene wrong = right;
@@ -388,7 +388,7 @@ TEST(Judgement, LegWrongByTenBoundsIsIdentified) {
     EXPECT_GT(disagreements(a, comparison.channels, a.branches[0], branch).count, 0);
 }
 
-TEST(Judgement, ManyObjectionsAreShownAsTheWorstThreeAndACount) {
+TEST(Judgement, ManyDisagreementsAreShownAsTheWorstThreeAndACount) {
     Objections all;
     for (int k = 0; k < 440; ++k) all.add(std::to_string(k), 2 + (k * 37) % 440);
     all.add("no number");
@@ -404,7 +404,7 @@ TEST(Judgement, ManyObjectionsAreShownAsTheWorstThreeAndACount) {
 
 // ---- Branches without information
 
-TEST(Judgement, BranchWithoutItsLoadDoesNotPass) {
+TEST(Judgement, BranchWhoseLoadWasLeftOutIsInconclusiveAndNotJudgedByTheGate) {
     Scene scene = one_arm(1e5, 1000);
     scene.bodies.push_back({"far away", {}});
     for (auto& driver : scene.branches[0].drivers)
@@ -425,7 +425,7 @@ TEST(Judgement, BranchWithoutItsLoadDoesNotPass) {
     EXPECT_EQ(verdict.grade(), Grade::not_judged);
 }
 
-TEST(Judgement, BranchWithoutMovementGivesZeros) {
+TEST(Judgement, BranchWhoseLoadMovesNothingIsConclusiveAndPasses) {
     Scene scene = one_arm(1e5, 1000);
     // The load acts on the pin, which carries all of it.
     std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind) = {{0, {0, 0, 0}},
@@ -492,7 +492,7 @@ TEST(BranchSides, AnyMonotonicChannelCanBeTheAbscissa) {
 
 // ---- Start of a branch
 
-TEST(Settled, DisplacementFromTheDesignPositionIsReported) {
+TEST(SettledPosition, DisplacementFromTheDesignPositionEqualsItsClosedForm) {
     // The arm of the test above with half its load held from the start: 5 mm by closed form.
     Scene scene = one_arm(1e5, 10);
     scene.branches[0].drivers[0].start = 500;

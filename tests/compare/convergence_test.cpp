@@ -93,7 +93,7 @@ TEST(Convergence, ExactPowerLawGivesItsOrderAndLimitForAnyStepRatio) {
                 }
 }
 
-TEST(Convergence, SmallOrdersKeepTheirSign) {
+TEST(Convergence, OrdersNearZeroKeepTheirSign) {
     for (const auto& steps : step_counts)
         for (const double p : {0.005, 0.02, 0.04, 0.06}) {
             const auto c = step_convergence(
@@ -108,7 +108,7 @@ TEST(Convergence, SmallOrdersKeepTheirSign) {
         }
 }
 
-TEST(Convergence, ScaleSignAndOffsetOfTheValuesDoNotMatter) {
+TEST(Convergence, ScaleSignAndOffsetOfTheValuesDoNotChangeTheResult) {
     const auto law = [](double h) { return 0.4 + h + 3 * h * h; };
     const std::vector<double> steps = {10, 20, 40, 80, 160, 320};
     const auto c = step_convergence(sequence(steps, law), 1, exact);
@@ -206,7 +206,7 @@ TEST(Convergence, ThreeLevelsGiveTheOrderOfThePublishedFixedPoint) {
 
 // ---- pollution and noise ----
 
-TEST(Convergence, HigherOrderTermsStayWithinTheBand) {
+TEST(Convergence, LimitIsWithinItsBandDespiteHigherOrderTerms) {
     // value = 1 + h^p + D h^(p+q) from D = 0.1 to 1000 of either sign: beyond the asymptotic range,
     // through a turn, and where the levels show the higher term only.
     int formal = 0, compared = 0;
@@ -253,7 +253,7 @@ TEST(Convergence, LevelsOutsideTheAsymptoticRangeAreExcluded) {
     }
 }
 
-TEST(Convergence, NoiseOfKnownSizeIsCoveredByTheStandardErrorAndTheBand) {
+TEST(Convergence, StandardErrorAndBandCoverNoiseOfKnownSize) {
     std::mt19937 random(4711);
     for (const double p : {1.0, 2.0})
         for (const double sigma : {1e-3, 1e-4, 1e-5}) {
@@ -335,7 +335,7 @@ TEST(Convergence, TheSafetyFactorIsSmallOnlyForTheFormalOrderOnFourLevels) {
     EXPECT_GT(factor(step_convergence(four, 0.5, exact)), 3.5);
 }
 
-TEST(Convergence, OrderCountsAsFormalWithinItsBand) {
+TEST(Convergence, OrderWithinTenPercentOfTheFormalOrderCountsAsFormal) {
     const std::vector<double> steps = {10, 20, 40, 80, 160};
     const auto as_formal = [&](double order, double formal) {
         return step_convergence(sequence(steps, [&](double h) { return std::pow(h, order); }),
@@ -445,7 +445,7 @@ TEST(Convergence, OscillationHasNoOrder) {
         }
 }
 
-TEST(Convergence, TurnAtTheCoarseEndIsExcluded) {
+TEST(Convergence, CoarseLevelsBeforeATurnOfTheErrorAreExcluded) {
     // Step error and higher terms cancel at the coarse end: 10 steps look better than 80.
     const auto law = [](double h) { return 2 + h - 10 * h * h; };
     const auto levels = sequence({10, 20, 40, 80, 160, 320, 640, 1280}, law);
@@ -521,7 +521,7 @@ TEST(Convergence, StepsMustBePositiveAndIncrease) {
     }
 }
 
-TEST(Convergence, OrderBeyondTheSearchRangeIsTenOrMore) {
+TEST(Convergence, OrderBeyondTheSearchRangeIsReportedAsTenWithoutAnError) {
     for (const auto& values :
          std::vector<std::vector<double>>{{1, 1e-5, 1e-10}, {1, 1e-4, 1e-8, 1e-11}}) {
         const auto c = step_convergence(doubling(values), 1, {1e-13, 0});
@@ -535,7 +535,7 @@ TEST(Convergence, OrderBeyondTheSearchRangeIsTenOrMore) {
 
 // ---- order against a known truth ----
 
-TEST(OrderOf, PowerLawHasItsSignedOrder) {
+TEST(FittedOrder, PowerLawHasItsSignedExponent) {
     for (const auto& steps : step_counts)
         for (const double p : {-2.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0})
             for (const double C : {3.0, -1e-6}) {
@@ -547,7 +547,7 @@ TEST(OrderOf, PowerLawHasItsSignedOrder) {
             }
 }
 
-TEST(OrderOf, ErrorsAtTheFloorAreNotUsed) {
+TEST(FittedOrder, ErrorsBelowTheFloorOrBeforeAZeroCrossingAreNotUsed) {
     auto errors = sequence({10, 20, 40, 80, 160, 320}, [](double h) { return h * h; });
     errors[4].value = 1e-9;
     errors[5].value = -3e-9;
@@ -568,7 +568,7 @@ TEST(OrderOf, ErrorsAtTheFloorAreNotUsed) {
     EXPECT_TRUE(std::isnan(order_of({}, 0).order));
 }
 
-TEST(OrderOf, TheStandardErrorCoversNoise) {
+TEST(FittedOrder, StandardErrorCoversNoise) {
     std::mt19937 random(17);
     std::normal_distribution<double> noise(0, 0.05);
     int covered = 0;

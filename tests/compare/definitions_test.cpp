@@ -181,7 +181,7 @@ TEST(Definitions, TurningCircleIsTwiceTheWheelbaseOverTheSineOfTheOuterAngle) {
 
 // Steered by 20 deg about the vertical: the wheel's plane turns with the axis, so that the angles
 // seen across and along the wheel stay, while those seen along the ground axes change.
-TEST(Definitions, FiguresInTheWheelPlaneDoNotChangeBySteeringAboutTheVertical) {
+TEST(Definitions, CasterInTheWheelPlaneDoesNotChangeBySteeringAboutTheVertical) {
     ByHand at(0);
     const double caster = at("caster"), kingpin = at("kingpin_inclination");
     at.turn(Vector3d::UnitZ(), 20 / degrees);
@@ -235,7 +235,7 @@ TEST(Definitions, RollCentreByPlanesOfHorizontalParallelArmsIsOnTheRoad) {
 }
 
 // One wheel on an upright without toe, rigid links: every figure from another one by hand.
-TEST(DefinitionRates, RatesOfAWheelOnRigidLinksFollowFromEachOther) {
+TEST(DefinitionRates, RatesOfAWheelOnRigidLinksEqualHandCalculation) {
     const Outputs at(standing("double_wishbone_rigid"));
     const Wheel& wheel = at.model.wheels[0];
     const auto state = design_state(at.model);
@@ -298,7 +298,7 @@ TEST(DefinitionRates, RatesOfAnAxleFollowFromHeaveRollAndSingleWheels) {
 }
 
 // A force at the wheel centre is one at the patch of a wheel whose patch is its centre.
-TEST(DefinitionRates, ForceAtTheCentreEqualsThatAtAPatchInTheCentre) {
+TEST(DefinitionRates, RatesOfAForceAtTheCentreEqualThoseAtAPatchInTheCentre) {
     const Outputs at(standing("double_wishbone"));
     Model moved = at.model;
     moved.wheels[0].contact.s_local = moved.wheels[0].centre_local;
@@ -653,7 +653,7 @@ std::string table_of_definitions() {
     return text;
 }
 
-TEST(Definitions, CatalogueEqualsItsPage) {
+TEST(Definitions, ReadmeOfTheCatalogueHasTheTableOfItsDefinitions) {
     std::ifstream file(ELASTOCHECK_DEFINITIONS "/README.md");
     const std::string page{std::istreambuf_iterator<char>(file), {}};
     const std::string table = table_of_definitions();
@@ -697,7 +697,7 @@ Beside few_points(const Judged& at, std::size_t c, std::size_t count) {
 
 // Of 1000 wrong columns each, straight, smooth, without order or beside the reference by a smooth deviation, judged to
 // a hundredth of the range of the reference, at most 1 % are explained by anything.
-TEST(Definitions, WrongColumnIsNotExplained) {
+TEST(Definitions, AtMostOnePercentOfWrongColumnsAreExplained) {
     const Judged at(standing("double_wishbone_rigid"), "steering");
     std::mt19937 random(11);
     std::uniform_real_distribution<double> in(-1, 1);

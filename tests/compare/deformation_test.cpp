@@ -37,7 +37,7 @@ TEST(Laws, CurveForceEqualsItsPolynomialOnEveryPiece) {
                 1000 * 0.03 + 2e5 * 27e-6 + 0.02 * (1000 + 6e5 * 9e-4), 1e-11);
 }
 
-TEST(Laws, SteepestSlopeIsFoundAtTheEndsAndInside) {
+TEST(Laws, SteepestSlopeOfACurveIsFoundAtTheEndsAndInside) {
     EXPECT_NEAR(steepest(cubic()), 1000 + 6e5 * 9e-4, 1e-9);
     EXPECT_EQ(steepest(LinearRate{42}), 42);
     // f = 3 x² - 2 x³ is steepest halfway.
@@ -79,7 +79,7 @@ TEST(Deformation, AnglesEqualTheirNamedFormulation) {
     }
 }
 
-TEST(Deformation, MiddleFrameTreatsBothMarkersAlike) {
+TEST(Deformation, ExchangedMarkersReverseTheDeformationInTheMiddleFrame) {
     const Vector3d theta(0.4, -0.3, 0.2), d(1e-3, 2e-3, -3e-3);
     auto [bushing, state] = turned(Quaterniond(AngleAxisd(theta.norm(), theta.normalized())), d);
     bushing.formulation.frame = Formulation::Frame::middle;
@@ -90,7 +90,7 @@ TEST(Deformation, MiddleFrameTreatsBothMarkersAlike) {
     EXPECT_LE((deformation(bushing, state).head<3>() - d).norm(), 1e-17) << "i is at rest";
 }
 
-TEST(Deformation, IsMeasuredFromTheUndeformedState) {
+TEST(Deformation, UndeformedOffsetIsSubtracted) {
     auto [bushing, state] = turned(Quaterniond::Identity(), {1e-3, 0, 0});
     bushing.undeformed = Vector6::Constant(third);
     EXPECT_LE((deformation(bushing, state) - Vector6::Unit(0) * 1e-3 + bushing.undeformed).norm(),
@@ -127,7 +127,7 @@ TEST(OutsideTable, ExtrapolatedCurveHasTheRateOfItsEnd) {
     }
 }
 
-TEST(OutsideTable, EveryLegEndsAtTheSamePoint) {
+TEST(OutsideTable, EveryLegEndsTheBranchWhereTheDeformationLeavesTheTable) {
     const Model model = compile(short_table(false));
     const Comparison found = compare(model);
     EXPECT_FALSE(found.conclusive());

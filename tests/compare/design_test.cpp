@@ -27,7 +27,7 @@ using Eigen::VectorXd;
 
 // Karush-Kuhn-Tucker conditions of 300 random linear problems, of which 100 have fewer residuals than
 // numbers need.
-TEST(LeastSquares, FulfilsTheConditionsOfOptimalityWithinBounds) {
+TEST(LeastSquares, SolutionWithinBoundsFulfilsTheKarushKuhnTuckerConditions) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> at(-1, 1);
     int at_bounds = 0;
@@ -77,7 +77,7 @@ TEST(LeastSquares, FindsTheMinimumOfRosenbrocksFunctionWithAndWithoutABound) {
 // ---- Rates by differences.
 
 // |p - a| has no rate at a; at a distance of half a step it has.
-TEST(Figures, HaveARateBesideAKinkAndNoneAtIt) {
+TEST(Figures, GradientIsNaNAtAKinkAndDefinedBesideIt) {
     const Figures kink = closed(
         [](const VectorXd& p) {
             return list_of({std::abs(p[0] - 1) + 2 * p[1], p[1] * p[1]});
@@ -90,7 +90,7 @@ TEST(Figures, HaveARateBesideAKinkAndNoneAtIt) {
     EXPECT_NEAR(at(1, 1), 6, 1e-9);
     EXPECT_NEAR(kink.gradient(list_of({1.0005, 3}))(0, 0), 1, 1e-9);
 }
-TEST(Figures, HaveTheRateOfOneSideAtTheEndOfTheirRange) {
+TEST(Figures, GradientAtTheEndOfTheDefinedRangeIsOneSided) {
     const Figures root = closed(
         [](const VectorXd& p) { return list_of({p[0] < 2 ? std::nan("") : std::exp(p[0])}); }, 1);
     EXPECT_NEAR(root.gradient(list_of({2}))(0, 0), std::exp(2), 1e-5);
@@ -116,7 +116,7 @@ const Figures radius = closed([](const VectorXd& p) { return list_of({p.norm()})
 
 // |p| = 2 from (0.6, 0.8): the nearest point of the circle is (1.2, 1.6). Changes count as shares of the
 // ranges: with a range of the first a hundred times that of the second the first does it.
-TEST(SolveFor, MeetsAWishWithTheSmallestChange) {
+TEST(SolveFor, WishIsMetWithTheSmallestChangeRelativeToTheRanges) {
     const Solved found =
         solved(radius, list_of({2}), {list_of({0.6, 0.8}), list_of({-5, -5}), list_of({5, 5})});
     EXPECT_TRUE(found.met);
@@ -129,7 +129,7 @@ TEST(SolveFor, MeetsAWishWithTheSmallestChange) {
 }
 
 // As many numbers as wishes: p² = 9 and p q = 6 from (2, 1).
-TEST(SolveFor, MeetsAsManyWishesAsNumbers) {
+TEST(SolveFor, TwoWishesAreMetByTwoNumbers) {
     const Figures both = closed(
         [](const VectorXd& p) {
             return list_of({p[0] * p[0], p[0] * p[1]});
@@ -209,7 +209,7 @@ TEST(SolveFor, UnconvergedSearchIsNotJudged) {
 }
 
 // Trims near the first point of a call start from its trim.
-TEST(Figures, GradientEvaluatesItsPointFirst) {
+TEST(Figures, EveryCallOfAGradientBeginsWithThePointOfTheGradient) {
     std::vector<VectorXd> first;
     const Figures figures{[&](const std::vector<VectorXd>& points) {
                               first.push_back(points.front());
@@ -247,7 +247,7 @@ TEST(Figures, ValuesAndRatesOfTwoSpringsEqualTheirClosedForm) {
 // Those of `sensitivity`, which solves no state again; a figure over travel is at a place that moves,
 //
 //   dy/dp = ∂y/∂p - (∂y/∂a) / (∂x/∂a) ∂x/∂p
-TEST(Figures, RatesEqualTheDerivativesByTheLegsEquations) {
+TEST(Figures, GradientsEqualThoseOfTheSensitivityAnalysis) {
     const std::vector<std::string> paths{"points.tie_rod_inner.z", "points.arm_rear.y",
                                          "springs.K1_coil.rate"};
     const Varied varied = varied_of("mcpherson", paths);
@@ -292,7 +292,7 @@ TEST(Figures, RatesEqualTheDerivativesByTheLegsEquations) {
         }
 }
 
-TEST(Figures, FiguresOfAllLegsAgreeAlsoOverAnOutput) {
+TEST(Figures, FiguresOfAllLegsAgreeAtAParameterAndAtATravel) {
     const Scene scene = support::scene("mcpherson");
     const std::vector<Figure> figures{{.name = "toe", .branch = "jounce", .at = 2000},
                                       {.name = "bump_steer", .branch = "jounce", .at = 2000},
@@ -317,7 +317,7 @@ TEST(Figures, FiguresOfAllLegsAgreeAlsoOverAnOutput) {
 }
 
 // k_1 + k_2 = 80 for z = 437.5 at 3000 N: of the ways to get there the smallest change, 2.5 each.
-TEST(SolveFor, FindsRatesOfTwoSprings) {
+TEST(SolveFor, RatesOfTwoSpringsForADisplacementEqualTheirClosedForm) {
     const Varied varied =
         varied_of("parallel_springs", rates, list_of({10, 20}), list_of({60, 70}));
     const Solved found =
@@ -330,7 +330,7 @@ TEST(SolveFor, FindsRatesOfTwoSprings) {
 
 // The tie rod of the McPherson strut, without bump steer at the design position. Its change agrees
 // with the one that the file's head states (3.5 mm) to the size of the second derivative.
-TEST(SolveFor, FindsTheTieRodWithoutBumpSteer) {
+TEST(SolveFor, TieRodWithoutBumpSteerIsFound) {
     const Varied varied =
         varied_of("mcpherson", {"points.tie_rod_inner.z"}, list_of({-0.05}), list_of({0.02}));
     const std::vector<Figure> figures{{.name = "bump_steer", .branch = "jounce"}};
@@ -361,7 +361,7 @@ Optimum from(const Figures& figures, const Goals& goals, const SearchRange& rang
 
 // |p| ≥ 2 from (0.6, 0.8): the nearest point is (1.2, 1.6), 1 away, 0.1 as a share of the ranges;
 // each unit of the bound is a unit of the way. |p| ≥ 0.5 changes nothing.
-TEST(Optimise, BandIsMetWithTheSmallestChangeAndItsPrice) {
+TEST(Optimise, BandIsMetWithTheSmallestChangeAndHasItsShadowPrice) {
     const SearchRange range{list_of({0.6, 0.8}), list_of({-5, -5}), list_of({5, 5})};
     const Optimum found =
         from(radius, {.low = list_of({2}), .high = list_of({3}), .goal = {0}}, range, 3);
@@ -383,7 +383,7 @@ TEST(Optimise, BandIsMetWithTheSmallestChangeAndItsPrice) {
 
 // p + q with p q ≥ b is least at p = q = √b, where it is 2 √b: its derivative by b is 1 / √b.
 // The limit p ≥ l > √b holds p: p + q = l + b / l.
-TEST(Optimise, MinimisesAFigureWithPricesOfBandsAndLimits) {
+TEST(Optimise, MinimisedFigureHasClosedFormShadowPricesOfBandAndLimit) {
     const Figures both = closed(
         [](const VectorXd& p) {
             return list_of({p[0] * p[1], p[0] + p[1]});
@@ -410,7 +410,7 @@ TEST(Optimise, MinimisesAFigureWithPricesOfBandsAndLimits) {
 
 // The prices are the differences of the costs with each bound relaxed; of ten problems with six
 // bands in four numbers.
-TEST(Optimise, PricesAreTheDerivativesOfTheCostByTheBounds) {
+TEST(Optimise, ShadowPricesAreTheDerivativesOfTheCostByTheBounds) {
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> at(-1, 1);
     int prices = 0;
@@ -479,7 +479,7 @@ TEST(Optimise, FindsTheLeastOfTwoMinimaFromSeveralStarts) {
     EXPECT_EQ(found.p, from(wells, goals, range, 5).p);
 }
 
-TEST(Optimise, GoalThatNoNumberMovesIsLeftOut) {
+TEST(Optimise, GoalOnAFigureThatNoNumberMovesIsLeftOut) {
     const Figures still = closed([](const VectorXd& p) { return list_of({p[0], 7}); }, 1);
     const SearchRange range{list_of({0}), list_of({-1}), list_of({2})};
     Goals goals{.low = list_of({0.5, 6}), .high = list_of({1, 8}), .goal = {0, 1}};
@@ -549,7 +549,7 @@ TEST(Optimise, KeepsToeOfAMcPhersonWithinABandOverItsTravel) {
 
 // ---- Tolerances.
 
-TEST(Tolerances, SharesSumToOneAndWorstCasesAddUp) {
+TEST(Tolerances, VarianceSharesSumToOneAndWorstCaseIsTheSumOfTheEffects) {
     ToleratedNumbers numbers{
         {"a", "b"}, list_of({2, std::sqrt(3.0)}), list_of({6, 3}), MatrixXd::Identity(2, 2)};
     const Scatter f = scatter(list_of({3, -1}), numbers), g = scatter(list_of({0, 0}), numbers);

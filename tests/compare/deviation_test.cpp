@@ -61,7 +61,7 @@ TEST(Deviation, CommonEndIsComparedDespiteRounding) {
     EXPECT_EQ(at_equal_travel(a, made(1 - 1e-6, shape)).outside, 1);
 }
 
-TEST(Deviation, FallingAbscissaIsCompared) {
+TEST(Deviation, CurvesOverADecreasingAbscissaAreCompared) {
     const auto shape = [](double x) { return x * x; };
     const auto reading = at_equal_travel(made(-1, shape), made(-1.1, shape));
     EXPECT_TRUE(reading.not_compared.empty());
@@ -81,7 +81,7 @@ TEST(Deviation, RmsAndSignAreThoseOfTheDifference) {
     EXPECT_EQ(d.end, 0);
 }
 
-TEST(Deviation, NaNIsNeverSmall) {
+TEST(Deviation, DeviationOfCurvesWithANaNIsNaN) {
     for (const std::size_t where : {0u, 20u, 40u}) {
         Curve a = made(1, [](double x) { return x; }), b = a;
         b.values[where][1] = nan;
@@ -117,7 +117,7 @@ TEST(Deviation, ReasonIsGivenWhereNothingIsCompared) {
     EXPECT_TRUE(std::isnan(reading.channels[1].max));
 }
 
-TEST(Deviation, TwoSidedCurvesAreComparedFromTheirStartOutwards) {
+TEST(Deviation, TwoSidedCurvesAreAlignedAtTheirStartIfOneEndsEarly) {
     Curve a = made(1, [](double x) { return x; }), b = a;
     for (Curve* curve : {&a, &b}) {
         curve->start = 20;
@@ -137,7 +137,7 @@ TEST(Deviation, TwoSidedCurvesAreComparedFromTheirStartOutwards) {
     EXPECT_EQ(profile_at_equal_parameter(outputs, a, b).apart.size(), 34u);
 }
 
-TEST(Deviation, ProfilesAreTheWorstMainChannelPointByPoint) {
+TEST(Deviation, ProfileIsTheLargestDeviationOfTheMainOutputsAtEachPoint) {
     const Curve a = made(1, [](double x) { return x; });
     Curve b = a;
     b.values[3][0] += 9;  // travel is not a main channel
@@ -182,7 +182,7 @@ TEST(Abscissa, DefaultIsTravelOrTheChannelWithTheLargestRange) {
     EXPECT_FALSE(abscissa(forces, -1, a, a).why_not.empty());
 }
 
-TEST(Interpolation, IsExactForPolynomialsUpToItsDegreeOnBothDirections) {
+TEST(Interpolation, PolynomialsUpToItsDegreeAreExactOverRisingAndFallingAbscissas) {
     for (const double direction : {1.0, -1.0}) {
         std::vector<double> x, y;
         const auto p = [](double t) {

@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Nightly, Balance, testing::ValuesIn(scenes_of_energies(
 
 // ---- Values at the ends of the branches.
 
-TEST(ForceRows, HaveBothEndsOfEveryBranchWithTheErrorOfTheRecursion) {
+TEST(ForceRows, ForcesAtBothEndsOfABranchHaveTheirClosedFormAndTheErrorOfTheRecursion) {
     const Model model = compile(support::scene("tyre_on_road"));
     Options options;
     options.recursion.steps = 20;
@@ -182,7 +182,7 @@ TEST(ForceRows, HaveBothEndsOfEveryBranchWithTheErrorOfTheRecursion) {
 }
 
 // The relative error is the recursion's error over the magnitude of the value.
-TEST(ForceRows, GiveTheErrorOfTheRecursionInTheUnitAndAsAShare) {
+TEST(ForceRows, ErrorOfTheRecursionIsGivenInTheUnitAndInPercent) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Options options;
     options.recursion.steps = 20;

@@ -142,7 +142,7 @@ const std::vector<Family> of_sixty{{Kind::chain, 60},
                                    {Kind::grid, 60, Hinge::revolute},
                                    {Kind::axle, 61, Hinge::revolute}};
 
-TEST(Families, EqualTheirClosedFormInEveryLeg) {
+TEST(SceneFamilies, EqualTheirClosedFormInEveryLeg) {
     for (const Family& family : of_fifteen) {
         const FamilyScene w(family);
         for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive})
@@ -151,7 +151,7 @@ TEST(Families, EqualTheirClosedFormInEveryLeg) {
     }
 }
 
-TEST(Families, EqualTheirClosedFormWithFourTimesTheBodies) {
+TEST(SceneFamilies, EqualTheirClosedFormWithFourTimesTheBodies) {
     for (const Family& family : of_sixty) {
         const FamilyScene w(family);
         const auto equilibrium = w.by(Leg::equilibrium), series = w.by(Leg::recursive);
@@ -170,7 +170,7 @@ FamilyScene pushed_at_a_corner() {
     return {grid, scene};
 }
 
-TEST(Families, ReferencesAgreeWithoutAClosedForm) {
+TEST(SceneFamilies, ReferencesAgreeOnFamiliesWithoutAClosedForm) {
     std::vector<FamilyScene> all{pushed_at_a_corner()};
     for (const Family& family : {Family{Kind::tree, 12},
                                  {Kind::tree, 12, Hinge::revolute},
@@ -187,7 +187,7 @@ TEST(Families, ReferencesAgreeWithoutAClosedForm) {
     }
 }
 
-TEST(Families, LargeBeamsAgreeBetweenEquilibriumLegAndSeries) {
+TEST(SceneFamilies, LargeBeamsAgreeBetweenEquilibriumLegAndSeries) {
     for (const Kind kind : {Kind::leaf_spring, Kind::ladder_frame}) {
         const FamilyScene w({kind, 60});
         EXPECT_LE(furthest_apart_mm(w.by(Leg::equilibrium), w.by(Leg::recursive)), expansions)
@@ -301,7 +301,7 @@ TEST(LadderFrame, SmallDeflectionEqualsThatOfAGrillage) {
 // Methods with a declared order converge to the truth. A method without one converges to its own
 // limit with order 1, which has a gap, unless no stored force has a rotating lever: torsion springs
 // about fixed axes.
-TEST(Families, MethodsHaveTheOrderTheyDeclare) {
+TEST(SceneFamilies, MethodsConvergeAtTheirFormalOrder) {
     std::vector<Family> all = of_fifteen;
     all.push_back({Kind::leaf_spring, 15});
     all.push_back({Kind::ladder_frame, 15});
@@ -341,7 +341,7 @@ TEST(Families, MethodsHaveTheOrderTheyDeclare) {
 
 // ---- Sizes.
 
-TEST(Families, HaveTheRequestedNumberOfBodiesAndASimilarMovement) {
+TEST(SceneFamilies, HaveTheRequestedNumberOfBodiesAndASimilarMovement) {
     for (const Kind kind : families::kinds)
         for (const Hinge hinge : {Hinge::bushing, Hinge::revolute}) {
             if (hinge == Hinge::revolute && !has_hinges(kind)) continue;
@@ -359,7 +359,7 @@ TEST(Families, HaveTheRequestedNumberOfBodiesAndASimilarMovement) {
         }
 }
 
-TEST(Families, InvalidSizeOrJointIsRejected) {
+TEST(SceneFamilies, InvalidSizeOrJointIsRejected) {
     for (const Kind kind : families::kinds) {
         EXPECT_THROW(families::scene({kind, families::min_bodies(kind) - 1}), std::out_of_range)
             << name(kind);

@@ -115,7 +115,7 @@ TEST(FindAll, TooLargeModelIsNotSearched) {
     EXPECT_FALSE(all.proved);
 }
 
-TEST(FindAll, OnlyEquilibriumBeyondTheLimitPointIsOffTheBranch) {
+TEST(FindAll, OnlyEquilibriumBeyondTheLimitPointIsReportedAsOffTheBranch) {
     const auto all = all_of(arch(-1500), -1500);
     EXPECT_NE(all.outcome, Outcome::converged);
     ASSERT_EQ(all.list.size(), 1u);
@@ -171,7 +171,7 @@ TEST(FindAll, BuckledColumnHasABentEquilibriumOnEitherSide) {
     EXPECT_EQ(upright.turned_over, 2);
 }
 
-TEST(FindAll, LegsOnDifferentBranchesAreReportedAsSuch) {
+TEST(FindAll, LegsAtDifferentEquilibriaAreReportedAsSuch) {
     const Model model = arch(-120);
     const auto comparison = compare(model);
     auto branch = comparison.branches[0];

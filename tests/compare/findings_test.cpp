@@ -93,7 +93,7 @@ TEST(RateErrors, RideRateOfAMovingRoadIsWheelAndTyreRateInSeries) {
     }
 }
 
-TEST(RateErrors, BranchWithAnotherLoadHasNoRateError) {
+TEST(RateErrors, BranchDrivenByMoreThanAVerticalForceAtTheWheelHasNoRateError) {
     const auto with = [](auto&& change) {
         Scene scene = support::scene("chrono_mcpherson");
         scene.branches.resize(1);
@@ -163,7 +163,7 @@ Points taken(std::size_t branch, double off, bool by_travel, bool named) {
     return measured;
 }
 
-TEST(Measured, PointsAreLocatedByParameterAndByTravel) {
+TEST(MeasuredPoints, AreLocatedOnTheBranchByParameterAndByTravel) {
     for (const std::size_t branch : {0u, 1u})
         for (const bool by_travel : {false, true})
             for (const bool named : {false, true}) {
@@ -180,14 +180,14 @@ TEST(Measured, PointsAreLocatedByParameterAndByTravel) {
             }
 }
 
-TEST(Measured, LargestMissKeepsItsSign) {
+TEST(MeasuredPoints, LargestDeviationKeepsItsSign) {
     Points measured = taken(0, 0.25, false, true);
     measured.columns[0].values[0] += 1;
     const auto found = compare_measured(mcpherson(), compared(), measured);
     EXPECT_NEAR(found.readings[0].rows[0].off[1].signed_max, -0.75, 1e-6);
 }
 
-TEST(Measured, PointIsComparedOnlyWithTheBranchItNames) {
+TEST(MeasuredPoints, AreComparedOnlyWithTheBranchTheyName) {
     Points measured = taken(0, 0, true, true);
     for (auto& name : measured.branch) name = "rebound";  // out of range of the points
     const auto found = compare_measured(mcpherson(), compared(), measured);
@@ -198,7 +198,7 @@ TEST(Measured, PointIsComparedOnlyWithTheBranchItNames) {
     EXPECT_THROW((void)compare_measured(mcpherson(), compared(), measured), std::invalid_argument);
 }
 
-TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
+TEST(MeasuredPoints, WithoutABranchNameAreRefusedIfTwoBranchesHaveTheirSide) {
     Scene scene = support::scene("chrono_mcpherson");
     scene.branches[1].to = 1000;
     for (auto& branch : scene.branches) branch.steps = 5;
@@ -209,7 +209,7 @@ TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
     EXPECT_EQ(compare_measured(model, both, taken(0, 0, true, true)).places[0].branch, 0);
 }
 
-TEST(Measured, ChangeIsRelativeToTheDesignPosition) {
+TEST(MeasuredPoints, ChangesAreRelativeToTheDesignPositionAndNotToTheSettledStart) {
     // Also with a settled start: its 12 mm of travel are not the zero of a measurement.
     Scene scene = support::scene("chrono_mcpherson");
     scene.branches.resize(1);

@@ -123,7 +123,7 @@ TEST(Fit, RobustIntervalsContainTheTruthWithAndWithoutOutliers) {
     }
 }
 
-TEST(Fit, PlainIsOffByOutliersWhereTheRobustOneIsWithinItsInterval) {
+TEST(Fit, OutliersMisleadThePlainFitAndNotTheRobustOne) {
     std::mt19937_64 random(8);
     std::normal_distribution<double> normal;
     const VectorXd truth = list_of({3, 1.5});
@@ -291,7 +291,7 @@ TEST(NightlyFit, FindsAHardpointThatIsTwoMillimetresAwayAmongTwentyFourCoordinat
 
 // Of two parallel springs the data determine the sum of the rates: the difference has no interval
 // and is named.
-TEST(Fit, NamesACombinationThatTheDataDoNotDetermine) {
+TEST(Fit, CombinationThatTheDataDoNotDetermineIsNamed) {
     Curves of{varied_of("parallel_springs", {"springs.first.rate", "springs.second.rate"})};
     of.add("up", 3000, 8, {"centre_z"});
     const Fitted found = of.fit(of.measured(list_of({33, 47}), {0}));
@@ -303,7 +303,7 @@ TEST(Fit, NamesACombinationThatTheDataDoNotDetermine) {
     EXPECT_EQ(found.interval[1], infinity);
 }
 
-TEST(Fit, WithoutMoreValuesThanNumbersHasNoInterval) {
+TEST(Fit, FitOfAsManyValuesAsNumbersHasAnInfiniteInterval) {
     Curves of{varied_of("parallel_springs", {"springs.first.rate"})};
     const Fitted found = of.add("up", 3000, 1, {"centre_z"}).fit(list_of({437.5}));
     EXPECT_NEAR(found.p[0], 35, 1e-6);

@@ -102,7 +102,7 @@ TEST(Formulations, SpreadIsTheLargestMinusTheSmallestResult) {
     }
 }
 
-TEST(Formulations, AllAgreeForSmallLoads) {
+TEST(Formulations, SpreadFallsAtLeastWithTheSquareOfTheLoad) {
     // Formulations differ by products of deformations.
     double spread_of_one = 0;
     for (const double load : {1.0, 10.0}) {
@@ -120,7 +120,7 @@ TEST(Formulations, AllAgreeForSmallLoads) {
     EXPECT_LT(spread_of_one, 1e-5);
 }
 
-TEST(Formulations, BushingWithoutAChoiceKeepsItsFormulation) {
+TEST(Formulations, TorsionSpringsTyresAndBeamSegmentsKeepTheirFormulation) {
     Bushing bushing;
     Matrix6 K = Matrix6::Zero();
     K(2, 2) = 2e5;
@@ -150,7 +150,7 @@ TEST(Formulations, UnsolvedFormulationIsNamedAndExcluded) {
     EXPECT_EQ(study.branches[0].not_solved.size(), formulations.size());
 }
 
-TEST(Formulations, TableHasSpreadUncertaintyAndDeviation) {
+TEST(Formulations, TableHasColumnsForSpreadUncertaintyAndDeviation) {
     const Scene scene = mcpherson();
     const Comparison comparison = compare(compile(scene));
     const FormulationStudy study = formulation_study(scene);

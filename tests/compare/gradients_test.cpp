@@ -90,7 +90,7 @@ long agreed(const std::string& scene, int points, double& worst) {
     return compared;
 }
 
-TEST(Gradients, TheLegsAgreeOnAllNumbersOfASample) {
+TEST(Gradients, LegsAgreeOnTheDerivativesByAllNumbersOfThreeScenes) {
     double worst = 0;
     long compared = 0;
     compared += agreed("mcpherson", 1, worst);
@@ -99,7 +99,7 @@ TEST(Gradients, TheLegsAgreeOnAllNumbersOfASample) {
     RecordProperty("worst", fmt::format("{:.1e}", worst));
 }
 
-TEST(NightlyGradients, TheLegsAgreeOnAllNumbersOfEveryScene) {
+TEST(NightlyGradients, LegsAgreeOnTheDerivativesByAllNumbersOfEveryScene) {
     double worst = 0;
     long compared = 0;
     for (const auto& scene : support::scene_names()) compared += agreed(scene, 4, worst);
@@ -323,7 +323,7 @@ void each_derivative(const std::string& scene, const char* output, const char* n
 }
 
 // z = L sin θ, tan θ = F / kL: lengths in mm, k in N/mm.
-TEST(GradientsClosedForm, ThePinnedBarByItsLength) {
+TEST(ClosedFormGradients, EqualThatOfTheHeightOfAPinnedBarByItsLength) {
     const double k = 20, L = 500;
     each_derivative("pinned_bar", "tip_z", "points.tip.x", "up",
                     [&](double F, double value, const std::string& where) {
@@ -335,7 +335,7 @@ TEST(GradientsClosedForm, ThePinnedBarByItsLength) {
 
 // F(z) = 2 k (ℓ - ℓ₀) z / ℓ of the arch, ℓ = √(b² + z²), ℓ₀ = √(b² + h²): at equal F
 // dz/dh = -(∂F/∂h) / (∂F/∂z), which grows without bound towards the limit load.
-TEST(GradientsClosedForm, TheArchByItsHeight) {
+TEST(ClosedFormGradients, EqualThatOfTheDeflectionOfAnArchByItsHeight) {
     const double b = 300, h = 80, k = 100, l_0 = std::hypot(b, h);
     each_derivative("two_spring_arch", "apex_z", "points.apex.z", "down",
                     [&](double F, double value, const std::string& where) {
@@ -357,7 +357,7 @@ TEST(GradientsClosedForm, TheArchByItsHeight) {
 
 // The four-bar's rocker by the length of its crank: the closed form in the head of the scene,
 // differentiated by extrapolated differences of itself.
-TEST(GradientsClosedForm, TheFourBarByItsCrank) {
+TEST(ClosedFormGradients, EqualThatOfTheRockerOfAFourBarByTheLengthOfItsCrank) {
     const auto C_x = [](double a, double phi) {
         const double c = 80, b = std::hypot(100, 80 - a);  // as drawn
         const double Bx = a * std::sin(phi), Bz = a * std::cos(phi);
@@ -404,7 +404,7 @@ void each_leg(const std::string& text, const std::vector<std::string>& names,
 // vertical velocity of q,
 //
 //   bump steer -d_z / W(c)          wheel rate k (u·v(low))² / (W(p) W(c)),  u along the spring
-TEST(GradientsClosedForm, OfASemiTrailingArm) {
+TEST(ClosedFormGradients, EqualThoseOfBumpSteerAndWheelRateOfASemiTrailingArm) {
     const double ax = 0.5, ay = 0.9, az = 0.02, dx = -0.08, dy = -0.4, dz = -0.07, k = 50e3;
     const auto W = [&](double x, double y) { return dx * (y - ay) - dy * (x - ax); };
     const double W_c = W(0, 1.1), W_p = W(0.03, 1.12), W_low = W(0.1, 1.0);
@@ -438,14 +438,14 @@ std::string equal_arms(const std::string& branch) {
 
 // The upper inner joint raised by t: the lines of the arms meet at y - 0.3 = 0.4 (0.3 + t) / t, and
 // the camber changes by 1 / (y - 0.8) = t / (0.12 - 0.1 t).
-TEST(GradientsClosedForm, OfParallelLinksThatLoseTheirParallelism) {
+TEST(ClosedFormGradients, EqualThatOfCamberGainWhenParallelArmsLoseTheirParallelism) {
     each_leg(equal_arms("up: {load: up, to: 100, steps: 2}"), {"bump_camber"}, {"points.ui.z"}, 0,
              [](const Eigen::MatrixXd& by) { EXPECT_NEAR(by(0, 0), in_deg / 10 / 0.12, 1e-8); });
 }
 
 // Arms of length L, level as drawn, with the wheel raised by z on a jack: the patch moves inwards by
 // z / √(L² - z²) of the rise. Both outer joints outwards make both arms longer.
-TEST(GradientsClosedForm, OfAFourBarWithEqualArms) {
+TEST(ClosedFormGradients, EqualThoseOfTrackAndCamberGainByTheLengthOfEqualArms) {
     const double z = 0.1, L = 0.4;
     each_leg(equal_arms("lift: {drive: travel, to: 0.1, steps: 2}"),
              {"track_gradient", "bump_camber"}, {"points.uo.y", "points.lo.y"}, z,
@@ -456,7 +456,7 @@ TEST(GradientsClosedForm, OfAFourBarWithEqualArms) {
 }
 
 // At the corner of a law a stiffness has two values, and an entry says so.
-TEST(Gradients, UndefinedEntryAtACornerHasItsReason) {
+TEST(Gradients, DerivativeAtTheCornerOfALawIsNaNWithItsReason) {
     const std::string file =
         std::string(ELASTOCHECK_SCENES) + "/../extremes/stop_that_touches.yaml";
     const Gradients by = gradients_of(asked(file, {setting("branches.lift.to", 20)}), 2,

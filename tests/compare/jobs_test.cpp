@@ -85,7 +85,7 @@ void run_studies(Solves& solves, int threads) {
     (void)order_study(solves, {.orders = {4, 8}, .tolerances = {1e-6}, .threads = threads});
 }
 
-TEST(Solves, StudiesOfAReportSolveEachRunOnce) {
+TEST(SharedSolves, StudiesOfAReportSolveEachBranchMethodAndStepCountOnce) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     for (const int threads : {1, 3}) {
         Solves solves(model, 10, 4);
@@ -108,7 +108,7 @@ TEST(Solves, StudiesOfAReportSolveEachRunOnce) {
     }
 }
 
-TEST(Solves, StudyOfSharedSolvesEqualsASeparateStudy) {
+TEST(SharedSolves, StudyOfSharedSolvesEqualsASeparateStudy) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Solves solves(model, 10, 4);
     const StudyOptions options{.steps = {20, 40, 80, 160, 320, 640}};

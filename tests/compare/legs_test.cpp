@@ -76,15 +76,15 @@ void expect_visited_as_kept(const std::vector<std::string>& scenes) {
     }
 }
 
-TEST(Visit, VisitedPointsOfTheRecursionEqualItsStoredPoints) {
+TEST(PointVisitor, SeesThePointsThatTheRecursionStores) {
     expect_visited_as_kept(support::small_scene_names());
 }
 
-TEST(NightlyVisit, VisitedPointsOfTheRecursionEqualItsStoredPointsOnEveryScene) {
+TEST(NightlyPointVisitor, SeesThePointsThatTheRecursionStoresOnEveryScene) {
     expect_visited_as_kept(support::scene_names());
 }
 
-TEST(Visit, VisitedPointsOfTheReferencesEqualTheirStoredPoints) {
+TEST(PointVisitor, SeesThePointsThatTheReferencesStore) {
     for (const auto& scene : support::small_scene_names()) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
@@ -179,11 +179,11 @@ int expect_rows_in_the_order_of_the_branch(const std::vector<std::string>& scene
     return two_sided;
 }
 
-TEST(Rows, FollowTheOrderOfTheBranch) {
+TEST(ResultRows, AreWrittenInTheOrderOfTheBranch) {
     EXPECT_GE(expect_rows_in_the_order_of_the_branch({"mcpherson", "chrono_mcpherson_travel"}), 1);
 }
 
-TEST(NightlyRows, FollowTheOrderOfTheBranchOnEveryScene) {
+TEST(NightlyResultRows, AreWrittenInTheOrderOfTheBranchOnEveryScene) {
     EXPECT_GT(expect_rows_in_the_order_of_the_branch(support::scene_names()), 20);
 }
 
@@ -202,7 +202,7 @@ std::vector<std::size_t> picked(const std::vector<BranchSide>& sides, int every)
     return at;
 }
 
-TEST(Every, KeepsTheFirstTheLastAndEveryNthRow) {
+TEST(EveryNthRow, RecursionWritesTheFirstTheLastAndEveryNthRowUnchanged) {
     for (const auto* scene : {"bushing_pair", "double_wishbone", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
@@ -230,7 +230,7 @@ TEST(Every, KeepsTheFirstTheLastAndEveryNthRow) {
     }
 }
 
-TEST(Every, AppliesToTheReferences) {
+TEST(EveryNthRow, ReferencesSolveOnlyTheRowsThatAreWritten) {
     for (const auto* scene : {"chrono_mcpherson", "bushing_pair"}) {
         const Model model = compile(support::scene(scene));
         const auto all_channels = channels(model);
@@ -256,7 +256,7 @@ TEST(Every, AppliesToTheReferences) {
     }
 }
 
-TEST(Rows, PrecedingAFailureAreKeptOnBothSides) {
+TEST(ResultRows, BeforeAFailureOnEitherSideAreKept) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches.resize(1);
     scene.branches[0].from = -300;  // the limit is at -211.5 N
@@ -281,7 +281,7 @@ TEST(Rows, PrecedingAFailureAreKeptOnBothSides) {
     }
 }
 
-TEST(Rows, StartOccursOnceWhicheverSideSettles) {
+TEST(ResultRows, ContainTheStartOnceWhicheverSideSettles) {
     const Model model = compile(support::scene("bushing_pair"));
     Branch branch = model.branches[0];
     branch.from = -branch.to;
@@ -299,7 +299,7 @@ TEST(Rows, StartOccursOnceWhicheverSideSettles) {
     }
 }
 
-TEST(Landmarks, LandmarksAreEndsStartAndMiddleOfThePath) {
+TEST(Landmarks, AreTheStatesAtTheEndsTheStartAndTheMiddleOfABranch) {
     for (const auto* scene :
          {"bushing_pair", "double_wishbone", "chrono_mcpherson", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));

@@ -133,7 +133,7 @@ TEST(Loads, GroundReactionsBalanceTheLoadsOfACaseOnAnAxle) {
     }
 }
 
-TEST(Loads, JointsThatShareALoadAreNamedAndTheirSumIsGiven) {
+TEST(Loads, JointsThatShareALoadIndeterminatelyAreNamedAndTheirSumIsGiven) {
     const Scene scene = support::scene_of("compare/scenes/two_hinges");
     const auto all = loads_of(scene, {{"pull", {{Kind::body_force, 0, 1, 500}}}});
     ASSERT_FALSE(all.cases[0].loads.empty()) << all.cases[0].detail;

@@ -121,8 +121,7 @@ TEST(Response, LegsAgreeAtTheStartAndEndOfEveryScene) {
     RecordProperty("worst", fmt::format("{:.1e}", worst));
 }
 
-TEST(Response,
-     ThePublishedMatrixAnswersRightWhereNothingIsLoadedAndElsewhereWithoutGeometricStiffness) {
+TEST(Response, PublishedMatrixIsExactWithoutLoadAndLacksGeometricStiffnessUnderLoad) {
     for (const char* name : {"bushing_pair", "pinned_bar", "chrono_mcpherson", "two_spring_arch"}) {
         const Scene scene = support::scene(name);
         const OneWay side = way_of(scene, scene.branches[0].name, scene.branches[0].to);
@@ -217,7 +216,7 @@ Response at_the_wheel(const OneWay& side, const Equilibrium& state, const Answer
     return leg.linear_response(side, state, wrenches);
 }
 
-TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotMatter) {
+TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotChangeTheResponse) {
     const Quaterniond R(Eigen::AngleAxisd(1.1, Vector3d(1, -2, 0.5).normalized()));
     const Vector3d t(3, -1, 2);
     for (const char* name : {"chrono_mcpherson_preload", "chrono_mcpherson"}) {
@@ -257,7 +256,7 @@ TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotMatter) {
             << leg.name;
 }
 
-TEST(Response, OtherLegsAgreeWhereTheEnergyLegDoesNotApply) {
+TEST(Response, SeriesAndEquilibriumLegAgreeWhereNoEnergyExists) {
     for (const auto& [name, branch] :
          {std::pair("follower", "up"), std::pair("bushing_by_small_angles", "pull")}) {
         const OneWay side = way_of(support::scene(name), branch, 1);

@@ -60,9 +60,9 @@ std::vector<double> backwards(std::vector<double> x) {
 
 // ---- Every family, every leg.
 
-class Family : public testing::TestWithParam<std::string> {};
+class SuspensionScenes : public testing::TestWithParam<std::string> {};
 
-TEST_P(Family, SeriesAgreesWithTheReferencesOnEveryBranch) {
+TEST_P(SuspensionScenes, SeriesAgreesWithTheReferencesOnEveryBranch) {
     Options options;
     options.recursion.method = recursive::find_method("series").value();
     options.recursion.steps = 10;
@@ -85,7 +85,7 @@ TEST_P(Family, SeriesAgreesWithTheReferencesOnEveryBranch) {
 }
 
 // No idle modes, no redundant joints, and every branch starts at the trim conditions.
-TEST_P(Family, HasDesignHeightAndNeitherIdleModesNorRedundancy) {
+TEST_P(SuspensionScenes, TrimReachesTheDesignHeightWithoutIdleModesOrRedundantJoints) {
     const Scene scene = trimmed(GetParam());
     const Model model = compile(scene);
     const auto found = recursive::diagnose(model);
@@ -106,7 +106,7 @@ TEST_P(Family, HasDesignHeightAndNeitherIdleModesNorRedundancy) {
 
 // Over the travel of a car toe and camber change by a few degrees; the wheel rate is 15 to 40 N/mm
 // at the design height and higher at the stops.
-TEST_P(Family, FiguresAreInTheRangeOfCars) {
+TEST_P(SuspensionScenes, ToeCamberAndWheelRateAreInTheRangeOfCars) {
     const Scene scene = trimmed(GetParam());
     const Model model = compile(scene);
     const std::string along = GetParam() == "front_axle" ? "parallel" : "travel";
@@ -205,7 +205,7 @@ void expect_same_turned(const Told& drawn, const Told& moved, const Eigen::Quate
 }
 
 // Ground frame, order of the parts, units.
-TEST_P(Family, ResultsDoNotDependOnTheDescriptionOfTheScene) {
+TEST_P(SuspensionScenes, ResultsDoNotDependOnGroundFrameOrderOrUnits) {
     const Scene scene = trimmed(GetParam());
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized()));
     const Eigen::Vector3d t(3, -2, 1);
@@ -226,9 +226,9 @@ TEST_P(Family, ResultsDoNotDependOnTheDescriptionOfTheScene) {
     expect_same_turned(energy, Told(support::moved(some, R, t), Leg::energy), R, t, known);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sample, Family, testing::Values("double_wishbone", "front_axle"),
+INSTANTIATE_TEST_SUITE_P(Sample, SuspensionScenes, testing::Values("double_wishbone", "front_axle"),
                          [](const auto& family) { return family.param; });
-INSTANTIATE_TEST_SUITE_P(Nightly, Family, testing::ValuesIn(support::family_names()),
+INSTANTIATE_TEST_SUITE_P(Nightly, SuspensionScenes, testing::ValuesIn(support::family_names()),
                          [](const auto& family) { return family.param; });
 
 // ---- Both sides of an axle.
@@ -240,9 +240,9 @@ struct Sides {
 };
 void PrintTo(const Sides& sides, std::ostream* out) { *out << sides.scene; }
 
-class Axles : public testing::TestWithParam<Sides> {};
+class SymmetricAxles : public testing::TestWithParam<Sides> {};
 
-TEST_P(Axles, SymmetricLoadsGiveSymmetricAndOppositeLoadsAntisymmetricMotion) {
+TEST_P(SymmetricAxles, SymmetricLoadsGiveSymmetricMotionAndOppositeLoadsAntisymmetricMotion) {
     const Model model = compile(trimmed(GetParam().scene));
     for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy}) {
         const double bound = leg == Leg::energy ? 1e-6 : 1e-8;  // [mm, deg]
@@ -262,7 +262,7 @@ TEST_P(Axles, SymmetricLoadsGiveSymmetricAndOppositeLoadsAntisymmetricMotion) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Axles,
+INSTANTIATE_TEST_SUITE_P(Scenes, SymmetricAxles,
                          testing::Values(Sides{"front_axle",
                                                {"parallel", "vertical", "braking", "traction"},
                                                {"opposite", "roll", "steering", "lateral",
@@ -278,9 +278,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Axles,
 // ---- Pure kinematics.
 
 // and with rubber
-class Rigid : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+class RigidSuspensions : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-TEST_P(Rigid, PrescribedMotionDoesNotDependOnForcesOrRates) {
+TEST_P(RigidSuspensions, PrescribedMotionDoesNotDependOnForcesOrRates) {
     const auto [rigid, rubber] = GetParam();
     const Walk once = solve_branch(compile(trimmed(rigid)), "travel");
     for (const char* rate : {"60e3", "120e3", "500e3"}) {
@@ -297,7 +297,7 @@ TEST_P(Rigid, PrescribedMotionDoesNotDependOnForcesOrRates) {
 }
 
 // Rubber of s times the rate deforms by 1/s: pure kinematics is the limit.
-TEST_P(Rigid, IsTheLimitOfStiffBushings) {
+TEST_P(RigidSuspensions, MotionIsTheLimitOfStiffeningBushings) {
     const auto [rigid, rubber] = GetParam();
     const Walk limit = solve_branch(compile(trimmed(rigid)), "travel");
     std::map<double, double> off;  // [mm, deg]
@@ -316,7 +316,7 @@ TEST_P(Rigid, IsTheLimitOfStiffBushings) {
     EXPECT_NEAR(std::log10(off[100] / off[1000]), 1, 0.01) << off[100] << " " << off[1000];
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Rigid,
+INSTANTIATE_TEST_SUITE_P(Scenes, RigidSuspensions,
                          testing::Values(std::pair{"mcpherson_rigid", "mcpherson_strut"},
                                          std::pair{"double_wishbone_rigid", "double_wishbone"}),
                          [](const auto& pair) { return std::string(pair.param.second); });

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 // From the states and the trim of a neighbour, as from the design position; at a change of a tenth of
 // the range, and of all.
-TEST(Figures, FiguresFromANeighbourEqualThoseFromTheDesignPosition) {
+TEST(Figures, FiguresSolvedFromANeighbourEqualThoseFromTheDesignPosition) {
     for (const auto& [name, path, from, to] :
          {std::tuple{"mcpherson", "points.tie_rod_inner.z", -0.015, 0.005},
           {"double_wishbone", "points.tie_rod_inner.z", 0.001, 0.011}}) {
@@ -44,7 +44,7 @@ TEST(Figures, FiguresFromANeighbourEqualThoseFromTheDesignPosition) {
 }
 
 // States move to a model that differs in its numbers a little, and to no other one.
-TEST(Figures, StatesMoveToNearModelsOnly) {
+TEST(Figures, StatesAreReusedOnlyByModelsThatDifferLittle) {
     const auto model_at = [](const char* path, double value) {
         const Setting set = setting(path, value);
         return compile(read_scene(ELASTOCHECK_SCENES "/mcpherson.yaml", std::span(&set, 1)));
@@ -93,7 +93,7 @@ TEST(Optimise, InterruptedFirstSearchLeavesTheBestPointSoFar) {
 }
 
 // Recorded from searches in which every evaluation was solved from the design position.
-TEST(Optimise, ResultEqualsThatOfASearchThatSolvesEveryPointAnew) {
+TEST(Optimise, ResultEqualsThatOfASearchThatSolvesEveryPointFromTheDesignPosition) {
     const Varied varied =
         varied_of("double_wishbone", {"points.tie_rod_inner.z", "points.upper_front.z"},
                   list_of({-0.02, 0.18}), list_of({0.02, 0.3}));

@@ -59,7 +59,7 @@ TEST(SecondReference, DisagreementWithTheSeriesIsReported) {
         << objections.worst.front().what;
 }
 
-TEST(SecondReference, IsUsedByStudies) {
+TEST(SecondReference, StudiesUseTheSeriesUnderAFollowerLoad) {
     const Model model = compile(follower());
     const auto all = channels(model);
     const References known =
@@ -121,7 +121,7 @@ TEST(SecondReference, IsTheSeriesForALargeSceneWithEnergyLegResiduals) {
         << left.moment;
 }
 
-TEST(SecondReference, EnergyLegResidualsShowAMicrometre) {
+TEST(SecondReference, EnergyLegResidualsReportABodyDisplacedByAMicrometre) {
     BranchComparison branch = compared_chain().branches[0];
     const BranchSide side = sides_of(chain(), chain().branches[0]).front();
     Equilibrium moved = branch.runs[1].landmarks.back.value();
@@ -137,7 +137,7 @@ TEST(SecondReference, EnergyLegResidualsShowAMicrometre) {
         << objections.worst[0].what;
 }
 
-TEST(SecondReference, MissingEnergyLegResidualsDoNotPass) {
+TEST(SecondReference, MissingEnergyLegResidualsMakeTheComparisonInconclusive) {
     BranchComparison branch = compared_chain().branches[0];
     witness(branch).moment = std::nan("");
     EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count,

@@ -15,7 +15,7 @@ using recursive::series::evaluate;
 using recursive::series::find;
 using recursive::series::follow;
 
-TEST(Rates, RatesEqualTheDerivativesOfTheOutputs) {
+TEST(ChannelRates, RatesOfTheSeriesEqualDifferencesOfTheOutputs) {
     for (const auto& name : support::small_scene_names()) {
         const Model model = compile(support::scene(name));
         const auto all = channels(model);
@@ -52,7 +52,7 @@ TEST(Rates, RatesEqualTheDerivativesOfTheOutputs) {
     }
 }
 
-TEST(OrderStudy, ErrorStaysWithinTheTolerance) {
+TEST(OrderStudy, ErrorIsWithinTheToleranceAndHigherOrdersNeedFewerExpansions) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     OrderOptions options;
     options.orders = {4, 8, 12, 16};
@@ -73,7 +73,7 @@ TEST(OrderStudy, ErrorStaysWithinTheTolerance) {
     }
 }
 
-TEST(OrderStudy, NothingComparedIsNotConclusive) {
+TEST(OrderStudy, StudyWithoutAConvergedSeriesIsNotConclusive) {
     EXPECT_FALSE(conclusive({}));
     const Model model = compile(support::scene("chrono_mcpherson"));
     OrderOptions options;

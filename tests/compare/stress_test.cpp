@@ -77,7 +77,7 @@ TEST(Stress, ConvergingWhereNoEquilibriumExistsIsWrong) {
     EXPECT_EQ(survival.count(CellVerdict::wrong), static_cast<int>(survival.solvers.size()));
 }
 
-TEST(Stress, ReportedFailureIsNotWrong) {
+TEST(Stress, ReportedFailureIsNotCountedAsWrong) {
     // Followers have no energy.
     const Survival survival =
         stress(std::vector{Trial{"follower", "x", {"as it is", small("follower")}}});
@@ -88,7 +88,7 @@ TEST(Stress, ReportedFailureIsNotWrong) {
         }
 }
 
-TEST(Stress, DigitsAreRelativeToTheMovement) {
+TEST(Stress, CorrectDigitsAreRelativeToTheMovement) {
     // The published recursion of the pendulum has a known error (closed form in the head of the
     // scene) and reports its digits.
     const Survival survival =
@@ -145,7 +145,7 @@ TEST(Stress, NaNInAnyInputNeverConverges) {
 }
 
 // A sample of ./dev stress.
-TEST(Stress, SmallScenesAreNeverWrong) {
+TEST(Stress, NoResultOfThePendulumAndTheParallelSpringsIsWrong) {
     std::vector<Trial> sample;
     for (const auto& name : {"pendulum", "parallel_springs"})
         for (auto& trial : trials(name, small(name, 8)))

@@ -24,7 +24,7 @@ StudyOptions options(std::vector<std::string_view> names = {"published"}) {
     return o;
 }
 
-TEST(Study, SeparatesStepErrorFromFormulationGap) {
+TEST(Study, StepErrorAndFormulationGapOfAPinnedBarEqualTheirClosedForm) {
     // Pinned bar: own limit k L θ = F cos θ, truth k L tan θ = F; both in closed form.
     const Study s = study(compile(support::scene("pinned_bar")), options());
     const double own = support::root([](double t) { return 1e4 * t - 5000 * std::cos(t); }, 0, 1.5),
@@ -74,7 +74,7 @@ TEST(Study, OrderIsThatOfTheLargestErrorOnTheBranch) {
 }
 
 // Of every converging output the printed errors fall as the printed order says.
-TEST(Study, ShownErrorsFallAtTheShownOrder) {
+TEST(Study, ReportedErrorsFallAtTheReportedOrder) {
     int compared = 0;
     for (const char* name : {"bushing_pair", "chrono_mcpherson"}) {
         const Study s = study(compile(support::scene(name)), options({"published", "tangent"}));
@@ -125,7 +125,7 @@ TEST(Study, MethodsConvergeAtTheirOrderAndConsistentOnesHaveNoGap) {
     EXPECT_GT(std::abs(s.branches[0].methods[0].equal_parameter[2].gap), 0.05);
 }
 
-TEST(Study, ConstraintErrorOfEquation31DoesNotShowTheGap) {
+TEST(Study, ConstraintErrorOfEquation31FallsWithTheStepsWhileTheGapStays) {
     const Study s = study(compile(support::scene("chrono_mcpherson")), options());
     for (const auto& branch : s.branches) {
         const auto& m = branch.methods[0];
@@ -152,7 +152,7 @@ TEST(Study, GapPartsSumToTheGapWithoutRemainder) {
     }
 }
 
-TEST(Study, LoadLeverContributesToTheGap) {
+TEST(Study, LoadContributesToTheGapOnlyIfItHasALever) {
     // On the strut the load acts at the body's origin; on the bar it has a lever.
     for (const auto& share :
          attribute_gap(compile(support::scene("chrono_mcpherson")))[0].equal_parameter)
@@ -174,7 +174,7 @@ TEST(Study, DivergingMethodIsReportedWithoutAnOrder) {
     EXPECT_FALSE(s.conclusive());
 }
 
-TEST(Study, MissingReferencesMakeItInconclusive) {
+TEST(Study, FailedReferencesMakeTheStudyInconclusive) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches[0].to = -300;
     const Study s = study(compile(scene), options());

@@ -29,7 +29,7 @@ void expect_whole(const std::vector<Row>& rows, std::size_t count) {
     }
 }
 
-TEST(Table, EveryRowHasACellPerColumn) {
+TEST(ResultTables, EveryRowHasACellPerColumn) {
     const Model model = compile(support::scene("pinned_bar"));
     StudyOptions options;
     options.steps = {5, 10, 20, 40, 80};
@@ -44,13 +44,13 @@ TEST(Table, EveryRowHasACellPerColumn) {
     expect_whole(trade_rows(priced), priced.points.size());
 }
 
-TEST(Table, RowsAreSelectedByTheirFields) {
+TEST(ResultTables, RowsAreSelectedByTheirFields) {
     const std::vector rows{StepRow{.branch = "b"}, StepRow{.branch = "c"}, StepRow{.branch = "b"}};
     EXPECT_EQ(where(rows, &StepRow::branch, "c").size(), 1u);
     EXPECT_EQ(distinct(rows, &StepRow::branch), (std::vector<std::string>{"b", "c"}));
 }
 
-TEST(Table, MissingValueIsExplainedInItsRow) {
+TEST(ResultTables, MissingValueIsExplainedInItsRow) {
     // A level that did not converge: no numbers, and the row gives the reason.
     const Model model = compile(support::scene("pinned_bar"));
     Study s = study(model, {.steps = {5, 10, 20, 40, 80}});

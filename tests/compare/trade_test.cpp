@@ -82,7 +82,7 @@ Accuracy solved_anew(const Model& model, const Trade& trade) {
 
 // ---- the tolerance
 
-TEST(Tolerance, PartsAreReadInAnyOrderAndAlone) {
+TEST(Tolerance, LengthAndAngleAreReadInAnyOrderAndAlone) {
     for (const std::string text :
          {"0.01mm,0.001deg", "0.001deg,0.01mm", " 1e-2 mm , 1e-3 deg ", "0.01 mm,.001deg"}) {
         const Tolerance tolerance = parse_tolerance(text);
@@ -132,7 +132,7 @@ TEST(Tolerance, ShareOfNaNIsNaN) {
 
 // ---- the front
 
-TEST(Front, IsTheSetOfNondominatedMembers) {
+TEST(ParetoFront, ContainsExactlyTheNondominatedMembers) {
     std::mt19937 random(20);
     for (int trial = 0; trial < 500; ++trial) {
         std::vector<WorkError> points(1 + random() % 20);
@@ -161,7 +161,7 @@ TEST(Front, IsTheSetOfNondominatedMembers) {
     }
 }
 
-TEST(Front, EqualMembersAreKeptAndNaNDominatesNothing) {
+TEST(ParetoFront, KeepsEqualMembersAndNaNDominatesNothing) {
     EXPECT_EQ(pareto_front(std::vector<WorkError>{
                   {1, 1}, {1, 1}, {2, 1}, {nan, 0}, {0, nan}, {0, infinity}}),
               (std::vector<bool>{true, true, false, false, false, false}));
@@ -170,7 +170,7 @@ TEST(Front, EqualMembersAreKeptAndNaNDominatesNothing) {
 
 // ---- times
 
-TEST(Timing, JobsAreInterleaved) {
+TEST(Timing, JobsTakeTurnsInEveryRound) {
     std::string order;
     const std::vector<std::function<void()>> jobs{[&] { order += 'a'; }, [&] { order += 'b'; },
                                                   [&] { order += 'c'; }};
@@ -180,7 +180,7 @@ TEST(Timing, JobsAreInterleaved) {
     for (const auto& job : times) EXPECT_EQ(job.size(), 3u);
 }
 
-TEST(Timing, JobAgainstItselfHasRatioOneWithinNoise) {
+TEST(Timing, MedianRatiosAndNoiseOfTimesEqualHandCalculation) {
     EXPECT_EQ(median({3, 1, 2}), 2);
     EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
     EXPECT_TRUE(std::isnan(median({})));
@@ -394,7 +394,7 @@ TEST(Trade, ConfigurationWhoseErrorBandExceedsTheToleranceIsNotRecommended) {
     }
 }
 
-TEST(Trade, FailedReferencesMakeItInconclusive) {
+TEST(Trade, FailedReferencesMakeTheStudyInconclusive) {
     // the limit is at -211.5 N
     const Trade result = trade(shipped("two_spring_arch", 1.5), quick({1}, 20));
     ASSERT_FALSE(result.inconclusive.empty());
@@ -405,7 +405,7 @@ TEST(Trade, FailedReferencesMakeItInconclusive) {
 
 // With one output point at the end, only the confirming run meets the end of the spring's table in
 // the middle of the branch, where the arch is flat.
-TEST(Trade, MissingReferenceForTheConfirmationMakesItInconclusive) {
+TEST(Trade, MissingReferenceForTheConfirmationMakesTheStudyInconclusive) {
     Scene scene = support::scene("arch_driven");
     scene.branches.resize(1);
     scene.branches[0].from = 0;
@@ -426,7 +426,7 @@ TEST(Trade, MissingReferenceForTheConfirmationMakesItInconclusive) {
     for (const auto& line : result.rejected) EXPECT_EQ(line.find("nan"), std::string::npos) << line;
 }
 
-TEST(Trade, ASceneWithoutAnglesIgnoresTheirTolerance) {
+TEST(Trade, SceneWithoutAnglesIgnoresTheToleranceOfAngles) {
     const Trade both = trade(shipped("pinned_bar"), quick({0.01, 1e-30}, 20));
     EXPECT_FALSE(both.angles);
     EXPECT_TRUE(both.recommendation);
@@ -469,7 +469,7 @@ TEST(Trade, EquilibriumLegIsTimedTwiceAndIsTheUnitOfTime) {
 
 // ---- the arithmetic
 
-TEST(Trade, AllButTimesIsReproducible) {
+TEST(Trade, EverythingButTheTimesIsReproducible) {
     for (const auto& name : {"chrono_mcpherson", "pinned_bar"}) {
         const Model model = shipped(name);
         std::vector<Trade> runs;
@@ -522,7 +522,7 @@ TEST(Trade, RecommendedToleranceOfAMethodIsTheLargestThatSuffices) {
     }
 }
 
-TEST(Trade, PriceIsInBackSubstitutions) {
+TEST(Trade, PriceCountsFactorisationsAsBackSubstitutions) {
     TradeOptions options = quick({0.01, 0.001}, 160);
     const Model model = shipped("chrono_mcpherson");
     const Trade result = trade(model, options);
@@ -544,7 +544,7 @@ TEST(Trade, PriceIsInBackSubstitutions) {
     EXPECT_THROW((void)trade(model, options), std::invalid_argument);
 }
 
-TEST(Trade, BranchWithTwoSidesIsPricedAsTheirSum) {
+TEST(Trade, PriceOfATwoSidedBranchIsTheSumOfItsSides) {
     Scene both = support::scene("pinned_bar");
     const Scene halves = both;
     ASSERT_EQ(both.branches.size(), 2u);
@@ -565,7 +565,7 @@ TEST(Trade, BranchWithTwoSidesIsPricedAsTheirSum) {
     EXPECT_TRUE(one.recommendation);
 }
 
-TEST(Trade, BranchWithoutMovementMakesItInconclusive) {
+TEST(Trade, BranchWithoutMovementMakesTheStudyInconclusive) {
     Scene scene = support::scene("pinned_bar");
     for (auto& driver : scene.branches[0].drivers)
         std::get<DeadForce>(std::get<Load>(driver.what).kind).f.setZero();
@@ -575,7 +575,7 @@ TEST(Trade, BranchWithoutMovementMakesItInconclusive) {
     EXPECT_FALSE(result.recommendation);
 }
 
-TEST(Profile, MaximumIsTheErrorOfItsConfigurationAndZeroForTheReference) {
+TEST(ErrorProfile, EndsWithTheErrorOfItsConfigurationAndIsZeroForTheReference) {
     const Model model = shipped("chrono_mcpherson");
     const auto channels = compare::channels(model);
     Solves solves(model, 10, 4);

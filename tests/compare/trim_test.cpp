@@ -78,7 +78,7 @@ TEST(Trim, PreloadOfASpringUnderABlockIsItsWeight) {
     EXPECT_FALSE(found.scene.trim) << "trimmed once";
 }
 
-TEST(Trim, ConditionMayStateAnotherHeight) {
+TEST(Trim, ConditionOnAHeightOtherThanTheDesignIsReached) {
     Scene scene = block();
     scene.elastics.resize(1);
     scene.trim = Trim{{preload(scene, "coil")}, {height(-0.03)}};
@@ -179,7 +179,7 @@ TEST(Trim, ConditionThatNoAdjustmentChangesIsNamed) {
     EXPECT_TRUE(contains(said, "no adjustment changes 'top.x'")) << said;
 }
 
-TEST(Trim, ConditionsMetByChanceAreCheckedForDeterminacy) {
+TEST(Trim, AmbiguousTrimIsReportedEvenIfItsConditionsAreMet) {
     // at rest in the design position for any load sharing of the two springs
     Scene scene = block();
     scene.static_loads.clear();
@@ -229,7 +229,7 @@ TEST(Trim, SymmetricSidesGetEqualAdjustments) {
 
 // Bushings with preloads such that the drawn position is the equilibrium: every leg settles there,
 // also the one that had no part in the trim.
-TEST(Trim, BalancedBushingsKeepTheDrawnPosition) {
+TEST(Trim, BalancedBushingsKeepEveryLegAtTheDesignPosition) {
     for (const char* name : {"double_wishbone", "front_axle"}) {
         Scene scene = support::scene(name);
         const auto moved = [&](Leg leg) {

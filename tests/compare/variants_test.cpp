@@ -75,7 +75,7 @@ TEST(VariantSolver, FiguresEqualThoseOfEachVariantAloneAndOfTheReference) {
 }
 
 // The strut of the design spins freely, which its analysis holds; that of the variant is resisted.
-TEST(VariantSolver, ComputesCharacteristicsOfAVariantWithOtherIdleModes) {
+TEST(VariantSolver, CharacteristicsOfAVariantWithOtherIdleModesAreComputed) {
     const Model design = compile(read_scene(ELASTOCHECK_SCENES "/mcpherson.yaml"));
     Model resisted = design;
     for (Elastic& elastic : resisted.elastics)
@@ -89,7 +89,7 @@ TEST(VariantSolver, ComputesCharacteristicsOfAVariantWithOtherIdleModes) {
 }
 
 // On the same points the extremes of a branch are those of its curve.
-TEST(VariantSolver, FindsExtremesOverABranchOfBothSides) {
+TEST(VariantSolver, ExtremesOverATwoSidedBranchAreThoseOfItsCurve) {
     const std::string file = ELASTOCHECK_SCENES "/chrono_mcpherson_travel.yaml";
     const Model design = compile(read_scene(file));
     const std::string branch = design.branches.front().name;
@@ -141,7 +141,7 @@ TEST(VariantSolver, EndOfABranchIsExplainedAndOtherFiguresAreKept) {
 }
 
 // A chain of bushings of 46 to 3e8 N/mm, on which series gives up.
-TEST(VariantSolver, FallsBackToTheEquilibriumLegWhereSeriesDeclines) {
+TEST(VariantSolver, VariantThatTheSeriesDeclinesIsSolvedByTheEquilibriumLeg) {
     const Model design = compile(
         read_scene(ELASTOCHECK_SCENES "/../../tests/compare/scenes/stiff_beside_soft.yaml"));
     const VariantSolver solver(design, {figure_at("tip_z", "pull", 152.4)});

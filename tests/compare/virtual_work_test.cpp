@@ -282,9 +282,9 @@ Difference difference(const BranchSide& side, const std::vector<Channel>& channe
     return worst;
 }
 
-class EveryScene : public testing::TestWithParam<std::string> {};
+class EnergyBalance : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryScene, StoredEnergyEqualsTheWorkDoneInEveryLeg) {
+TEST_P(EnergyBalance, StoredEnergyEqualsTheWorkOfLoadsAndDrivesInEveryLeg) {
     const auto trimmed = trim(support::scene(GetParam()));
     ASSERT_TRUE(!trimmed.record || trimmed.record->reached()) << trimmed.record->detail;
     const Model model = compile(trimmed.scene);
@@ -334,9 +334,9 @@ std::vector<std::string> sample() {
     names.emplace_back("mcpherson_strut");
     return names;
 }
-INSTANTIATE_TEST_SUITE_P(VirtualWork, EveryScene, testing::ValuesIn(sample()),
+INSTANTIATE_TEST_SUITE_P(Sample, EnergyBalance, testing::ValuesIn(sample()),
                          [](const auto& scene) { return scene.param; });
-INSTANTIATE_TEST_SUITE_P(Nightly, EveryScene, testing::ValuesIn(support::scene_names()),
+INSTANTIATE_TEST_SUITE_P(Nightly, EnergyBalance, testing::ValuesIn(support::scene_names()),
                          [](const auto& scene) { return scene.param; });
 
 }  // namespace
