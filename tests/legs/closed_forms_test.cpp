@@ -53,21 +53,21 @@ double root(F f, double low, double high) {
 
 // ---- The scenes of models/scenes.
 
-TEST_P(ClosedForms, PinnedBar) {
+TEST_P(ClosedForms, PinnedBarTurnsByTheArcTangentOfForceOverRate) {
     expect(support::scene("pinned_bar"), 0.5, 40, [](double F) -> std::vector<Vector3d> {
         const double k = 20e3, L = 0.5, theta = std::atan(F / (k * L));
         return {L * Vector3d(std::cos(theta), 0, std::sin(theta))};
     });
 }
 
-TEST_P(ClosedForms, SingleBushing) {
+TEST_P(ClosedForms, SingleBushingMovesByForceOverStiffness) {
     expect(support::scene("single_bushing"), 0.012, 40, [](double F) -> std::vector<Vector3d> {
         return {Vector3d(0.1, 0.2, 0.3) + F * Vector3d(0.6 / 2e5, 0.48 / 3e5, 0.64 / 5e5)};
     });
 }
 
 // Static loads and preloads that are not in balance as drawn settle first.
-TEST_P(ClosedForms, ParallelSprings) {
+TEST_P(ClosedForms, PlateOnParallelSpringsSettlesAndMovesByForceOverTheSumOfRates) {
     Scene scene = support::scene("parallel_springs");
     const auto plate = [](double more) {
         return [=](double F) { return std::vector{Vector3d(0, 0, 0.4 + (F + more) / 75e3)}; };
@@ -79,7 +79,7 @@ TEST_P(ClosedForms, ParallelSprings) {
     expect(scene, 0.4, 40, plate(600));
 }
 
-TEST_P(ClosedForms, TwoSpringArch) {
+TEST_P(ClosedForms, ApexOfATwoSpringArchIsWhereTheSpringsBalanceTheLoad) {
     expect(support::scene("two_spring_arch"), 0.3, 40, [](double F) -> std::vector<Vector3d> {
         const double b = 0.3, h = 0.08, k = 1e5, l_0 = std::hypot(b, h);
         const double limit = std::sqrt(std::cbrt(l_0 * l_0 * b * b * b * b) - b * b);  // ℓ³ = ℓ₀ b²
@@ -89,7 +89,7 @@ TEST_P(ClosedForms, TwoSpringArch) {
     });
 }
 
-TEST_P(ClosedForms, BushingPair) {
+TEST_P(ClosedForms, BodyOnTwoBushingsIsAtTheRootOfItsMomentBalance) {
     expect(support::scene("bushing_pair"), 0.25, 40, [](double F) -> std::vector<Vector3d> {
         const double k = 2e5, k_R = 500, a = 0.15, e = 0.25;
         const double theta = root(
@@ -101,7 +101,7 @@ TEST_P(ClosedForms, BushingPair) {
     });
 }
 
-TEST_P(ClosedForms, Pendulum) {
+TEST_P(ClosedForms, PendulumOnATorsionSpringIsAtTheRootOfItsMomentBalance) {
     expect(support::scene("pendulum"), 0.4, 40, [](double F) -> std::vector<Vector3d> {
         const double k_R = 600, L = 0.4;
         const double theta =
@@ -110,7 +110,7 @@ TEST_P(ClosedForms, Pendulum) {
     });
 }
 
-TEST_P(ClosedForms, SliderCrank) {
+TEST_P(ClosedForms, SliderCrankFollowsItsTrigonometry) {
     expect(support::scene("slider_crank"), 0.21, 40, [](double a) -> std::vector<Vector3d> {
         const double r = 0.06, l = 0.15, height = r * std::sin(a);
         return {Vector3d(r * std::cos(a), 0, -height),
@@ -118,7 +118,7 @@ TEST_P(ClosedForms, SliderCrank) {
     });
 }
 
-TEST_P(ClosedForms, FourBar) {
+TEST_P(ClosedForms, PinsOfAFourBarAreTheIntersectionsOfItsCircles) {
     expect(support::scene("four_bar"), 0.1, 40, [](double angle) -> std::vector<Vector3d> {
         const double b = std::hypot(0.1, 0.04), c = 0.08;
         const Vector3d B = 0.04 * Vector3d(std::sin(angle), 0, std::cos(angle)), f = 0.1 * X - B;
@@ -127,7 +127,7 @@ TEST_P(ClosedForms, FourBar) {
     });
 }
 
-TEST_P(ClosedForms, ArchDriven) {
+TEST_P(ClosedForms, ApexOfADrivenArchRisesByTheTravel) {
     expect(support::scene("arch_driven"), 0.3, 40,
            [](double travel) { return std::vector<Vector3d>{(0.08 + travel) * Z}; });
 }
@@ -160,7 +160,7 @@ Scene on_a_ball(const Vector3d& k_R, const Quaterniond& axes, bool swapped = fal
 
 // k_R θ = M about a fixed axis: of equal rates up to nearly half a turn, for a frame on either
 // body; of unequal ones about a principal axis.
-TEST_P(ClosedForms, DeadMomentRotatesByMOverK) {
+TEST_P(ClosedForms, DeadMomentRotatesABushingByMomentOverRate) {
     Random random;
     for (int trial = 0; trial < 10; ++trial) {
         const Vector3d axis = random.unit();
@@ -207,7 +207,7 @@ TEST_P(ClosedForms, DeadMomentGivesTheExactFiniteRotation) {
 
 // A force that stays perpendicular to the bar turns it by θ = F L / k (a dead force: F L cos θ =
 // k θ); a couple that turns with an isotropic bushing has a constant axis in the body and in ground.
-TEST_P(ClosedForms, FollowerMomentRotatesByMOverK) {
+TEST_P(ClosedForms, FollowerForceAndCoupleRotateByMomentOverRate) {
     if (leg().needs_energy()) GTEST_SKIP() << "a follower has no energy";
     const double k = 150, L = 0.4;
     Scene bar = hinged_bar(L * X, Y, k);

@@ -81,7 +81,7 @@ TEST_P(Drivers, SliderCrankFollowsItsGeometryWithTheMomentOfVirtualWork) {
 
 // The rocker's pin is the intersection of two circles on the side where it is drawn. The coupler is
 // a distance, a body whose joints are independent, or a body with redundant joints.
-TEST_P(Drivers, AFourBarFollowsItsGeometryThroughAFullTurn) {
+TEST_P(Drivers, FourBarFollowsItsGeometryThroughAFullTurn) {
     const double a = 0.1, b = 0.35, c = 0.25, d = 0.4;  // crank, coupler, rocker, ground
     const auto tip = [&](double angle) -> Vector3d {
         const Vector3d pin = a * Vector3d(std::cos(angle), std::sin(angle), 0), way = d * X - pin;
@@ -136,7 +136,7 @@ TEST_P(Drivers, DrivenStrutLengthLiftsABarByTrigonometry) {
 
 // ---- Values held at a = 0 are settled first.
 
-TEST_P(Drivers, HeldAngleSettlesFromAnyDesignAngle) {
+TEST_P(Drivers, BodySettlesToItsHeldAngleFromAnyDesignAngle) {
     const SliderCrank crank;
     for (const double start : {-9., -2.9, -2., -0.5, 0.5, 1.7, 3., 7.}) {
         const OneWay side =
@@ -264,7 +264,7 @@ TEST_P(Drivers, DrivenFreeLengthShiftsABlockByTheRatioOfTheRates) {
 }
 
 // The only equilibrium of one bushing is K e = -preload.
-TEST_P(Drivers, APreloadIsBalancedByItsBushing) {
+TEST_P(Drivers, PreloadOfABushingIsBalancedByItsDeformation) {
     Random random;
     for (int trial = 0; trial < 10; ++trial) {
         Scene s = support::scene("single_bushing");
@@ -292,7 +292,7 @@ TEST_P(Drivers, APreloadIsBalancedByItsBushing) {
 
 // ---- Several drivers.
 
-TEST_P(Drivers, AHeldRackIsGround) {
+TEST_P(Drivers, HeldRackActsAsGround) {
     Scene scene = support::scene("chrono_mcpherson");
     const auto with = solved(leg(), side_of(with_rack(scene)), 3),
                without = solved(leg(), side_of(scene), 3);
@@ -305,7 +305,7 @@ TEST_P(Drivers, AHeldRackIsGround) {
 
 // The rack follows its drive at every held height of the wheel; its force is the tie rod's
 // component along it.
-TEST_P(Drivers, RackSweepAgreesAtThreeHeldHeights) {
+TEST_P(Drivers, RackAndWheelFollowTheirDrivesAtThreeHeldHeights) {
     const Scene s = with_jack(with_rack(support::scene("chrono_mcpherson")));
     const auto& tie = std::get<Distance>(s.joints[2].kind);
     for (const double height : {-0.05, 0., 0.05})
@@ -339,7 +339,7 @@ TEST_P(Drivers, RackSweepAgreesAtThreeHeldHeights) {
 
 // An equilibrium does not depend on the order of its drivers, on which was held from the start, nor
 // on whether a held load is a static load.
-TEST_P(Drivers, TheOrderOfDriversDoesNotMatter) {
+TEST_P(Drivers, OrderOfDriversDoesNotChangeTheEquilibrium) {
     const Vector3d brake(-1500, 0, 0);
     const Scene s = with_jack(with_rack(support::scene("chrono_mcpherson")));
     const auto end = [&](double steer, double lift, double push) {

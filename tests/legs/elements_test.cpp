@@ -259,7 +259,7 @@ TEST_P(Elements, ForceOfABushingIsTheNegativeGradientOfItsEnergy) {
             }
 }
 
-TEST_P(Elements, NonconservativeForcesEqualTheirDefinition) {
+TEST_P(Elements, ForceOfABushingWithoutEnergyEqualsItsDefinition) {
     if (leg().needs_energy()) GTEST_SKIP() << "no energy";
     Random random;
     for (const Angles angles : {Angles::rotation_vector, Angles::cardan, Angles::projected})

@@ -150,11 +150,11 @@ class Invariance : public testing::TestWithParam<LegAndMethod> {
 const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
 double unchanged(const Channel&) { return 1; }
 
-TEST_P(Invariance, OrderOfBodiesAndJointsDoesNotMatter) {
+TEST_P(Invariance, OrderOfBodiesAndJointsDoesNotChangeTheStates) {
     for (const Scene& scene : scenes()) expect_same(scene, support::reversed(scene), unchanged);
 }
 
-TEST_P(Invariance, AxesOfTheBodyFrameDoNotMatter) {
+TEST_P(Invariance, AxesOfTheBodyFramesDoNotChangeTheStates) {
     for (const Scene& scene : scenes())
         expect_same(scene, support::with_body_axes(scene, {R, R.conjugate()}), unchanged);
 }
@@ -169,13 +169,13 @@ TEST_P(Invariance, MirroredSceneGivesTheMirroredStates) {
         });
 }
 
-TEST_P(Invariance, GroundFrameDoesNotMatter) {
+TEST_P(Invariance, GroundFrameDoesNotChangeTheStates) {
     for (const Scene& scene : scenes()) expect_moved(scene, R, {3, -2, 1}, bound());
 }
 
 // A double resolves 2e-12 m at 10 km and 9e-10 m at 7000 km. The recursion, which moves the origin to the
 // model, is the same to some dozens of these.
-TEST_P(Invariance, DistanceFromTheOriginDoesNotMatter) {
+TEST_P(Invariance, DistanceFromTheOriginChangesTheStatesByRoundingOnly) {
     for (const char* name : {"four_bar", "chrono_mcpherson_preload"})
         for (const double far : {1e4, 7e6}) {
             if (far > 1e6 && GetParam().leg != Leg::recursive) continue;
@@ -185,7 +185,7 @@ TEST_P(Invariance, DistanceFromTheOriginDoesNotMatter) {
 }
 
 // The tolerance of the series is a length in metres, and its truncation error with it.
-TEST_P(Invariance, UnitsOfLengthAndForceDoNotMatter) {
+TEST_P(Invariance, UnitsOfLengthAndForceDoNotChangeTheStates) {
     const double wider = GetParam().leg == Leg::recursive ? 10 : 1;
     for (const Scene& scene : scenes())
         for (const auto& [length, force] : {std::pair{1e3, 1e-3}, {1 / 39.37, 1.}}) {
@@ -200,7 +200,7 @@ TEST_P(Invariance, UnitsOfLengthAndForceDoNotMatter) {
 }
 
 // An exact leg reaches the same end in any number of steps, and every leg the same bits again.
-TEST_P(Invariance, NumberOfPointsAndRepetitionDoNotMatter) {
+TEST_P(Invariance, NumberOfPointsAndRepetitionDoNotChangeTheEndState) {
     for (const Scene& scene : {support::rich_scene(), driven_scene()}) {
         const Model model = compile(scene);
         const auto list = channels(model);

@@ -14,10 +14,10 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-struct Outcomes : LegTest {};     // of the legs that reach equilibria to rounding
-struct EveryMethod : LegTest {};  // of the references and every method of the recursion
+struct Outcomes : LegTest {};               // of the legs that reach equilibria to rounding
+struct OutcomesOfEveryMethod : LegTest {};  // of the references and every method of the recursion
 ELASTOCHECK_FOR(accurate_legs, Outcomes);
-ELASTOCHECK_FOR(legs_by_every_method, EveryMethod);
+ELASTOCHECK_FOR(legs_by_every_method, OutcomesOfEveryMethod);
 
 OneWay to(OneWay side, double end) {
     side.branch.to = end;
@@ -75,7 +75,7 @@ TEST_P(Outcomes, ArchEndsAtItsLimitPointInAnyNumberOfSteps) {
     }
 }
 
-TEST_P(Outcomes, AnArchIsFollowedToItsLimitPoint) {
+TEST_P(Outcomes, ArchIsFollowedToAMillionthBeforeItsLimitLoad) {
     for (const double share : {0.9, 0.99, 0.9999, 0.999999}) {
         if (share > 0.9999 && leg().kind == Leg::recursive) continue;
         const auto path = solved(leg(), to(side_of(Arch{}.scene()), share * Arch{}.limit()), 1);
@@ -179,7 +179,7 @@ TEST_P(Outcomes, BushingRotatedByHalfATurnInTheDesignPositionIsRejected) {
 }
 
 // A spring of no length has no direction; a branch through that point ends for any range.
-TEST_P(EveryMethod, SpringOfZeroLengthEndsTheBranch) {
+TEST_P(OutcomesOfEveryMethod, SpringOfZeroLengthEndsTheBranch) {
     Scene s = support::scene("two_spring_arch");
     std::get<AxialSpring>(s.elastics[0].kind).j.s_local = 0.08 * Z;
     EXPECT_NE(solve(leg(), side_of(s), 40).outcome, Outcome::converged);
@@ -190,7 +190,7 @@ TEST_P(EveryMethod, SpringOfZeroLengthEndsTheBranch) {
 
 // ---- Idle modes.
 
-TEST_P(EveryMethod, LoadOnAnIdleModeIsReported) {
+TEST_P(OutcomesOfEveryMethod, LoadOnAnIdleModeIsReported) {
     Scene strut = support::scene("chrono_mcpherson");
     for (const double moment : {1., 1e-3}) {
         strut.branches = {load_branch(DeadMoment{2, {0.04 * moment, 0.07 * moment, -moment}}, 10)};
@@ -217,7 +217,7 @@ TEST_P(EveryMethod, LoadOnAnIdleModeIsReported) {
 
 // A bar on a cylindrical guide and a bushing without a rate about it: a preload about the guide,
 // as drawn or driven, has no equilibrium; about another axis the guide carries it.
-TEST_P(EveryMethod, PreloadOnAnIdleModeIsReported) {
+TEST_P(OutcomesOfEveryMethod, PreloadOnAnIdleModeIsReported) {
     Scene s = hinged_bar(X, X, 0);
     s.joints = {{"guide", Cylindrical{{0}, {ground}, {0, X}, ground_x}}};
     s.elastics = {{"k", bushing({0}, {ground}, Vector3d::Constant(1000), {0, 10, 10})}};
@@ -236,7 +236,7 @@ TEST_P(EveryMethod, PreloadOnAnIdleModeIsReported) {
 }
 
 // The same bar on a spring: its free spin changes nothing.
-TEST_P(EveryMethod, UnloadedIdleModeDoesNotChangeTheResult) {
+TEST_P(OutcomesOfEveryMethod, UnloadedIdleModeDoesNotChangeTheResult) {
     Scene s = hinged_bar(X, X, 0);
     s.elastics = {{"spring", AxialSpring{{0}, {ground, X}, LinearRate{1000}, 1}}};
     s.branches = {load_branch(DeadForce{{0, X}, X}, 100)};
@@ -252,7 +252,7 @@ TEST_P(EveryMethod, UnloadedIdleModeDoesNotChangeTheResult) {
 
 // ---- Redundant and inconsistent joints.
 
-TEST_P(EveryMethod, ConsistentRedundantJointsDoNotChangeTheResult) {
+TEST_P(OutcomesOfEveryMethod, ConsistentRedundantJointsDoNotChangeTheResult) {
     Scene once = support::scene("pinned_bar"), twice = once;
     twice.joints.push_back(
         {"second hinge", Revolute{{0, 0.7 * Y}, {ground, 0.7 * Y}, {0, Y}, ground_y}});
@@ -282,7 +282,7 @@ TEST_P(Outcomes, DuplicatedJointsShareTheReactions) {
 }
 
 // Two bars of different length between the same points, and a bar that cannot reach.
-TEST_P(EveryMethod, InconsistentJointsAreReported) {
+TEST_P(OutcomesOfEveryMethod, InconsistentJointsAreReported) {
     for (const double error : {0.1, 1e-3, 1e-6}) {
         Scene s = support::scene("parallel_springs");
         for (const double length : {0.3, 0.3 + error})
@@ -307,7 +307,7 @@ TEST_P(EveryMethod, InconsistentJointsAreReported) {
 
 // ---- Values that are not finite.
 
-TEST_P(EveryMethod, NonFiniteInputNeverConverges) {
+TEST_P(OutcomesOfEveryMethod, NonFiniteInputNeverConverges) {
     using Spoil = std::function<void(Scene&, double)>;
     const auto load_of = [](Scene& s) -> DeadForce& {
         return std::get<DeadForce>(std::get<Load>(s.branches[0].drivers[0].what).kind);
@@ -392,7 +392,7 @@ TEST_P(Outcomes, HingesWithAxesAMillionthOfARadianApartConstrainTheBody) {
     EXPECT_FALSE(beyond.detail.empty());
 }
 
-TEST_P(EveryMethod, SceneWithoutUnknownsConverges) {
+TEST_P(OutcomesOfEveryMethod, SceneWithoutUnknownsConverges) {
     if (leg().kind != Leg::recursive) {
         Model model;
         EXPECT_EQ(solved(leg(), {model, branch_of({}, 1)}, 1).points.size(), 2u);
@@ -427,7 +427,7 @@ OneWay shortened_rod(double by) {
 }
 
 // Φ of a length is also zero where the length is negative: on the mirrored side.
-TEST_P(EveryMethod, DrivenLengthThatVanishesEndsTheBranch) {
+TEST_P(OutcomesOfEveryMethod, DrivenLengthThatVanishesEndsTheBranch) {
     for (const double by : {0.11, 0.15, 0.21, 0.5})
         for (const int steps : {1, 10, 20}) {
             const auto path = solve(leg(), shortened_rod(by), steps);
@@ -439,7 +439,7 @@ TEST_P(EveryMethod, DrivenLengthThatVanishesEndsTheBranch) {
     EXPECT_EQ(solve(leg(), shortened_rod(0.09), 60).outcome, Outcome::converged);
 }
 
-TEST_P(EveryMethod, StateOfTheOtherAssemblyHasAConstraintResidual) {
+TEST_P(OutcomesOfEveryMethod, StateOfTheMirroredAssemblyHasAConstraintResidual) {
     const OneWay side = shortened_rod(0.15);
     Equilibrium mirrored = solve({Leg::equilibrium}, shortened_rod(0.05), 1).points.back();
     mirrored.load = -0.15;
@@ -449,7 +449,7 @@ TEST_P(EveryMethod, StateOfTheOtherAssemblyHasAConstraintResidual) {
 }
 
 // The force of a spring jumps where its length is zero: 500 N at the end.
-TEST_P(Outcomes, SpringThroughZeroLengthIsFollowedOrReported) {
+TEST_P(Outcomes, SpringDrivenThroughZeroLengthPushesOnBothSides) {
     const OneWay side = found("spring-through-zero-length");
     for (const int steps : {1, 2, 7, 40}) {
         const auto path = solve(leg(), side, steps);

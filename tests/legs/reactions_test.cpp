@@ -244,7 +244,7 @@ TEST_P(Residual, WrongLoadOfAMicronewtonIsVisible) {
               10 * judged([](Equilibrium&) {}).force);
 }
 
-TEST_P(Residual, EveryMisplacedBodyIsVisible) {
+TEST_P(Residual, AnyBodyDisplacedByAMicrometreIsVisible) {
     for (std::size_t b = 0; b < side.model.bodies.size(); ++b) {
         const Residuals shifted = judged([&](Equilibrium& s) { s.poses[b].r[0] += 1e-6; });
         EXPECT_TRUE(shifted.length > 1e-8 || shifted.force > 1e-3) << b;
@@ -256,7 +256,7 @@ TEST_P(Residual, EveryMisplacedBodyIsVisible) {
     EXPECT_NEAR(judged([](Equilibrium& s) { s.poses[0].r.y() += 1e-6; }).length, 1e-6, 1e-12);
 }
 
-TEST_P(Residual, EveryWrongReactionIsVisible) {
+TEST_P(Residual, AnyWrongReactionIsVisible) {
     if (!reads_reactions()) GTEST_SKIP();
     for (std::size_t n = 0; n < side.model.joints.size(); ++n)
         for (int k = 0; k < 3; ++k) {
@@ -288,7 +288,7 @@ TEST_P(Residual, WrenchThatAJointCannotTransmitIsVisible) {
     }
 }
 
-TEST_P(Residual, QuaternionSignDoesNotMatterAndANonUnitOneIsVisible) {
+TEST_P(Residual, SignOfAQuaternionChangesNothingAndANonUnitQuaternionIsVisible) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion does not judge this";
     EXPECT_NEAR(judged([](Equilibrium& s) { s.poses[1].p.coeffs() *= 1.001; }).direction, 1e-3,
                 2e-6);

@@ -211,7 +211,7 @@ TEST_P(LinearResponse, OffsetHeldByASecondJointIsInconsistent) {
     EXPECT_TRUE(contains(response.detail, "moving 'jack'")) << response.detail;
 }
 
-TEST_P(LinearResponse, ConsistentRedundantJointsDoNotChangeIt) {
+TEST_P(LinearResponse, ConsistentRedundantJointsDoNotChangeTheResponse) {
     Scene once = support::scene("pinned_bar"), twice = once;
     twice.joints.push_back(
         {"second hinge", Revolute{{0, 0.3 * Y}, {ground, 0.3 * Y}, {0, Y}, ground_y}});

@@ -193,7 +193,7 @@ TEST_P(RollingWheel, CarriesDeadForcesAtItsLowestPoint) {
                    [&](double F, double alpha) { return corner.free(alpha, weight * Z + F * f); });
 }
 
-TEST_P(RollingWheel, BrakeHoldsItToItsCarrier) {
+TEST_P(RollingWheel, BrakeForceAtThePatchActsOnTheCarrier) {
     for (const Corner& corner : corners())
         expect(corner, "{load: brake, from: -1500, to: 3000, steps: 40}",
                [&](double F, double alpha) {
@@ -218,7 +218,7 @@ TEST_P(RollingWheel, IsLiftedByAJackUnderItsLowestPoint) {
 }
 
 // Down to where the tyre leaves the road, and the corner hangs on its spring: α = -M_0 / k.
-TEST_P(RollingWheel, TyreUnderItOnlyPushes) {
+TEST_P(RollingWheel, TyreUnderItPushesAndLiftsOffWithoutPulling) {
     for (const Corner& corner : corners())
         expect(corner, "{drive: tyres.t.road, from: -0.25, to: 0.1, steps: 40}",
                [&](double h, double alpha) {

@@ -155,7 +155,7 @@ ELASTOCHECK_FOR(legs_by_every_method, UnstableStretch);
 
 // Arches with unstable stretches of 0.2 to 20 % of the way, in 1 to 20 steps, adaptive in up to 80;
 // golden ratio fractions instead of random numbers.
-TEST_P(UnstableStretch, DrivenArchEndsAtIt) {
+TEST_P(UnstableStretch, EndsTheBranchOfADrivenArchInAnyNumberOfSteps) {
     const auto share = [](int k, double by) { return std::fmod(by * k, 1.); };
     for (int k = 1; k <= 1025; ++k) {
         UnequalArch arch{0.2 + 0.2 * share(k, 0.618034), 0.02 + 0.1 * share(k, 0.754878), 0};
@@ -187,7 +187,7 @@ Scene pressed(Scene scene, double to) {
 
 // P = k_R / L. Free to lean in two planes with equal stiffness, both eigenvalues cross zero
 // together and the determinant keeps its sign.
-TEST_P(Stability, StraightColumnEndsAtItsBucklingLoad) {
+TEST_P(Stability, BranchOfAStraightColumnEndsAtItsBucklingLoad) {
     for (const bool two_planes : {false, true})
         for (const double to : {2020., 3929.4, 60000.})
             expect_lost(pressed(column(1000, two_planes), to), 1000 / 0.5, fmt::format("{} N", to));
@@ -206,7 +206,7 @@ Scene two_bars(const LoadKind& load, double to) {
 }
 
 // c (2θ₁ - θ₂) = P L θ₁, c (θ₂ - θ₁) = P L θ₂, hence P L / c = (3 - √5) / 2; the second is 5236 N.
-TEST_P(Stability, TwoBarColumnEndsAtItsLowestBucklingLoad) {
+TEST_P(Stability, BranchOfATwoBarColumnEndsAtItsLowestBucklingLoad) {
     for (const double to : {1969.1, 8000.})
         expect_lost(two_bars(DeadForce{{1, 0.5 * Z}, -Z}, to), 2000 * (3 - std::sqrt(5)) / 2);
 }
@@ -233,7 +233,7 @@ TEST_P(Stability, UnstableStartIsReported) {
 
 // A column on a ball joint beyond its buckling load with a lever of 1e-7 m, which alone determines
 // the direction of buckling.
-TEST_P(Stability, MinuteOffsetDeterminesTheBucklingDirection) {
+TEST_P(Stability, LeverOfATenthOfAMicrometreDeterminesTheBucklingDirection) {
     Scene s = column(1000, true);
     s.branches = {load_branch(DeadForce{{0, {1e-7, 0, 0.5}}, -Z}, 6100)};
     const auto path = solve(leg(), side_of(s), 20);
@@ -252,7 +252,7 @@ TEST_P(Stability, MinuteOffsetDeterminesTheBucklingDirection) {
 //
 // is its singularity: under compression, Euler's load for n elements; under tension, never below
 // N = k_y ℓ = 12 EI / ℓ², where the beam theory does not apply.
-TEST_P(Stability, StraightChainEndsAtItsCriticalLoadInCompressionAndTension) {
+TEST_P(Stability, BranchOfAStraightChainEndsAtItsCriticalLoadInCompressionAndTension) {
     constexpr double L = 1, EI = 100, EI_y = 400, GJ = 150, EA = 4e6;
     for (const int n : {1, 2, 4}) {
         const double l = L / n, k_x = EA / l, k_y = 12 * EI / (l * l * l), k_r = EI / l,

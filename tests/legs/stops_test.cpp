@@ -131,7 +131,7 @@ TEST_P(Stops, SofteningLawIsPassedBesideASpringAndEndsTheBranchAlone) {
 }
 
 // A McPherson strut on a bump stop and a rebound stop: the ends do not depend on the points.
-TEST_P(Stops, StrutOnStopsDoesNotDependOnTheOutputPoints) {
+TEST_P(Stops, EndStatesOfAStrutOnStopsDoNotDependOnTheNumberOfPoints) {
     const Scene free = support::scene("mcpherson");
     Scene s = free;
     for (const auto& elastic : free.elastics)

@@ -60,7 +60,7 @@ Scene with_curves(Scene scene) {
 }
 
 // Whether the points are recorded at the end only, or visited.
-TEST(Allocation, StepsOfNoMethodAllocate) {
+TEST(Allocation, StepsOfEveryMethodRunWithoutAllocation) {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const char* name :
          {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "two_spring_arch"})

@@ -136,7 +136,7 @@ TEST(NightlyBatch, ThousandVariantsEqualTheirScalarSolutions) {
 }
 
 // The first scene is at rest, the second settles under a preload, the third has curves.
-TEST(Sides, SharedStartGivesTheSolutionOfEachSideAlone) {
+TEST(SharedStart, SidesSolvedTogetherEqualEachSolvedAlone) {
     for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "double_wishbone"}) {
         Model model = compile(support::scene(name));
         std::vector<Branch> sides = model.branches;
@@ -164,7 +164,7 @@ TEST(Sides, SharedStartGivesTheSolutionOfEachSideAlone) {
 
 // A start settles under a preload, one over curves; a branch with other values at load factor 0 does
 // not use it, and the last rests on what is kept.
-TEST(Start, KeptStartIsUsedOnlyByBranchesThatBeginThere) {
+TEST(KeptStart, IsUsedOnlyByBranchesThatBeginThere) {
     for (const char* name : {"chrono_mcpherson_preload", "double_wishbone"}) {
         const Model model = on_sides(compile(support::scene(name)), 0);
         const Analysis analysis = analyse(model);

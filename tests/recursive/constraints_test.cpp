@@ -90,7 +90,7 @@ TEST(Constraints, RigidMotionOfAllBodiesKeepsValuesAndJacobian) {
     }
 }
 
-TEST(State, RotationIncrementIsTheExponentialMapInGroundAxes) {
+TEST(StateUpdate, RotationIncrementIsTheExponentialMapInGroundAxes) {
     Random random;
     for (const double angle : {0.0, 1e-300, 1e-12, 1e-3, 1.0, 3.0}) {
         State<double> q = random.state(1);

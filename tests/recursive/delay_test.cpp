@@ -16,7 +16,7 @@ namespace {
 // θ tan θ = 1, F = k_R θ / (L cos θ): where F L sin θ is k_R (models/scenes/pendulum.yaml).
 const double pendulum_limit = 600 * 0.8603335890193797 / (0.4 * std::cos(0.8603335890193797));
 
-TEST(Delay, PendulumLimitIsWhereGeometricStiffnessExceedsTheBushings) {
+TEST(DelayedForces, StabilityLimitOfAPendulumIsWhereGeometricStiffnessExceedsTheBushings) {
     Model model = compile(support::scene("pendulum"));
     const Analysis analysis = analyse(model);
     for (auto& branch : model.branches) {  // below the limit there is none; else wherever it ends
@@ -42,7 +42,7 @@ TEST(Delay, PendulumLimitIsWhereGeometricStiffnessExceedsTheBushings) {
 }
 
 // A stable equilibrium that no number of steps reaches.
-TEST(Delay, PublishedMethodReportsDivergenceBeyondItsStabilityLimit) {
+TEST(DelayedForces, PublishedMethodReportsDivergenceBeyondItsStabilityLimit) {
     Model model = compile(support::scene("pendulum"));
     for (auto& branch : model.branches) {
         branch.to *= 2;
@@ -59,7 +59,7 @@ TEST(Delay, PublishedMethodReportsDivergenceBeyondItsStabilityLimit) {
 // A bar hanging from its hinge on a torsion spring, with its weight P at L: T K_G = P L / k.
 // With the hinge away from the body's origin, the curvature of the joint and its reaction give
 // the same value.
-TEST(Delay, HangingBarHasDelayedShareWeightTimesLengthOverStiffness) {
+TEST(DelayedForces, HangingBarHasDelayedShareWeightTimesLengthOverStiffness) {
     for (const bool hinge_at_origin : {true, false}) {
         Model model = model_of("bar", {{"points.head.z", "-0.5"},
                                        {"points.o.x", hinge_at_origin ? "0" : "0.1"},
@@ -84,7 +84,7 @@ TEST(Delay, HangingBarHasDelayedShareWeightTimesLengthOverStiffness) {
 }
 
 // The lever and axis parts of an element's geometric tangent add up to the whole.
-TEST(Delay, LeverAndAxisTermsAddUpToTheGeometricTangent) {
+TEST(DelayedForces, LeverAndAxisTermsAddUpToTheGeometricTangent) {
     const Model model = compile(support::scene("chrono_mcpherson_preload"));
     const Branch& branch = model.branches[0];
     const Analysis analysis = analyse(model);

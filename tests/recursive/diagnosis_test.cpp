@@ -83,7 +83,7 @@ TEST(Diagnosis, EquilibratedConditionDoesNotDependOnTheUnitsOfTheStiffness) {
 }
 
 // With a NaN in the model no rank is computed; the methods report the failure.
-TEST(Diagnosis, NonFiniteDesignValueIsTheOnlyMessage) {
+TEST(Diagnosis, NonFiniteDesignValueIsReportedAndNothingElse) {
     const double none[] = {std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity(), 1e300};  // its square overflows
     for (const double bad : none) {
@@ -115,7 +115,7 @@ TEST(Diagnosis, NonFiniteDesignValueIsTheOnlyMessage) {
     }
 }
 
-TEST(Diagnosis, DoesNotDependOnFrameOrOrder) {
+TEST(Diagnosis, RankAndIdleModesDoNotDependOnFrameOrOrder) {
     const Scene scene = support::scene("chrono_mcpherson");
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized()));
     for (const auto& other :

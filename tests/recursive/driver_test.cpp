@@ -67,7 +67,7 @@ TEST(Driver, PublishedMethodHasFirstOrderConstraintErrorOnASliderCrank) {
 // ---- An arch on a jack: the limit of the published sum past both limit points is
 // ∫ 2k ζ²/(b² + ζ²) dζ, with the spring axes of each step.
 
-TEST(Driver, PublishedJackForceConvergesToTheLimitOfTheFormulation) {
+TEST(Driver, PublishedJackForceOnAnArchConvergesToItsOwnClosedForm) {
     Scene scene = support::scene("two_spring_arch");
     constexpr double k = 1e5, b = 0.3, h = 0.08;
     scene.joints.push_back(
@@ -101,7 +101,7 @@ double bubble_begins(double k_y) {
     return 20 * (z - 80) + 200 * (1 - drawn / length) * z;
 }
 
-TEST(Watch, SteppingMethodsEndWhereAnUnstableStretchBegins) {
+TEST(StabilityWatch, SteppingMethodsEndWhereAnUnstableStretchBegins) {
     for (const double k_y : {6.5, 6.8, 6.9, 6.95, 6.97, 6.98, 6.985, 6.988})
         for (const double to : {-3200., -2500., -2100., -4100., -8000.}) {
             const Model model = bubble(k_y, to);
@@ -118,7 +118,7 @@ TEST(Watch, SteppingMethodsEndWhereAnUnstableStretchBegins) {
     }
 }
 
-TEST(Watch, StableBranchHasNoEvent) {
+TEST(StabilityWatch, StableBranchHasNoEvent) {
     for (const double k_y : {6.99, 7.0, 7.1, 7.5})
         for (const double to : {-3200., -2500., -8000.}) {
             const Model model = bubble(k_y, to);
@@ -127,7 +127,7 @@ TEST(Watch, StableBranchHasNoEvent) {
 }
 
 // At rest the start is judged with the model, once for all branches.
-TEST(Start, SceneAtRestIsJudgedWithItsModel) {
+TEST(StartStability, SceneAtRestIsJudgedOnceForAllItsBranches) {
     for (const int preload : {45, 55}) {
         const auto found =
             analyse(model_of("squeezed_block", {setting("springs.left.preload", preload),

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 // The force and its slope are tested in tests/legs (Elements) and in tangent_test.cpp.
-TEST(Law, CurveIsContinuousAndAKnotBelongsToTheNextPiece) {
+TEST(CurveLaw, CurveIsContinuousAndAKnotBelongsToTheNextPiece) {
     Random random;
     const Curve f = random_curve(random, 1, 1e3);
     for (std::size_t k = 0; k < f.knots.size(); ++k) {
@@ -22,7 +22,7 @@ TEST(Law, CurveIsContinuousAndAKnotBelongsToTheNextPiece) {
     }
 }
 
-TEST(Law, KinksAreKnotsWhereTheSlopeJumps) {
+TEST(CurveLaw, KinksAreKnotsWhereTheSlopeJumps) {
     EXPECT_EQ(kinks_of(stop(0.03, 3e5)), std::vector<double>{0.03});
     // x³ on one side of 0, zero on the other: C1, with continuous curvature. x² is C1 only.
     EXPECT_TRUE(kinks_of({{0, 1}, {{0, 0, 0, 0}, {0, 0, 1e5, 0}, {1e5, 2e5, 0, 0}}}).empty());

@@ -42,7 +42,7 @@ TEST(Series, InstabilityInsideOneExpansionIsDetected) {
 }
 
 // A table with 1000 rows needs an expansion for nearly every row.
-TEST(Series, ExpansionLimitAppliesPerKnot) {
+TEST(Series, LimitOnExpansionsAppliesBetweenKnots) {
     constexpr int rows = 1000;
     std::string table;
     for (int k = 0; k <= rows; ++k) {

@@ -41,7 +41,7 @@ Scene springs_in_series(int n) {
                                   {"END", last}});
 }
 
-TEST(Large, CompliancesOfSpringsInSeriesAddUpInEveryMethod) {
+TEST(LargeModels, CompliancesOfSpringsInSeriesAddUpInEveryMethod) {
     for (const int n : {2, 30, 300}) {
         const Model model = compile(springs_in_series(n));
         ASSERT_EQ(model.bodies.size(), static_cast<std::size_t>(n));
@@ -64,7 +64,7 @@ TEST(Large, CompliancesOfSpringsInSeriesAddUpInEveryMethod) {
 
 // The rounded matrix solves to 1e-12 only. Without residual correction of the coefficients the
 // expansions would become arbitrarily short.
-TEST(Large, LongLeafSpringNeedsFewExpansions) {
+TEST(LargeModels, LeafSpringOfAHundredSegmentsNeedsAtMostFortyExpansions) {
     using namespace support;
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: leaf\nunits: {length: m, angle: rad, force: N}\n" + leaf(100) +
@@ -78,7 +78,7 @@ branches: {{push: {{load: push, to: {}, steps: 5}}}}
     EXPECT_LE(path.expansions.size(), 40u);
 }
 
-TEST(Large, FillOfTheFactorsIsLinearInTheLengthOfAChain) {
+TEST(LargeModels, FillOfTheFactorsIsLinearInTheLengthOfAChain) {
     const auto entries = [](int n) {
         const Analysis analysis = analyse(compile(springs_in_series(n)));
         const auto& system = analysis.system;
@@ -120,7 +120,7 @@ Scene carriers_and_rods(int n) {
                                   {"END", fmt::format("on: c{0}, at: p{0}", n - 1)}});
 }
 
-TEST(Large, BorderOfEachSpinningRodInvolvesOnlyItsBody) {
+TEST(LargeModels, IdleSpinsOfRodsAreSparseAndRodsMoveAsTheDistancesThatReplaceThem) {
     const int n = 25;
     const Scene scene = carriers_and_rods(n);
     const Model rods = compile(scene, Detail::everything), distances = compile(scene);
@@ -156,7 +156,7 @@ std::string stiff_link(int at) {
         at, at, at, at, at, at);
 }
 
-TEST(Large, BorderOfRedundantJointsInvolvesOnlyTheirLoop) {
+TEST(LargeModels, RowsForRedundantJointsHaveEntriesOnlyInTheirLoop) {
     const int n = 12;
     std::string points, bodies, joints;
     for (int i = 0; i < n; ++i) {
@@ -178,7 +178,7 @@ TEST(Large, BorderOfRedundantJointsInvolvesOnlyTheirLoop) {
     for (int c = held.idle; c < held.size(); ++c) EXPECT_EQ(held.end(c) - held.begin(c), 10);
 }
 
-TEST(Large, LoopsAreTheBiconnectedComponentsOfTheJointGraph) {
+TEST(LargeModels, LoopsAreTheBiconnectedComponentsOfTheJointGraph) {
     const Model model = model_of("loops", {}, Detail::everything);
     const std::vector<int> loop = loops(model);
     ASSERT_EQ(model.joints.size(), 8u);

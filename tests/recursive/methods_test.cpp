@@ -85,7 +85,7 @@ TEST(Methods, ConstraintErrorIsSecondOrderWhereConstraintsAreClosed) {
         }
 }
 
-TEST(Methods, RecordingFewerPointsDoesNotChangeThem) {
+TEST(Methods, RecordingFewerPointsDoesNotChangeTheRecordedPoints) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
@@ -117,7 +117,7 @@ TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
     }
 }
 
-TEST(Methods, AdaptiveTakesFewSolvesForHundredsOfPoints) {
+TEST(Methods, AdaptiveNeedsAtMostTwentyFactorisationsForThreeHundredPoints) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     for (const auto& branch : model.branches) {
         // 0.01 mm, 0.001 deg
@@ -170,7 +170,7 @@ TEST(Methods, FewStepsGiveABoundedErrorOrAReportedFailure) {
     EXPECT_GT(worst_share, 0.1);  // inaccurate results did occur: not everything was rejected
 }
 
-TEST(Methods, AreFoundByName) {
+TEST(Methods, EveryMethodIsFoundByItsName) {
     for (const auto& method : methods) EXPECT_EQ(find_method(method.name)->name, method.name);
     EXPECT_FALSE(find_method("tangnt"));
     EXPECT_EQ(Options{}.method.name, "published");

@@ -76,7 +76,7 @@ std::vector<OwnLimit> own_limits() {
     return limits;
 }
 
-TEST(Recursion, ConvergesToItsClosedFormLimitAtFirstOrder) {
+TEST(Recursion, PublishedRecursionConvergesToItsClosedFormLimitAtFirstOrder) {
     for (const auto& limit : own_limits()) {
         const Model model = compile(support::scene(limit.scene));
         const auto branch = std::ranges::find(model.branches, limit.load, &Branch::to);
@@ -149,7 +149,7 @@ TEST(Recursion, PapersSixHundredStepsAreThreeHundredOfTenNewtonPerSide) {
 }
 
 // A scene in balance starts where it is drawn, from its reactions, not from zero; another settles.
-TEST(Recursion, BalancedSceneStartsFromItsReactionsAndAnotherSettlesFirst) {
+TEST(Recursion, BalancedSceneStartsFromItsReactionsAndAnUnbalancedOneSettlesFirst) {
     for (const double more : {0., 75.}) {  // [N] on 75 N/mm
         Scene scene = support::scene("parallel_springs");
         auto& weight = std::get<DeadForce>(scene.static_loads[0].kind).f;

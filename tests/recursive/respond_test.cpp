@@ -37,7 +37,7 @@ VectorXd one(const OneWay& way, const Equilibrium& state, const Disturbance& dis
                                            : VectorXd::Constant(6, std::nan(""));
 }
 // The paper's first step is the response of K to the load, for any size of the load.
-TEST(Respond, PublishedResponseEqualsTheFirstStepOfThePublishedSweep) {
+TEST(RecursionResponse, PublishedResponseEqualsTheFirstStepOfThePublishedSweep) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const auto& load = std::get<DeadForce>(std::get<Load>(way.branch.drivers[0].what).kind);
     const auto path = solve(way.model, way.branch);
@@ -53,7 +53,7 @@ TEST(Respond, PublishedResponseEqualsTheFirstStepOfThePublishedSweep) {
     }
 }
 
-TEST(Respond, MethodsWithTheSameMatrixGiveTheSameResponse) {
+TEST(RecursionResponse, MethodsWithTheSameMatrixGiveTheSameResponse) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
@@ -68,7 +68,7 @@ TEST(Respond, MethodsWithTheSameMatrixGiveTheSameResponse) {
 
 // The orders that a state leaves serve the next one: the same response, and no search for an order
 // where the neighbours are near.
-TEST(Respond, PivotOrdersAreReusedAtTheNextState) {
+TEST(RecursionResponse, PivotOrdersAreReusedAtTheNextState) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     const auto path = solve(way.model, way.branch, {.method = rung("series"), .steps = 8});
     ASSERT_EQ(path.points.size(), 9u);
@@ -88,7 +88,7 @@ TEST(Respond, PivotOrdersAreReusedAtTheNextState) {
     EXPECT_LE(searches, 3);
 }
 
-TEST(Respond, OrderOfASimilarModelSparesTheSearch) {
+TEST(RecursionResponse, PivotOrderOfASimilarModelIsUsedWithoutASearch) {
     const Model model = way_of("double_wishbone", "vertical", 1).model,
                 other = way_of("front_axle", "vertical", 1).model;
     const auto own = analyse(model).system.lu.order;
@@ -98,7 +98,7 @@ TEST(Respond, OrderOfASimilarModelSparesTheSearch) {
         << "that of another structure is not used";
 }
 
-TEST(Respond, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
+TEST(RecursionResponse, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
     const OneWay way = way_of("front_axle", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Point at{way.model.wheels[0].body, way.model.wheels[0].centre_local};
@@ -113,7 +113,7 @@ TEST(Respond, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
               1e-13);
 }
 
-TEST(Respond, ResponseHasNoPartAlongAnUnloadedIdleMode) {
+TEST(RecursionResponse, ResponseHasNoPartAlongAnUnloadedIdleMode) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());

@@ -63,7 +63,7 @@ TEST(SeriesDrivers, HeldValuesAreSettledBeforeTheBranch) {
 
 // ---- Regression scenes: the result is right, or the outcome is a failure.
 
-TEST(SeriesFound, ConvergedPointsAreEquilibriaOfTheSameBranch) {
+TEST(SeriesRegression, PointsOfScenesThatOnceCrashedAreEquilibria) {
     for (const char* name : {"adaptive-segfault-arch", "adaptive-segfault-five-links"}) {
         const Model model = found(name);
         for (const auto& branch : model.branches) {
@@ -129,13 +129,13 @@ Coverage coverage(const Model& model, Random& random) {
     return result;
 }
 
-TEST(Pattern, CoversEveryNonzeroEntry) {
+TEST(TangentPattern, CoversEveryNonzeroEntry) {
     Random random;
     for (const auto& name : support::small_scene_names())
         EXPECT_EQ(coverage(compile(support::scene(name)), random).missed, 0) << name;
 }
 
-TEST(Pattern, HasAtMostFivePercentStructuralZerosOnASuspension) {
+TEST(TangentPattern, HasAtMostFivePercentStructuralZerosOnASuspension) {
     // Planar mechanisms are excluded: their pattern includes the third dimension.
     Random random;
     for (const char* name :

@@ -249,7 +249,7 @@ TEST(SparseLU, MatrixIsReorderedWhenAPivotShrinks) {
     EXPECT_GT(lu.orders, 1);
 }
 
-TEST(SparseLU, OrderIsKeptWhileMultipliersAreBounded) {
+TEST(SparseLU, PivotOrderIsKeptWhileMultipliersAreBounded) {
     std::mt19937 random(2);
     const Matrix<double> M = random_saddle_point(random, 12, 5);
     SparseLU<double> lu;
@@ -275,7 +275,7 @@ TEST(SparseLU, SingularAndNonFiniteMatricesAreReported) {
     EXPECT_GT(factorise_dense(lu, A), 0.01);
 }
 
-TEST(SparseLU, OrderOfDoublesServesOtherNumberTypes) {
+TEST(SparseLU, PivotOrderFoundInDoubleServesLongDouble) {
     std::mt19937 random(5);
     const Matrix<double> M = random_saddle_point(random, 14, 6);
     SparseLU<double> lu;

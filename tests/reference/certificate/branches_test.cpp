@@ -4,7 +4,7 @@
 namespace elastocheck::reference::certificate {
 namespace {
 
-TEST(CertifyBranch, McPhersonBranchIsOneCurveWithinAMillionthOfAMillimetre) {
+TEST(CertifyBranch, McPhersonBranchIsProvedToBeOneCurveWithinAMillionthOfAMillimetre) {
     for (const auto& walk : walked("mcpherson", 300)) {
         const Tube tube = certify_branch(walk.model, walk.branch, walk.points);
         EXPECT_EQ(tube.state, ProofState::proved) << tube.detail;

@@ -33,7 +33,7 @@ struct OnSlider : Side {
 };
 OnSlider on_slider(const Slider& slider) { return OnSlider(slider.model()); }
 
-TEST(CertifyBranch, StopOfAnyStiffnessIsCrossed) {
+TEST(CertifyBranch, TubeCrossesTheKnotOfAStopOfAnyStiffness) {
     for (const double k_s : {2., 400., 2e4, 2e6})
         for (const double c : {0., 0.3, 1., 4.99}) {
             const Slider slider{20, k_s, c};
@@ -60,7 +60,7 @@ TEST(CertifyBranch, StatesOfAnotherStopAreNotProved) {
 
 // With a slope of -k_n beyond the corner: no equilibrium continues beyond that load, the curve
 // turns back.
-TEST(CertifyBranch, CornerWhereTheCurveTurnsBackIsNotCrossed) {
+TEST(CertifyBranch, TubeEndsAtAForceCurveKnotWhereTheBranchTurnsBack) {
     for (const double k_n : {25., 40., 1000.}) {
         const Slider slider;
         OnSlider way = on_slider(slider);
@@ -157,7 +157,7 @@ TEST(CertificateEquations, ElementWithASeparateUnknownAtItsCornerHasTheSameSolut
                 }
 }
 
-TEST(CertifyBranch, CornersOfABushingAreCrossedOneAfterAnother) {
+TEST(CertifyBranch, TubeCrossesTheKnotsOfABushingOneAfterAnother) {
     const Side at = cornered({});
     std::vector<double> loads;
     for (int k = 0; k <= 60; ++k) loads.push_back(10. * k);
@@ -174,7 +174,7 @@ TEST(CertifyBranch, CornersOfABushingAreCrossedOneAfterAnother) {
 }
 
 // Slider and rider move by 50 mm, and relative to each other by half of the way to a knot.
-TEST(CertifyBranch, KnotThatNoDeformationReachesDoesNotShortenPieces) {
+TEST(CertifyBranch, KnotThatNoDeformationReachesDoesNotShortenThePiecesOfATube) {
     const Side at = side_of("rider_on_a_slider");
     const auto path = equilibrium::solve(at.model, at.branch, std::vector<double>{0, 10, 25});
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -185,7 +185,7 @@ TEST(CertifyBranch, KnotThatNoDeformationReachesDoesNotShortenPieces) {
 }
 
 // Every piece would have to cross the corner, without end.
-TEST(CertifyBranch, BranchThatStaysOnACornerIsProvedOrOpen) {
+TEST(CertifyBranch, BranchAtRestOnAKnotIsProvedOrReportedAsOpen) {
     const Side at = side_of("corner_at_rest");
     const auto path =
         equilibrium::solve(at.model, at.branch, std::vector<double>{0, 100, 200, 300});
@@ -213,13 +213,13 @@ Proved prove_every_way(const std::vector<std::string>& scenes) {
     return count;
 }
 
-TEST(CertifyBranch, EverySideOfSomeBuiltInScenesIsOneCurve) {
+TEST(CertifyBranch, EverySideOfSomeBuiltInScenesIsProvedToBeOneCurve) {
     const Proved proved = prove_every_way({"mcpherson", "double_wishbone", "tyre_on_road"});
     EXPECT_GE(proved.ways, 10);
     EXPECT_GE(proved.with_corners, 3);
 }
 
-TEST(NightlyCertifyBranch, EverySideOfEveryBuiltInSceneIsOneCurve) {
+TEST(NightlyCertifyBranch, EverySideOfEveryBuiltInSceneIsProvedToBeOneCurve) {
     const Proved proved = prove_every_way(support::scene_names());
     EXPECT_GE(proved.ways, 177);
     EXPECT_GE(proved.with_corners, 41);

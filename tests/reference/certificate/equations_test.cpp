@@ -23,7 +23,7 @@ bool holds_product(const Interval& x, double a, double b) {
     return (x.lo < p || (x.lo == p && e >= 0)) && (x.hi > p || (x.hi == p && e <= 0));
 }
 
-TEST(CertificateEquations, DrivenValuesEnterWithoutRounding) {
+TEST(CertificateEquations, DrivenPreloadIsEnclosedDespiteRounding) {
     Side way(swing(hinge, "bushings: {b: {bodies: [arm, ground], at: p, rates: [1, 1, 1]}}"));
     Vector6 direction;
     direction << 0.1, 0.7, -1. / 3, 3e-5, 1e7 / 3, 0.3;

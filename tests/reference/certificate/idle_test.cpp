@@ -21,7 +21,7 @@ Certificate at(const Side& way, double load, double distance) {
     return way.certify(state);
 }
 
-TEST(CertificateIdle, SoftMotionBesideStiffNeighboursIsNotIdle) {
+TEST(CertificateIdleModes, SoftMotionBesideStiffNeighboursIsNotIdle) {
     for (const double soft : {1e-4, 1e-3, 1., 1e3})
         for (const double stiff : {1e5, 1e9}) {
             const Side way = hung(stiff, soft, 1e-2 * soft);
@@ -43,7 +43,7 @@ TEST(CertificateIdle, SoftMotionBesideStiffNeighboursIsNotIdle) {
 }
 
 // Without rate and load every position along the motion is an equilibrium.
-TEST(CertificateIdle, UnloadedMotionWithoutStiffnessIsIdle) {
+TEST(CertificateIdleModes, UnloadedMotionWithoutStiffnessIsIdle) {
     const Side way = hung(1e9, 0, 1e-6);
     for (const double distance : {0., 0.3}) {
         const Certificate c = at(way, 0, distance);
@@ -58,7 +58,7 @@ TEST(CertificateIdle, UnloadedMotionWithoutStiffnessIsIdle) {
 
 // A pendulum on a point: its spin about the vertical is idle, its swing is resisted by
 // the load alone.
-TEST(CertificateIdle, MotionWithGeometricStiffnessAloneIsNotIdle) {
+TEST(CertificateIdleModes, MotionWithGeometricStiffnessAloneIsNotIdle) {
     const Side way = side_of("hung_on_a_point");
     for (const double tilt : {0., 1e-8, 1e-6}) {
         Equilibrium state;
@@ -74,7 +74,7 @@ TEST(CertificateIdle, MotionWithGeometricStiffnessAloneIsNotIdle) {
 
 // Upright column on a ball joint with a torsion spring. Its load is 1e-9 m off its axis, which
 // determines the direction of buckling.
-TEST(CertificateIdle, BucklingDirectionGivenByAnOffsetIsNotIdle) {
+TEST(CertificateIdleModes, BucklingDirectionGivenByAnOffsetIsNotIdle) {
     const Side way = side_of("column_off_axis");
     const Equilibrium state = way.solved(6000);
     const Certificate right = way.certify(state);
@@ -91,7 +91,7 @@ TEST(CertificateIdle, BucklingDirectionGivenByAnOffsetIsNotIdle) {
 
 // The frame of the mount is fixed to the strut: its spin is idle with equal rates across the axis,
 // and not with unequal ones.
-TEST(CertificateIdle, SpinIsIdleUnderAnIsotropicLawAndNotUnderANearlyIsotropicOne) {
+TEST(CertificateIdleModes, SpinIsIdleUnderAnIsotropicLawAndNotUnderANearlyIsotropicOne) {
     for (const double more : {0., 1e-9, 1e-3}) {
         Model model = compile(support::scene("mcpherson"));
         for (auto& elastic : model.elastics)
@@ -111,7 +111,7 @@ TEST(CertificateIdle, SpinIsIdleUnderAnIsotropicLawAndNotUnderANearlyIsotropicOn
 }
 
 // Two hinges on one axis are redundant; tilted against each other by 1e-10 rad they lock the arm.
-TEST(CertificateIdle, NearlyDependentRowsAreNotRedundant) {
+TEST(CertificateIdleModes, NearlyDependentRowsAreNotRedundant) {
     Side way = side_of("swing_on_two_hinges");
     const Equilibrium state = way.solved(500);
     ASSERT_EQ(way.certify(state).state, ProofState::proved);
@@ -123,7 +123,7 @@ TEST(CertificateIdle, NearlyDependentRowsAreNotRedundant) {
     EXPECT_NE(locked.state, ProofState::proved) << locked.detail;
 }
 
-TEST(CertificateIdle, TooLargeModelIsOpenWithAMessage) {
+TEST(CertificateIdleModes, TooLargeModelIsOpenWithAMessage) {
     std::string points, bodies, bushings;
     constexpr int n = 2000;
     for (int k = 0; k < n; ++k) {

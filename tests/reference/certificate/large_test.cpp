@@ -27,22 +27,22 @@ void prove_and_exclude(const Family& family) {
     EXPECT_EQ(moved.state, ProofState::excluded) << moved.detail;
 }
 
-TEST(CertificateLarge, PointOfAChainOfTwoHundredBodiesIsProvedOrExcluded) {
+TEST(CertificateOfLargeModels, PointOfAChainOfTwoHundredBodiesIsProvedOrExcluded) {
     prove_and_exclude({Kind::chain, 200});
 }
 
-TEST(CertificateLarge, PointOfAChainOfAHundredJointsIsProvedOrExcluded) {
+TEST(CertificateOfLargeModels, PointOfAChainOfAHundredJointsIsProvedOrExcluded) {
     prove_and_exclude({Kind::chain, 100, Hinge::revolute});
 }
 
-TEST(CertificateLarge, LargerThanRequestedIsNotTried) {
+TEST(CertificateOfLargeModels, ModelWithMoreUnknownsThanTheLimitIsReportedAsNotTried) {
     const Side side(families::scene({Kind::chain, 200}));
     const Certificate c = side.certify(side.drawn(0));
     EXPECT_EQ(c.state, ProofState::open);
     EXPECT_EQ(c.detail, "not tried: 1400 unknowns, proofs are tried up to 500");
 }
 
-TEST(NightlyCertificateLarge, PointOfAChainOfTwoThousandBodiesIsProvedOrExcluded) {
+TEST(NightlyCertificateOfLargeModels, PointOfAChainOfTwoThousandBodiesIsProvedOrExcluded) {
     prove_and_exclude({Kind::chain, 2000});
 }
 

@@ -137,7 +137,7 @@ TEST(Certificate, PerturbedPointIsExcludedWithItsDistanceFromTheEquilibrium) {
 }
 
 // A spun strut is another equilibrium; a load on the spin has none.
-TEST(Certificate, SpunStrutIsProvedAndALoadedSpinIsExcluded) {
+TEST(Certificate, StrutTurnedAboutItsFreeAxisIsProvedAndAMomentAboutThatAxisIsExcluded) {
     const OnMcPherson p(0.4);
     const Certificate before = p.certify(p.state);
     EXPECT_NE(before.detail.find("idle motion of 'strut'"), std::string::npos) << before.detail;

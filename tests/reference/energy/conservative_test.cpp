@@ -35,7 +35,7 @@ void expect_named(const Model& model, const Branch& branch, const std::string& n
     }
 }
 
-TEST(Conservative, AFollowerThatActsIsNamed) {
+TEST(MissingPotential, FollowerLoadThatActsIsNamedAsTheCause) {
     for (const char* scene : scenes) {
         const Model good = compile(scene_named(scene));
         const Branch branch = good.branches[0];
@@ -58,7 +58,7 @@ TEST(Conservative, AFollowerThatActsIsNamed) {
     }
 }
 
-TEST(Conservative, AFormulationWithoutEnergyIsNamed) {
+TEST(MissingPotential, BushingFormulationWithoutEnergyIsNamedAsTheCause) {
     for (const char* scene : scenes) {
         const Model good = compile(scene_named(scene));
         for (const bool conjugate : {true, false}) {
@@ -77,7 +77,7 @@ TEST(Conservative, AFormulationWithoutEnergyIsNamed) {
     }
 }
 
-TEST(Conservative, FormulationOfABushingWithoutForceDoesNotMatter) {
+TEST(MissingPotential, BushingWithoutForceIsNeverTheCause) {
     Model model = compile(scene_named("single_bushing"));
     Bushing nothing{Marker{0}, Marker{ground}, PerAxis{}};
     nothing.formulation.conjugate = false;

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 //
 // of a vertical force F at the patch. The chart's potential alone, in which the patch turns with the
 // arm, would add R B/2 to that stiffness.
-TEST(RollingWheel, RespondsWithTheStiffnessOfItsBrake) {
+TEST(RollingWheel, VerticalResponseOfABrakedWheelEqualsItsClosedForm) {
     const double a = 0.45, k = 70.6858347058 * 180 / std::numbers::pi, P = 3500, B = 4000;
     const Model model =
         compile(read_scene(std::filesystem::path(ELASTOCHECK_SCENES) /

@@ -15,7 +15,7 @@ Quaterniond turned_by(const Vector3d& phi) {
                           : Quaterniond::Identity();
 }
 
-TEST(Rotation, TurnAndQuaternionAreTheExponential) {
+TEST(Rotation, MatrixAndQuaternionOfARotationVectorAreTheSameRotation) {
     Random random;
     double worst = 0;
     for (int i = 0; i < 1000; ++i) {
@@ -29,7 +29,7 @@ TEST(Rotation, TurnAndQuaternionAreTheExponential) {
     EXPECT_LE(worst, 4e-15);
 }
 
-TEST(Rotation, TurnIsExactForTheSmallestAngles) {
+TEST(Rotation, RotationMatrixMinusOneIsExactForTheSmallestAngles) {
     const Vector3d phi(3e-200, -4e-200, 0);
     EXPECT_LE((turn_minus_one(phi) - skew(phi)).norm(), 1e-15 * phi.norm());
     EXPECT_TRUE(turn_jacobian(Vector3d::Zero()).isIdentity(0));

@@ -23,7 +23,7 @@ TEST(EquilibriumElements, LogarithmInvertsTheExponentialUpToHalfATurn) {
     EXPECT_TRUE(within(worst, 2e-15 * 4));
 }
 
-TEST(EquilibriumElements, UndefinedAngleIsNaN) {
+TEST(EquilibriumElements, AnglesAtTheirSingularityAreNaN) {
     const auto turn = [](double angle, const Vector3d& axis) {
         return Quaterniond(Eigen::AngleAxisd(angle, axis));
     };
