@@ -178,7 +178,7 @@ const Reason reasons_to_stay[] = {
 
 // In a chain a-b-c-d with a reason to keep c, d is still removed, c and the bodies before it stay;
 // and a link between two balls stays a body.
-TEST(Compile, LoadedFollowerAndLinkAreKept) {
+TEST(Compile, LoadedBodyOfAFreeChainAndLoadedLinkAreKept) {
     for (const auto& [name, give] : reasons_to_stay) {
         Scene scene = chain(4);
         give(scene, 2, 1);
@@ -230,7 +230,7 @@ Branch driven(const std::string& name, const Driven& what, double start = 0, dou
     return result;
 }
 
-TEST(Compile, KeepsAFollowerOnAJackThatIsDrivenOrHeld) {
+TEST(Compile, BodyOnAJackThatIsDrivenOrHeldIsKept) {
     for (const auto& [start, rate] : {std::pair(0.0, 1.0), {0.1, 0.0}, {0.0, 0.0}}) {
         Scene scene = chain(4);
         scene.branches = {branch("up", {push("p", 0)}),
@@ -247,7 +247,7 @@ TEST(Compile, KeepsAFollowerOnAJackThatIsDrivenOrHeld) {
     }
 }
 
-TEST(Compile, LeavesOutAJackThatNoBranchDrives) {
+TEST(Compile, JackThatNoBranchDrivesIsLeftOut) {
     Scene scene = chain(4);
     jack(scene, "jack", 2);
     scene.branches = {branch("up", {push("p", 0)})};
@@ -260,7 +260,7 @@ TEST(Compile, LeavesOutAJackThatNoBranchDrives) {
     EXPECT_EQ(kept(compile(held)), "abc") << "what stands always, holds always";
 }
 
-TEST(Compile, FollowerJoinedByADriverIsKept) {
+TEST(Compile, BodyJoinedByADrivenElementOrJointIsKept) {
     Scene scene = chain(3);
     spring(scene, "coil", 2, 1, 1e3);
     scene.branches = {driven("trim", FreeLength{0})};
@@ -306,7 +306,7 @@ TEST(Compile, DriversReferToTheRenumberedParts) {
     EXPECT_EQ(preload.direction, Vector6(Vector6::Unit(4)));
 }
 
-TEST(Compile, BranchWithoutRemainingDriversIsNamed) {
+TEST(Compile, BranchLeftWithoutDriversIsListedAsOmitted) {
     Scene scene = bodies(2);
     ball(scene, "a_ground", 0, ground);
     ball(scene, "b_ground", 1, ground);
@@ -436,7 +436,7 @@ const auto* find(const List& list, const std::string& name) {
 
 constexpr int scenes = 3000;
 
-TEST(Compile, RefersToTheSameBodiesAsTheScene) {
+TEST(Compile, PartsOfRandomModelsReferToTheBodiesOfTheirScene) {
     RandomScene random{std::mt19937(42)};
     for (int n = 0; n < scenes; ++n) {
         const Scene scene = random.scene();
@@ -593,7 +593,7 @@ std::string kept_by_the_rule(const Scene& scene) {
     return names;
 }
 
-TEST(Compile, KeptPartsEqualThoseOfTheRuleOnRandomScenes) {
+TEST(Compile, KeptBodiesOfRandomScenesEqualThoseOfAnIndependentRule) {
     RandomScene random{std::mt19937(44)};
     std::size_t left_out_bodies = 0;
     for (int n = 0; n < scenes; ++n) {

@@ -239,7 +239,7 @@ x,f
     }
 }
 
-TEST(CurveFile, MayBeInAFolderBelow) {
+TEST(CurveFile, TableInAFolderBelowTheSceneIsRead) {
     support::Folder folder;
     folder.write("scene.yaml", laws_scene(spring_with("curve: {file: rubber/coil.csv}")));
     std::filesystem::create_directory(folder.path / "rubber");

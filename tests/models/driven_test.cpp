@@ -30,7 +30,7 @@ const Joint& joint_of(const Scene& scene, const Driver& driver) {
 
 // u_i · (cos α y_j - sin α x_j) = 0 holds after rotating body i by α about the axis
 // as written, right-handed.
-TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
+TEST(DrivenAngle, IsThatOfTheFirstBodyAboutTheAxisAsWritten) {
     const std::pair<const char*, Vector3d> joints[] = {{"hinge", Vector3d(1, 2, -2) / 3},
                                                        {"tube", {0, 0, -1}}};
     for (const auto& [name, axis] : joints) {
@@ -59,7 +59,7 @@ TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
 
 // ---- The model on a branch.
 
-TEST(BranchSides, DivideTheStepsAndKeepTheirNumber) {
+TEST(BranchSides, StepsAreDividedByLengthAndKeepTheirSum) {
     for (int steps = 2; steps < 40; ++steps)
         for (const double to : {0.001, 0.5, 1.0, 2.5, 70.0}) {
             Branch branch;
@@ -92,7 +92,7 @@ TEST(BranchSides, BranchFromZeroHasOneSide) {
     EXPECT_EQ(branch_sides(branch)[0].steps, 7);
 }
 
-TEST(OnBranch, JackIsActiveOnlyWhereItIsDriven) {
+TEST(ModelOnABranch, JackIsActiveOnlyWhereItIsDriven) {
     const Scene scene = parsed(
         rig("  load: {load: push, to: 9, steps: 1}\n  jack: {drive: travel, to: 9, steps: 1}\n"
             // in parallel with an inactive jack
@@ -131,7 +131,7 @@ TEST(OnBranch, JackIsActiveOnlyWhereItIsDriven) {
     }
 }
 
-TEST(OnBranch, BranchWithTwoSidesIsRejectedByTheLegs) {
+TEST(ModelOnABranch, BranchWithTwoSidesIsRejectedByTheLegs) {
     const Scene scene = parsed(rig("  up: {drive: travel, from: -9, to: 9, steps: 2}"));
     const Model model = compile(scene);
     EXPECT_FALSE(stands_on(model, model.branches[0]));

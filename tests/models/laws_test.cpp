@@ -20,7 +20,7 @@ Curve curve_of(const Scene& scene, const std::string& name) {
 // ---- Stops: a force over ℓ - 400 mm, the length at the design position.
 
 // The law equals a spring's with the same table over the penetration.
-TEST(Stops, CurveIsAFunctionOfThePenetration) {
+TEST(Stops, ForceIsTheCurveAtThePenetration) {
     const std::string table =
         "curve: {table: [[0, 0], [10, 900], [20, 4000], [25, 9000]], scale: 1.5}";
     const auto g = curve_of(laws(spring_with(table)), "coil");

@@ -30,7 +30,7 @@ bool is_gauge(const std::string& what) {
     return what.find(".drive.") != std::string::npos && what.find("u_local") != std::string::npos;
 }
 
-TEST(Mirror, EqualsTheTwinWrittenByHand) {
+TEST(Mirror, MirroredAxleEqualsTheTwinWrittenByHand) {
     const auto mirrored = numbers(parsed_axle(axle_scene)),
                by_hand = numbers(parsed_axle(by_both_sides));
     ASSERT_EQ(mirrored.size(), by_hand.size());
@@ -74,7 +74,7 @@ TEST(Mirror, EqualDrivesGiveASymmetricMotion) {
 
 // In ground axes a translational stiffness C = A K A' (of polar vectors) becomes S C S for any
 // choice of frame; a preload becomes S f, a moment -S m.
-TEST(Mirror, ReflectsABushingInGroundAxes) {
+TEST(Mirror, StiffnessAndPreloadOfABushingAreReflectedInTheGroundXZPlane) {
     const Scene scene = parsed_axle(axle_scene);
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     for (const std::string name : {"mount", "block"}) {
@@ -101,7 +101,7 @@ TEST(Mirror, ReflectsABushingInGroundAxes) {
     }
 }
 
-TEST(Mirror, ReplacesWholeWordsOnly) {
+TEST(Mirror, NameThatContainsLeftInsideAWordIsKept) {
     std::string text = axle_scene;
     for (std::size_t at = 0; (at = text.find("rack", at)) != std::string::npos; at += 4)
         if (text.substr(at - 1, 1) != "\n") text.replace(at, 4, "leftover");

@@ -15,7 +15,7 @@ std::string refusal(const std::string& text, const std::string& name) {
     return "accepted";
 }
 
-TEST(Mistakes, MistakeIsRejectedWithItsPlaceAndTheAllowedValues) {
+TEST(Mistakes, MistakeInASceneIsRejectedWithItsPlaceAndTheAllowedValues) {
     int files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_FIXTURES)) {
         if (entry.path().extension() != ".mistakes") continue;
@@ -27,7 +27,7 @@ TEST(Mistakes, MistakeIsRejectedWithItsPlaceAndTheAllowedValues) {
     EXPECT_GT(files, 10);
 }
 
-TEST(Mistakes, GeneratedTextsAreRefusedWithTheirPlace) {
+TEST(Mistakes, TooDeeplyNestedOrTooLargeSceneIsRefused) {
     std::string nested;
     for (int n = 0; n < 100'000; ++n) nested += "- ";
     EXPECT_EQ(refusal(nested, "a.yaml"), "a.yaml:1: nested more than 16 levels deep");

@@ -112,7 +112,7 @@ TEST(OneSide, VariedSceneEqualsReadingItWithSettings) {
     }
 }
 
-TEST(OneSide, ManyReadingsKeepTheSettingsOfOtherNumbers) {
+TEST(OneSide, RepeatedReadingKeepsTheSettingsOfOtherNumbers) {
     const std::string text = reader::read_text(file, reader::Pipes::allowed).text;
     const reader::ParsedScene parsed(text, "axle.yaml", std::nullopt);
     const std::vector<Setting> others{{"points.upper_ball_left.z@right", "0.27"}};

@@ -255,7 +255,7 @@ TEST(Weld, OpenJointsAndOutputsOnGroundAreKept) {
 
 // ---- Within one body.
 
-TEST(WithinOneBody, JointsAndElementsWithoutEffectAreRemoved) {
+TEST(PartsWithinOneBody, JointsAndElementsWithoutEffectAreRemoved) {
     Scene s = bodies(3);
     const Vector3d o(0, 0, 0), p(0, 0, 1);
     s.joints = {{"weld", fixed(s, 1, 2, p)},
@@ -276,7 +276,7 @@ TEST(WithinOneBody, JointsAndElementsWithoutEffectAreRemoved) {
     EXPECT_EQ(reasons.at("element 'rubber'"), "both its ends are on ground");
 }
 
-TEST(WithinOneBody, StrainedDrivenOrFollowerPartsAreKept) {
+TEST(PartsWithinOneBody, StrainedDrivenOrFollowerPartsAreKept) {
     const Vector3d o(0, 0, 0), p(0, 0, 1);
     const auto scene = [&] {
         Scene s = bodies(2);
@@ -341,7 +341,7 @@ TEST(Link, BodyWithTwoBallJointsBecomesADistance) {
     EXPECT_EQ(model.as_solved, (Size{1, 2, 1, 1 + 5}));
 }
 
-// Whatever else keeps a body keeps a link: Compile.LoadedFollowerAndLinkAreKept.
+// Whatever else keeps a body keeps a link: Compile.LoadedBodyOfAFreeChainAndLoadedLinkAreKept.
 TEST(Link, BodyWithAnotherJointOrCoincidentBallsIsKept) {
     Scene hinged = linked(), short_link = linked();
     hinged.joints[0].kind = hinge(hinged, 0, 1, Vector3d(0.1, 0, 0), Vector3d(0.2, 0.1, 0));
@@ -409,7 +409,7 @@ std::string kept(JointKind (*first)(const Scene&), JointKind (*second)(const Sce
     return names(s.joints);
 }
 
-TEST(Duplicate, JointThatAnotherImpliesIsRemoved) {
+TEST(DuplicateJoint, ImpliedByAnotherIsRemoved) {
     static const Vector3d p(0.1, 0.2, 0.3), q(0.5, 0.2, 0.1), n(1, 2, 3);
     using J = JointKind;
     const auto a_ball = [](const Scene& s) -> J { return ball(s, 0, 1, p); };
@@ -453,7 +453,7 @@ TEST(Duplicate, JointThatAnotherImpliesIsRemoved) {
                   "joint 'one' imposes the same constraint and carries the whole reaction"}}));
 }
 
-TEST(Duplicate, DrivenOrTemporaryJointIsKept) {
+TEST(DuplicateJoint, DrivenOrTemporaryIsKept) {
     Scene s = bodies(2);
     const Vector3d p(0, 0, 0), q(0, 0, 1);
     const Distance rod{at(s, 0, p), at(s, 1, q), 1};
@@ -470,7 +470,7 @@ TEST(Duplicate, DrivenOrTemporaryJointIsKept) {
 
 // ---- All passes together.
 
-TEST(Detail, EverythingKeepsTheSceneAsWritten) {
+TEST(CompileDetail, EverythingKeepsAllPartsOfTheScene) {
     Scene scene = linked();
     scene.joints.push_back({"again", ball(scene, 0, 1, Vector3d(0.1, 0, 0))});
     scene.elastics.push_back(
@@ -486,7 +486,7 @@ TEST(Detail, EverythingKeepsTheSceneAsWritten) {
     EXPECT_EQ(model.as_solved.rows, constraint_rows(model));
 }
 
-TEST(Detail, RemovedPartsAreNamed) {
+TEST(CompileDetail, RemovedPartsAreNamed) {
     std::vector<Scene> scenes{linked(), welded()};
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES))
         if (entry.path().extension() == ".yaml") scenes.push_back(read_scene(entry.path()));
@@ -519,7 +519,7 @@ TEST(Detail, RemovedPartsAreNamed) {
     }
 }
 
-TEST(Detail, DriversReferToTheSamePartsAfterAllPasses) {
+TEST(CompileDetail, DriversReferToTheSamePartsAfterAllPasses) {
     Scene s = welded();
     s.elastics[1].kind = [&] {
         Bushing b = std::get<Bushing>(s.elastics[1].kind);
@@ -550,7 +550,7 @@ TEST(Detail, DriversReferToTheSamePartsAfterAllPasses) {
     }
 }
 
-TEST(Detail, MinimalModelIsUnchanged) {
+TEST(CompileDetail, ReducedModelIsNotReducedFurther) {
     for (Scene scene : {linked(), welded()}) {
         const auto reduced = [](Scene s) {
             reduce::drop_what_does_nothing(s), reduce::drop_what_never_stands(s), reduce::weld(s);
@@ -564,7 +564,7 @@ TEST(Detail, MinimalModelIsUnchanged) {
     }
 }
 
-TEST(Detail, TyreWithoutABranchIsOmitted) {
+TEST(CompileDetail, TyreWithoutABranchIsOmitted) {
     Scene s = linked();
     s.elastics.push_back({"tyre", bushing(s, ground, 0, Vector3d(0, 0, 0)), true});
     EXPECT_EQ(omitted(compile(s)).at("element 'tyre'"), "no branch drives it");
@@ -572,7 +572,7 @@ TEST(Detail, TyreWithoutABranchIsOmitted) {
     EXPECT_EQ(names(compile(s).elastics), "coil tyre");
 }
 
-TEST(Detail, QuantitiesAdjustedByTheTrimCountAsDriven) {
+TEST(CompileDetail, QuantitiesAdjustedByTheTrimCountAsDriven) {
     Scene s = bodies(2);
     s.joints = {{"root", hinge(s, 0, ground, Vector3d(0, 0, 0), Vector3d(1, 0, 0))},
                 {"joint", hinge(s, 1, 0, Vector3d(0, 0, 1), Vector3d(1, 0, 0))}};

@@ -145,7 +145,7 @@ TEST(DamagedScene, NumberAtTheEndOfItsRangeIsAcceptedOrRejectedWithAMessage) {
     report(tally);
 }
 
-TEST(DamagedScene, SingleTokenIsRejected) {
+TEST(DamagedScene, TextOfOneRepeatedTokenIsRejected) {
     Tally tally;
     for (const char* token : {"[",       "{",   "- ",    "? ", "a: ", "[a, ", "{a: ",  "&a [*a, ",
                               "\"",      "'",   "|",     "!",  "*",   "&",    "%",     "x: [",

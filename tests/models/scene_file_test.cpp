@@ -63,7 +63,7 @@ void expect_same(const Scene& a, const Scene& b, double tolerance) {
 
 // ---- The shipped scenes.
 
-TEST(ShippedScene, EachOneLoadsWithClosedJointsAndUnrotatedBodies) {
+TEST(BuiltInScene, EveryOneLoadsWithClosedJointsAndUnrotatedBodies) {
     int count = 0;
     for (const auto& entry : fs::directory_iterator(ELASTOCHECK_SCENES)) {
         if (entry.path().extension() != ".yaml") continue;
@@ -180,7 +180,7 @@ struct CommaForPoint : std::numpunct<char> {
     std::string do_grouping() const override { return "\3"; }
 };
 
-TEST(Numbers, DoNotDependOnTheLocale) {
+TEST(Numbers, AreReadWithAPointInEveryLocale) {
     const Scene expected = parsed(bench_scene);
     const std::locale before =
         std::locale::global(std::locale(std::locale::classic(), new CommaForPoint));
@@ -344,7 +344,7 @@ TEST(Stiffness, IsSymmetricToTheLastBit) {
     EXPECT_NE(read(0, 4), 0);
 }
 
-TEST(Sections, TheirOrderDoesNotMatter) {
+TEST(SceneSections, OrderDoesNotChangeTheScene) {
     std::vector<std::string> sections;
     std::istringstream lines(bench_scene);
     for (std::string line; std::getline(lines, line);) {
@@ -358,7 +358,7 @@ TEST(Sections, TheirOrderDoesNotMatter) {
     expect_same(parsed(bench_scene), parsed(backwards), 0);
 }
 
-TEST(Text, LineEndsAndByteOrderMarkDoNotMatter) {
+TEST(SceneText, LineEndsAndByteOrderMarkDoNotChangeTheScene) {
     std::string windows = "\xEF\xBB\xBF";
     for (const char c : bench_scene) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
     expect_same(parsed(bench_scene), parsed(windows), 0);
@@ -376,7 +376,7 @@ struct TemporaryFile {
     ~TemporaryFile() { fs::remove(path); }
 };
 
-TEST(File, GivesTheSameSceneAsItsText) {
+TEST(SceneFile, IsReadAsTheSceneOfItsText) {
     const TemporaryFile file(bench_scene);
     const Scene scene = read_scene(file.path);
     EXPECT_EQ(scene.source, file.path.string());

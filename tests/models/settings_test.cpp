@@ -73,7 +73,7 @@ TEST(Settings, ValueIsOneLineOfPlainText) {
                   std::string::npos);
 }
 
-TEST(Settings, AreParsedFromOneWord) {
+TEST(Settings, AssignmentInOneWordIsParsed) {
     const Setting parsed = parse_setting("points.tie_rod_inner.z=-0.055");
     EXPECT_EQ(parsed.path, "points.tie_rod_inner.z");
     EXPECT_EQ(parsed.value, "-0.055");
@@ -114,7 +114,7 @@ last: 8  # last was 7)");
               "a: 2  # a was 1\r\nb: 3\r\n");
 }
 
-TEST(RewriteScene, ReplacesItsOwnCommentAndNoOther) {
+TEST(RewriteScene, CommentOfAnEarlierRewriteIsReplacedAndOthersAreKept) {
     const Setting x{"p.x", "5"}, b{"b", "2"};
     EXPECT_EQ(rewrite_scene("p: {x: 4, y: 2}  # p.x was 3, p.y was 1\n", "a.yaml", {&x, 1}),
               "p: {x: 5, y: 2}  # p.x was 4, p.y was 1\n");

@@ -46,7 +46,7 @@ Scene imported_fixture(const std::string& name, const std::string& from = "",
 
 // ---- Error messages.
 
-TEST(Adm, SaysWhatIsWrongAndWhere) {
+TEST(Adm, RefusalOfAnInvalidDatasetHasLineAndReason) {
     expect_refusals("linkage", linkage, "model.adm",
                     [](const std::string& text) { return refusal_of(text, "model.adm"); });
 }
@@ -68,7 +68,7 @@ TEST(Adm, StatementWithoutASceneElementIsAnErrorOrReportedInTheHead) {
 
 // ---- Expressions.
 
-TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
+TEST(Adm, ExpressionsMayBeSumsOfConstantsDisplacementsAndCurves) {
     using namespace importer::adm;
     Context context;
     context.time = 2;
@@ -211,7 +211,7 @@ TEST(Adm, MisspeltArgumentIsReported) {
 
 // ---- Export and re-import.
 
-TEST(Adm, ExportedAndImportedAgainHasTheSameEquilibrium) {
+TEST(Adm, SceneExportedAndImportedAgainHasTheSameEquilibrium) {
     const Scene first = imported_fixture("two_parts");
     const importer::Exported exported = importer::export_adm(first, false);
     const Scene second = imported_scene(exported.text);

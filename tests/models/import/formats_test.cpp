@@ -51,7 +51,7 @@ void expect_same(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b,
 // ---- Chrono
 
 // Over ±60 mm of travel; the command covers the other samples.
-TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
+TEST(Chrono, LegsAgreeOverTheTravelOfASample) {
     for (const char* file : {"generic__DoubleWishbone.json", "generic__ThreeLinkIRS.json"}) {
         SCOPED_TRACE(file);
         const Scene scene = chrono(sample(file));
@@ -63,7 +63,7 @@ TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
 }
 
 // A template and the generic suspension with the same numbers, which has six digits, are the same mechanism.
-TEST(Chrono, TheReplicaMovesAsItsTemplate) {
+TEST(Chrono, GenericSuspensionWithTheNumbersOfATemplateMovesAsIt) {
     expect_same(
         wheels_in_travel(chrono(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), 4),
         wheels_in_travel(chrono(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json")), 4), 1e-6);
@@ -114,14 +114,14 @@ TEST(Chrono, WheelRateAtARowOfATableIsUndefined) {
     EXPECT_EQ(without % 2, 0);
 }
 
-TEST(Chrono, SaysWhatIsWrongAndWhere) {
+TEST(Chrono, RefusalOfAnInvalidFileHasPlaceAndReason) {
     expect_refusals("double_wishbone", sample("generic__DoubleWishbone.json"), "model.json",
                     [](const std::string& text) { return refusal_of(text, "model.json"); });
 }
 
 // ---- Property files
 
-TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
+TEST(PropertyFile, RefusalOfAnInvalidFileHasLineAndReason) {
     const std::string scene =
         replaced(support::text_of(import_folder / "fixtures/beside_files.yaml"), "# elements",
                  "bushings: {mount: {bodies: [ground, block], at: o, rates: mount.bus}}");
@@ -136,7 +136,7 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
 // ---- Export and re-import.
 
 // The Chrono export of any imported scene can be re-imported and gives the same motion.
-TEST(Chrono, ExportedAndImportedAgainHasTheSameMotion) {
+TEST(Chrono, SceneExportedAndImportedAgainHasTheSameMotion) {
     for (const char* name : {"generic__MultiLink.json", "generic__DoubleWishbone.json",
                              "generic__SemiTrailingArm.json", "generic__ThreeLinkIRS.json",
                              "hmmwv__HMMWV_DoubleWishboneFront_bushings.json",
@@ -157,7 +157,7 @@ TEST(Chrono, ExportedAndImportedAgainHasTheSameMotion) {
 
 // Stops with Chrono's curve are exported as Chrono's own, both or one of the two; stops with other
 // curves are errors.
-TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
+TEST(Chrono, StopsWithTheCurveOfChronoAreExportedAndOthersAreRefused) {
     const Scene first = chrono(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json"));
     const auto stops = [](const Scene& scene) {
         std::vector<const AxialSpring*> list;

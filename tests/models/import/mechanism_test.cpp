@@ -55,7 +55,7 @@ double apart(const Scene& a, const Scene& b, const std::string& branch,
     return (wheel(a, branch).r - wheel(b, branch).r - by).norm();
 }
 
-TEST(Mechanism, MovesAsTheSceneWrittenByHand) {
+TEST(Mechanism, WishboneAndStrutOfPointsMoveAsTheScenesWrittenByHand) {
     const Scene wishbone = by_hand("double_wishbone_rigid.yaml");
     for (const char* branch : {"travel", "steering"}) {
         EXPECT_LT(apart(made_of("optimum_names.csv", as("double_wishbone")), wishbone, branch),
@@ -72,7 +72,7 @@ TEST(Mechanism, MovesAsTheSceneWrittenByHand) {
     }
 }
 
-TEST(Mechanism, BothWheelsAreMirrorImages) {
+TEST(Mechanism, BothWheelsMoveAsOneWheelAndItsMirrorImage) {
     for (const char* file : {"optimum_names.csv", "saved.shk"}) {
         const bool left = std::string_view(file).ends_with("csv");
         auto options = as("double_wishbone", left ? "x-forward,y-left" : "x-rearward,y-right");
@@ -100,7 +100,7 @@ TEST(Mechanism, PushrodAndRockerOfADamperDoNotChangeTheMotion) {
 }
 
 // Groups of columns in inches, a listing with a pushrod, whole words.
-TEST(Mechanism, LayoutsOfOtherExportsMove) {
+TEST(Mechanism, PointListsOfOtherLayoutsGiveMechanismsThatMove) {
     auto options = as("double_wishbone");
     options.pushrod = "upper";
     const Scene groups = made_of("optimum_groups.csv", options);

@@ -18,7 +18,7 @@ importer::Options with_axes(const std::string& axes) {
     return options;
 }
 
-TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
+TEST(Points, UnreadablePointsAreRefusedWithTheirLine) {
     importer::Options options = with_axes("x-forward,y-left");
     expect_refusals("points", "name,x_mm,y_mm,z_mm\na,1,2,3\n", "p.csv",
                     [&](const std::string& text) { return refusal_of(text, "p.csv", options); });
@@ -64,7 +64,7 @@ const Parts saved_book{
      R"(<x:row r="6"><x:c r="B6" t="inlineStr"><x:is><x:t>Rack</x:t></x:is></x:c><x:c r="C6"><x:v>1</x:v></x:c>)"
      R"(<x:c r="D6"><x:v>2</x:v></x:c><x:c r="E6"><x:v>3</x:v></x:c></x:row></x:sheetData></x:worksheet>)"}};
 
-TEST(PointsTable, OfAWorkbookIsReadAsThatOfItsSheet) {
+TEST(PointsTable, WorkbookIsReadAsTheTableOfItsSheet) {
     const support::Folder place;
     const auto read = [&](const Parts& parts, const std::string& sheet = "") {
         importer::Options options = with_axes("x-forward,y-left");
@@ -110,7 +110,7 @@ TEST(PointsTable, OfAWorkbookIsReadAsThatOfItsSheet) {
 }
 
 // Points and markers of parts that are placed and turned; a place that is an expression is left out.
-TEST(Points, OfAdamsViewAreInTheFramesOfTheirCommands) {
+TEST(Points, AdamsViewCoordinatesAreReadRelativeToTheMarkerOrPartOfTheirCommand) {
     const std::string text = support::text_of(import_folder / "points/view.cmd");
     importer::Options options = with_axes("x-rearward,y-left,z-up");
     const auto read = importer::import_text(text, "c.cmd", options);
@@ -133,7 +133,7 @@ TEST(Points, OfAdamsViewAreInTheFramesOfTheirCommands) {
     EXPECT_TRUE(says(refused("length = meter", ""), "--unit: the file does not say its unit"));
 }
 
-TEST(PointsTable, SplitsAsItsSeparatorSays) {
+TEST(PointsTable, CellsAreSplitAtTheSeparatorThatTheFileDeclaresOrUses) {
     const auto rows = [](const char* text) { return importer::read_sheet(text, "p.csv", 4); };
     const auto sheet = rows("sep=|\r\n\r\n a |\"b\"\"|c\"|d|1,5;2\r\n");
     ASSERT_EQ(sheet.rows.size(), 1u);

@@ -136,7 +136,7 @@ TEST(ChronoVehicle, TheAntiRollBarActsInRollOnly) {
     EXPECT_NEAR(std::abs(arm.cross(force).y()) / (10000 * twist(end)), 1, 1e-9);
 }
 
-TEST(ChronoVehicle, MistakesNameFileAndField) {
+TEST(ChronoVehicle, RefusalOfAnInvalidFileNamesFileAndField) {
     const Data data;
     expect_refusals("vehicle", with_rack, "vehicle.json",
                     [&](const std::string& text) { return data.refusal(text, "front"); });
