@@ -39,7 +39,7 @@ const SceneAnalyses& variant() {
     return once;
 }
 
-TEST(Against, SceneHasNoDifferenceFromItself) {
+TEST(SceneDifferences, SceneHasNoDifferencesFromItself) {
     const Against none = differences(base(), base());
     EXPECT_TRUE(none.numbers.empty() && none.figures.empty());
     EXPECT_TRUE(none.only_base.empty() && none.only_variant.empty());
@@ -47,7 +47,7 @@ TEST(Against, SceneHasNoDifferenceFromItself) {
     for (const auto& branch : none.branches) EXPECT_TRUE(branch.curves.empty()) << branch.name;
 }
 
-TEST(Against, NamesTheNumberThatDiffersAndTheFiguresThatItMoved) {
+TEST(SceneDifferences, ContainTheNumberThatDiffersAndTheFiguresThatItMoved) {
     const Against found = differences(base(), variant());
     ASSERT_EQ(found.numbers.size(), 1u);
     EXPECT_EQ(found.numbers[0].is->path, "points.tie_rod_inner.z");
@@ -83,7 +83,7 @@ TEST(Against, NamesTheNumberThatDiffersAndTheFiguresThatItMoved) {
     EXPECT_GT(largest, 0.01);
 }
 
-TEST(Against, ScenesWithDifferentStepsAreComparedAtEqualParameter) {
+TEST(SceneDifferences, ScenesWithDifferentStepsAreComparedAtEqualParameter) {
     SceneAnalyses coarse = base();  // every second point of each branch, by the same solution
     for (auto& branch : coarse.comparison.branches)
         truth_of(branch) = compare::thinned(truth_of(branch), 2);
@@ -93,7 +93,7 @@ TEST(Against, ScenesWithDifferentStepsAreComparedAtEqualParameter) {
                 << branch.name << curve.output;  // interpolation between 80 mm / 4
 }
 
-TEST(Against, BranchOrChannelOfOneSceneOnlyIsNamed) {
+TEST(SceneDifferences, BranchOrChannelOfOneSceneOnlyIsNamed) {
     SceneAnalyses other = variant();
     other.comparison.branches[0].branch = "Ride";
     other.comparison.channels[0].name = "hub_x";
@@ -102,7 +102,7 @@ TEST(Against, BranchOrChannelOfOneSceneOnlyIsNamed) {
     EXPECT_EQ(found.only_variant, (std::vector<std::string>{"output hub_x", "branch Ride"}));
 }
 
-TEST(Against, SectionDrawsBothScenesWithoutAVerdict) {
+TEST(SceneDifferences, SectionDrawsBothScenesWithoutAVerdict) {
     SceneAnalyses scene = base();
     scene.against = differences(base(), variant());
     const auto section = against_section(scene);

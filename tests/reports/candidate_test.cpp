@@ -37,7 +37,7 @@ std::string solved(const Folder& folder, const std::string& name, const std::str
 Said judge(const std::string& how) { return elastocheck_says("judge " + strut + " " + how); }
 
 // A bar rotated about its own axis has the correct outputs, but its bushing is twisted.
-TEST(CandidateCommand, UnbalancedStateIsReportedWithoutARequestedForce) {
+TEST(CandidateCommand, UnbalancedStateIsReportedEvenIfNoForceIsRequested) {
     const Folder folder;
     const std::string states = (folder.path / "states.jsonl").string();
     ASSERT_EQ(elastocheck_says("solve " + scenes +
@@ -67,8 +67,7 @@ TEST(CandidateCommand, UnbalancedStateIsReportedWithoutARequestedForce) {
     expect_parts(said.out, {"Its states are out of balance by up to "}, {"is the full solution,"});
 }
 
-TEST(CandidateCommand,
-     ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBuiltInOneDigitForDigit) {
+TEST(CandidateCommand, PublishedRecursionAsAnExternalCommandGetsTheNumbersOfTheBuiltInOne) {
     const Said said =
         expect_said(judge("--steps 20 --json --candidate-command '" ELASTOCHECK_COMMAND
                           " solve {scene} --method published --steps {steps} -o {output}'"),
@@ -88,7 +87,7 @@ TEST(CandidateCommand,
     EXPECT_GT(same, 40);
 }
 
-TEST(CandidateCommand, CommandIsSplitIntoWords) {
+TEST(CandidateCommand, CommandLineIsSplitIntoWordsAsByAShell) {
     using reports::words_of;
     using Words = std::vector<std::string>;
     EXPECT_EQ(words_of("  ./a  b\tc "), (Words{"./a", "b", "c"}));

@@ -185,28 +185,28 @@ std::string name_of(const testing::TestParamInfo<Claim>& claim) {
 
 #define ELASTOCHECK_CLAIMS_IN(Suite, file) \
     INSTANTIATE_TEST_SUITE_P(Suite, Claims, testing::ValuesIn(claims_in(file ".claims")), name_of)
-ELASTOCHECK_CLAIMS_IN(Line, "line");
+ELASTOCHECK_CLAIMS_IN(CommandLine, "line");
 ELASTOCHECK_CLAIMS_IN(Inspect, "inspect");
 ELASTOCHECK_CLAIMS_IN(Mistakes, "mistakes");
 ELASTOCHECK_CLAIMS_IN(Loads, "loads");
 ELASTOCHECK_CLAIMS_IN(Solve, "solve");
-ELASTOCHECK_CLAIMS_IN(AtWheel, "at_wheel");
+ELASTOCHECK_CLAIMS_IN(SpringsAtWheels, "at_wheel");
 ELASTOCHECK_CLAIMS_IN(Import, "import");
 ELASTOCHECK_CLAIMS_IN(Points, "points");
 ELASTOCHECK_CLAIMS_IN(Reader, "reader");
 ELASTOCHECK_CLAIMS_IN(Compare, "compare");
 ELASTOCHECK_CLAIMS_IN(Design, "design");
 ELASTOCHECK_CLAIMS_IN(Judge, "judge");
-ELASTOCHECK_CLAIMS_IN(Measured, "measured");
+ELASTOCHECK_CLAIMS_IN(MeasuredPoints, "measured");
 ELASTOCHECK_CLAIMS_IN(Sensitivity, "sensitivity");
-ELASTOCHECK_CLAIMS_IN(Redundant, "redundant");
+ELASTOCHECK_CLAIMS_IN(RedundantJoints, "redundant");
 ELASTOCHECK_CLAIMS_IN(Axles, "axles");
 ELASTOCHECK_CLAIMS_IN(NightlyAxles, "nightly_axles");
-ELASTOCHECK_CLAIMS_IN(Running, "running");
+ELASTOCHECK_CLAIMS_IN(ReportOptions, "running");
 ELASTOCHECK_CLAIMS_IN(Gate, "gate");
-ELASTOCHECK_CLAIMS_IN(Safety, "safety");
-ELASTOCHECK_CLAIMS_IN(Live, "live");
-ELASTOCHECK_CLAIMS_IN(Ended, "ended");
+ELASTOCHECK_CLAIMS_IN(OutputSafety, "safety");
+ELASTOCHECK_CLAIMS_IN(LivePage, "live");
+ELASTOCHECK_CLAIMS_IN(Interruptions, "ended");
 ELASTOCHECK_CLAIMS_IN(Outcomes, "outcomes");
 
 }  // namespace

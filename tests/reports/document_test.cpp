@@ -59,7 +59,7 @@ TEST(Document, HasBuildInputAndSettings) {
     EXPECT_GT(s["verdict"]["numbers_compared"], 1000);
 }
 
-TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
+TEST(Document, HasEveryPointOfEveryLegAndTheDeviationsAtEqualLoadAndTravel) {
     const Made made;
     const json d = json::parse(made.document().dump());
     const json& s = d["scenes"][0];
@@ -250,7 +250,7 @@ TEST(WheelLoads, RoadForcesBalanceTheWeights) {
                                    3892.4);
 }
 
-TEST(WheelLoads, WheelLoadIsUnknownUnderAnAmbiguousForce) {
+TEST(WheelLoads, WheelLoadIsUndefinedUnderASecondVerticalOrAFollowerForce) {
     const Model model = compile(parse_scene(trailing_arm, "scene.yaml"));
     const Wheel& wheel = model.wheels[0];
     const Point centre{wheel.body, wheel.centre_local},

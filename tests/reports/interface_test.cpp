@@ -24,7 +24,7 @@ json document(const std::string& arguments, int code = 0) {
     return parsed;
 }
 
-TEST(Json, TemplatesAreTheFilesOfTheScenes) {
+TEST(Json, NewListsAndPrintsTheFilesOfTheBuiltInScenes) {
     const json templates = document("new");
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(scenes))
@@ -71,7 +71,7 @@ std::string commit_of(const std::string& folder) {
                                                                                : "";
 }
 
-TEST(Version, IsThatOfTheArchiveWhereThereIsNoCheckoutAndNeverOfOneAround) {
+TEST(Version, CommitIsThatOfTheArchiveAndNeverThatOfASurroundingRepository) {
     const std::string root = scenes + "/../..", git = "git -c safe.directory='*' -C " + root + " ";
     const Said head = support::says(git + "rev-parse --show-prefix HEAD");
     if (!head.out.starts_with("\n")) GTEST_SKIP() << "not a checkout of its own";

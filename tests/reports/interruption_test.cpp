@@ -54,7 +54,7 @@ int failures(int count, Work work) {
     return failed;
 }
 
-TEST(Writers, ConcurrentWritersLeaveOneCompleteFile) {
+TEST(FileWriters, ConcurrentWritersLeaveOneCompleteFile) {
     const Folder folder;
     const fs::path file = folder.path / "curves.csv";
     const auto content = [](int writer) {
@@ -72,7 +72,7 @@ TEST(Writers, ConcurrentWritersLeaveOneCompleteFile) {
     EXPECT_EQ(names_in(folder.path), std::set<std::string>{"curves.csv"});
 }
 
-TEST(Writers, RemoveTemporaryFilesOfEndedProcessesOnly) {
+TEST(FileWriters, RemoveTemporaryFilesOfEndedProcessesOnly) {
     const Folder folder;
     const pid_t ended = ::fork();
     if (ended == 0) ::_exit(0);
@@ -90,7 +90,7 @@ TEST(Writers, RemoveTemporaryFilesOfEndedProcessesOnly) {
 
 // ---- Killed. Of folders: ReportCommand.KilledAtAnyMoment...
 
-TEST(Killed, KilledGateLeavesTheOldOrTheNewBaseline) {
+TEST(KilledProcess, GateLeavesTheOldOrTheNewBaseline) {
     const Folder folder;
     const std::string plain = text_of(pinned_bar);
     const std::string versions[] = {plain,
@@ -200,7 +200,7 @@ TEST(FullDisk, FullFileSystemKeepsTheOldOutputAndIsReported) {
     }
 }
 
-TEST(ClosedFolder, UnwritableFolderIsReportedAndStaysEmpty) {
+TEST(UnwritableFolder, IsReportedAndStaysEmpty) {
     const Place place;
     // Root gives up the capability to bypass file permissions.
     const std::string as_others =

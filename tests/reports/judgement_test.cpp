@@ -74,7 +74,7 @@ TEST(Assessment, VerdictFollowsFromTheLargestDeviationAndTheTolerance) {
 
 // Joint forces, drive forces and rates are judged like positions: a single one with an error of
 // `share` of its extent decides the verdict.
-TEST(Assessment, WrongForceOrRateFailsBesideRightPositions) {
+TEST(Assessment, WrongForceOrRateFailsEvenIfAllPositionsAreRight) {
     const Model model = compile(support::scene("chrono_mcpherson_travel"));
     compare::Options options;
     options.recursion.method = recursive::find_method("series").value();
@@ -124,7 +124,7 @@ TEST(Assessment, ForcesAreJudgedByNewtonsOrShareAsGiven) {
 
 // Extents: components of a wrench have that of the largest one; a nearly constant output has a
 // tenth of its value; a force that is small beside the acting forces has a thousandth of these.
-TEST(Extents, ExtentsFollowFromTheWrenchTheValueOrTheActingForces) {
+TEST(OutputExtents, FollowFromTheWrenchTheValueOrTheActingForces) {
     const Model& model = mcpherson();
     const auto all = compare::channels(model);
     compare::Curve curve{.unit = compare::Unit::newton, .a = {0, 1}, .start = 0, .values = {}};
@@ -181,7 +181,7 @@ TEST(Assessment, NaNFailsAndAnInconclusiveComparisonIsNotJudged) {
         << sentence(nothing);
 }
 
-TEST(Assessment, SentenceNamesTheReadingThatExceedsTheTolerance) {
+TEST(Assessment, SentenceSaysWhetherEqualLoadOrEqualTravelExceedsTheTolerance) {
     Assessment j;
     j.verdict = Grade::fail;
     j.tolerance = {2, 1};

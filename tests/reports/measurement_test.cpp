@@ -283,7 +283,7 @@ TEST(Measurement, WrongSignUnitOrOffsetIsNamedForAnInexactModel) {
 }
 
 // Each test has its own gradient, in the unit of what it goes over.
-TEST(Measurement, EachTestHasItsGradient) {
+TEST(Measurement, GradientOfEachTestIsInTheUnitOfItsAbscissa) {
     const json m = axle().measured(
         "branch,parameter_mm,load_N,left.toe_deg\nparallel,-20,,0.2\nparallel,0,,0.1\n"
         "parallel,20,,0\nlateral,,-1000,0.3\nlateral,,0,0.1\nlateral,,1000,-0.1\n");
@@ -390,7 +390,7 @@ branches: {Up: jounce, Down: rebound}
 }
 
 // At 40 mm toe was measured and camber was not: its curve has no point there.
-TEST(Measurement, MissingValueIsNotDrawn) {
+TEST(Measurement, MissingValueLeavesAGapInItsCurveOnly) {
     const SceneAnalyses scene = sample_with(
         solved().typed("branch,travel_mm,toe_deg,camber_deg\njounce,20,-0.7,0.1\njounce,40,-1.4,\n"
                        "jounce,60,-2,0.3\n"));

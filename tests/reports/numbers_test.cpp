@@ -29,7 +29,7 @@ TEST(Numbers, NonFiniteNumberIsADash) {
     EXPECT_EQ(signed_number(std::numeric_limits<double>::infinity()), "–");
 }
 
-TEST(Numbers, SharesAndCounts) {
+TEST(Numbers, PercentagesAreRoundedAndCountsAreGroupedInThousands) {
     EXPECT_EQ(percent(0.0293), "2.9\u00a0%");
     EXPECT_EQ(percent(-0.5), "−50\u00a0%");
     EXPECT_EQ(percent(2.34), "234\u00a0%");

@@ -81,7 +81,7 @@ TEST(Report, PageHeadingsAreInOrderAndIdsAreUnique) {
             EXPECT_TRUE(ids.contains(reference)) << reference;
 }
 
-TEST(Report, PageEveryFigureHasASizeWordsAndATable) {
+TEST(Report, EveryFigureOfThePageHasASizeADescriptionAndATable) {
     const std::string html = page();
     const auto figures = parts(html, "<figure", "</figure>");
     EXPECT_GE(figures.size(), 15u);
@@ -108,7 +108,7 @@ TEST(Report, PageEveryFigureHasASizeWordsAndATable) {
     }
 }
 
-TEST(Report, PageColoursAreClassesSoThatDarkPaperCanChangeThem) {
+TEST(Report, FiguresOfThePageHaveColourClassesInsteadOfColours) {
     for (const auto& svg : parts(page(), "<svg", "</svg>"))
         for (const auto& colour : all(svg, "(?:stroke|fill|color)=['\"]((?:rgb|#)[^'\"]*)['\"]"))
             ADD_FAILURE() << "a colour of its own: " << colour;
@@ -289,14 +289,14 @@ TEST_F(Browser, ShowsTheFixedViewsWithoutScripts) {
     EXPECT_GT(std::abs(printed(without) / no_scripts - 1), 2e-3) << "a page without them differs";
 }
 
-TEST_F(Browser, RunsTheScriptsOfThePolicy) {
+TEST_F(Browser, ContentSecurityPolicyAllowsTheScriptsOfThePage) {
     const Folder folder;
     const auto said = in_a_browser(folder, page({compared_scene("front_axle")}), "--dump-dom");
     EXPECT_NE(said.out.find("<div class=\"turn\"><svg"), std::string::npos) << said.err;
     EXPECT_EQ(said.err.find("Content Security Policy"), std::string::npos) << said.err;
 }
 
-TEST_F(Browser, RowsOfRatesFitAPhone) {
+TEST_F(Browser, RowsOfRatesFitTheWidthOfAPhone) {
     const json seen = measured_in_a_browser(page({compared_scene("front_axle")}), {"rates"}, "390");
     EXPECT_GT(seen["rows"], 30);
     EXPECT_LE(seen["tallest"], 100) << "px";
@@ -308,7 +308,7 @@ int printed_pages(const std::string& html) {
     return static_cast<int>(all(pdf_of(html), "(/Type /Page)[^s]").size());
 }
 
-TEST_F(Browser, PartOneOfAnAxlePrintsOnFivePages) {
+TEST_F(Browser, FirstPartOfTheReportOfAnAxlePrintsOnFivePages) {
     std::string html = page({compared_scene("front_axle")});
     EXPECT_LE(html.size(), 950'000u);
     const int whole = printed_pages(html);

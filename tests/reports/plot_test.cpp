@@ -82,7 +82,7 @@ TEST(Plot, ALineIsClippedAtFixedLimitsAndBrokenAtAGap) {
 }
 
 // A steep stop at the end of a wheel rate, and a pole of Ackermann's figure.
-TEST(Plot, TheAxisFitsTheBulkOfALineAndSaysWhatItCuts) {
+TEST(Plot, AxisFitsTheBulkOfALineAndSaysWhatItCuts) {
     std::vector<std::vector<double>> stop, pole, smooth;
     for (int k = -20; k <= 20; ++k) {
         stop.push_back({4.0 * k, 30 + 0.05 * k + (k > 16 ? 400.0 * (k - 16) : 0)});

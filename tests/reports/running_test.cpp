@@ -23,7 +23,7 @@ json scene_of(const Folder& folder, const std::string& arguments) {
     return json::parse(text_of(to + "/result.json"))["scenes"][0];
 }
 
-TEST(Running, KinematicsAndComplianceNeedNoStudy) {
+TEST(ReportParts, OnlyKcAndQuickGiveTheKcTablesWithoutAConvergenceStudy) {
     const Folder folder;
     for (const char* arguments : {"--only kc", "--quick"}) {
         const json scene = scene_of(folder, arguments);
@@ -56,7 +56,7 @@ TEST(Running, KinematicsAndComplianceNeedNoStudy) {
     }
 }
 
-TEST(Running, LineOfProgressHasShareTimeAndWork) {
+TEST(ProgressLine, HasPercentageRemainingTimeAndWorkAndFitsTheTerminal) {
     EXPECT_EQ(progress_line("jounce", 0.5, 12, 80),
               "[##########----------]  50 %, 12 s left: jounce");
     EXPECT_EQ(progress_line("jounce", 0.5, 12, 0), " 50 %, 12 s left: jounce");

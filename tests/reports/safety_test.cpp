@@ -19,7 +19,7 @@ Said in(const Folder& folder, const std::string& arguments) {
                          ELASTOCHECK_COMMAND + " " + arguments);
 }
 
-TEST(Harm, ControlCharactersInFileNamesAreEscaped) {
+TEST(HostileNames, ControlCharactersInFileNamesAreEscaped) {
     const Folder folder;
     for (const std::string name :
          {"a\n::error::x.yaml", "a\x1b[2J.yaml", "a\u009b2J.yaml", "a\u202e.yaml", "a\xff.yaml"}) {
@@ -43,7 +43,7 @@ TEST(Harm, ControlCharactersInFileNamesAreEscaped) {
     expect_parts("\n" + said.out + said.err, {}, {"\n::error"});
 }
 
-TEST(Harm, PathWithAnUnprintableFolderIsNotStoredInABaseline) {
+TEST(HostileNames, BaselineOfASceneInAnUnprintableFolderIsRefused) {
     const Folder folder;
     for (const std::string name : {"a\xff", "a\nb", "a\u202e"}) {
         fs::create_directory(folder.path / name);
@@ -60,7 +60,7 @@ TEST(Harm, PathWithAnUnprintableFolderIsNotStoredInABaseline) {
     }
 }
 
-TEST(Harm, NewlineInABaselineMakesNoAnnotation) {
+TEST(HostileNames, NewlineInABaselineCannotWriteAWorkflowAnnotation) {
     const Folder folder;
     const fs::path accepted = scenes + "/baselines/pinned_bar.json",
                    curves = scenes + "/baselines/curves/pinned_bar.json";

@@ -55,7 +55,7 @@ double rate(const SceneAnalyses& scene, const std::string& output) {
     return NAN;
 }
 
-TEST(Sections, EveryPartBecomesASection) {
+TEST(Sections, EveryPartOfTheAnalysesBecomesASection) {
     std::vector<std::string> ids;
     for (const auto& section : sections_of(sample_scene())) ids.push_back(section.id);
     EXPECT_EQ(ids, (std::vector<std::string>{"first", "conditions", "drawing", "kinematics",
@@ -77,7 +77,7 @@ TEST(Sections, EveryPartBecomesASection) {
 }
 
 // Bars, arrows and map of handmade effects of two hardpoints and six rates on one figure.
-TEST(Sections, EffectsOfNumbersAreBarsArrowsAndAMap) {
+TEST(Sections, EffectsOfHardpointsAndRatesAreDrawnAsBarsArrowsAndAMap) {
     SceneAnalyses scene = sample_scene();
     std::vector<std::string> names;
     for (const auto& point : scene.drawing.points)
@@ -154,7 +154,7 @@ void set_apart(SceneAnalyses& scene, compare::Unit unit, double max) {
                 branch.uncertainty.equal_parameter.channels[c].max = max;
 }
 
-TEST(Sections, TrustIsTheDistanceOfTheReferencesAndTheProvedPoints) {
+TEST(Sections, TrustSentenceHasTheDistanceOfTheReferencesAndTheProvedPoints) {
     SceneAnalyses scene = sample_scene();
     set_apart(scene, compare::Unit::mm, 9e-12);
     set_apart(scene, compare::Unit::deg, 2e-13);
@@ -199,7 +199,7 @@ TEST(Sections, TrustSentenceClaimsNoAgreementForAnUnfinishedReference) {
 
 // ---- Which fast method is good enough.
 
-TEST(Sections, MethodsAreATableOfErrorAndWork) {
+TEST(Sections, MethodsSectionHasATableOfErrorsAndTolerances) {
     SceneAnalyses scene = sample_scene();
     scene.judgement->position->max = 2.5;
     scene.judgement->angle_across->max = 0.25;
@@ -235,7 +235,7 @@ TEST(Sections, MethodsSectionNamesNoneWithoutARecommendation) {
 }
 
 // "at equal load" does not apply to a branch driven by a motion.
-TEST(Sections, ReadingsAreNamedByTheParameterOfTheBranch) {
+TEST(Sections, DeviationsOfADrivenMechanismAreNotCalledAtEqualLoad) {
     for (const auto& section : sections_of(sample_scene("slider_crank")))
         for (const auto& group : section.figures) {
             expect_parts(group.caption, {}, {"equal load"});
@@ -249,7 +249,7 @@ TEST(Sections, ReadingsAreNamedByTheParameterOfTheBranch) {
 // ---- Kinematics and compliance.
 
 // The first branch of the scene lifts one wheel, and it alone has rate errors.
-TEST(Sections, KinematicsLeadsWithHeaveOfBothWheels) {
+TEST(Sections, LeadingBranchIsTheHeaveOfBothWheels) {
     SceneAnalyses scene = compared_scene("front_axle");
     const auto to_front = [&](auto& branches, std::size_t from) {
         std::rotate(branches.begin(), branches.begin() + static_cast<std::ptrdiff_t>(from),
@@ -266,7 +266,7 @@ TEST(Sections, KinematicsLeadsWithHeaveOfBothWheels) {
     EXPECT_EQ(leading_sweep(scene)->name, "opposite") << "else the first travel";
 }
 
-TEST(Sections, KinematicsNamesWhatEachBranchDoesToTheWheels) {
+TEST(Sections, EveryBranchIsNamedByItsLoadCaseAtTheWheels) {
     const auto cases_of = [](const SceneAnalyses& scene) {
         std::map<std::string, std::string> cases;
         for (const auto& branch : scene.model.branches)
@@ -288,7 +288,7 @@ TEST(Sections, KinematicsNamesWhatEachBranchDoesToTheWheels) {
 }
 
 // In roll the right wheel goes the other way: over its own travel its toe is that of the left one.
-TEST(Sections, KinematicsCurvesOfEachWheelAreOverItsOwnTravel) {
+TEST(Sections, CurvesOfEachWheelInRollAreOverItsOwnTravel) {
     SceneAnalyses scene = compared_scene("front_axle");
     const Figure coincide = figure(scene, "toe-travel");
     EXPECT_EQ(coincide.x, "wheel travel [mm]");
@@ -310,7 +310,7 @@ TEST(Sections, KinematicsCurvesOfEachWheelAreOverItsOwnTravel) {
 }
 
 // y points to the left: outwards for one wheel, inwards for the other.
-TEST(Sections, KinematicsLateralMovementIsPositiveOutwardsOnBothSides) {
+TEST(Sections, LateralMovementIsPositiveOutwardsForBothWheels) {
     for (const auto& series : figure(compared_scene("front_axle"), "track-change-travel").series) {
         expect_parts(series.title, {}, {"right"});
         EXPECT_LT(series.rows.front()[1], 0) << "inwards in rebound";
@@ -318,7 +318,7 @@ TEST(Sections, KinematicsLateralMovementIsPositiveOutwardsOnBothSides) {
 }
 
 // Both sides of the design position are one curve.
-TEST(Sections, KinematicsJounceAndReboundAreOneCurve) {
+TEST(Sections, JounceAndReboundAreDrawnAsOneCurve) {
     const Figure toe = figure(sample_scene(), "toe-travel");
     ASSERT_EQ(toe.series.size(), 1u);
     const auto& rows = toe.series[0].rows;
@@ -327,7 +327,7 @@ TEST(Sections, KinematicsJounceAndReboundAreOneCurve) {
     EXPECT_GT(rows.back()[0], 10);
 }
 
-TEST(Sections, KinematicsTheWheelLoadHasTheStaticPart) {
+TEST(Sections, WheelLoadOverTravelContainsTheStaticLoad) {
     const Figure load = figure(compared_scene("front_axle"), "wheel-load-travel");
     EXPECT_EQ(load.y, "wheel load [N]");
     for (const auto& series : load.series) {
@@ -337,7 +337,7 @@ TEST(Sections, KinematicsTheWheelLoadHasTheStaticPart) {
     }
 }
 
-TEST(Sections, KinematicsAxesAreNamedByTheirDrive) {
+TEST(Sections, AbscissasAreNamedByTheDriveOfTheirBranch) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     EXPECT_EQ(figure(scene, "toe-steering").x, "rack [mm]");
     EXPECT_EQ(figure(scene, "toe-force").x, "force [N]");
@@ -350,7 +350,7 @@ TEST(Sections, KinematicsAxesAreNamedByTheirDrive) {
 }
 
 // What is drawn, and what the trim makes of it.
-TEST(Sections, FirstShowsTheStaticAlignmentAsDrawnAndAsSettled) {
+TEST(Sections, FirstSectionShowsTheAlignmentAsDrawnAndAfterTheTrim) {
     SceneAnalyses scene = compared_scene("front_axle");
     const std::string text = said(scene, "first");
     expect_parts(text, {"settled after the trim (toe-in, top outwards positive)\n| of the wheel | "
@@ -362,7 +362,7 @@ TEST(Sections, FirstShowsTheStaticAlignmentAsDrawnAndAsSettled) {
     expect_parts(said(scene, "first"), {"| toe [deg] | 0 | 0 | −0.01250 | 0 |"});
 }
 
-TEST(Sections, FirstHasKeyFiguresWithUnitsAndNoVerdict) {
+TEST(Sections, FirstSectionHasKeyFiguresWithUnitsAndNoVerdict) {
     const std::string text = said(compared_scene("front_axle"), "first");
     expect_parts(text,
                  {"| wheel rate | ", "| N/mm |", "| roll centre height | ",
@@ -372,7 +372,7 @@ TEST(Sections, FirstHasKeyFiguresWithUnitsAndNoVerdict) {
 
 // The wheels of an axle in roll: K = k t² / 2. What heave lacks is the bar's, but for the rubber that both
 // deform; preloads that turn have the rest of the sum.
-TEST(Sections, RatesRollStiffnessFollowsFromTheWheelRates) {
+TEST(Sections, RollStiffnessFollowsFromTheWheelRatesAndIsTheSumOfItsParts) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     const double roll = rate(scene, "left.wheel_rate_in_roll"),
                  heave = rate(scene, "left.wheel_rate");
@@ -393,7 +393,7 @@ TEST(Sections, RatesRollStiffnessFollowsFromTheWheelRates) {
 }
 
 // Both wheels loaded; one alone only by name. And one sign for a curve and its figure: inwards.
-TEST(Sections, RatesOfAnAxleAreTheTestsOfARigInOneDirection) {
+TEST(Sections, CompliancesOfAnAxleAreThoseOfRigTestsWithBothWheelsLoaded) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     expect_parts(said(scene, "first"),
                  {"| lateral force steer, parallel | ", "| lateral force steer, opposed | ",
@@ -424,7 +424,7 @@ TEST(Sections, RatesOfAnAxleAreTheTestsOfARigInOneDirection) {
 }
 
 // Slopes of fitted lines are near the rates at the design position, in the signs of the tests.
-TEST(Sections, GradientsAreNearTheRatesAndSayTheirRange) {
+TEST(Sections, GradientsOfFittedLinesAreNearTheRatesAndSayTheirRange) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     const std::string text = said(scene, "gradients");
     expect_parts(text, {"parallel, over wheel travel from −16 to 16\u00a0mm",
@@ -452,7 +452,7 @@ TEST(Sections, GradientsAreNearTheRatesAndSayTheirRange) {
 }
 
 // A stop touches where its spring has used the clearance, and has no force before.
-TEST(Sections, SpringsStopsAreMarkedWhereTheyTouch) {
+TEST(Sections, StopsAreMarkedOnTheSpringCurvesWhereTheyTouch) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     const Figure force = figure(scene, "force-springs");
     const auto series = [&](const std::string& title) {
@@ -477,7 +477,7 @@ TEST(Sections, SpringsStopsAreMarkedWhereTheyTouch) {
     for (const auto& row : bump) EXPECT_EQ(row[1] > 0, row[0] > touches + 1e-9) << row[0];
 }
 
-TEST(Sections, RollFiguresAreOverTheRollAngle) {
+TEST(Sections, RollMomentAndToeInRollAreDrawnOverTheRollAngle) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     const Figure moment = figure(scene, "roll-moment-roll");
     EXPECT_EQ(moment.x, "roll angle [deg]");
@@ -492,14 +492,14 @@ TEST(Sections, RollFiguresAreOverTheRollAngle) {
     EXPECT_EQ(figure(scene, "toe-roll").series.size(), 4u) << "of either wheel in both load cases";
 }
 
-TEST(Sections, ConditionsSayWhatTheWheelsStandOn) {
+TEST(Sections, ConditionsSaySupportOfTheWheelsInEachLoadCase) {
     expect_parts(
         said(compared_scene("front_axle"), "conditions"),
         {"| parallel | heave | −80 | 80 | mm |", "| jacks that move |", "| jacks at held height |",
          "| dead forces, free in height |", "the wheel held to its carrier", "wheelbase 2700 mm"});
 }
 
-TEST(Sections, RatesOfASpringAreInTheColumnOfItsWheel) {
+TEST(Sections, MotionRatioOfASpringIsInTheColumnOfItsWheel) {
     const std::string text = said(compared_scene("front_axle"), "rates");
     EXPECT_TRUE(
         std::regex_search(text, std::regex("\\| coil motion ratio \\| 0\\.\\d+ \\| 0\\.\\d+ ")))
@@ -508,7 +508,7 @@ TEST(Sections, RatesOfASpringAreInTheColumnOfItsWheel) {
 }
 
 // In solve, on the page and in its figure: from the drawn position.
-TEST(Sections, FirstScreenHasTheTrackChangeFromTheDrawnPosition) {
+TEST(Sections, TrackChangeIsFromTheDrawnPositionInSolveOnThePageAndInItsFigure) {
     SceneAnalyses scene = compared_scene("front_axle");
     const std::size_t change = channel_of(scene, "left.track_change");
     auto& values = truth_of(scene.comparison.branches[0]).values;
@@ -524,7 +524,7 @@ TEST(Sections, FirstScreenHasTheTrackChangeFromTheDrawnPosition) {
 }
 
 // A quotient of a rounding error and a value that is zero is no percentage.
-TEST(Sections, RatesHaveNoPercentageOfZero) {
+TEST(Sections, RateThatIsZeroHasNoPercentage) {
     SceneAnalyses scene = compared_scene("front_axle");
     auto& branch = scene.comparison.branches.front();
     const std::size_t rate = channel_of(scene, "left.bump_steer");
@@ -552,7 +552,7 @@ TEST(Sections, ForcesOfAStopAreShownWithItsPenetration) {
     EXPECT_NEAR(std::stod(found[1]), deflection - 25, 0.5);
 }
 
-TEST(Sections, ForcesAreTheLargestAlongTheBranchAndSayWhere) {
+TEST(Sections, LargestForcesAlongABranchAreShownWithTheirParameter) {
     SceneAnalyses scene = compared_scene("twist_beam");
     auto& branch = scene.comparison.branches[0];
     for (auto& force : branch.run(compare::Leg::equilibrium).largest)

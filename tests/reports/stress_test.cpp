@@ -16,7 +16,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-TEST(Survival, StressCommandPrintsTheDocumentThatItWrites) {
+TEST(StressCommand, PrintsTheDocumentThatItWrites) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
     const auto said = elastocheck_says("stress " + scenes + "/four_bar.yaml --json -o " + out);
@@ -33,14 +33,14 @@ TEST(Survival, StressCommandPrintsTheDocumentThatItWrites) {
     EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
 }
 
-TEST(Survival, InvalidArgumentsAreRejectedBeforeTheWork) {
+TEST(StressCommand, InvalidArgumentsAreRejectedBeforeTheWork) {
     for (const auto& [arguments, says] :
          {std::pair<std::string, const char*>{"stress --set points.tip.x=1", "give one"},
           {"stress there_is_none.yaml", "there_is_none.yaml"}})
         expect_says(arguments, 2, {.err = {says}});
 }
 
-TEST(Survival, ExtremeScenesAreRightOrReportedAsFailed) {
+TEST(StressCommand, ResultsOfExtremeScenesAreRightOrReportedAsFailed) {
     const auto survival = compare::stress(extremes());
     EXPECT_GT(survival.judged(), 300);
     for (const auto& cell : survival.cells)

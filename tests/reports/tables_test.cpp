@@ -84,7 +84,7 @@ TEST(Tables, ChosenColumnsAreShownInTheirOrder) {
 }
 
 // A page shades the cells of a column by their share of the largest; a detail is not on a terminal.
-TEST(Tables, ShadesAndDetailsAreForPages) {
+TEST(Tables, ShadesAndDetailsAreShownOnPagesOnly) {
     compare::Table table{
         {{"who", "", "", true, Digits::words}, {"effect", "", "", false, Digits::shaded}},
         {{"a", 2.0}, {"b", 0.5}, {"c", nan}}};
@@ -100,7 +100,7 @@ TEST(Tables, ShadesAndDetailsAreForPages) {
     EXPECT_EQ(page_table(result.tables[0])["folded"], true);
 }
 
-TEST(Tables, OrdersAreEqualInEveryFormat) {
+TEST(Tables, OrderStudyIsEqualInEveryFormat) {
     const Model model = compile(support::scene("pinned_bar"));
     compare::ConvergenceStudies studies{
         .orders = compare::order_study(
