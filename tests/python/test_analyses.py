@@ -22,7 +22,7 @@ def without_times(text):
     return re.sub(r"(converged(?: +\d+){4}) +[\d.]+", r"\1", text)
 
 
-def test_compare_is_that_of_the_command(scenes, command, tmp_path):
+def test_compare_has_the_text_and_curves_of_the_command(scenes, command, tmp_path):
     file = scenes / "mcpherson.yaml"
     said, code, _ = command("compare", file, "--method", "published", "--within", "0.01mm,0.001deg")
     told = []
@@ -38,7 +38,7 @@ def test_compare_is_that_of_the_command(scenes, command, tmp_path):
 
 
 @pytest.mark.parametrize("method", ["series", "equilibrium"])
-def test_certify_is_that_of_the_command(scenes, command, method):
+def test_certify_has_the_text_of_the_command(scenes, command, method):
     file = scenes / "pinned_bar.yaml"
     said, code, _ = command("certify", file, "--method", method, "--points", "4")
     report = elastocheck.certify(elastocheck.read(file), method, points=4)
@@ -47,7 +47,7 @@ def test_certify_is_that_of_the_command(scenes, command, method):
     assert len(report.frame()) == 2
 
 
-def test_sensitivity_is_that_of_the_command(scenes, command):
+def test_sensitivity_has_the_text_and_document_of_the_command(scenes, command):
     file = scenes / "double_wishbone.yaml"
     options = ["--of", "toe,camber", "--to", "points.tie_rod*", "--branch", "travel", "--points", "2"]
     said, code, _ = command("sensitivity", file, *options)
@@ -61,7 +61,7 @@ def test_sensitivity_is_that_of_the_command(scenes, command):
     assert len(report.frame("derivatives")) == len(derivatives["rows"])
 
 
-def test_fit_is_that_of_the_command(scenes, command, tmp_path):
+def test_fit_of_a_frame_or_a_file_has_the_text_of_the_command(scenes, command, tmp_path):
     file = scenes / "mcpherson.yaml"
     rig = elastocheck.read(file, {"springs.K1_coil.rate": 24e3}).solve()
     measured = pandas.DataFrame({"branch": "jounce", "load_N": rig["jounce"].parameter[::60],
@@ -81,7 +81,7 @@ def test_fit_is_that_of_the_command(scenes, command, tmp_path):
         elastocheck.fit(elastocheck.read(file), measured, "springs.coil.rate")
 
 
-def test_what_progress_raises_ends_the_computation():
+def test_exception_in_the_progress_callback_ends_the_computation():
     class Enough(Exception):
         pass
 
@@ -110,7 +110,7 @@ def test_a_thread_may_compare_while_another_reports_progress():
     assert len(set(map(without_times, texts))) == 1 and len(texts) == 3
 
 
-def test_a_table_that_is_not_there_is_named():
+def test_unknown_table_is_refused_with_the_names_of_the_tables():
     with pytest.raises(elastocheck.ArgumentError, match="sides"):
         elastocheck.certify(elastocheck.new("pinned_bar"), points=1).frame("rows")
 

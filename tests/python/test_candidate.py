@@ -13,13 +13,13 @@ def closed_form(scene, branch, loads):
     return states
 
 
-def test_a_right_candidate_passes():
+def test_candidate_by_the_closed_form_passes():
     report = elastocheck.judge(elastocheck.new("pinned_bar"), closed_form, "closed form", "1e-6mm,1e-6deg")
     assert report and report.document["verdict"]["grade"] == "pass"
     assert "closed form" in report.text
 
 
-def test_it_is_called_for_each_side_from_zero_on():
+def test_candidate_is_called_for_each_side_from_zero_on():
     calls = []
 
     def recorded(scene, branch, parameters):
@@ -30,14 +30,14 @@ def test_it_is_called_for_each_side_from_zero_on():
     assert calls == [("up", 0, 5000), ("down", 0, -5000)]
 
 
-def test_a_wrong_candidate_fails_and_the_cause_is_named():
+def test_candidate_with_a_wrong_sign_fails_and_the_sign_is_named():
     wrong = elastocheck.judge(elastocheck.new("pinned_bar"),
                               lambda *of: closed_form(*of) * [1, 1, 1, 1, 1, -1, 1])
     assert not wrong and wrong.verdict == "limit broken" and wrong.document["verdict"]["grade"] == "fail"
     assert "sign" in wrong.text
 
 
-def test_a_linear_candidate_fails_by_its_error():
+def test_linearised_candidate_fails_and_its_error_is_stated():
     def small_angles(scene, branch, loads):
         states = closed_form(scene, branch, loads)
         half = loads / (20 * 500) / 2
@@ -61,11 +61,11 @@ def test_a_candidate_that_ends_early_or_is_not_a_number_does_not_pass():
 
 @pytest.mark.parametrize("returned, kind", [(None, ValueError), ("x", TypeError), (np.zeros((101, 7)), ValueError),
                                             (np.zeros((102, 1, 7)), ValueError), (np.zeros((101, 2, 7)), ValueError)])
-def test_what_is_no_state_is_refused(returned, kind):
+def test_candidate_that_returns_no_array_of_states_is_refused(returned, kind):
     with pytest.raises(kind, match="candidate"):
         elastocheck.judge(elastocheck.new("pinned_bar"), lambda *of: returned)
 
 
-def test_an_exception_of_the_candidate_arrives():
+def test_exception_of_the_candidate_reaches_the_caller():
     with pytest.raises(ZeroDivisionError):
         elastocheck.judge(elastocheck.new("pinned_bar"), lambda *of: 1 / 0)

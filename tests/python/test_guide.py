@@ -7,7 +7,7 @@ import re
 GUIDE = pathlib.Path(__file__).resolve().parents[2] / "reports/python"
 
 
-def test_the_blocks_of_the_guide_run(tmp_path, monkeypatch, capsys):
+def test_code_blocks_of_the_guide_run_as_written(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (GUIDE / "README.md").read_text(), re.S)
     assert len(blocks) > 5
@@ -19,14 +19,14 @@ def test_the_blocks_of_the_guide_run(tmp_path, monkeypatch, capsys):
     assert (tmp_path / "mine.svg").read_text().startswith("<svg")
 
 
-def test_the_section_of_the_readme_runs(tmp_path, monkeypatch):
+def test_python_section_of_the_readme_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (GUIDE.parents[1] / "README.md").read_text(), re.S)
     assert len(blocks) == 1
     exec(compile(blocks[0], "README.md", "exec"), {})
 
 
-def test_the_notebook_runs(tmp_path, monkeypatch):
+def test_cells_of_the_notebook_run_and_show_drawing_and_table(tmp_path, monkeypatch):
     """Cell after cell; what a cell shows is the value of its last expression."""
     monkeypatch.chdir(tmp_path)
     shared, shown = {}, []

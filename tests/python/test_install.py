@@ -38,7 +38,7 @@ figures: {tip: "tip_z@up:5000"}
 
 
 @pytest.mark.skipif(not shutil.which("dpkg-shlibdeps"), reason="dpkg-dev is not installed")
-def test_the_debian_package_works_elsewhere(tmp_path):
+def test_debian_package_works_in_another_folder(tmp_path):
     """Unpacked elsewhere, the module runs, and declares what it is linked with."""
     subprocess.run(["cpack", "--config", f"{os.environ['ELASTOCHECK_BUILD']}/CPackConfig.cmake", "-B", tmp_path / "packages",
                     "-D", "CPACK_COMPONENTS_ALL=python"], check=True, capture_output=True)

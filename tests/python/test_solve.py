@@ -13,7 +13,7 @@ import pytest
 
 
 @pytest.mark.parametrize("method", ["equilibrium", "energy", "series", "published"])
-def test_csv_is_that_of_the_command(scenes, command, method):
+def test_csv_of_a_solution_is_the_output_of_the_command(scenes, command, method):
     file = scenes / "mcpherson.yaml"
     said, code, _ = command("solve", file, "--method", method, "--set", "springs.K1_coil.rate=28e3")
     assert code == 0
@@ -22,7 +22,7 @@ def test_csv_is_that_of_the_command(scenes, command, method):
 
 
 @pytest.mark.parametrize("scene", ["double_wishbone", "front_axle"])
-def test_frame_is_the_csv_digit_for_digit(scenes, command, scene):
+def test_frame_of_a_solution_equals_the_csv_of_the_command_digit_for_digit(scenes, command, scene):
     file = scenes / f"{scene}.yaml"
     options = ["--method", "series", "--channels", "toe,*travel,*bump_steer" if scene == "double_wishbone"
                else "left.toe,right.camber,*travel"]
@@ -38,7 +38,7 @@ def test_all_outputs_by_pattern_are_those_of_the_command(scenes, command):
     assert elastocheck.read(scenes / "mcpherson.yaml").solve(channels="*", every=100).csv() == said
 
 
-def test_messages_are_those_of_the_command(scenes, command):
+def test_messages_of_a_failed_solution_are_those_of_the_command(scenes, command):
     file = scenes / "two_spring_arch.yaml"
     settings = {"branches.down.to": -400}
     said, code, errors = command("solve", file, "--method", "series", "--set", "branches.down.to=-400")
@@ -56,7 +56,7 @@ def test_error_of_a_method_without_a_bound_is_that_of_the_command(scenes, comman
     assert [f"published: {branch}: {line}" for branch, line in zip(solution, lines)] == errors.splitlines()
 
 
-def test_states_place_the_bodies():
+def test_states_of_a_pinned_bar_have_its_closed_form_angle():
     scene = elastocheck.new("pinned_bar")
     up = scene.solve(states=True)["up"]
     assert up.states.shape == (101, len(scene.bodies), 7) and scene.bodies == ["bar"]
@@ -74,7 +74,7 @@ def test_kc_has_every_figure_at_every_point(scenes, command):
     assert kc.units["wheel_rate"] == "N/mm" and len(kc.units) > 20
 
 
-def test_numbers_branches_and_outputs_of_a_scene(scenes):
+def test_scene_lists_its_numbers_branches_and_outputs_with_units(scenes):
     scene = elastocheck.read(scenes / "double_wishbone.yaml")
     assert scene.numbers["points.tie_rod_inner.z"] == 0.001
     assert scene.units["points.tie_rod_inner.z"] == "m"
@@ -84,7 +84,7 @@ def test_numbers_branches_and_outputs_of_a_scene(scenes):
     assert "travel" in repr(scene) and "bodies" in scene.inspect()
 
 
-def test_branches_are_solved_alone_as_among_the_others(scenes):
+def test_branch_solved_alone_equals_that_solved_among_the_others(scenes):
     scene = elastocheck.read(scenes / "double_wishbone.yaml")
     some = scene.solve("series", branches=["steering", "travel"])
     every = scene.solve("series")
@@ -92,7 +92,7 @@ def test_branches_are_solved_alone_as_among_the_others(scenes):
     assert all(some[branch].csv() == every[branch].csv() for branch in some)
 
 
-def test_vary_changes_this_scene_only(scenes):
+def test_vary_returns_a_changed_scene_and_keeps_the_original(scenes):
     scene = elastocheck.read(scenes / "mcpherson.yaml", {"springs.K1_coil.rate": 20e3})
     other = scene.vary({"springs.K1_coil.rate": 30e3, "points.arm_rear.z": 0.2})
     assert scene.numbers["springs.K1_coil.rate"] == 20e3
@@ -102,7 +102,7 @@ def test_vary_changes_this_scene_only(scenes):
     assert pickle.loads(pickle.dumps(other)).solve("series").csv() == other.solve("series").csv()
 
 
-def test_errors_name_the_place(scenes, tmp_path, command):
+def test_error_of_an_invalid_scene_names_file_and_line(scenes, tmp_path, command):
     file = tmp_path / "mine.yaml"
     text = (scenes / "pinned_bar.yaml").read_text()
     file.write_text(text.replace("type: revolute", "type: hinge"))
@@ -123,7 +123,7 @@ def test_errors_name_the_place(scenes, tmp_path, command):
     ({"bushings.tip.rate": 1}, elastocheck.SceneError), ({"bushings.tip.rates.x": float("nan")}, elastocheck.SceneError),
     ({"bushings.tip.rates.x": -1}, elastocheck.SceneError), ({"bushings.tip.rates.x": [1]}, TypeError),
     ({"bushings.tip.rates.x": True}, TypeError), ({1: 1}, TypeError)])
-def test_wrong_settings_are_refused(settings, kind):
+def test_invalid_settings_are_refused(settings, kind):
     with pytest.raises(kind):
         elastocheck.new("pinned_bar", settings=settings)
     with pytest.raises(kind):
@@ -141,7 +141,7 @@ def test_wrong_settings_are_refused(settings, kind):
     (lambda s: elastocheck.compare(s, "equilibrium"), "equilibrium"),
     (lambda s: elastocheck.compare(s, within="1"), "1"), (lambda s: elastocheck.compare(s, threads=-1), "--jobs"),
     (lambda s: elastocheck.sensitivity(s, of="to"), "--of"), (lambda s: elastocheck.sensitivity(s, at="up:x"), "--at")])
-def test_wrong_arguments_are_refused_with_what_is_allowed(call, said):
+def test_invalid_arguments_are_refused_with_the_allowed_values(call, said):
     with pytest.raises(elastocheck.ArgumentError, match=said):
         call(elastocheck.new("pinned_bar"))
 
@@ -151,7 +151,7 @@ def test_unknown_output_of_a_curve_is_a_key_error():
         elastocheck.new("pinned_bar").solve()["up"]["tip_zz"]
 
 
-def test_new_overwrites_nothing(tmp_path):
+def test_new_does_not_overwrite_a_file(tmp_path):
     elastocheck.new("pinned_bar", tmp_path / "mine.yaml")
     with pytest.raises(FileExistsError):
         elastocheck.new("pinned_bar", tmp_path / "mine.yaml")
@@ -198,7 +198,7 @@ def test_other_threads_run_while_a_scene_is_solved_and_get_the_same():
     assert results == [alone] * 6
 
 
-def test_stubs_say_what_there_is():
+def test_stubs_declare_the_functions_and_arguments_of_the_module():
     import ast
     import inspect
     import pathlib
@@ -226,7 +226,7 @@ def test_stubs_say_what_there_is():
         assert hasattr(elastocheck, name)
 
 
-def test_importing_says_nothing_and_changes_no_signal():
+def test_import_prints_nothing_and_changes_no_signal_handler():
     said = subprocess.run([sys.executable, "-c", "import signal, elastocheck;"
                            "print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"],
                           capture_output=True, text=True, check=True)

@@ -138,14 +138,14 @@ PAIR = "[springs.first.preload, static_loads.weight.force.z]"
      "study.yaml:4: variables.none.scale: the scene has no number 'bushings.*'"),
     ("design:", "design: [\n", "study.yaml:"),
 ])
-def test_bad_input_is_refused_before_the_first_variant(here, what, by, says):
+def test_invalid_study_is_refused_before_the_first_variant(here, what, by, says):
     assert what in LINEAR
     with pytest.raises(elastocheck.SceneError, match=re.escape(says)):
         run(LINEAR.replace(what, by))
     assert not os.path.exists("out")
 
 
-def test_a_table_is_refused_with_its_line(here):
+def test_invalid_table_of_variants_is_refused_with_its_line(here):
     for table, says in [("springs.first.rate,springs.secnd.rate\n1,2\n",
                          "list.csv:1: the study has no variable 'springs.secnd.rate', did you mean 'springs.second.rate'?"),
                         ("springs.first.rate\n1\n", "list.csv:1: 1 columns, but the study has 2 variables"),
@@ -162,7 +162,7 @@ def test_a_table_is_refused_with_its_line(here):
     np.testing.assert_allclose(frame["height [mm]"], [400 + 3000 / 75, 400 + 3000 / 50], atol=1e-9)
 
 
-def test_a_reaction_that_redundant_joints_share_is_no_figure(tmp_path):
+def test_reaction_that_redundant_joints_share_is_refused_as_a_figure(tmp_path):
     shutil.copy(ROOT / "tests/reports/scenes/two_hinges.yaml", tmp_path)
     scene = elastocheck.read(tmp_path / "two_hinges.yaml")
     rates = {"springs.coil.rate": scene.numbers["springs.coil.rate"] + np.array([0, 1.0])}
@@ -189,7 +189,7 @@ CORRELATED = np.array([[1, 0.6, 0, 0], [0.6, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1
 
 
 @pytest.mark.parametrize("kind, indices", [("monte_carlo", False), ("monte_carlo", True), ("sobol", False), ("sobol", True), ("latin_hypercube", False)])
-def test_a_variant_is_a_function_of_its_number_alone(kind, indices):
+def test_values_of_a_variant_depend_on_its_number_alone(kind, indices):
     how = {"indices": indices, "correlation": None if indices else CORRELATED}
     _, design = drawn(kind, MIXED, **how)
     whole = design.values(0, 600)
@@ -248,7 +248,7 @@ def test_indices_of_ishigamis_function_are_within_their_intervals():
         assert sobol_rows(study, studies.file.Figure("y", ""), y)[0]["left out"] == 1
 
 
-def test_intervals_hold_their_confidence():
+def test_confidence_intervals_of_shares_and_percentiles_have_their_coverage():
     from elastocheck.study.statistics import clopper_pearson, percentile_ranks
 
     def at_most(k, n, p):
@@ -268,7 +268,7 @@ def test_intervals_hold_their_confidence():
 
 # ---- A linear suspension of known variance.
 
-def test_the_variance_of_a_linear_suspension_is_found(here):
+def test_variance_of_a_linear_suspension_equals_its_closed_form(here):
     said = []
     report = run(LINEAR, say=said.append)
     row, sd = figure(report), math.hypot(20, 30) / 75
@@ -282,13 +282,13 @@ def test_the_variance_of_a_linear_suspension_is_found(here):
     assert rows(report, "witnesses")[0]["witnesses"] == 4 and rows(report, "witnesses")[0]["difference"] < 1e-9
 
 
-def test_the_variance_of_correlated_numbers_is_found(here):
+def test_variance_by_correlated_numbers_equals_its_closed_form(here):
     """Var z = (s₁² + s₂² + 2 ρ s₁ s₂) / k²."""
     report = run(LINEAR.replace("design:", f"groups: [{{variables: {PAIR}, correlation: [[1, -0.8], [-0.8, 1]]}}]\ndesign:"))
     assert figure(report)["sd"] == pytest.approx(math.sqrt(20**2 + 30**2 - 2 * 0.8 * 20 * 30) / 75, rel=2e-3)
 
 
-def test_the_shares_of_a_linear_suspension_are_found(here):
+def test_sobol_indices_of_a_linear_suspension_equal_their_closed_form(here):
     report = run(LINEAR.replace("seed: 3", "seed: 3, indices: true"))
     for row, share in zip(rows(report, "sobol"), [400 / 1300, 900 / 1300]):
         for order in ("first", "total"):
@@ -298,7 +298,7 @@ def test_the_shares_of_a_linear_suspension_are_found(here):
         assert np.array_equal(frame[:, 2 + j, j], frame[:, 1, j]) and np.array_equal(frame[:, 2 + j, 1 - j], frame[:, 0, 1 - j])
 
 
-def test_rare_failures_of_a_linear_suspension_are_found(here):
+def test_rare_failure_probability_of_a_linear_suspension_equals_its_closed_form(here):
     """Normal numbers and a linear figure: the reliability index is exact."""
     sd = math.hypot(20, 30) / 75
     report = run(LINEAR.replace("max: 420.8", f"max: {420 + 4.5 * sd}, min: {420 - 3 * sd}"), count=256, rare=True)
@@ -353,7 +353,7 @@ figures: {z: end_z@b:-80.8}
 
 # ---- Threads, shards, clusters, interruption, extension: one content.
 
-def test_there_is_one_content_on_any_threads_and_in_shards(here):
+def test_content_of_a_study_is_the_same_on_any_threads_and_in_shards(here):
     one = run(MCPHERSON, folder="one", threads=1).content
     assert run(folder="two", threads=2).content == one and run(folder="two", show=True).content == one
     said = []
@@ -368,7 +368,7 @@ def test_there_is_one_content_on_any_threads_and_in_shards(here):
         run(folder="parts", merge=["empty"])
 
 
-def test_there_is_one_content_on_the_workers_of_a_cluster(here):
+def test_content_of_a_study_is_the_same_on_the_workers_of_a_cluster(here):
     distributed = pytest.importorskip("distributed")
     one = run(LINEAR, folder="one", count=5000).content
     for workers in (1, 2, 4):
@@ -385,7 +385,7 @@ def test_there_is_one_content_on_the_workers_of_a_cluster(here):
         run(folder="none", scheduler="nowhere://x")
 
 
-def test_killed_at_any_moment_it_goes_on_to_the_same_content(here):
+def test_study_killed_at_any_moment_continues_to_the_same_content(here):
     whole = run(LINEAR, folder="whole", count=100_000 // 8).content
     moments, part, killed = random.Random(1), 0, 0
     for turn in range(21):  # twenty times by kill -9, once by Ctrl-C
@@ -406,7 +406,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_content(here):
     assert run(count=100_000 // 8).content == whole
 
 
-def test_a_full_disk_loses_nothing_that_was_recorded(here):
+def test_full_disk_keeps_every_recorded_row_of_a_study(here):
     whole = run(LINEAR, folder="whole").content
     said = command("-o", "out", "--quiet", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000)))
     assert said.returncode == 2 and "out/ledger.sqlite: " in said.stderr
@@ -415,7 +415,7 @@ def test_a_full_disk_loses_nothing_that_was_recorded(here):
     assert int(told[0].split()[0]) < 4096
 
 
-def test_a_study_is_extended_without_repeating(here):
+def test_extended_study_computes_only_its_new_variants(here):
     said = []
     run(MCPHERSON, folder="grown", count=300)
     grown = run(folder="grown", count=700, say=said.append)
@@ -494,7 +494,7 @@ def test_a_row_of_a_ledger_needs_less_than_a_hundred_bytes_of_memory(here):
 
 # ---- A damaged ledger.
 
-def test_zeros_with_a_sign_are_no_damage(here):
+def test_negative_zeros_in_a_ledger_are_accepted(here):
     """Camber as drawn is -0: SQLite keeps 0."""
     assert math.copysign(1, elastocheck.read("mcpherson.yaml").variants({"springs.K1_coil.rate": [3e4]}, "camber")[0][0, 0]) == -1
     report, said = run(MCPHERSON.replace("toe: toe@jounce:3000", "toe: camber"), count=20), []
@@ -507,7 +507,7 @@ def test_zeros_with_a_sign_are_no_damage(here):
     ("variants SET outcome = 'no scene' WHERE k = 17", 17), ("variants SET method = 'equilibrium' WHERE k = 17", 17),
     ("variants SET k = 99 WHERE k = 17", 99), ("witnesses SET f1 = 1 WHERE k = 0", 0), ("variants SET f1 = 'abc' WHERE k = 17", 17),
     ("variants SET checksum = 1 WHERE k = 17", 17)])
-def test_a_damaged_row_is_said_and_computed_again(here, change, row):
+def test_damaged_row_of_a_ledger_is_reported_and_computed_again(here, change, row):
     good = run(LINEAR, count=40).content
     with sqlite3.connect("out/ledger.sqlite") as base:
         base.execute("UPDATE " + change)
@@ -518,7 +518,7 @@ def test_a_damaged_row_is_said_and_computed_again(here, change, row):
     assert f"row {row} of " in said[0] and "; it is computed again" in said[0] and said[1].startswith("1 variants computed")
 
 
-def test_a_flipped_bit_is_found_or_does_not_matter(here):
+def test_flipped_bit_in_a_ledger_is_detected_or_changes_no_result(here):
     good = run(LINEAR, count=1000).content
     whole = pathlib.Path("out/ledger.sqlite").read_bytes()
     bits, found = random.Random(2), 0
@@ -539,7 +539,7 @@ def test_a_flipped_bit_is_found_or_does_not_matter(here):
 
 # ---- What it leaves.
 
-def test_the_page_shows_every_figure(here):
+def test_page_of_a_study_shows_every_figure(here):
     run(LINEAR.replace("seed: 3", "seed: 3, indices: true"))
     page = pathlib.Path("out/study.html").read_text()
     for part in ['<h2 id="figure-1-title">height</h2>', "Shares of the variance", "Over static_loads.weight.force.z",
@@ -557,7 +557,7 @@ def test_the_page_shows_every_figure(here):
     assert os.listdir("mine") == ["study.html"]
 
 
-def test_csv_and_hdf5_have_all_rows(here):
+def test_csv_and_hdf5_of_a_study_have_all_rows(here):
     report = run(MCPHERSON, count=300, csv="rows.csv", hdf5="rows.h5")
     frame = report.frame()
     pandas.testing.assert_frame_equal(pandas.read_csv("rows.csv", float_precision="round_trip", keep_default_na=False), frame, check_exact=True)
@@ -572,7 +572,7 @@ def test_csv_and_hdf5_have_all_rows(here):
     assert np.array_equal(solver.solve(numbers, "series", 1)[0], frame.iloc[:5, 7:].to_numpy())
 
 
-def test_the_command_has_exit_codes_json_and_names_what_is_missing(here, tmp_path):
+def test_study_command_has_exit_codes_and_json_and_names_missing_packages(here, tmp_path):
     write(LINEAR)
     said = command("-o", "out", "--count", "300", "--jobs", "1", "--json")
     document = json.loads(said.stdout)
@@ -595,7 +595,7 @@ def test_the_command_has_exit_codes_json_and_names_what_is_missing(here, tmp_pat
     assert alone.returncode == 2 and "`./dev study` builds and installs what it needs" in alone.stderr
 
 
-def test_an_array_of_jobs_has_the_same_content(here):
+def test_study_as_an_array_of_jobs_has_the_same_content(here):
     one = run(MCPHERSON, folder="one").content
     path = {"PATH": f"{pathlib.Path(os.environ['ELASTOCHECK']).parent}:{os.environ['PATH']}"}
     for k in (1, 2, 3):
@@ -605,7 +605,7 @@ def test_an_array_of_jobs_has_the_same_content(here):
 
 
 @pytest.mark.skipif(not all(map(shutil.which, ["slurmctld", "slurmd", "munged", "sbatch"])), reason="slurm-wlm or munge is not installed")
-def test_slurm_runs_an_array_of_jobs_of_which_one_is_cancelled(here):
+def test_slurm_array_with_a_cancelled_job_is_continued(here):
     one = run(MCPHERSON, folder="one", count=3000).content
     write(MCPHERSON.replace("count: 780", "count: 3000"))
     sbatch = ROOT / "models/studies/study.sbatch"
@@ -626,7 +626,7 @@ sbatch --parsable --wait --array=1-3 {sbatch} study.yaml parts 3
 
 # ---- Variants without a study.
 
-def test_figures_of_variants_are_those_of_their_scenes(scenes):
+def test_figures_of_variants_equal_those_of_their_scenes_read_alone(scenes):
     scene = elastocheck.read(scenes / "mcpherson.yaml", {"springs.K1_coil.rate": 28e3})
     height = scene.numbers["points.tie_rod_inner.z"] + np.array([-1e-3, 0, 2e-3])
     numbers = pandas.DataFrame({"points.tie_rod_inner.z": height})

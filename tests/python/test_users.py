@@ -12,7 +12,7 @@ import users  # noqa: E402
 DRAWN = np.array([elastocheck.new("double_wishbone").numbers[name] for name in users.NUMBERS])
 
 
-def test_scipy_finds_the_height_without_bump_steer():
+def test_scipy_finds_the_tie_rod_height_without_bump_steer():
     optimize = pytest.importorskip("scipy.optimize")
     found = optimize.root_scalar(lambda z: users.bump_steer([z, DRAWN[1]]), x0=DRAWN[0], x1=DRAWN[0] + 1e-3,
                                  method="secant", xtol=1e-12)
@@ -23,7 +23,7 @@ def test_scipy_finds_the_height_without_bump_steer():
     assert abs(users.bump_steer(least.x)) < abs(users.bump_steer(DRAWN))
 
 
-def test_openturns_has_the_exact_derivatives():
+def test_openturns_differences_equal_the_derivatives_of_sensitivity():
     openturns = pytest.importorskip("openturns")
     function = openturns.PythonFunction(2, 1, lambda x: [users.bump_steer(x)])
     assert function(DRAWN)[0] == users.bump_steer(DRAWN)
@@ -39,7 +39,7 @@ def test_openturns_has_the_exact_derivatives():
     assert steer.getSize() == 20 and steer.computeStandardDeviation()[0] > 0
 
 
-def test_dask_workers_have_the_same_answers():
+def test_dask_workers_have_the_results_of_the_calling_process():
     distributed = pytest.importorskip("distributed")
     strut = elastocheck.new("mcpherson")
     drawn = np.array([strut.numbers[name] for name in users.NUMBERS])
