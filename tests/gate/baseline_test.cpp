@@ -40,7 +40,7 @@ TEST(Baseline, ReadingAndWritingKeepsTheText) {
 }
 
 // A line a figure, of few digits, at five to nine stations.
-TEST(Baseline, IsSmallEnoughToReview) {
+TEST(Baseline, FilesOfBuiltInScenesAreShortEnoughToReview) {
     for (const auto& scene : support::scene_names()) {
         const std::string text = read_whole(committed(scene));
         EXPECT_LT(std::ranges::count(text, '\n'), 250) << scene;
@@ -60,7 +60,7 @@ TEST(Baseline, IsSmallEnoughToReview) {
 }
 
 // A tie rod 2 mm elsewhere: the reviewer sees the lines whose figures an engineer notices.
-TEST(Baseline, ASmallChangeOfTheSceneRewritesTensOfLines) {
+TEST(Baseline, TieRodMovedByTwoMillimetresRewritesTensOfLines) {
     const auto lines = [](const char* height) {
         const Setting moved{"points.tie_rod_inner.z", height};  // [m]
         const Model model = compile(read_scene(
@@ -78,7 +78,7 @@ TEST(Baseline, ASmallChangeOfTheSceneRewritesTensOfLines) {
 }
 
 // Both wheels of a symmetric axle are on one line, on two where they differ.
-TEST(Baseline, EqualFiguresShareALine) {
+TEST(Baseline, EqualFiguresOfBothWheelsShareALine) {
     BaselineFile file = read_baseline(committed("front_axle"));
     const auto lines_with = [&](const std::string& key) {
         const auto parts = parts_of(baseline_text(file).review, '\n');
@@ -99,7 +99,7 @@ TEST(Baseline, EqualFiguresShareALine) {
     EXPECT_EQ(lines_with("right.toe"), branches);
 }
 
-TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
+TEST(Baseline, EveryNumberOfAMeasurementIsWrittenAndReadBack) {
     const Model model = compile(support::scene("pendulum"));
     const auto measurement = compare::measure(model, compare::compare(model));
     for (const auto& branch : measurement.branches) {
@@ -147,7 +147,7 @@ TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     EXPECT_TRUE(compare::changes(file.numbers, again.numbers).empty());
 }
 
-TEST(Baseline, NullIsNaN) {
+TEST(Baseline, NaNIsWrittenAsNullAndReadBack) {
     BaselineFile file = read_baseline(committed("single_bushing"));
     file.baseline.accepted.series[0].values.assign(11, std::nan(""));
     EXPECT_TRUE(std::isnan(

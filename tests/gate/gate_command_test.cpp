@@ -47,7 +47,7 @@ compare::Series& first_moving(BaselineFile& file) {  // a curve whose end is not
 }
 
 // Of the judgement itself: tests/gate/judge_test.cpp.
-TEST(GateCommand, EachDamageOfABaselineHasItsExitCode) {
+TEST(GateCommand, EveryKindOfDamageToABaselineHasItsExitCode) {
     const BaselineText good = reports::baseline_text(as_committed);
     struct Case {
         const char* what;

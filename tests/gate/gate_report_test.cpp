@@ -133,7 +133,7 @@ TEST(GateReport, ChangedNumbersOfTheSceneAreListedInEveryFormat) {
     expect_parts(gate_table(scene), {"... and 15 more numbers of the scene"});
 }
 
-TEST(GateReport, OffencesOfSeveralScenesAreOrderedAsThoseOfOne) {
+TEST(GateReport, OffencesOfSeveralScenesAreOrderedByTheirNoticeableChange) {
     GatedScene rounding = failed(), moved = failed();
     rounding.verdict.offences = {offence(1.26)};  // 1 tolerance, half of what is noticed
     rounding.verdict.offences[0].channel = "bush.force_z", rounding.verdict.offences[0].unit = "N";

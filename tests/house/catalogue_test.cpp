@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>> other_meanings{
     {"wheel_rate",                                     // a field of a judgement
      {"reports/page/report/report.cpp", "reports/tables/judgement.cpp"}}};
 
-TEST(Catalogue, NamesOfItsEntriesAreLiteralsOnlyInIt) {
+TEST(Catalogue, NamesOfFiguresAreStringLiteralsOnlyInTheCatalogue) {
     std::set<std::string> names;
     for (const auto& entry : compare::catalogue()) names.insert(entry.name);
     ASSERT_GT(names.size(), 100u);

@@ -73,7 +73,7 @@ TEST(Kinds, KindsAreVisitedExhaustivelyOrByMembers) {
     for (const auto& path : unused) ADD_FAILURE() << path << " asks no single kind any more";
 }
 
-TEST(Kinds, OneKindIsRecognised) {
+TEST(Kinds, QueryOfASingleKindIsDetected) {
     EXPECT_TRUE(asks_one_kind("std::get_if<AxialSpring>(&kind)"));
     EXPECT_TRUE(asks_one_kind("std::holds_alternative<elastocheck::Curve>(law)"));
     EXPECT_FALSE(asks_one_kind("std::get_if<recursive::Series>(&method.kind)"));

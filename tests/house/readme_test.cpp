@@ -64,7 +64,7 @@ TEST(Readme, LinksBetweenPagesLeadToFiles) {
     EXPECT_GT(links, 30);
 }
 
-TEST(Readme, ItsFiguresOfSpeedAreTheMeasuredOnes) {
+TEST(Readme, SpeedTableOfTheBenchmarkPageIsTheMeasuredOne) {
     const std::string folder = root + "/tests/benchmark/";
     EXPECT_NE(text_of(folder + "README.md").find(text_of(folder + "speed.md") + "<!-- end -->"),
               std::string::npos)

@@ -49,7 +49,7 @@ std::string joined(const Places& places) {
     return text;
 }
 
-TEST(TypeNames, StandOnceInANamespace) {
+TEST(TypeNames, EveryTypeIsDefinedOnceInItsNamespace) {
     const fs::path tree = ELASTOCHECK_ROOT;
     Definitions definitions;
     for (const char* folder : {"include", "models", "recursive", "reference", "compare", "reports"})

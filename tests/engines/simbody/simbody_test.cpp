@@ -133,7 +133,7 @@ class Suspension : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Simbody, Suspension, testing::Values("mcpherson", "double_wishbone"),
                          [](const auto& scene) { return scene.param; });
 
-TEST_P(Suspension, IsTheSameByBothReferencesWithCardanAngles) {
+TEST_P(Suspension, StatesOfSimbodyEqualBothReferencesWithCardanAngles) {
     const Scene scene = with(Angles::cardan, support::scene(GetParam()));
     double largest = 0;
     for (const auto& [branch, distance] : distances(scene, 8, {Leg::equilibrium, Leg::energy})) {
@@ -143,7 +143,7 @@ TEST_P(Suspension, IsTheSameByBothReferencesWithCardanAngles) {
     fmt::print("{}, one law: at most {:.1e} mm\n", GetParam(), largest);
 }
 
-TEST_P(Suspension, StatesAsWrittenDifferByNoMoreThanTheKnownDifferenceOfTheLaws) {
+TEST_P(Suspension, StatesWithRotationVectorsDifferByTheKnownDifferenceOfTheLaws) {
     const Scene scene = with(Angles::rotation_vector, support::scene(GetParam()));
     double largest = 0;
     for (const auto& [branch, distance] : distances(scene, 8, {Leg::equilibrium, Leg::energy})) {
@@ -242,7 +242,7 @@ TEST(Simbody, UnsupportedElementIsRejectedByName) {
                                  "': its curve has ends, and a load step may lead beyond them");
 }
 
-TEST(Simbody, PerAxisLawOfTheSameRatesGivesTheSameState) {
+TEST(Simbody, BushingByPerAxisRatesMovesAsByItsStiffnessMatrix) {
     Scene scene = support::scene("single_bushing");
     const auto rates = std::get<LinearStiffness>(bushing(scene).law).K.diagonal().eval();
     const auto at_end = [](const Scene& told) {
