@@ -251,7 +251,7 @@ void expect_the_same(const char* name) {
 
 TEST(Arithmetic, RoundingModeDoesNotChangeTheSolutionsOfAStrut) { expect_the_same("mcpherson"); }
 
-// A single bushing: all its points coincide, and a rounding difference between them is no length.
+// The points of single_bushing coincide: a rounding difference between them must not be taken for a length.
 TEST(NightlyArithmetic, RoundingModeDoesNotChangeTheSolutionsOfFourSmallScenes) {
     for (const char* name : {"pendulum", "arch_driven", "parallel_springs", "single_bushing"})
         expect_the_same(name);
@@ -278,8 +278,7 @@ TEST(Arithmetic, PerturbedSceneDiffersByOneUlpPerNumber) {
     EXPECT_GT(down, 50);
 }
 
-// Each number of the scene in turn is NaN, also of its geometry: it has no effect, or the outcome
-// reports it.
+// Each number in turn, those of the geometry too, is NaN or infinite: a solver that converges has its usual result.
 TEST(NightlyArithmetic, NonFiniteNumberInASceneChangesNoResultOrIsReported) {
     for (const char* name : {"mcpherson", "tyre_on_road"}) {
         const Scene scene = small(name);

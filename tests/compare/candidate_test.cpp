@@ -140,7 +140,7 @@ TEST(Candidate, RecursionAsCandidateHasTheDeviationsOfTheRecursion) {
     EXPECT_GT(compared, 400);
 }
 
-// A column changed in one of these ways fails, and the change is found, in numbers and words.
+// A column that is negated, scaled, shifted or converted fails, and the change is named in numbers and words.
 TEST(Candidate, TransformedColumnFailsAndItsTransformIsNamed) {
     const double drawn_z =
         evaluate(solved().model, solved().comparison.channels,
@@ -343,7 +343,7 @@ TEST(Candidate, CandidateOfConstantColumnsIsNotJudgedAndASingleConstantColumnFai
     EXPECT_NE(explained(still, "toe", Kind::still), nullptr) << texts(still);
 }
 
-// As Ackermann straight ahead: the reason names the output, not its points.
+// Ackermann's percentage is undefined straight ahead: the reason names the output, not its points.
 TEST(Candidate, CandidateWhoseOnlyOutputIsUndefinedIsNotJudged) {
     Comparison comparison = solved().comparison;
     const std::size_t toe = solved().channel("toe");
@@ -356,7 +356,7 @@ TEST(Candidate, CandidateWhoseOnlyOutputIsUndefinedIsNotJudged) {
     EXPECT_EQ(texts(judgement).find("all where the branches begin"), std::string::npos);
 }
 
-// Points at a = 0 alone agree with the reference, but are no evidence.
+// Points at a = 0 alone agree with the reference by definition, so that they prove nothing.
 TEST(Candidate, PointsAtZeroParameterAloneAreNotJudged) {
     const Candidate all = table_of(Leg::equilibrium);
     const Candidate right = only(all, [&](std::size_t k) { return all.points.a[k] == 0; });

@@ -154,7 +154,7 @@ TEST(Definitions, PartsOfTheRollStiffnessAreItsDerivativesByTheRates) {
                 0.1 * whole);  // preloads turn
 }
 
-// Without preloads nothing turns that has a force: the parts add up.
+// Without preloads no element that rotates carries a force, so that the parts add up.
 TEST(Definitions, PartsOfTheRollStiffnessAddUpWithoutPreloads) {
     const std::string text =
         std::regex_replace(support::text_of(std::string(ELASTOCHECK_SCENES) + "/twist_beam.yaml"),
@@ -389,7 +389,7 @@ TEST(DefinitionRates, MotionRatiosEqualDifferencesOfStates) {
     }
 }
 
-// Per cent of what, and where the brake torque goes: Milliken's figure by hand from the swing arm.
+// Milliken's anti-dive by hand from the swing arm, with brakes and drives inboard and outboard, and as a share of all forces.
 // The patch is 0.3 m below the centre, and moves forward by 0.3 / arm less per travel.
 TEST(DefinitionRates, AntiDiveFiguresEqualThoseByHand) {
     const Model model = with_tyre(
@@ -503,9 +503,8 @@ struct Judged {
     }
 };
 
-// Each definition in turn stands in a column of its figure, as it is and with a sign, a unit or an
-// offset, and is named among the explanations; unless a simpler one explains it (it differs by its
-// sign or an offset there) or it is the figure itself there.
+// Each definition in turn is the column of its figure, unchanged and with a sign, a unit or an offset, and is named among
+// the explanations, unless it differs from the figure by nothing, a sign or an offset, which are simpler explanations.
 TEST(Definitions, OtherDefinitionInAColumnIsNamedWithSignUnitAndOffset) {
     std::set<std::string> recognised;
     std::map<std::string, std::string> else_as;
@@ -593,8 +592,7 @@ TEST(Definitions, OtherDefinitionInAColumnIsNamedWithSignUnitAndOffset) {
             << definition->name << " is " << else_as[definition->name];
 }
 
-// A column that hardly moves says nothing about a curve that does: with a small factor and an offset
-// every curve would fit it.
+// A nearly constant column fits every curve with a small factor and an offset, so that it identifies none.
 TEST(Definitions, ColumnThatHardlyMovesIsNotExplainedByADefinitionAndAFactor) {
     Beside b;
     for (int k = 0; k <= 20; ++k) {

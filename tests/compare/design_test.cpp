@@ -76,7 +76,7 @@ TEST(LeastSquares, FindsTheMinimumOfRosenbrocksFunctionWithAndWithoutABound) {
 
 // ---- Rates by differences.
 
-// |p - a| has no rate at a; at a distance of half a step it has.
+// |p - a| has no derivative at a; it has one at a distance of half a step.
 TEST(Figures, GradientIsNaNAtAKinkAndDefinedBesideIt) {
     const Figures kink = closed(
         [](const VectorXd& p) {
@@ -182,7 +182,7 @@ TEST(SolveFor, SearchEndingBesideUndefinedPointsHasNotConverged) {
     EXPECT_FALSE(found.solution.converged);
 }
 
-// Numbers beside which there may be nearer ones, or a smaller change, are not judged.
+// A search that stopped early may have missed nearer values, so that its result has no verdict.
 TEST(SolveFor, UnconvergedSearchIsNotJudged) {
     const Varied varied{{list_of({0.5}), list_of({0}), list_of({1})}, {{"p", 0.5, "m"}}};
     for (const bool met : {false, true})
@@ -208,7 +208,7 @@ TEST(SolveFor, UnconvergedSearchIsNotJudged) {
         }
 }
 
-// Trims near the first point of a call start from its trim.
+// The trims of all points of a call start from the trim of its first point.
 TEST(Figures, EveryCallOfAGradientBeginsWithThePointOfTheGradient) {
     std::vector<VectorXd> first;
     const Figures figures{[&](const std::vector<VectorXd>& points) {
@@ -244,7 +244,7 @@ TEST(Figures, ValuesAndRatesOfTwoSpringsEqualTheirClosedForm) {
     }
 }
 
-// Those of `sensitivity`, which solves no state again; a figure over travel is at a place that moves,
+// `sensitivity` needs no further solutions; the parameter of a figure over travel changes with p:
 //
 //   dy/dp = ∂y/∂p - (∂y/∂a) / (∂x/∂a) ∂x/∂p
 TEST(Figures, GradientsEqualThoseOfTheSensitivityAnalysis) {
@@ -316,7 +316,7 @@ TEST(Figures, FiguresOfAllLegsAgreeAtAParameterAndAtATravel) {
         << placed.why_not;
 }
 
-// k_1 + k_2 = 80 for z = 437.5 at 3000 N: of the ways to get there the smallest change, 2.5 each.
+// k_1 + k_2 = 80 N/mm for z = 437.5 mm at 3000 N: the smallest change is 2.5 N/mm of each.
 TEST(SolveFor, RatesOfTwoSpringsForADisplacementEqualTheirClosedForm) {
     const Varied varied =
         varied_of("parallel_springs", rates, list_of({10, 20}), list_of({60, 70}));
@@ -360,7 +360,7 @@ Optimum from(const Figures& figures, const Goals& goals, const SearchRange& rang
 }
 
 // |p| ≥ 2 from (0.6, 0.8): the nearest point is (1.2, 1.6), 1 away, 0.1 as a share of the ranges;
-// each unit of the bound is a unit of the way. |p| ≥ 0.5 changes nothing.
+// each unit of the bound costs a unit of distance. |p| ≥ 0.5 changes nothing.
 TEST(Optimise, BandIsMetWithTheSmallestChangeAndHasItsShadowPrice) {
     const SearchRange range{list_of({0.6, 0.8}), list_of({-5, -5}), list_of({5, 5})};
     const Optimum found =
@@ -491,7 +491,7 @@ TEST(Optimise, GoalOnAFigureThatNoNumberMovesIsLeftOut) {
     EXPECT_EQ(from(still, goals, range).best, -1);
 }
 
-// Beyond p = 1.5 there is no value: at the limit, and at some starts. An exception passes SLSQP.
+// Figures are undefined beyond p = 1.5, which holds for the limit and some starts. Exceptions pass through SLSQP.
 TEST(Optimise, SearchStaysWhereFiguresAreDefinedAndPropagatesExceptions) {
     const Figures partly = closed(
         [](const VectorXd& p) { return list_of({p[0] < 1.5 ? p[0] * p[0] : std::nan("")}); }, 1);

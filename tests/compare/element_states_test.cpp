@@ -181,7 +181,6 @@ TEST(ForceRows, ForcesAtBothEndsOfABranchHaveTheirClosedFormAndTheErrorOfTheRecu
     EXPECT_EQ(of("standing", 2000, "suspension.force").end_unit, "N");
 }
 
-// The relative error is the recursion's error over the magnitude of the value.
 TEST(ForceRows, ErrorOfTheRecursionIsGivenInTheUnitAndInPercent) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Options options;

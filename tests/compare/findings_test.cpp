@@ -26,7 +26,7 @@ std::size_t channel(const std::string& name) {
     return static_cast<std::size_t>(find_channel(compared().channels, name));
 }
 
-// As of a definition that a scene asks for and that has no value at some point of a branch.
+// An output by a requested definition may be undefined at some point of a branch.
 TEST(WorstDisagreement, ConsidersOnlyComparedOutputs) {
     Comparison comparison = compared();
     const auto camber = channel("camber");

@@ -17,7 +17,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Quantiles of Student's distribution from tables.
 TEST(Fit, QuantilesOfStudentsDistributionEqualTheTable) {
     EXPECT_NEAR(student_95(1), 12.7062, 1e-4);
     EXPECT_NEAR(student_95(2), 4.30265, 1e-5);

@@ -26,8 +26,8 @@ Scene mcpherson(double to = 0) {
 // The paper's wheel is constrained fore and aft, independent of the formulation.
 const std::string held = "wheel_centre_x";
 
-// Conversion of `export --formulation`: every bushing except torsion springs, tyres, and bushings
-// that differ only by the order of their markers.
+// `export --formulation` converts every bushing except torsion springs, tyres, and bushings whose markers only
+// change their order.
 TEST(Formulations, ConversionChangesEveryBushingAndItsEffectIsTheDifference) {
     const Formulation target{.angles = Formulation::Angles::projected, .conjugate = false};
     Scene scene = support::scene("multi_link");

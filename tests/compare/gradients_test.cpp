@@ -455,7 +455,7 @@ TEST(ClosedFormGradients, EqualThoseOfTrackAndCamberGainByTheLengthOfEqualArms) 
              });
 }
 
-// At the corner of a law a stiffness has two values, and an entry says so.
+// At the corner of a law a stiffness has two values.
 TEST(Gradients, DerivativeAtTheCornerOfALawIsNaNWithItsReason) {
     const std::string file =
         std::string(ELASTOCHECK_SCENES) + "/../extremes/stop_that_touches.yaml";

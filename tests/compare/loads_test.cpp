@@ -106,7 +106,7 @@ TEST(Loads, BushingForceInBodyAxesIsTheElasticForceInItsFrame) {
     EXPECT_LT(all.cases[0].imbalance, 1e-9);
 }
 
-// What the ground bears is what the wheels and the weights put on the suspension: all bodies as one.
+// Balance of all bodies as one: reactions of the ground are the opposite of wheel forces and weights.
 TEST(Loads, GroundReactionsBalanceTheLoadsOfACaseOnAnAxle) {
     const Scene scene = trim(support::scene("front_axle")).scene;
     const std::size_t left = 0, right = 1;

@@ -21,32 +21,34 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using support::at_wheel, support::bare, support::OneWay, support::way_of;
+using support::at_wheel, support::poses_only, support::SideModel, support::side_named;
 using Disturbances = std::vector<Disturbance>;
 
 struct Answering {
     std::string name;
-    std::function<Response(const OneWay&, const Equilibrium&, const Disturbances&)> linear_response;
+    std::function<Response(const SideModel&, const Equilibrium&, const Disturbances&)>
+        linear_response;
 };
 Answering recursion(const char* method) {
     return {method,
-            [method](const OneWay& side, const Equilibrium& state, const Disturbances& what) {
-                return recursive::linear_response(side.model, side.branch, bare(state), what,
+            [method](const SideModel& side, const Equilibrium& state, const Disturbances& what) {
+                return recursive::linear_response(side.model, side.branch, poses_only(state), what,
                                                   recursive::find_method(method).value());
             }};
 }
 const Answering by_equilibrium{
     "equilibrium",
-    [](const OneWay&side, const Equilibrium&state, const Disturbances&what) {
-        return reference::equilibrium::linear_response(side.model, side.branch, bare(state), what);
+    [](const SideModel&side, const Equilibrium&state, const Disturbances&what) {
+        return reference::equilibrium::linear_response(side.model, side.branch, poses_only(state),
+                                                       what);
     }},
-    by_energy{"energy", [](const OneWay&side, const Equilibrium&state, const Disturbances&what) {
-                  return reference::energy::linear_response(side.model, side.branch, bare(state),
-                                                            what);
+    by_energy{"energy", [](const SideModel&side, const Equilibrium&state, const Disturbances&what) {
+                  return reference::energy::linear_response(side.model, side.branch,
+                                                            poses_only(state), what);
               }};
 std::vector<Answering> three_legs() { return {by_equilibrium, by_energy, recursion("series")}; }
 
-Equilibrium state_at(const OneWay& side, double a) {
+Equilibrium state_at(const SideModel& side, double a) {
     const auto path = reference::equilibrium::solve(side.model, side.branch, std::vector{a});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     return path.points.back();
@@ -96,7 +98,7 @@ TEST(Response, LegsAgreeAtTheStartAndEndOfEveryScene) {
         for (const auto& branch : model.branches)
             for (const auto& [side_name, on_side, side, analysis] : sides_of(model, branch, 1))
                 for (const double a : {0.0, side.to}) {
-                    const OneWay here{on_side, side};
+                    const SideModel here{on_side, side};
                     const Equilibrium state = state_at(here, a);
                     const auto& [forces, moments, offsets] = everything(on_side);
                     for (const auto* requested : {&forces, &moments, &offsets}) {
@@ -124,7 +126,7 @@ TEST(Response, LegsAgreeAtTheStartAndEndOfEveryScene) {
 TEST(Response, PublishedMatrixIsExactWithoutLoadAndLacksGeometricStiffnessUnderLoad) {
     for (const char* name : {"bushing_pair", "pinned_bar", "chrono_mcpherson", "two_spring_arch"}) {
         const Scene scene = support::scene(name);
-        const OneWay side = way_of(scene, scene.branches[0].name, scene.branches[0].to);
+        const SideModel side = side_named(scene, scene.branches[0].name, scene.branches[0].to);
         const auto forces = everything(side.model).forces;
         for (const double a : {0.0, side.branch.to}) {
             const Equilibrium state = state_at(side, a);
@@ -140,7 +142,7 @@ TEST(Response, PublishedMatrixIsExactWithoutLoadAndLacksGeometricStiffnessUnderL
 
 // ---- Reciprocity: 6 × 6 compliance of the contact patch under wrenches there.
 
-MatrixXd compliance(const OneWay& side, const Equilibrium& state, const Answering& leg) {
+MatrixXd compliance(const SideModel& side, const Equilibrium& state, const Answering& leg) {
     const Wheel& wheel = side.model.wheels[0];
     const Point centre{wheel.body, wheel.centre_local};
     Disturbances wrenches;
@@ -172,7 +174,7 @@ TEST(Response, ComplianceIsSymmetricUnderDeadForces) {
          {"mcpherson_strut", "double_wishbone", "front_axle", "semi_trailing_arm"}) {
         const Scene scene = support::scene(name);
         for (const char* branch : {"lateral", "traction"}) {  // a brake has no potential
-            const OneWay side = way_of(scene, branch, 1);
+            const SideModel side = side_named(scene, branch, 1);
             const Equilibrium state = state_at(side, side.branch.to);
             for (const auto& leg : three_legs()) {
                 const MatrixXd C = in_one_unit(compliance(side, state, leg));
@@ -188,7 +190,7 @@ TEST(Response, ComplianceIsSymmetricUnderDeadForces) {
 //
 //   C - Cᵀ = C (Kᵀ - K) Cᵀ = C_π m̃ C_πᵀ,   C_π the responses to moments on that body
 TEST(Response, AsymmetryOfComplianceIsTheTermOfTheDeadMoment) {
-    const OneWay side = way_of(support::scene("double_wishbone"), "aligning", 1);
+    const SideModel side = side_named(support::scene("double_wishbone"), "aligning", 1);
     const Equilibrium state = state_at(side, side.branch.to);
     const Vector3d m(0, 0, side.branch.to);
     Matrix3d skew;
@@ -206,7 +208,7 @@ TEST(Response, AsymmetryOfComplianceIsTheTermOfTheDeadMoment) {
 // ---- Invariance.
 
 // Wrenches at the wheel, and the responses of all bodies.
-Response at_the_wheel(const OneWay& side, const Equilibrium& state, const Answering& leg,
+Response at_the_wheel(const SideModel& side, const Equilibrium& state, const Answering& leg,
                       const Quaterniond& R) {
     Disturbances wrenches;
     for (int k = 0; k < 3; ++k) {
@@ -221,7 +223,7 @@ TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotChangeTheResponse) {
     const Vector3d t(3, -1, 2);
     for (const char* name : {"chrono_mcpherson_preload", "chrono_mcpherson"}) {
         const Scene scene = support::scene(name);
-        const OneWay side = way_of(scene, "jounce", 1);
+        const SideModel side = side_named(scene, "jounce", 1);
         const Equilibrium state = state_at(side, side.branch.to);
         for (const auto& leg : three_legs()) {
             const Response as_told = at_the_wheel(side, state, leg, Quaterniond::Identity());
@@ -229,7 +231,7 @@ TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotChangeTheResponse) {
             Equilibrium turned = state;
             for (Pose& pose : turned.poses) pose = {R * pose.r + t, R * pose.p};
             Response back =
-                at_the_wheel(way_of(support::moved(scene, R, t), "jounce", 1), turned, leg, R);
+                at_the_wheel(side_named(support::moved(scene, R, t), "jounce", 1), turned, leg, R);
             for (auto& increments : back.increments)
                 for (Increment& body : increments)
                     body = {R.conjugate() * body.dr, R.conjugate() * body.dpi};
@@ -238,15 +240,15 @@ TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotChangeTheResponse) {
 
             Equilibrium other_way_round = state;
             std::ranges::reverse(other_way_round.poses);
-            back = at_the_wheel(way_of(support::reversed(scene), "jounce", 1), other_way_round, leg,
-                                Quaterniond::Identity());
+            back = at_the_wheel(side_named(support::reversed(scene), "jounce", 1), other_way_round,
+                                leg, Quaterniond::Identity());
             for (auto& increments : back.increments) std::ranges::reverse(increments);
             EXPECT_LE(distance(back, as_told), 1e-10) << name << ", " << leg.name << ": reversed";
         }
     }
     const Scene scene = support::scene("semi_trailing_arm"),
                 in_mm = support::in_millimetres_and_kilonewtons("semi_trailing_arm");
-    const OneWay side = way_of(scene, "travel", 1), other = way_of(in_mm, "travel", 1);
+    const SideModel side = side_named(scene, "travel", 1), other = side_named(in_mm, "travel", 1);
     const Equilibrium state = state_at(side, side.branch.to);
     const auto forces = everything(side.model).forces;
     for (const auto& leg : three_legs())
@@ -259,7 +261,7 @@ TEST(Response, GroundFrameOrderOfBodiesAndUnitsDoNotChangeTheResponse) {
 TEST(Response, SeriesAndEquilibriumLegAgreeWhereNoEnergyExists) {
     for (const auto& [name, branch] :
          {std::pair("follower", "up"), std::pair("bushing_by_small_angles", "pull")}) {
-        const OneWay side = way_of(support::scene(name), branch, 1);
+        const SideModel side = side_named(support::scene(name), branch, 1);
         const Equilibrium state = state_at(side, side.branch.to);
         const auto forces = everything(side.model).forces;
         EXPECT_EQ(by_energy.linear_response(side, state, forces).outcome,

@@ -18,8 +18,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-// From the states and the trim of a neighbour, as from the design position; at a change of a tenth of
-// the range, and of all.
+// Starts from the states and the trim of a scene that differs by a tenth of the range, and by the whole range.
 TEST(Figures, FiguresSolvedFromANeighbourEqualThoseFromTheDesignPosition) {
     for (const auto& [name, path, from, to] :
          {std::tuple{"mcpherson", "points.tie_rod_inner.z", -0.015, 0.005},
@@ -43,7 +42,6 @@ TEST(Figures, FiguresSolvedFromANeighbourEqualThoseFromTheDesignPosition) {
     }
 }
 
-// States move to a model that differs in its numbers a little, and to no other one.
 TEST(Figures, StatesAreReusedOnlyByModelsThatDifferLittle) {
     const auto model_at = [](const char* path, double value) {
         const Setting set = setting(path, value);
@@ -65,7 +63,7 @@ TEST(Figures, StatesAreReusedOnlyByModelsThatDifferLittle) {
     EXPECT_LE((from_near - anew).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-// Wherever the first search ends, the caller has the nearest point, or the best within the bands.
+// Wherever the first search is interrupted, its caller has the point nearest to the bands, or the best within them.
 TEST(Optimise, InterruptedFirstSearchLeavesTheBestPointSoFar) {
     const SearchRange range{list_of({0.6, 0.8}), list_of({-5, -5}), list_of({5, 5})};
     double last = 1;

@@ -148,7 +148,6 @@ TEST(SecondReference, MissingEnergyLegResidualsMakeTheComparisonInconclusive) {
               1);
 }
 
-// Without an energy the energy leg judges nothing.
 TEST(SecondReference, SceneWithoutEnergyHasNoEnergyLegResiduals) {
     const Comparison found = compare(compile(follower()));
     EXPECT_FALSE(energy_judges_states(found.branches[0]));

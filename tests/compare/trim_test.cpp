@@ -116,7 +116,7 @@ TEST(Trim, SceneWithoutATrimIsUnchanged) {
 }
 
 // The series alone, from the design and from the trim of a similar scene: the same trim, the second
-// by less work; and from a start that leads nowhere.
+// by less work; and from a far start whose Jacobian has the wrong sign.
 TEST(Trim, SeriesFromAnyStartGivesTheTrimOfTheReferences) {
     for (const char* name : {"double_wishbone", "front_axle"}) {
         const Scene scene = support::scene(name);
@@ -256,8 +256,8 @@ TEST(Trim, BalancedBushingsKeepEveryLegAtTheDesignPosition) {
     }
 }
 
-// Where springs bear much of what settles, corrections alone take hundreds: two struts and a bar on a
-// soft subframe.
+// Two struts and a bar on a soft subframe: where springs carry much of the load, plain corrections would take hundreds
+// of iterations.
 TEST(Trim, BalancedBushingsAreFoundOnASoftSubframe) {
     Scene scene = read_scene(std::string(ELASTOCHECK_SCENES) +
                              "/../../tests/reports/axles/front_subframe_axle.yaml");

@@ -88,7 +88,6 @@ TEST(VariantSolver, CharacteristicsOfAVariantWithOtherIdleModesAreComputed) {
     EXPECT_NEAR(found.values[0], expected.values[0], 1e-9 * std::abs(expected.values[0]));
 }
 
-// On the same points the extremes of a branch are those of its curve.
 TEST(VariantSolver, ExtremesOverATwoSidedBranchAreThoseOfItsCurve) {
     const std::string file = ELASTOCHECK_SCENES "/chrono_mcpherson_travel.yaml";
     const Model design = compile(read_scene(file));

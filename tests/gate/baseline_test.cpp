@@ -39,7 +39,7 @@ TEST(Baseline, ReadingAndWritingKeepsTheText) {
     }
 }
 
-// A line a figure, of few digits, at five to nine stations.
+// A figure is a line of few digits at five to nine stations.
 TEST(Baseline, FilesOfBuiltInScenesAreShortEnoughToReview) {
     for (const auto& scene : support::scene_names()) {
         const std::string text = read_whole(committed(scene));
@@ -59,7 +59,6 @@ TEST(Baseline, FilesOfBuiltInScenesAreShortEnoughToReview) {
     }
 }
 
-// A tie rod 2 mm elsewhere: the reviewer sees the lines whose figures an engineer notices.
 TEST(Baseline, TieRodMovedByTwoMillimetresRewritesTensOfLines) {
     const auto lines = [](const char* height) {
         const Setting moved{"points.tie_rod_inner.z", height};  // [m]

@@ -20,12 +20,13 @@ const std::filesystem::path baselines = scenes + "/baselines";
 const BaselineFile as_committed = reports::read_baseline(baselines / "single_bushing.json");
 
 // Not in CI, whatever the tests themselves run in.
-Said gate(const std::string& arguments, const std::string& environment = "CI= GITHUB_ACTIONS=") {
-    return support::says("env " + environment + " " + ELASTOCHECK_COMMAND + " gate " + arguments);
+RunResult gate(const std::string& arguments,
+               const std::string& environment = "CI= GITHUB_ACTIONS=") {
+    return support::shell("env " + environment + " " + ELASTOCHECK_COMMAND + " gate " + arguments);
 }
 
 // The scene against the committed baseline, edited first.
-Said crafted(const BaselineText& baseline, const std::string& how = "") {
+RunResult crafted(const BaselineText& baseline, const std::string& how = "") {
     const Folder folder;
     std::filesystem::create_directory(folder.path / "curves");
     folder.write("single_bushing.json", baseline.review);
@@ -46,7 +47,7 @@ compare::Series& first_moving(BaselineFile& file) {  // a curve whose end is not
     return series(file)[0];
 }
 
-// Of the judgement itself: tests/gate/judge_test.cpp.
+// The judgement itself is tested in tests/gate/judge_test.cpp.
 TEST(GateCommand, EveryKindOfDamageToABaselineHasItsExitCode) {
     const BaselineText good = reports::baseline_text(as_committed);
     struct Case {
@@ -102,7 +103,7 @@ TEST(GateCommand, EveryKindOfDamageToABaselineHasItsExitCode) {
          limited({.of = figure, .channel = "centre_z", .max = 1e6, .unit = "mm", .over = "x"})},
     };
     for (const auto& [what, code, baseline] : cases) {
-        const Said said = crafted(baseline, " --class same-build");
+        const RunResult said = crafted(baseline, " --class same-build");
         EXPECT_EQ(said.code, code) << what << "\n" << said.out << said.err;
         EXPECT_EQ(contains(said.out, "passed:"), code == 0) << what << "\n" << said.out;
         EXPECT_TRUE(code != 3 || contains(said.out, "could not judge: ")) << what << "\n"
@@ -125,29 +126,29 @@ TEST(GateCommand, AcceptIsRefusedBeyondALimitOrIfNotJudged) {
     file.baseline.limits = {{Quantity::deviation_at_equal_parameter, channel, -0.0}};
     const std::string limited = reports::baseline_text(file).review;
     folder.write("baselines/own.json", limited);
-    expect_said(gate(own), 1);
-    expect_said(gate(own + " --accept --reason second"), 1,
-                {.out = {"an absolute limit is broken"}});
+    expect_result(gate(own), 1);
+    expect_result(gate(own + " --accept --reason second"), 1,
+                  {.out = {"an absolute limit is broken"}});
     EXPECT_EQ(text_of(baseline), limited);
 
     folder.write("baselines/own.json", "{");
-    expect_said(gate(own + " --accept --reason third"), 3);
+    expect_result(gate(own + " --accept --reason third"), 3);
     EXPECT_EQ(text_of(baseline), "{");
 
     std::string arch = text_of(scenes + "/two_spring_arch.yaml");
     arch.replace(arch.find("to: -200"), 8, "to: -300");
-    expect_said(gate(folder.write("arch.yaml", arch) + " --accept --reason fourth"), 3,
-                {.err = {"not accepted: branch 'down': "}});
+    expect_result(gate(folder.write("arch.yaml", arch) + " --accept --reason fourth"), 3,
+                  {.err = {"not accepted: branch 'down': "}});
     EXPECT_FALSE(std::filesystem::exists(folder.path / "baselines/arch.json"));
 }
 
 TEST(GateCommand, NamesTolerancesWiderThanThoseOfTheClassInItsFirstLine) {
     expect_parts(crafted(reports::baseline_text(as_committed)).out, {}, {"wider"});
-    const Said said = crafted(edited([](BaselineFile& file) {
+    const RunResult said = crafted(edited([](BaselineFile& file) {
         for (auto& [kind, tolerances] : file.baseline.tolerances)
             tolerances.at("mm").atol = tolerances.at("mm").rtol = 1e9;
     }));
-    expect_said(said, 0);
+    expect_result(said, 0);
     EXPECT_TRUE(contains(said.out.substr(0, said.out.find('\n')),
                          ", with tolerances wider than those of the class: mm: atol 1e+09, mm: "
                          "rtol 1e+09"))
@@ -161,7 +162,7 @@ TEST(GateCommand, RefusesALimitWithMinAboveMaxWithItsLine) {
             {.of = Quantity::equilibrium, .channel = "b", .max = 1, .min = 2, .unit = "mm"}};
     });
     const std::string before = text.review.substr(0, text.review.find("\"b\""));
-    expect_said(
+    expect_result(
         crafted(text), 2,
         {.out = {"single_bushing.json:" + std::to_string(1 + std::ranges::count(before, '\n')) +
                  ": limits.2: min 2 is above max 1"}});

@@ -146,7 +146,7 @@ TEST(GateReport, OffencesOfSeveralScenesAreOrderedByTheirNoticeableChange) {
                                  "out of tolerance::branch 'jounce', recursive: toe"));
 }
 
-// Everything of everything is wrong, under names as long as they may be.
+// Every number of every scene is an offence, under names of the maximum length.
 TEST(GateReport, JUnitIsLimitedInSizeAndCountsWhatIsOmitted) {
     const auto wrong = [](std::size_t scenes, std::size_t branches, std::size_t numbers,
                           std::size_t length) {

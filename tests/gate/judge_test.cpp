@@ -56,8 +56,8 @@ TEST(Gate, AcceptedMeasurementPassesAndEveryNumberIsCounted) {
     EXPECT_EQ(verdict.compared, 2 * (3 + 3 + 1 + 3 + 1));
 }
 
-// Of its channel, else its unit, in the class; relative to the accepted curve's range, of a deviation to
-// that of the reference.
+// The tolerance is that of the channel, else of its unit, in the class, relative to the range of the accepted curve, for
+// a deviation to the range of the reference.
 TEST(Gate, DifferenceOfTheTolerancePassesAndOneUlpMoreFails) {
     struct Edge {
         Quantity quantity;
@@ -362,7 +362,7 @@ TEST(Gate, StationsAreFiveEvenlySpacedAndTheDesignPosition) {
     EXPECT_EQ(stations({}), Places{});
 }
 
-// From -110 m to -476 m is next to nothing.
+// A swing arm that changes from -110 m to -476 m has hardly moved.
 TEST(Gate, SwingArmIsStoredAsItsReciprocalAndAnInfiniteOneAsZero) {
     const Model model = compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml"));
     Comparison comparison = compare(model);

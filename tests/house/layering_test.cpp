@@ -185,7 +185,6 @@ TEST(Layering, AFolderHoldsAtMostTwentySourceFiles) {
     for (const auto& [folder, files] : count) EXPECT_LE(files, max_files) << folder;
 }
 
-// What the folders that show results include of the folders that compute them.
 TEST(Layering, FoldersOfReportsIncludeOnlyAllowedAnalyses) {
     const std::map<std::string, std::vector<std::string>> allowed{
         {"reports/page", {"compare/result", "compare/tables", "compare/outputs"}},
@@ -205,7 +204,6 @@ TEST(Layering, FoldersOfReportsIncludeOnlyAllowedAnalyses) {
                 }
 }
 
-// The page is made of typed results; nothing is read back from an output.
 TEST(Layering, ThePageReadsNoJson) {
     for (const auto& [file, text] : sources())
         for (const auto& [target, quoted] : includes(text)) {
@@ -214,8 +212,7 @@ TEST(Layering, ThePageReadsNoJson) {
         }
 }
 
-// A visit that asks what a kind can do, instead of saying what is done with each, leaves a new
-// kind out silently.
+// A generic visitor that tests for a member would skip a new kind silently.
 TEST(Layering, VisitorsAreExhaustive) {
     static const std::regex asked(R"(if\s+constexpr\s*\(\s*!?\s*requires\b)");
     EXPECT_TRUE(std::regex_search("if constexpr (requires { point.s_local; }) {", asked));

@@ -10,17 +10,17 @@
 
 namespace {
 
-using elastocheck::support::Said;
-using elastocheck::support::says;
+using elastocheck::support::RunResult;
+using elastocheck::support::shell;
 using elastocheck::support::text_of;
 
 const std::string root = ELASTOCHECK_ROOT;
 
 TEST(Readme, CommitsOfTheExampleWorkflowExist) {
     const std::string git = "git -c safe.directory='*' -C '" + root + "' ";
-    if (says(git + "rev-parse --show-prefix").out != "\n")
+    if (shell(git + "rev-parse --show-prefix").out != "\n")
         GTEST_SKIP() << "not a checkout of its own";
-    if (says(git + "rev-parse --is-shallow-repository").out != "false\n")
+    if (shell(git + "rev-parse --is-shallow-repository").out != "false\n")
         GTEST_SKIP() << "a checkout without history";
     const std::string page = text_of(root + "/tests/gate/README.md");
     static const std::regex reference("\\bref: ([^ ,}\n]+)");
@@ -31,7 +31,7 @@ TEST(Readme, CommitsOfTheExampleWorkflowExist) {
         bool there = false;
         for (const std::string place : {"", "origin/"})
             there = there ||
-                    says(git + "rev-parse --verify -q '" + place + name + "^{commit}'").code == 0;
+                    shell(git + "rev-parse --verify -q '" + place + name + "^{commit}'").code == 0;
         EXPECT_TRUE(there) << "ref: " << name;
     }
     EXPECT_GT(references, 0);

@@ -19,7 +19,7 @@ struct ClosedForms : LegTest {
                      solved(leg(), {on_branch(model, side), side}, steps).points) {
                     const auto at = expected(state.load);
                     for (std::size_t p = 0; p < at.size(); ++p)
-                        worst.see((position(state, model.probes[p].at) - at[p]).norm() / size,
+                        worst.add((position(state, model.probes[p].at) - at[p]).norm() / size,
                                   state.load);
                 }
                 EXPECT_TRUE(within(worst, 1e-10)) << branch.name;
@@ -28,10 +28,10 @@ struct ClosedForms : LegTest {
     // The only body is turned from its drawn orientation by load · rate.
     void expect_turns(const Scene& scene, int steps, const Vector3d& rate,
                       double limit = 1e-10) const {
-        const OneWay side = side_of(scene);
+        const SideModel side = side_of(scene);
         Worst worst;
         for (const auto& state : solved(leg(), side, steps).points)
-            worst.see(
+            worst.add(
                 state.poses[0].p.angularDistance(
                     Quaterniond(Eigen::AngleAxisd(state.load * rate.norm(), rate.normalized())) *
                     scene.bodies[0].design.p),
@@ -132,7 +132,7 @@ TEST_P(ClosedForms, ApexOfADrivenArchRisesByTheTravel) {
            [](double travel) { return std::vector<Vector3d>{(0.08 + travel) * Z}; });
 }
 
-// A pendulum without any element, held by its weight: tan θ = F / W. Its spin is idle.
+// A pendulum without any element, stabilised by its weight: tan θ = F / W. Its spin is idle.
 TEST_P(ClosedForms, HangingPendulumIsStabilisedByItsWeight) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "loads an idle mode as drawn";
     Scene s;
@@ -158,8 +158,8 @@ Scene on_a_ball(const Vector3d& k_R, const Quaterniond& axes, bool swapped = fal
     return s;
 }
 
-// k_R θ = M about a fixed axis: of equal rates up to nearly half a turn, for a frame on either
-// body; of unequal ones about a principal axis.
+// k_R θ = M about a fixed axis: for equal rates about any axis up to nearly half a turn, with the frame on either body;
+// for unequal rates about a principal axis.
 TEST_P(ClosedForms, DeadMomentRotatesABushingByMomentOverRate) {
     Random random;
     for (int trial = 0; trial < 10; ++trial) {

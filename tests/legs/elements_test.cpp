@@ -230,7 +230,7 @@ TEST_P(Elements, ForceOfASpringIsTheNegativeGradientOfItsEnergy) {
         const Real x = (at(j, spring.j.s_local) - at(i, spring.i.s_local)).norm() -
                        static_cast<Real>(spring.free_length);
         if (std::abs(x - 0.2L) < 0.02L || std::abs(x) < 0.02L) continue;
-        worst.see(left_over(spring, poses, negative_gradient(spring, i, j)), trial);
+        worst.add(left_over(spring, poses, negative_gradient(spring, i, j)), trial);
     }
     EXPECT_TRUE(within(worst, 1e-11));
 }
@@ -251,7 +251,7 @@ TEST_P(Elements, ForceOfABushingIsTheNegativeGradientOfItsEnergy) {
                         const auto poses = poses_of(random, b, angle);
                         const Place i = place(poses[0]), j = place(poses[1]);
                         if (near_a_kink(b, i, j)) continue;
-                        worst.see(left_over(b, poses, negative_gradient(b, i, j)), angle);
+                        worst.add(left_over(b, poses, negative_gradient(b, i, j)), angle);
                     }
                 }
                 EXPECT_TRUE(within(worst, 1e-10))
@@ -269,7 +269,7 @@ TEST_P(Elements, ForceOfABushingWithoutEnergyEqualsItsDefinition) {
                 const Bushing b =
                     random_bushing(random, trial % 2 == 1, {Frame::on_i, angles, false, offset});
                 const auto poses = poses_of(random, b, 0.8);
-                worst.see(
+                worst.add(
                     left_over(b, poses, stated_without_energy(b, place(poses[0]), place(poses[1]))),
                     trial);
             }
@@ -284,7 +284,7 @@ TEST_P(Elements, ForceOfABushingWithoutEnergyEqualsItsDefinition) {
                 const auto poses = poses_of(random, b, 0.8);
                 const Place i = place(poses[0]), j = place(poses[1]);
                 if (near_a_kink(b, i, j)) continue;
-                worst.see(left_over(b, poses, stated_without_offset(b, i, j)), trial);
+                worst.add(left_over(b, poses, stated_without_offset(b, i, j)), trial);
             }
             EXPECT_TRUE(within(worst, 1e-10))
                 << static_cast<int>(frame) << static_cast<int>(angles);

@@ -37,24 +37,24 @@ std::vector<Leg> legs_by_every_method() {
     return all;
 }
 
-EquilibriumPath solve(const Leg& leg, const OneWay& side, int steps) {
+EquilibriumPath solve(const Leg& leg, const SideModel& side, int steps) {
     if (leg.kind == Leg::recursive)
         return rec::solve(side.model, side.branch, {.method = leg.method, .steps = steps});
     return solve(leg, side, every_point(side.branch, steps));
 }
-EquilibriumPath solve(const Leg& leg, const OneWay& side, std::span<const double> values) {
+EquilibriumPath solve(const Leg& leg, const SideModel& side, std::span<const double> values) {
     return leg.kind == Leg::energy ? reference::energy::solve(side.model, side.branch, values)
                                    : reference::equilibrium::solve(side.model, side.branch, values);
 }
 
-Residuals residuals(const Leg& leg, const OneWay& side, const Equilibrium& state) {
+Residuals residuals(const Leg& leg, const SideModel& side, const Equilibrium& state) {
     return leg.kind == Leg::equilibrium
                ? reference::equilibrium::residuals(side.model, side.branch, state)
            : leg.kind == Leg::energy ? reference::energy::residuals(side.model, side.branch, state)
                                      : rec::residuals(side.model, side.branch, state);
 }
 
-Response linear_response(const Leg& leg, const OneWay& side, const Equilibrium& state,
+Response linear_response(const Leg& leg, const SideModel& side, const Equilibrium& state,
                          const Disturbance& disturbance) {
     const std::span<const Disturbance> one(&disturbance, 1);
     return leg.kind == Leg::equilibrium
@@ -64,13 +64,13 @@ Response linear_response(const Leg& leg, const OneWay& side, const Equilibrium& 
                : rec::linear_response(side.model, side.branch, state, one, leg.method);
 }
 
-OneWay side_of(const Model& model, std::size_t n) {
+SideModel side_of(const Model& model, std::size_t n) {
     const Branch side = branch_sides(model.branches.at(n)).back();
     return {on_branch(model, side), side};
 }
-OneWay side_of(const Scene& scene, std::size_t n) { return side_of(compile(scene), n); }
+SideModel side_of(const Scene& scene, std::size_t n) { return side_of(compile(scene), n); }
 
-EquilibriumPath solved(const Leg& leg, const OneWay& side, int steps, double balance) {
+EquilibriumPath solved(const Leg& leg, const SideModel& side, int steps, double balance) {
     EquilibriumPath path = solve(leg, side, steps);
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     EXPECT_EQ(path.points.size(), static_cast<std::size_t>(steps) + 1);
@@ -84,8 +84,8 @@ EquilibriumPath solved(const Leg& leg, const OneWay& side, int steps, double bal
     Worst geometry, forces;
     for (const auto& state : path.points) {
         const Residuals left = residuals(leg, side, state);
-        geometry.see(std::fmax(left.length, left.direction), state.load);
-        forces.see(std::fmax(left.force, left.moment), state.load);
+        geometry.add(std::fmax(left.length, left.direction), state.load);
+        forces.add(std::fmax(left.force, left.moment), state.load);
     }
     EXPECT_TRUE(within(geometry, 1e-10));
     EXPECT_TRUE(within(forces, leg.wider(balance)));

@@ -18,7 +18,7 @@ namespace elastocheck::legs {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using namespace support;  // builders.hpp, OneWay
+using namespace support;  // builders.hpp, SideModel
 
 // ---- Legs.
 
@@ -49,19 +49,19 @@ std::vector<Leg> legs_by_every_method();
 
 // Equilibria at the parameters 0, to/steps, ... to of the side of a branch; by a reference also at
 // any others.
-EquilibriumPath solve(const Leg& leg, const OneWay& side, int steps);
-EquilibriumPath solve(const Leg& reference, const OneWay& side, std::span<const double> values);
-Residuals residuals(const Leg& leg, const OneWay& side, const Equilibrium& state);
-Response linear_response(const Leg& leg, const OneWay& side, const Equilibrium& state,
+EquilibriumPath solve(const Leg& leg, const SideModel& side, int steps);
+EquilibriumPath solve(const Leg& reference, const SideModel& side, std::span<const double> values);
+Residuals residuals(const Leg& leg, const SideModel& side, const Equilibrium& state);
+Response linear_response(const Leg& leg, const SideModel& side, const Equilibrium& state,
                          const Disturbance& disturbance);
 
 // The n-th branch of the scene, its last side, and the model that is active there.
-OneWay side_of(const Scene& scene, std::size_t n = 0);
-OneWay side_of(const Model& model, std::size_t n = 0);
+SideModel side_of(const Scene& scene, std::size_t n = 0);
+SideModel side_of(const Model& model, std::size_t n = 0);
 
 // A path that must converge; every state of an exact leg must balance in the leg's own residuals:
 // lengths and directions to 1e-10, forces and moments to `balance` [N, N·m].
-EquilibriumPath solved(const Leg& leg, const OneWay& side, int steps, double balance = 1e-7);
+EquilibriumPath solved(const Leg& leg, const SideModel& side, int steps, double balance = 1e-7);
 
 // Base of a suite whose tests run once per leg.
 struct LegTest : testing::TestWithParam<Leg> {

@@ -19,7 +19,7 @@ struct OutcomesOfEveryMethod : LegTest {};  // of the references and every metho
 ELASTOCHECK_FOR(accurate_legs, Outcomes);
 ELASTOCHECK_FOR(legs_by_every_method, OutcomesOfEveryMethod);
 
-OneWay to(OneWay side, double end) {
+SideModel to(SideModel side, double end) {
     side.branch.to = end;
     side.model.branches = {side.branch};
     return side;
@@ -47,7 +47,7 @@ TEST_P(Outcomes, ArchEndsAtItsLimitPointInAnyNumberOfSteps) {
     EXPECT_NEAR(Arch{}.limit(), -211.5166, 1e-4);
     for (const double h : {0.08, 0.005}) {
         const Arch arch{.h = h};
-        const OneWay down = side_of(arch.scene());
+        const SideModel down = side_of(arch.scene());
         for (const double beyond : {1.0001, 1.2, 20.3, 1e4})
             for (const int steps : {1, 10, 57}) {
                 const auto path = solve(leg(), to(down, beyond * arch.limit()), steps);
@@ -125,7 +125,7 @@ TEST_P(Outcomes, PendulumSettlesFromAnyDesignAngle) {
 // Forward, back and to the other side, in one list.
 TEST_P(Outcomes, PointsOfABranchMayBeRequestedInAnyOrder) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion has no list of points";
-    const OneWay side = side_of(support::scene("chrono_mcpherson"));
+    const SideModel side = side_of(support::scene("chrono_mcpherson"));
     const double loads[] = {0, 1000, 1000, 3000, 0, -3000, 500, 2000};
     const auto path = solve(leg(), side, loads);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -171,7 +171,7 @@ TEST_P(Outcomes, BushingRotatedByHalfATurnInTheDesignPositionIsRejected) {
         Scene s = support::scene("pendulum");
         bushing_of(s.elastics[0]).j.A_local =
             Eigen::AngleAxisd(M_PI - short_of, Vector3d(0.6, 0, 0.8));
-        const OneWay side = side_of(s);
+        const SideModel side = side_of(s);
         const auto path = solve(leg(), side, 1);
         EXPECT_NE(path.outcome, Outcome::converged) << path.detail;
         EXPECT_TRUE(path.points.empty());
@@ -183,7 +183,7 @@ TEST_P(OutcomesOfEveryMethod, SpringOfZeroLengthEndsTheBranch) {
     Scene s = support::scene("two_spring_arch");
     std::get<AxialSpring>(s.elastics[0].kind).j.s_local = 0.08 * Z;
     EXPECT_NE(solve(leg(), side_of(s), 40).outcome, Outcome::converged);
-    const OneWay up = side_of(support::scene("tyre_on_road"));
+    const SideModel up = side_of(support::scene("tyre_on_road"));
     for (const double end : {0.6, 60., 1e6})
         EXPECT_NE(solve(leg(), to(up, end), 40).outcome, Outcome::converged) << end;
 }
@@ -222,11 +222,11 @@ TEST_P(OutcomesOfEveryMethod, PreloadOnAnIdleModeIsReported) {
     s.joints = {{"guide", Cylindrical{{0}, {ground}, {0, X}, ground_x}}};
     s.elastics = {{"k", bushing({0}, {ground}, Vector3d::Constant(1000), {0, 10, 10})}};
     s.branches = {load_branch(DeadForce{{0, X}, X}, 100)};
-    const OneWay plain = side_of(s);
+    const SideModel plain = side_of(s);
     bushing_of(s.elastics[0]).preload[3] = 5;
     EXPECT_EQ(solve(leg(), side_of(s), 10).outcome, Outcome::loaded_idle_mode);
     for (const int axis : {3, 4}) {
-        OneWay side = plain;
+        SideModel side = plain;
         side.branch.drivers.push_back({Preload{0, Vector6::Unit(axis)}, 0, 0.01});
         side.model.branches = {side.branch};
         const auto path = solve(leg(), side, 10);
@@ -235,7 +235,7 @@ TEST_P(OutcomesOfEveryMethod, PreloadOnAnIdleModeIsReported) {
     }
 }
 
-// The same bar on a spring: its free spin changes nothing.
+// The same bar on a spring, with its free spin.
 TEST_P(OutcomesOfEveryMethod, UnloadedIdleModeDoesNotChangeTheResult) {
     Scene s = hinged_bar(X, X, 0);
     s.elastics = {{"spring", AxialSpring{{0}, {ground, X}, LinearRate{1000}, 1}}};
@@ -246,7 +246,7 @@ TEST_P(OutcomesOfEveryMethod, UnloadedIdleModeDoesNotChangeTheResult) {
     const auto held = solved(leg(), side_of(s), 10);
     EXPECT_LE(distance(idle.points.back(), held.points.back()), 1e-13);
     EXPECT_NEAR(held.points.back().poses[0].r.x(), 0.1, 1e-12);
-    const OneWay strut = side_of(support::scene("chrono_mcpherson"));
+    const SideModel strut = side_of(support::scene("chrono_mcpherson"));
     EXPECT_EQ(solve(leg(), strut, 300).outcome, Outcome::converged);
 }
 
@@ -352,7 +352,7 @@ TEST_P(Outcomes, ExtremeRatesGiveAnEquilibriumOrAReportedFailure) {
                 rate_of(s.elastics[e]) *= factor;
             else
                 stiffness_of(bushing_of(s.elastics[e])) *= factor;
-            const OneWay side = to(side_of(s), 1000);
+            const SideModel side = to(side_of(s), 1000);
             const auto path = solve(leg(), side, 3);
             const auto where =
                 fmt::format("{} times {:.0e}: {}", s.elastics[e].name, factor, path.detail);
@@ -406,17 +406,19 @@ TEST_P(OutcomesOfEveryMethod, SceneWithoutUnknownsConverges) {
     weld.joints = {{"weld", Fixed{{0}, {ground, at}, {0, X}, {0, Y}, ground_x, ground_y}}};
     weld.branches = {load_branch(DeadForce{{0, 0.1 * X}, Z}, 1000)};
     weld.probes = {{"block", {0}}};
-    const OneWay side = side_of(compile(weld, Detail::everything));
+    const SideModel side = side_of(compile(weld, Detail::everything));
     for (const auto& state : solved(leg(), side, 10).points)
         EXPECT_LE((state.poses[0].r - at).norm(), 1e-12);
 }
 
 // ---- Scenes that were answered wrongly, or declined though another leg was right.
 
-OneWay found(const std::string& name) { return side_of(support::scene_of("legs/found/" + name)); }
+SideModel found(const std::string& name) {
+    return side_of(support::scene_of("legs/found/" + name));
+}
 
 // A rod between a block on springs and the ground, shortened from 102 mm on; the reader refuses it.
-OneWay shortened_rod(double by) {
+SideModel shortened_rod(double by) {
     Scene s;
     s.bodies = {{"block", {0.4 * X}}};
     s.joints = {{"rod", Distance{{0}, {ground, Vector3d(0.4, 0.02, 0.1)}, std::hypot(0.02, 0.1)}}};
@@ -440,7 +442,7 @@ TEST_P(OutcomesOfEveryMethod, DrivenLengthThatVanishesEndsTheBranch) {
 }
 
 TEST_P(OutcomesOfEveryMethod, StateOfTheMirroredAssemblyHasAConstraintResidual) {
-    const OneWay side = shortened_rod(0.15);
+    const SideModel side = shortened_rod(0.15);
     Equilibrium mirrored = solve({Leg::equilibrium}, shortened_rod(0.05), 1).points.back();
     mirrored.load = -0.15;
     const Vector3d base(0.4, 0.02, 0.1), d = mirrored.poses[0].r - base;
@@ -450,7 +452,7 @@ TEST_P(OutcomesOfEveryMethod, StateOfTheMirroredAssemblyHasAConstraintResidual) 
 
 // The force of a spring jumps where its length is zero: 500 N at the end.
 TEST_P(Outcomes, SpringDrivenThroughZeroLengthPushesOnBothSides) {
-    const OneWay side = found("spring-through-zero-length");
+    const SideModel side = found("spring-through-zero-length");
     for (const int steps : {1, 2, 7, 40}) {
         const auto path = solve(leg(), side, steps);
         for (const auto& point : path.points) {

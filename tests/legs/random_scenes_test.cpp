@@ -27,8 +27,8 @@ struct Compared {
 };
 
 // The first `count` seeds whose scene is small.
-std::vector<std::pair<std::uint64_t, OneWay>> random_sides(std::uint64_t count) {
-    std::vector<std::pair<std::uint64_t, OneWay>> all;
+std::vector<std::pair<std::uint64_t, SideModel>> random_sides(std::uint64_t count) {
+    std::vector<std::pair<std::uint64_t, SideModel>> all;
     for (std::uint64_t seed = 1; seed <= count; ++seed)
         if (const auto scene = compare::small_random_scene(seed))
             all.emplace_back(seed, side_of(*scene));

@@ -168,7 +168,7 @@ TEST_P(Reactions, McPhersonWheelIsInBalance) {
     const Scene scene = support::scene("chrono_mcpherson");
     const auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);
     for (std::size_t n = 0; n < scene.branches.size(); ++n) {
-        const OneWay side = side_of(scene, n);
+        const SideModel side = side_of(scene, n);
         const BodyId wheel = side.model.wheels[0].body;
         ASSERT_EQ(coil.i.body, wheel);
         const auto path = solve(leg(), side, 60);
@@ -208,7 +208,7 @@ TEST_P(Reactions, McPhersonWheelIsInBalance) {
 // ---- Residuals of a state.
 
 struct Residual : LegTest {
-    OneWay side = side_of(support::scene("chrono_mcpherson"));
+    SideModel side = side_of(support::scene("chrono_mcpherson"));
     Equilibrium state;
     void SetUp() override {
         side.branch.to = 1000;
@@ -236,7 +236,7 @@ TEST_P(Residual, EquilibriumHasAResidualOfRounding) {
 }
 
 TEST_P(Residual, WrongLoadOfAMicronewtonIsVisible) {
-    OneWay pair = side_of(support::scene("bushing_pair"));
+    SideModel pair = side_of(support::scene("bushing_pair"));
     Equilibrium at = solved(leg(), pair, 1).points.back();
     at.load += 1e-6;
     EXPECT_NEAR(residuals(leg(), pair, at).force, 1e-6, 2e-8);

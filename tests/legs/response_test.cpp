@@ -9,17 +9,17 @@ namespace {
 using Eigen::VectorXd;
 
 struct LinearResponse : LegTest {
-    Equilibrium end_of(const OneWay& side) const { return solved(leg(), side, 1).points.back(); }
-    Response respond(const OneWay& side, const Equilibrium& state, const Disturbance& d) const {
-        return linear_response(leg(), side, bare(state), d);
+    Equilibrium end_of(const SideModel& side) const { return solved(leg(), side, 1).points.back(); }
+    Response respond(const SideModel& side, const Equilibrium& state, const Disturbance& d) const {
+        return linear_response(leg(), side, poses_only(state), d);
     }
-    VectorXd one(const OneWay& side, const Equilibrium& state, const Disturbance& d) const {
+    VectorXd one(const SideModel& side, const Equilibrium& state, const Disturbance& d) const {
         const Response response = respond(side, state, d);
         EXPECT_EQ(response.outcome, Outcome::converged) << response.detail;
         return response.increments.size() == 1 ? stacked(response.increments[0])
                                                : VectorXd::Constant(6, NAN);
     }
-    void expect_slope(const OneWay& side, const Disturbance& d, double h,
+    void expect_slope(const SideModel& side, const Disturbance& d, double h,
                       const std::string& where) const {
         const auto end = [&](const Model& m, const Branch& b) { return end_of({m, b}); };
         support::expect_slope(one(side, end_of(side), d), side, d, h, end, where);
@@ -27,8 +27,8 @@ struct LinearResponse : LegTest {
 };
 ELASTOCHECK_FOR(exact_legs, LinearResponse);
 
-OneWay way_of(const char* scene, const char* branch, double to) {
-    return support::way_of(support::scene(scene), branch, to);
+SideModel side_named(const char* scene, const char* branch, double to) {
+    return support::side_named(support::scene(scene), branch, to);
 }
 
 TEST_P(LinearResponse, EqualsTheDerivativeOfTheLegsSolutionFarFromDesign) {
@@ -40,7 +40,7 @@ TEST_P(LinearResponse, EqualsTheDerivativeOfTheLegsSolutionFarFromDesign) {
                {"front_axle", "parallel", -1},    {"semi_trailing_arm", "vertical", -1}};
     for (const auto& [scene, branch, to] : all) {
         if (leg().needs_energy() && std::string(scene) == "front_axle") continue;  // takes minutes
-        const OneWay side = way_of(scene, branch, to);
+        const SideModel side = side_named(scene, branch, to);
         for (int k = 0; k < 3; ++k)
             expect_slope(side, at_wheel(side.model, Vector3d::Unit(k)), 400,
                          fmt::format("{}, {}, force {}", scene, branch, k));
@@ -54,7 +54,7 @@ TEST_P(LinearResponse, EqualsTheDerivativeByADrivenOffset) {
                             {"front_axle", "parallel"}};
     for (const auto& [scene, branch] : all) {
         if (leg().needs_energy() && std::string(scene) == "front_axle") continue;
-        const OneWay side = way_of(scene, branch, 1);
+        const SideModel side = side_named(scene, branch, 1);
         for (std::size_t j = 0; j < side.model.joints.size(); ++j)
             if (side.model.joints[j].driven >= 0)
                 expect_slope(side, Motion{static_cast<int>(j)}, 0.004,
@@ -70,8 +70,8 @@ TEST_P(LinearResponse, EqualsTheDerivativeUnderNonconservativeForces) {
     for (int k = 0; k < 3; ++k)
         expect_slope(side_of(twisted), UnitWrench{{0, {0.2, 0, 0.1}}, Y, 3 * Vector3d::Unit(k)}, 8,
                      fmt::format("moment {}", k));
-    const OneWay follower = way_of("follower", "up", 1),
-                 angles = way_of("bushing_by_small_angles", "pull", 1);
+    const SideModel follower = side_named("follower", "up", 1),
+                    angles = side_named("bushing_by_small_angles", "pull", 1);
     const UnitWrench push{{0, {0.3, 0, 0}}, {0.3, 0.2, 1}, {0.1, 0, 0}};
     if (leg().needs_energy()) {
         const Response response =
@@ -92,7 +92,7 @@ TEST_P(LinearResponse, EqualsTheDerivativeUnderNonconservativeForces) {
 // tan θ = F/(k L); stiffness V'' = k L² cos θ + F L sin θ = k L² / cos θ. A force acts by its
 // moment about the pin.
 TEST_P(LinearResponse, PinnedBarEqualsItsClosedForm) {
-    const OneWay side = way_of("pinned_bar", "up", 1);
+    const SideModel side = side_named("pinned_bar", "up", 1);
     const double k = 20e3, L = 0.5, theta = std::atan(side.branch.to / (k * L));
     const Vector3d tip = L * Vector3d(std::cos(theta), 0, std::sin(theta)), f(0.7, -2, 1.3),
                    m(4, -3, 1);
@@ -105,7 +105,7 @@ TEST_P(LinearResponse, PinnedBarEqualsItsClosedForm) {
 
 // At rest: dr of the mount's centre is f/k, dπ = (s × f + m)/k_R.
 TEST_P(LinearResponse, OffsetBushingEqualsItsClosedForm) {
-    const OneWay side = way_of("single_bushing", "pull", 1);
+    const SideModel side = side_named("single_bushing", "pull", 1);
     const Equilibrium state{0, {side.model.bodies[0].design}, {}, 0};
     const Vector3d s(0.2, -0.1, 0.3), f(0.7, -2, 1.3), m(0.4, -0.3, 0.1);
     VectorXd expected(6);
@@ -116,7 +116,7 @@ TEST_P(LinearResponse, OffsetBushingEqualsItsClosedForm) {
 
 // θ in the plane of the bar: V'' = k_R + F L sin θ at k_R θ = F L cos θ.
 TEST_P(LinearResponse, PendulumEqualsItsClosedForm) {
-    const OneWay side = way_of("pendulum", "up", 1);
+    const SideModel side = side_named("pendulum", "up", 1);
     const double k_R = 600, L = 0.4, F = side.branch.to;
     double theta = 0.5;
     for (int i = 0; i < 50; ++i)
@@ -138,7 +138,7 @@ TEST_P(LinearResponse, TautSpringHasLateralStiffness) {
                   {"across", AxialSpring{{ground, -l * Y}, {0}, LinearRate{rate}, l - T / rate}}};
     s.branches = {load_branch(DeadForce{{0}, X}, 100)};
     s.probes = {{"slider", {0}}};
-    const OneWay side = side_of(s);
+    const SideModel side = side_of(s);
     const Equilibrium state{0, {side.model.bodies[0].design}, {}, 0};
     EXPECT_NEAR(one(side, state, UnitWrench{{0}, X})[0] * (k + T / l), 1, 1e-13);
 }
@@ -146,7 +146,7 @@ TEST_P(LinearResponse, TautSpringHasLateralStiffness) {
 // Both ends of the coupler have equal velocity along it: ω c·e = a·e, with a and c the velocities
 // of B and C at unit rates.
 TEST_P(LinearResponse, FourBarCrankEqualsItsClosedForm) {
-    const OneWay side = way_of("four_bar", "turn", 1);
+    const SideModel side = side_named("four_bar", "turn", 1);
     const auto path = solved(leg(), side, 9);
     for (const auto& state : path.points) {
         const auto& probes = side.model.probes;
@@ -165,7 +165,7 @@ TEST_P(LinearResponse, FourBarCrankEqualsItsClosedForm) {
 // ---- What is read, and what is refused.
 
 TEST_P(LinearResponse, ReadsOnlyThePosesAndTheParameterOfAState) {
-    const OneWay side = way_of("double_wishbone", "vertical", 1);
+    const SideModel side = side_named("double_wishbone", "vertical", 1);
     Equilibrium state = end_of(side);
     const auto wheel = at_wheel(side.model, Y);
     const VectorXd with = one(side, state, wheel);
@@ -175,7 +175,7 @@ TEST_P(LinearResponse, ReadsOnlyThePosesAndTheParameterOfAState) {
 }
 
 TEST_P(LinearResponse, LoadOnAnIdleModeIsReported) {
-    const OneWay side = way_of("chrono_mcpherson", "jounce", 1);
+    const SideModel side = side_named("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(side);
     for (std::size_t b = 0; b < side.model.bodies.size(); ++b) {
         const bool strut = side.model.bodies[b].name == "strut";
@@ -189,7 +189,7 @@ TEST_P(LinearResponse, LoadOnAnIdleModeIsReported) {
 }
 
 TEST_P(LinearResponse, LimitPointHasNoResponse) {
-    const OneWay side = way_of("two_spring_arch", "down", -1);
+    const SideModel side = side_named("two_spring_arch", "down", -1);
     const double b = 0.3, l_0 = std::hypot(b, 0.08), l = std::cbrt(l_0 * b * b),
                  z = std::sqrt(l * l - b * b);
     Equilibrium state{2 * 100e3 * (l - l_0) * z / l, {side.model.bodies[0].design}, {}, 0};
@@ -205,7 +205,7 @@ TEST_P(LinearResponse, OffsetHeldByASecondJointIsInconsistent) {
     s.joints.push_back({"jack", InPlane{{0, {0.8, 0, 0}}, {ground}, ground_z}});
     s.joints.push_back({"stop", InPlane{{0, {0.8, 0.1, 0}}, {ground}, ground_z}});
     s.branches = {load_branch(DeadForce{{0, {0.8, 0, 0}}, Z}, 1)};
-    const OneWay side = side_of(s);
+    const SideModel side = side_of(s);
     const Response response = respond(side, {0, {side.model.bodies[0].design}, {}, 0}, Motion{1});
     EXPECT_EQ(response.outcome, Outcome::inconsistent_constraints);
     EXPECT_TRUE(contains(response.detail, "moving 'jack'")) << response.detail;
@@ -222,7 +222,7 @@ TEST_P(LinearResponse, ConsistentRedundantJointsDoNotChangeTheResponse) {
 }
 
 TEST_P(LinearResponse, NonFiniteOrForeignInputIsRejected) {
-    const OneWay side = way_of("double_wishbone", "vertical", 1);
+    const SideModel side = side_named("double_wishbone", "vertical", 1);
     Equilibrium state = end_of(side);
     std::vector<Disturbance> wrong{UnitWrench{{ground}, X}, UnitWrench{{99}, X}, Motion{99},
                                    Motion{-1}};

@@ -156,7 +156,7 @@ struct RollingWheel : LegTest {
         const double M_0 = corner.free(0, weight * Z);
         const Model model = compile(scene_of(corner, branch));
         for (const Branch& side : branch_sides(model.branches[0])) {
-            const OneWay one{on_branch(model, side), side};
+            const SideModel one{on_branch(model, side), side};
             Worst places, forces;
             for (const Equilibrium& state : solved(leg(), one, 20, 1e-6).points) {
                 const double a = state.load;
@@ -165,15 +165,15 @@ struct RollingWheel : LegTest {
                     const double alpha = (low + high) / 2;
                     (moment(a, alpha) - M_0 - rate * alpha > 0 ? low : high) = alpha;
                 }
-                places.see(
+                places.add(
                     (position(state, model.wheels[0].contact) - corner.patch_at(low).p).norm(), a);
-                places.see((position(state, {model.wheels[0].body, model.wheels[0].centre_local}) -
+                places.add((position(state, {model.wheels[0].body, model.wheels[0].centre_local}) -
                             corner.at(low).c)
                                .norm(),
                            a);
                 if (effort) {
                     const double jack = state.reactions[joint_named(model, "patch_jack")].force.z();
-                    forces.see(std::abs(jack - effort(a, low)) / weight, a);
+                    forces.add(std::abs(jack - effort(a, low)) / weight, a);
                 }
             }
             EXPECT_TRUE(within(places, limit(1e-12))) << corner.name << ": " << branch;
@@ -217,7 +217,7 @@ TEST_P(RollingWheel, IsLiftedByAJackUnderItsLowestPoint) {
     }
 }
 
-// Down to where the tyre leaves the road, and the corner hangs on its spring: α = -M_0 / k.
+// The branch ends where the tyre has left the road and the corner hangs on its spring: α = -M_0 / k.
 TEST_P(RollingWheel, TyreUnderItPushesAndLiftsOffWithoutPulling) {
     for (const Corner& corner : corners())
         expect(corner, "{drive: tyres.t.road, from: -0.25, to: 0.1, steps: 40}",

@@ -10,7 +10,7 @@ constexpr int counts[] = {1, 2, 3, 5, 8, 20, 80};
 struct Stability : LegTest {
     // The branch ends at the parameter `at` for any number of points; the points before are there.
     void expect_lost(const Scene& scene, double at, const std::string& what = "") const {
-        const OneWay side = side_of(scene);
+        const SideModel side = side_of(scene);
         const double margin = leg().kind == Leg::recursive ? 1e-4 : 1e-6;
         for (const int steps : counts) {
             const auto path = solve(leg(), side, steps);
@@ -70,8 +70,8 @@ struct Arch {
     }
 };
 
-// A mast on a ball joint, pressed from above by more than its rotational rates bear, on a carriage
-// that stays where it is, beside a block that a load moves: the mast falls, and is named.
+// A mast on a ball joint under more than its buckling load, on a carriage at rest, beside a block that a load moves: the
+// message names the mast.
 TEST_P(Stability, UnstableStartNamesTheBodyOfTheUnstableMode) {
     if (leg().kind == Leg::energy) GTEST_SKIP() << "says that there is no minimum, not where to";
     constexpr double rate = 100, height = 0.5;

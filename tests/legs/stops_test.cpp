@@ -10,12 +10,12 @@ namespace {
 struct Stops : LegTest {
     void expect_heights(const Scene& scene, double to, int steps,
                         const std::function<double(double)>& z, double limit = 1e-14) const {
-        OneWay side = side_of(scene);
+        SideModel side = side_of(scene);
         side.branch.to = to;
         side.model.branches = {side.branch};
         Worst worst;
         for (const auto& state : solved(leg(), side, steps, 1e-6).points)
-            worst.see(std::abs(state.poses[0].r.z() - z(state.load)), state.load);
+            worst.add(std::abs(state.poses[0].r.z() - z(state.load)), state.load);
         EXPECT_TRUE(within(worst, leg().kind == Leg::recursive ? 100 * limit : limit))
             << "to " << to << " in " << steps;
     }
@@ -48,9 +48,8 @@ TEST_P(Stops, StopWithoutClearanceOpensAndCloses) {
                            [&](double F) { return F > 0 ? F / (k + k_s) : F / k; });
 }
 
-// An open stop alone resists nothing.
 TEST_P(Stops, OpenStopAloneIsAnIdleMode) {
-    OneWay side = side_of(block({stop(0.03, 300e3)}));
+    SideModel side = side_of(block({stop(0.03, 300e3)}));
     side.branch.to = 3000;
     side.model.branches = {side.branch};
     EXPECT_EQ(solve(leg(), side, 4).outcome, Outcome::loaded_idle_mode);
@@ -103,7 +102,7 @@ TEST_P(Stops, StopThatTouchesOrReopensIsPassed) {
             for (const auto& state : solved(leg(), side_of(s), steps).points) {
                 const double a = state.load, l = std::sqrt(r * r + d * d - 2 * r * d * std::cos(a)),
                              f = std::max(0., k * (l - (r + d - short_of)));
-                worst.see(std::abs(state.reactions[1].moment.z() - f * r * d * std::sin(a) / l), a);
+                worst.add(std::abs(state.reactions[1].moment.z() - f * r * d * std::sin(a) / l), a);
             }
             EXPECT_TRUE(within(worst, 1e-9)) << short_of << " " << steps;
         }
@@ -119,7 +118,7 @@ TEST_P(Stops, SofteningLawIsPassedBesideASpringAndEndsTheBranchAlone) {
                 return F > (k + k_t) * c ? c + (F - (k + k_t) * c) / (k + after) : F / (k + k_t);
             });
         for (const int steps : {1, 2, 7, 100}) {
-            OneWay side = side_of(block({tired}));
+            SideModel side = side_of(block({tired}));
             side.branch.to = 601;  // k_t c = 600 N
             side.model.branches = {side.branch};
             const auto path = solve(leg(), side, steps);
@@ -153,12 +152,11 @@ TEST_P(Stops, EndStatesOfAStrutOnStopsDoNotDependOnTheNumberOfPoints) {
         << "the stop did close";
 }
 
-// Wherever the points lie: a point may be predicted almost on the knot, and the next step must end
-// on it all the same.
+// A point may be predicted almost on the knot; the next step must still end on the knot.
 TEST_P(Stops, KnotsOfCurvesArePassedWithAnyNumberOfSteps) {
     const Scene s = support::scene("mcpherson_strut");
     for (const std::size_t n : {0u, 1u}) {
-        const OneWay side = side_of(s, n);
+        const SideModel side = side_of(s, n);
         const Equilibrium end = solved(leg(), side, 1).points.back();
         for (int steps = 2; steps <= 40; ++steps) {
             SCOPED_TRACE(fmt::format("{} in {} steps", side.branch.name, steps));

@@ -123,7 +123,7 @@ const std::string with_its_body = "a body that it connects is left out";
 
 // ---- Removed parts.
 
-// Two of the shipped scenes contain removable parts, as an assembly does; the others contain none.
+// Two of the built-in scenes contain removable parts, the others none.
 TEST(Compile, OmissionsOfTheShippedScenesAreAsListed) {
     struct Fewer {
         std::size_t bodies = 0, joints = 0;
@@ -176,8 +176,8 @@ const Reason reasons_to_stay[] = {
      [](Scene& s, BodyId b, BodyId n) { spring(s, "coil", b, n, 1e3, std::nan("")); }},
 };
 
-// In a chain a-b-c-d with a reason to keep c, d is still removed, c and the bodies before it stay;
-// and a link between two balls stays a body.
+// In a chain a-b-c-d with a reason to keep c, d is removed and a, b, c are kept; a link between two balls that has such a
+// reason stays a body.
 TEST(Compile, LoadedBodyOfAFreeChainAndLoadedLinkAreKept) {
     for (const auto& [name, give] : reasons_to_stay) {
         Scene scene = chain(4);

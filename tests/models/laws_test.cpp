@@ -35,8 +35,8 @@ TEST(Stops, ForceIsTheCurveAtThePenetration) {
     }
 }
 
-// The law of fixed seats where that pushes, else none. Tables that cross zero between their rows, at
-// a row, on a flat part, outside the rows, or never.
+// The force is that with fixed seats where it is compressive, else zero. The tables cross zero between their rows, at a
+// row, on a flat part, outside the rows, or never.
 TEST(LooseSeats, ForceIsNeverTensile) {
     for (const char* law : {"rate: 30", "rate: 0", "curve: {table: [[-50, -900], [30, 400]]}",
                             "curve: {table: [[-50, -900], [0, 0], [50, 1400]]}",

@@ -341,7 +341,7 @@ TEST(Link, BodyWithTwoBallJointsBecomesADistance) {
     EXPECT_EQ(model.as_solved, (Size{1, 2, 1, 1 + 5}));
 }
 
-// Whatever else keeps a body keeps a link: Compile.LoadedBodyOfAFreeChainAndLoadedLinkAreKept.
+// All other reasons to keep a link are tested in Compile.LoadedBodyOfAFreeChainAndLoadedLinkAreKept.
 TEST(Link, BodyWithAnotherJointOrCoincidentBallsIsKept) {
     Scene hinged = linked(), short_link = linked();
     hinged.joints[0].kind = hinge(hinged, 0, 1, Vector3d(0.1, 0, 0), Vector3d(0.2, 0.1, 0));

@@ -151,7 +151,7 @@ TEST(RandomScenes, ScenesSolvedWronglyBeforeAreSolved) {
     }
 }
 
-// Regression test of settling from the design position. The equilibrium leg stopped (48 to 337)
+// Regression test of the equilibrium at the start of a branch. The equilibrium leg stopped (48 to 337)
 // where bodies held by dead forces reach a turning point or become unstable; the energy leg (284 to
 // 917) where nothing resists a motion that starts from zero.
 TEST(RandomScenes, ScenesSettleByBothReferences) {
@@ -189,7 +189,7 @@ TEST(RandomScenes, ScenesWithALimitPointOfReleaseSettleByTheRecursion) {
     }
 }
 
-// Bushings of 2e10 N/m beside free motions: the last corrections of settling do not fall at once.
+// Bushings of 2e10 N/m beside free motions: Newton's last corrections do not become small at once.
 TEST(RandomScenes, SettledStateOfStiffBushingsIsAtRest) {
     const Model model = compile(parse_scene(random_scene(1708), "random.yaml"));
     const Branch& branch = model.branches.front();

@@ -59,7 +59,7 @@ Scene with_curves(Scene scene) {
     return scene;
 }
 
-// Whether the points are recorded at the end only, or visited.
+// Points are recorded at the end only, or passed to a visitor.
 TEST(Allocation, StepsOfEveryMethodRunWithoutAllocation) {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const char* name :
@@ -95,7 +95,7 @@ TEST(Allocation, StepsOfEveryMethodRunWithoutAllocation) {
 
 TEST(Allocation, ExpansionsOfTheSeriesReuseTheirCoefficients) {
     for (const auto& name : support::small_scene_names()) {
-        const auto [model, branch] = one_ways(compile(support::scene(name))).front();
+        const auto [model, branch] = all_sides(compile(support::scene(name))).front();
         SteppingState s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
         s.work.applied.setZero();

@@ -162,8 +162,8 @@ TEST(SharedStart, SidesSolvedTogetherEqualEachSolvedAlone) {
     }
 }
 
-// A start settles under a preload, one over curves; a branch with other values at load factor 0 does
-// not use it, and the last rests on what is kept.
+// The first scene settles under a preload, the second over curves. A branch with other values at a = 0 does not use the
+// kept start.
 TEST(KeptStart, IsUsedOnlyByBranchesThatBeginThere) {
     for (const char* name : {"chrono_mcpherson_preload", "double_wishbone"}) {
         const Model model = on_sides(compile(support::scene(name)), 0);

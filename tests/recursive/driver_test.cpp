@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-EquilibriumPath run(const OneWay& d, const Method& method, int steps = 0, int record = 0) {
+EquilibriumPath run(const SideModel& d, const Method& method, int steps = 0, int record = 0) {
     auto path = solve(d.model, d.branch, {.method = method, .steps = steps, .record = record});
     EXPECT_EQ(path.outcome, Outcome::converged) << method.name << ": " << path.detail;
     return path;
@@ -25,7 +25,7 @@ Method rung(const char* name) { return *find_method(name); }
 
 // ---- A mechanism without elasticity, driven through a full turn: models/scenes/slider_crank.yaml.
 
-OneWay slider_crank() { return one_ways(compile(support::scene("slider_crank"))).front(); }
+SideModel slider_crank() { return all_sides(compile(support::scene("slider_crank"))).front(); }
 double worst_slider(const EquilibriumPath& path) {
     constexpr double r = 0.06, l = 0.15;
     double worst = 0;
@@ -38,7 +38,7 @@ double worst_slider(const EquilibriumPath& path) {
 }
 
 TEST(Driver, SliderCrankIsFollowedAtTheOrderOfEachMethod) {
-    const OneWay d = slider_crank();
+    const SideModel d = slider_crank();
     // The error at a point is that of the method's last step: the order of one step.
     for (const auto& [name, order] :
          {std::pair{"closed", 2.0}, {"tangent", 2.0}, {"chord", 3.0}, {"midpoint", 3.0}}) {
@@ -52,7 +52,7 @@ TEST(Driver, SliderCrankIsFollowedAtTheOrderOfEachMethod) {
 }
 
 TEST(Driver, PublishedMethodHasFirstOrderConstraintErrorOnASliderCrank) {
-    const OneWay d = slider_crank();
+    const SideModel d = slider_crank();
     // Over a whole turn the leading term vanishes, so the worst point of the branch is tested.
     const auto error = [&](int steps) {
         double worst = 0;
@@ -74,7 +74,7 @@ TEST(Driver, PublishedJackForceOnAnArchConvergesToItsOwnClosedForm) {
         {"jack", InPlane{scene.probes[0].at, {ground, {0, 0, h}}, {ground, Vector3d::UnitZ()}},
          true});
     const Motion jack{static_cast<int>(scene.joints.size()) - 1};
-    const OneWay d =
+    const SideModel d =
         walked(scene, {"driven", 0, -2 * h - 0.02, 400, ParameterUnit::none, {{jack, 0, 1}}});
     for (const char* method : {"published", "closed"})
         for (const auto& point : run(d, rung(method)).points) {
@@ -126,7 +126,6 @@ TEST(StabilityWatch, StableBranchHasNoEvent) {
         }
 }
 
-// At rest the start is judged with the model, once for all branches.
 TEST(StartStability, SceneAtRestIsJudgedOnceForAllItsBranches) {
     for (const int preload : {45, 55}) {
         const auto found =

@@ -50,7 +50,7 @@ State<double> assembled(const Bushing& b, Random& random) {
     return state_of<double>({i, j});
 }
 
-// Of both elements, with any law and formulation.
+// Springs and bushings of every law and formulation.
 TEST(Stiffness, IsSymmetricAndPositiveSemidefiniteAnywhere) {
     Random random;
     const auto expect = [](const ElasticKind& kind, const State<double>& q,
@@ -74,8 +74,7 @@ TEST(Stiffness, IsSymmetricAndPositiveSemidefiniteAnywhere) {
         }
 }
 
-// Of a spring, and of a bushing whose attachment points move as one body, wherever they are: markers
-// that coincide are a special case.
+// A spring, and a bushing whose markers move as one body, coincident or not.
 TEST(Stiffness, RigidMotionGivesNoForce) {
     Random random;
     for (const Formulation& formulation : every_formulation()) {

@@ -45,7 +45,7 @@ EquilibriumPath truth(const Model& model, const Branch& branch, int record = 10)
 TEST(Methods, EachMethodConvergesToTheEquilibriumAtItsFormalOrder) {
     for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar",
                              "bushing_pair", "two_spring_arch"}) {
-        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
+        for (const auto& [model, branch] : all_sides(compile(support::scene(name)))) {
             const auto exact = truth(model, branch);
             for (const auto& method : methods) {
                 if (!has_steps(method)) continue;
@@ -73,7 +73,7 @@ TEST(Methods, EachMethodConvergesToTheEquilibriumAtItsFormalOrder) {
 
 // Eq. (31): |Φ| falls as 1/N, and where the constraints are closed as 1/N².
 TEST(Methods, ConstraintErrorIsSecondOrderWhereConstraintsAreClosed) {
-    for (const auto& [model, branch] : one_ways(compile(support::scene("chrono_mcpherson"))))
+    for (const auto& [model, branch] : all_sides(compile(support::scene("chrono_mcpherson"))))
         for (const auto& [name, order] : {std::pair{"published", 1}, {"closed", 2}}) {
             const auto Phi = [&](int steps) {
                 const auto path = solve(model, branch, {.method = rung(name), .steps = steps});
@@ -103,7 +103,7 @@ TEST(Methods, RecordingFewerPointsDoesNotChangeTheRecordedPoints) {
 
 TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
     for (const auto& name : support::small_scene_names()) {
-        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
+        for (const auto& [model, branch] : all_sides(compile(support::scene(name)))) {
             const auto exact = truth(model, branch, 150);
             for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
                 const auto path = solve(
@@ -146,7 +146,7 @@ TEST(Methods, FewStepsGiveABoundedErrorOrAReportedFailure) {
     // errors above half the motion; the others cannot detect it, but stay within twice the motion.
     double worst_share = 0;
     for (const auto& name : support::small_scene_names()) {
-        for (auto [model, branch] : one_ways(compile(support::scene(name)))) {
+        for (auto [model, branch] : all_sides(compile(support::scene(name)))) {
             if (branch.unit == ParameterUnit::radian)
                 branch.to /= 2;  // a full turn ends where it began
             const auto exact = truth(model, branch, 1);

@@ -23,7 +23,7 @@ TEST(Paper, PublishedMethodEqualsThePapersLoopOnEveryScene) {
     int compared = 0;
     std::string where;
     for (const auto& name : support::small_scene_names()) {
-        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
+        for (const auto& [model, branch] : all_sides(compile(support::scene(name)))) {
             // The paper's loop starts at the design position.
             if (std::ranges::any_of(branch.drivers, [](const Driver& d) { return d.start != 0; }))
                 continue;

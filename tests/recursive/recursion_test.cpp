@@ -148,7 +148,6 @@ TEST(Recursion, PapersSixHundredStepsAreThreeHundredOfTenNewtonPerSide) {
     }
 }
 
-// A scene in balance starts where it is drawn, from its reactions, not from zero; another settles.
 TEST(Recursion, BalancedSceneStartsFromItsReactionsAndAnUnbalancedOneSettlesFirst) {
     for (const double more : {0., 75.}) {  // [N] on 75 N/mm
         Scene scene = support::scene("parallel_springs");

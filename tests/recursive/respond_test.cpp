@@ -14,13 +14,13 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using support::relative_distance, support::at_wheel, support::bare, support::OneWay,
-    support::stacked, support::way_of;
+using support::relative_distance, support::at_wheel, support::poses_only, support::SideModel,
+    support::stacked, support::side_named;
 
 Method rung(const char* name) { return find_method(name).value(); }
 
-OneWay way_of(const char* scene, const std::string& branch, double to) {
-    return support::way_of(support::scene(scene), branch, to);
+SideModel side_named(const char* scene, const std::string& branch, double to) {
+    return support::side_named(support::scene(scene), branch, to);
 }
 
 Equilibrium end_of(const Model& model, const Branch& branch) {
@@ -28,17 +28,17 @@ Equilibrium end_of(const Model& model, const Branch& branch) {
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     return path.points.back();
 }
-VectorXd one(const OneWay& way, const Equilibrium& state, const Disturbance& disturbance,
+VectorXd one(const SideModel& way, const Equilibrium& state, const Disturbance& disturbance,
              const Method& method = rung("series")) {
     const Response response =
-        linear_response(way.model, way.branch, bare(state), {&disturbance, 1}, method);
+        linear_response(way.model, way.branch, poses_only(state), {&disturbance, 1}, method);
     EXPECT_EQ(response.outcome, Outcome::converged) << response.detail;
     return response.increments.size() == 1 ? stacked(response.increments[0])
                                            : VectorXd::Constant(6, std::nan(""));
 }
 // The paper's first step is the response of K to the load, for any size of the load.
 TEST(RecursionResponse, PublishedResponseEqualsTheFirstStepOfThePublishedSweep) {
-    const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
+    const SideModel way = side_named("chrono_mcpherson", "jounce", 1);
     const auto& load = std::get<DeadForce>(std::get<Load>(way.branch.drivers[0].what).kind);
     const auto path = solve(way.model, way.branch);
     const double step = path.points[1].load;
@@ -54,7 +54,7 @@ TEST(RecursionResponse, PublishedResponseEqualsTheFirstStepOfThePublishedSweep) 
 }
 
 TEST(RecursionResponse, MethodsWithTheSameMatrixGiveTheSameResponse) {
-    const OneWay way = way_of("double_wishbone", "vertical", 1);
+    const SideModel way = side_named("double_wishbone", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
     const VectorXd linear = one(way, state, side, rung("published")),
@@ -66,10 +66,9 @@ TEST(RecursionResponse, MethodsWithTheSameMatrixGiveTheSameResponse) {
     EXPECT_GT(relative_distance(linear, consistent), 1e-3);
 }
 
-// The orders that a state leaves serve the next one: the same response, and no search for an order
-// where the neighbours are near.
+// The pivot order of a state gives the same response at the next one, without a search if the two are near.
 TEST(RecursionResponse, PivotOrdersAreReusedAtTheNextState) {
-    const OneWay way = way_of("double_wishbone", "vertical", 1);
+    const SideModel way = side_named("double_wishbone", "vertical", 1);
     const auto path = solve(way.model, way.branch, {.method = rung("series"), .steps = 8});
     ASSERT_EQ(path.points.size(), 9u);
     ResponseAnalysis kept{analyse(way.model)};
@@ -78,8 +77,8 @@ TEST(RecursionResponse, PivotOrdersAreReusedAtTheNextState) {
     for (const Equilibrium& state : path.points) {
         const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
         const auto before = orders();
-        const Response response =
-            linear_response(way.model, way.branch, bare(state), {&side, 1}, rung("series"), kept);
+        const Response response = linear_response(way.model, way.branch, poses_only(state),
+                                                  {&side, 1}, rung("series"), kept);
         ASSERT_EQ(response.outcome, Outcome::converged) << response.detail;
         searches += before != orders();
         EXPECT_LE(relative_distance(stacked(response.increments[0]), one(way, state, side)), 1e-10);
@@ -89,8 +88,8 @@ TEST(RecursionResponse, PivotOrdersAreReusedAtTheNextState) {
 }
 
 TEST(RecursionResponse, PivotOrderOfASimilarModelIsUsedWithoutASearch) {
-    const Model model = way_of("double_wishbone", "vertical", 1).model,
-                other = way_of("front_axle", "vertical", 1).model;
+    const Model model = side_named("double_wishbone", "vertical", 1).model,
+                other = side_named("front_axle", "vertical", 1).model;
     const auto own = analyse(model).system.lu.order;
     EXPECT_EQ(analyse(model, own).system.lu.order, own);
     EXPECT_EQ(analyse(model, own).system.lu.orders, 0);
@@ -99,7 +98,7 @@ TEST(RecursionResponse, PivotOrderOfASimilarModelIsUsedWithoutASearch) {
 }
 
 TEST(RecursionResponse, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
-    const OneWay way = way_of("front_axle", "vertical", 1);
+    const SideModel way = side_named("front_axle", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Point at{way.model.wheels[0].body, way.model.wheels[0].centre_local};
     const Vector3d f(0.3, -2, 0.7), m(5, 1, -3);
@@ -114,7 +113,7 @@ TEST(RecursionResponse, ResponsesToSeveralDisturbancesAreLinearAndIndependent) {
 }
 
 TEST(RecursionResponse, ResponseHasNoPartAlongAnUnloadedIdleMode) {
-    const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
+    const SideModel way = side_named("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
     // The idle mode by the diagnosis of a model drawn at the state.

@@ -16,7 +16,7 @@ namespace elastocheck::recursive::series {
 namespace {
 
 // The point is an equilibrium within rounding: 1e-5 N of elements of up to 1e8 N/m.
-void expect_balance(const OneWay& w, const Equilibrium& point) {
+void expect_balance(const SideModel& w, const Equilibrium& point) {
     const Residuals left = recursive::residuals(w.model, w.branch, point);
     EXPECT_LE(std::max(left.force, left.moment), 1e-5) << point.load;
     EXPECT_LE(left.length, 1e-12) << point.load;
@@ -49,7 +49,7 @@ TEST(SeriesDrivers, HeldValuesAreSettledBeforeTheBranch) {
     branch.drivers.push_back({preload, 1, 3});
     branch.drivers.push_back(
         {Load{"brake", DeadForce{scene.wheels[0].contact, Eigen::Vector3d(-1, 0, 0)}}, 800, 1e4});
-    const OneWay w = walked(scene, branch);
+    const SideModel w = walked(scene, branch);
     const Path path = follow(w.model, w.branch);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     const auto sampled = sample(w.model, path, w.branch, 20);
@@ -69,7 +69,7 @@ TEST(SeriesRegression, PointsOfScenesThatOnceCrashedAreEquilibria) {
         for (const auto& branch : model.branches) {
             const Path path = follow(model, branch);
             EXPECT_FALSE(path.outcome != Outcome::converged && path.detail.empty());
-            const OneWay w{model, branch};
+            const SideModel w{model, branch};
             const auto sampled = sample(model, path, branch, 20);
             for (const auto& point : sampled.points) expect_balance(w, point);
             EXPECT_TRUE(

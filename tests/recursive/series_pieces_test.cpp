@@ -68,7 +68,7 @@ Curve rising() {
 // not. That a body moves by the inverse of its curve is tested in tests/legs (Stops).
 TEST(SeriesPieces, ExpansionEndsAtTheKnot) {
     for (const double to : {6000.0, -4000.0}) {
-        const OneWay w =
+        const SideModel w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(to, {push(0, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -89,10 +89,11 @@ TEST(SeriesPieces, ExpansionEndsAtTheKnot) {
 TEST(SeriesPieces, TwoStopsClosingTogetherAreCrossedTogether) {
     // ... two knots at the same place within rounding.
     for (const double apart : {-1e-17, 0.0, 1e-17, 1e-15, 1e-12, 1e-9}) {
-        const OneWay w = walked(on_the_x_axis({along_x("spring", LinearRate{20e3}),
-                                               along_x("left", support::stop(0.03, 1e5)),
-                                               along_x("right", support::stop(0.03 + apart, 2e5))}),
-                                loaded(2000, {push(0, 1)}));
+        const SideModel w =
+            walked(on_the_x_axis({along_x("spring", LinearRate{20e3}),
+                                  along_x("left", support::stop(0.03, 1e5)),
+                                  along_x("right", support::stop(0.03 + apart, 2e5))}),
+                   loaded(2000, {push(0, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << apart << path.detail;
         EXPECT_LE(path.expansions.size(), std::abs(apart) < 1e-13 ? 2u : 3u) << apart;
@@ -108,8 +109,9 @@ TEST(SeriesPieces, MotionFromAKnotUsesThePieceItEnters) {
     for (const double drawn : {0.0, 1e-17, -1e-17, 1e-16, -1e-16})
         for (const double to : {500.0, -500.0})
             for (const bool arc : {false, true}) {
-                const OneWay w = walked(on_the_x_axis({along_x("spring", bent(10e3, 40e3), drawn)}),
-                                        loaded(to, {push(0, 1)}));
+                const SideModel w =
+                    walked(on_the_x_axis({along_x("spring", bent(10e3, 40e3), drawn)}),
+                           loaded(to, {push(0, 1)}));
                 const Path path = follow(w.model, w.branch, {.arc_length = arc});
                 ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
                 EXPECT_EQ(path.expansions.size(), 1u);
@@ -136,7 +138,7 @@ TEST(SeriesPieces, PiecesOfManyKnotsAtTheStartAreConsistent) {
             scene.elastics.push_back({"leg", Bushing{{ground, at, axes}, {0, at, axes}, law}});
         }
         scene.probes = {{"block", {0, Eigen::Vector3d::Zero()}}};
-        const OneWay w = walked(
+        const SideModel w = walked(
             scene,
             loaded(100, {{Load{"f", DeadForce{{0, random.vector(0.1)}, random.unit()}}, 0, 1}}));
         const Path path = follow(w.model, w.branch);
@@ -183,7 +185,7 @@ TEST(SeriesPieces, GrazedKnotIsNotCrossed) {
                               1e-12, -1e-12, 1e-10, -1e-10, 1e-6, -1e-6}) {
         const Curve f = bent(200e3, 4e3);
         const double free_length = h + deep;
-        const OneWay w = walked(beside_the_rail(h, f, free_length, -0.06), jacked(0.12));
+        const SideModel w = walked(beside_the_rail(h, f, free_length, -0.06), jacked(0.12));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << deep << path.detail;
         int knots = 0;
@@ -203,7 +205,7 @@ TEST(SeriesPieces, GrazedKnotIsNotCrossed) {
 Curve falling() { return {{0.01, 0.02}, {{100, 1e4, 0, 0}, {100, -5e3, 0, 0}, {50, 1e4, 0, 0}}}; }
 
 TEST(SeriesPieces, ArcLengthPassesTurningPointsOfACurve) {
-    const OneWay w =
+    const SideModel w =
         walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
     const Path path = follow(w.model, w.branch, {.arc_length = true});
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -218,7 +220,7 @@ TEST(SeriesPieces, ArcLengthPassesTurningPointsOfACurve) {
 
 TEST(SeriesPieces, SettlingCrossesKnots) {
     for (const double held : {700.0, 3000.0, -900.0}) {
-        const OneWay w =
+        const SideModel w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(1500, {push(held, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -227,9 +229,9 @@ TEST(SeriesPieces, SettlingCrossesKnots) {
     }
     // Exactly to a knot, and on from there, in both directions.
     for (const double to : {300.0, -300.0}) {
-        const OneWay w = walked(on_the_x_axis({along_x("spring", LinearRate{20e3}),
-                                               along_x("stop", support::stop(0.03, 3e5))}),
-                                loaded(to, {push(600, 1)}));
+        const SideModel w = walked(on_the_x_axis({along_x("spring", LinearRate{20e3}),
+                                                  along_x("stop", support::stop(0.03, 3e5))}),
+                                   loaded(to, {push(600, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& point : sample(w.model, path, w.branch, 30).points)

@@ -118,7 +118,7 @@ TEST(Series, CoefficientsEqualDerivativesOfTheEquilibriumLeg) {
 TEST(Series, EqualsTheEquilibriumLegAtEveryLoad) {
     std::mt19937 random(3);
     for (const auto& name : support::small_scene_names()) {
-        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
+        for (const auto& [model, branch] : all_sides(compile(support::scene(name)))) {
             std::vector<double> loads;
             for (int k = 0; k <= 101; ++k) loads.push_back(branch.to * k / 101);
             std::uniform_real_distribution<double> between(0, branch.to);
@@ -268,7 +268,7 @@ TEST(Series, EachTurningPointIsRecordedOnce) {
 TEST(Series, ArcLengthAndLoadParametersGiveTheSameBranch) {
     for (const char* name :
          {"chrono_mcpherson", "pinned_bar", "pendulum", "chrono_mcpherson_preload"}) {
-        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
+        for (const auto& [model, branch] : all_sides(compile(support::scene(name)))) {
             const Path by_load = follow(model, branch),
                        by_arc = follow(model, branch, {.arc_length = true});
             ASSERT_EQ(by_arc.outcome, Outcome::converged) << by_arc.detail;
@@ -287,7 +287,7 @@ TEST(Series, ArcLengthAndLoadParametersGiveTheSameBranch) {
 
 TEST(Series, ErrorStaysWithinTheRequestedTolerance) {
     for (const auto& name : support::small_scene_names()) {
-        for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
+        for (const auto& [model, branch] : all_sides(compile(support::scene(name)))) {
             const Path exact = follow(model, branch, {.order = 20});
             for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10})
                 for (const int order : {6, 10, 16}) {
@@ -325,7 +325,7 @@ TEST(Series, ChangePassEqualsTheTangentTimesTheCoefficient) {
     // The second pass, linear in x_k, against the matrix of the solve: G_k with x_k
     // inserted must vanish.
     for (const auto& name : support::small_scene_names()) {
-        const auto [model, branch] = one_ways(compile(support::scene(name))).front();
+        const auto [model, branch] = all_sides(compile(support::scene(name))).front();
         SteppingState s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
         s.work.applied = Vector<double>::Zero(s.n());

@@ -199,7 +199,7 @@ TEST(Tangent, CurveTangentIsTheDerivativeOnEveryPieceAndBeyondItsEnds) {
     }
 }
 
-// As static loads and as drivers: forces that stay, with their moments, and forces that follow.
+// Dead and follower forces and moments, as static loads and as drivers.
 TEST(Tangent, LoadTangentIsTheDerivativeOfTheForce) {
     Random random;
     for (BodyId body = 0; body < bodies; ++body)

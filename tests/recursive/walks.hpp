@@ -1,5 +1,5 @@
-// Branch sides of a model with the model active on each, the distance of two states, and the scenes
-// of tests/recursive/found (regressions) and tests/recursive/scenes.
+// Sides of the branches of a model, the distance of two states, and the scenes of tests/recursive/found (regressions) and
+// tests/recursive/scenes.
 #pragma once
 
 #include <algorithm>
@@ -14,20 +14,20 @@
 
 namespace elastocheck::recursive {
 
-struct OneWay {
+struct SideModel {
     Model model;  // active on the branch
     Branch branch;
 };
 
-inline std::vector<OneWay> one_ways(const Model& model) {
-    std::vector<OneWay> all;
+inline std::vector<SideModel> all_sides(const Model& model) {
+    std::vector<SideModel> all;
     for (const auto& branch : model.branches)
         for (const auto& way : branch_sides(branch)) all.push_back({on_branch(model, way), way});
     return all;
 }
 
 // The scene with this branch alone.
-inline OneWay walked(const Scene& scene, const Branch& branch) {
+inline SideModel walked(const Scene& scene, const Branch& branch) {
     Scene with = scene;
     with.branches = {branch};
     const Model model = compile(with);

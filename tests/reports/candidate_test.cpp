@@ -30,23 +30,23 @@ const std::string strut = scenes + "/mcpherson.yaml";
 // Output of `solve` for the strut, as a file of that name.
 std::string solved(const Folder& folder, const std::string& name, const std::string& how) {
     const std::string file = (folder.path / name).string();
-    expect_says(fmt::format("solve {} {} {}", strut, how, file), 0);
+    expect_run(fmt::format("solve {} {} {}", strut, how, file), 0);
     return file;
 }
 
-Said judge(const std::string& how) { return elastocheck_says("judge " + strut + " " + how); }
+RunResult judge(const std::string& how) { return run_elastocheck("judge " + strut + " " + how); }
 
 // A bar rotated about its own axis has the correct outputs, but its bushing is twisted.
 TEST(CandidateCommand, UnbalancedStateIsReportedEvenIfNoForceIsRequested) {
     const Folder folder;
     const std::string states = (folder.path / "states.jsonl").string();
-    ASSERT_EQ(elastocheck_says("solve " + scenes +
-                               "/pendulum.yaml --method equilibrium --steps 8 --states " + states)
+    ASSERT_EQ(run_elastocheck("solve " + scenes +
+                              "/pendulum.yaml --method equilibrium --steps 8 --states " + states)
                   .code,
               0);
     const auto judged = [&] {
-        return elastocheck_says("judge " + scenes + "/pendulum.yaml --steps 8 --candidate " +
-                                states);
+        return run_elastocheck("judge " + scenes + "/pendulum.yaml --steps 8 --candidate " +
+                               states);
     };
     expect_parts(judged().out, {"equals the full solution"});
     std::istringstream lines(text_of(states));
@@ -63,15 +63,15 @@ TEST(CandidateCommand, UnbalancedStateIsReportedEvenIfNoForceIsRequested) {
         turned += state.dump() + "\n";
     }
     std::ofstream(states) << turned;
-    const Said said = judged();
+    const RunResult said = judged();
     expect_parts(said.out, {"Its states are out of balance by up to "}, {"is the full solution,"});
 }
 
 TEST(CandidateCommand, PublishedRecursionAsAnExternalCommandGetsTheNumbersOfTheBuiltInOne) {
-    const Said said =
-        expect_said(judge("--steps 20 --json --candidate-command '" ELASTOCHECK_COMMAND
-                          " solve {scene} --method published --steps {steps} -o {output}'"),
-                    1);
+    const RunResult said =
+        expect_result(judge("--steps 20 --json --candidate-command '" ELASTOCHECK_COMMAND
+                            " solve {scene} --method published --steps {steps} -o {output}'"),
+                      1);
     const json scene = json::parse(said.out)["scenes"][0];
     int same = 0;
     for (const auto& row : objects(result_in(scene, "judge")["tables"]["deviations"]))
@@ -106,7 +106,7 @@ TEST(CandidateCommand, ChildrenOfATimedOutProgramAreKilled) {
     const auto leaves = reports::run({"sh", "-c", "(sleep 2; touch " + mark + ") & exit 0"}, 30);
     EXPECT_TRUE(leaves.succeeded());
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
-    expect_said(support::says("sleep 3"), 0);
+    expect_result(support::shell("sleep 3"), 0);
     EXPECT_FALSE(std::filesystem::exists(mark));
 }
 
@@ -164,13 +164,12 @@ TEST(CandidateCommand, SignalEndsAllChildrenAndTheNextRunRemovesTheirFiles) {
         EXPECT_EQ(processes, 3);
         const std::string temporary = (folder.path / "tmp").string();
         EXPECT_FALSE(std::filesystem::is_empty(temporary)) << "signal " << signal;
-        (void)support::says("env -u CI TMPDIR=" + temporary + " " ELASTOCHECK_COMMAND " judge " +
-                            scenes + "/pinned_bar.yaml --candidate-command 'false {output}'");
+        (void)support::shell("env -u CI TMPDIR=" + temporary + " " ELASTOCHECK_COMMAND " judge " +
+                             scenes + "/pinned_bar.yaml --candidate-command 'false {output}'");
         EXPECT_TRUE(std::filesystem::is_empty(temporary)) << "signal " << signal;
     }
 }
 
-// States as a table, with another order of rows, give the same result as JSON lines.
 TEST(CandidateCommand, StatesAsATableEqualThoseAsJsonLines) {
     const Folder folder;
     const std::string lines =
@@ -191,7 +190,7 @@ TEST(CandidateCommand, StatesAsATableEqualThoseAsJsonLines) {
     for (auto row = rows.rbegin(); row != rows.rend(); ++row) csv += *row + "\n";
     const std::string table = folder.write("states.csv", csv);
     const auto of = [&](const std::string& file) {
-        const Said said = expect_said(judge("--steps 4 --json --candidate " + file), 0);
+        const RunResult said = expect_result(judge("--steps 4 --json --candidate " + file), 0);
         return result_in(json::parse(said.out)["scenes"][0], "judge");
     };
     const json a = of(lines), b = of(table);

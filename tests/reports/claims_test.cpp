@@ -162,8 +162,8 @@ TEST_P(Claims, Hold) {
     for (const Step& step : GetParam().steps)
         for (const auto& line : step.shell) {
             SCOPED_TRACE(GetParam().place + ": " + line);
-            const Said said =
-                expect_said(support::says(begin + line + "\n}"), step.code, step.parts);
+            const RunResult said =
+                expect_result(support::shell(begin + line + "\n}"), step.code, step.parts);
             EXPECT_TRUE(!step.no_out || said.out.empty()) << said.out;
             EXPECT_TRUE(!step.no_err || said.err.empty()) << said.err;
             if (!step.values.empty()) expect_values(said.out, step.values);

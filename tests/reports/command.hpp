@@ -12,23 +12,23 @@ namespace elastocheck {
 
 using support::contains;
 using support::expect_parts;
-using support::expect_said;
+using support::expect_result;
 using support::Folder;
 using support::Parts;
-using support::Said;
+using support::RunResult;
 using support::text_of;
 
 inline const std::string scenes = ELASTOCHECK_SCENES;
 
 // Runs `elastocheck ARGUMENTS` as in an interactive session: CI is unset.
-inline support::Said elastocheck_says(const std::string& arguments) {
-    return support::says("env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " " + arguments);
+inline support::RunResult run_elastocheck(const std::string& arguments) {
+    return support::shell("env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " " + arguments);
 }
 
-// The claim about such a run: its exit code and parts of what it says.
-inline Said expect_says(const std::string& arguments, int code, const Parts& parts = {},
-                        std::source_location at = std::source_location::current()) {
-    return expect_said(elastocheck_says(arguments), code, parts, at);
+// Runs `elastocheck ARGUMENTS` and expects its exit code and parts of its output.
+inline RunResult expect_run(const std::string& arguments, int code, const Parts& parts = {},
+                            std::source_location at = std::source_location::current()) {
+    return expect_result(run_elastocheck(arguments), code, parts, at);
 }
 
 // A chain of this many bodies on bushings. With 15, `trade` takes few of its up to a million steps:

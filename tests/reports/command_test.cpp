@@ -18,7 +18,7 @@ TEST(Command, ReadmeHasTheDefinitionsOfInspect) {
     for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
         if (entry.path().extension() != ".yaml") continue;
         const auto part = nlohmann::json::parse(
-            elastocheck_says("inspect --json " + entry.path().string()).out)["scenes"][0];
+            run_elastocheck("inspect --json " + entry.path().string()).out)["scenes"][0];
         for (const auto& row : part["results"][0]["tables"]["outputs"]["rows"]) {
             ++rows;
             std::string means = row[2];

@@ -151,7 +151,7 @@ TEST(Document, InputHashIsFnv1a) {
     EXPECT_EQ(input_hash("foobar"), "85944171f73967e8");
 }
 
-// Three bytes of text, each with its own list: a file of 30 MB would take 2 GB.
+// A value of three bytes, `[],`, takes so much memory that a file of 30 MB would take 2 GB.
 TEST(Json, DocumentWithTooManyValuesIsRejectedBeforeParsing) {
     std::string many = "[";
     while (many.size() < 30'000'000) many += "[],";

@@ -18,7 +18,7 @@ const std::string bushing = scenes + "/single_bushing.yaml";
 
 // The single document on standard output.
 json document(const std::string& arguments, int code = 0) {
-    const Said said = expect_says(arguments + " --json", code);
+    const RunResult said = expect_run(arguments + " --json", code);
     json parsed = json::parse(said.out, nullptr, false);
     EXPECT_FALSE(parsed.is_discarded()) << arguments << ": " << said.out.substr(0, 300);
     return parsed;
@@ -37,8 +37,8 @@ TEST(Json, SolveDocumentHasTheNumbersOfTheCsv) {
     const json part = document(
         "solve " + bushing + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
     const auto cells =
-        cells_of(elastocheck_says("solve " + bushing +
-                                  " --steps 4 --method equilibrium --channels 'centre_*'")
+        cells_of(run_elastocheck("solve " + bushing +
+                                 " --steps 4 --method equilibrium --channels 'centre_*'")
                      .out);
     std::size_t row = 1;
     for (const auto& branch : part["branches"]) {
@@ -62,9 +62,9 @@ TEST(Json, SolveDocumentHasTheNumbersOfTheCsv) {
 
 // Commit recorded by the build for the sources in a folder.
 std::string commit_of(const std::string& folder) {
-    expect_said(support::says("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder + "/out -P " +
-                              folder + "/reports/files/build_info.cmake"),
-                0);
+    expect_result(support::shell("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder + "/out -P " +
+                                 folder + "/reports/files/build_info.cmake"),
+                  0);
     std::smatch found;
     const std::string text = text_of(folder + "/out");
     return std::regex_search(text, found, std::regex("commit = \"([^\"]*)\"")) ? found[1].str()
@@ -73,14 +73,14 @@ std::string commit_of(const std::string& folder) {
 
 TEST(Version, CommitIsThatOfTheArchiveAndNeverThatOfASurroundingRepository) {
     const std::string root = scenes + "/../..", git = "git -c safe.directory='*' -C " + root + " ";
-    const Said head = support::says(git + "rev-parse --show-prefix HEAD");
+    const RunResult head = support::shell(git + "rev-parse --show-prefix HEAD");
     if (!head.out.starts_with("\n")) GTEST_SKIP() << "not a checkout of its own";
     const std::string commit = head.out.substr(1, 40);
     const Folder around;
     const std::string archive = (around.path / "archive").string(),
                       copy = (around.path / "copy").string();
     ASSERT_EQ(
-        support::says(
+        support::shell(
             "cd " + around.path.string() +
             " && mkdir -p archive copy/reports/files && git init -q && " + git +
             "archive HEAD .gitattributes reports/files/build_info.cmake | tar x -C archive && cp " +

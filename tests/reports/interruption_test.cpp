@@ -19,7 +19,7 @@ namespace elastocheck::reports {
 namespace {
 
 namespace fs = std::filesystem;
-using support::says;
+using support::shell;
 
 const std::string pinned_bar = scenes + "/pinned_bar.yaml";
 const std::string command = "env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " ";
@@ -105,7 +105,7 @@ TEST(KilledProcess, GateLeavesTheOldOrTheNewBaseline) {
     for (const int which : {0, 1}) {
         folder.write("s.yaml", versions[which]);
         const auto start = std::chrono::steady_clock::now();
-        ASSERT_EQ(says(accept).code, 0);
+        ASSERT_EQ(shell(accept).code, 0);
         whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         expected[which] = text_of(baseline), dense[which] = text_of(curves);
         EXPECT_TRUE(contains(expected[which], R"("file":"../s.yaml")"))
@@ -116,8 +116,8 @@ TEST(KilledProcess, GateLeavesTheOldOrTheNewBaseline) {
     for (int round = 0; round < 20; ++round) {
         folder.write("s.yaml", versions[round % 2]);
         const std::string delay = std::to_string(whole * (0.5 + 0.03 * round));
-        killed += says("sh -c '" + accept + " >/dev/null' & sleep " + delay + "; kill -" +
-                       (round % 4 < 2 ? "KILL" : "TERM") + " $! 2>/dev/null; wait $!")
+        killed += shell("sh -c '" + accept + " >/dev/null' & sleep " + delay + "; kill -" +
+                        (round % 4 < 2 ? "KILL" : "TERM") + " $! 2>/dev/null; wait $!")
                       .code != 0;
         const std::string now = text_of(baseline);
         EXPECT_TRUE(now == expected[0] || now == expected[1])
@@ -126,13 +126,14 @@ TEST(KilledProcess, GateLeavesTheOldOrTheNewBaseline) {
         if (text_of(curves) == dense[which]) continue;
         // killed between its two files: it judges nothing until both are put back
         EXPECT_EQ(text_of(curves), dense[1 - which]) << "half a file in round " << round;
-        const Said said = says("cd " + folder.path.string() + " && " + command + "gate s.yaml");
+        const RunResult said =
+            shell("cd " + folder.path.string() + " && " + command + "gate s.yaml");
         EXPECT_TRUE(said.code == 3 && contains(said.out, "is of another acceptance")) << said.out;
         folder.write("baselines/curves/s.json", dense[which]);
     }
     EXPECT_GT(killed, 0);
     folder.write("s.yaml", versions[0]);
-    ASSERT_EQ(says(accept).code, 0);
+    ASSERT_EQ(shell(accept).code, 0);
     EXPECT_EQ(text_of(baseline), expected[0]);
     EXPECT_EQ(names_in(baseline.parent_path()), (std::set<std::string>{"curves", "s.json"}));
     EXPECT_EQ(names_in(curves.parent_path()), std::set<std::string>{"s.json"})
@@ -163,8 +164,8 @@ struct Place : Folder {
               std::regex_replace(text_of(pinned_bar), std::regex("to: [0-9.]+"), "to: 10"));
     }
     // `before` is a shell command run first.
-    Said in(const std::string& what, const std::string& before = "true") const {
-        return says("cd " + path.string() + " && " + before + " && " + command + what);
+    RunResult in(const std::string& what, const std::string& before = "true") const {
+        return shell("cd " + path.string() + " && " + before + " && " + command + what);
     }
 };
 
@@ -175,8 +176,8 @@ TEST(FullDisk, FullDeviceKeepsTheOldOutputAndIsReported) {
         const std::string before = text_of(place.path / target);
         ASSERT_FALSE(before.empty()) << target;
         // A limit of one block acts like a full disk: every writer fails.
-        expect_said(place.in(what, "ulimit -f 1"), 2,
-                    {.err = {"cannot be written: File too large"}});
+        expect_result(place.in(what, "ulimit -f 1"), 2,
+                      {.err = {"cannot be written: File too large"}});
         EXPECT_EQ(text_of(place.path / target), before) << what;
         EXPECT_EQ(names_in(place.path), entries) << what << " leaves something behind";
         EXPECT_EQ(names_in(place.path / "baselines"), baselines)
@@ -184,17 +185,18 @@ TEST(FullDisk, FullDeviceKeepsTheOldOutputAndIsReported) {
     }
 }
 
-// The same on a full file system, where the user may mount one.
+// As above on a full file system, if the user may mount one.
 TEST(FullDisk, FullFileSystemKeepsTheOldOutputAndIsReported) {
     const Folder folder;
     const std::string mount = "mount -t tmpfs -o size=64k none " + folder.path.string();
-    if (says("unshare -rm sh -c '" + mount + "'").code != 0)
+    if (shell("unshare -rm sh -c '" + mount + "'").code != 0)
         GTEST_SKIP() << "this user may not mount a file system of his own";
     for (const std::string& what :
          std::vector<std::string>{"compare " + pinned_bar + " -o out",
                                   "solve " + pinned_bar + " --steps 2000 -o out.csv"}) {
-        const Said said = says("unshare -rm sh -c '" + mount + " && cd " + folder.path.string() +
-                               " && " + command + what + "; echo code $?; ls -A'");
+        const RunResult said =
+            shell("unshare -rm sh -c '" + mount + " && cd " + folder.path.string() + " && " +
+                  command + what + "; echo code $?; ls -A'");
         EXPECT_TRUE(said.out.ends_with("code 2\n")) << what << ": " << said.out << said.err;
         expect_parts(said.err, {"cannot be written: No space left on device"});
     }
@@ -205,14 +207,15 @@ TEST(UnwritableFolder, IsReportedAndStaysEmpty) {
     // Root gives up the capability to bypass file permissions.
     const std::string as_others =
         ::geteuid() == 0 ? "setpriv --bounding-set -dac_override,-dac_read_search " : "";
-    if (!as_others.empty() && says(as_others + "true").code != 0)
+    if (!as_others.empty() && shell(as_others + "true").code != 0)
         GTEST_SKIP() << "this user is root, and may not give up the right to write everywhere";
     for (const auto& [what, target] : writings) {
         const std::string before = text_of(place.path / target);
         const auto entries = names_in(place.path);
         fs::permissions(place.path, fs::perms(0555));
         fs::permissions(place.path / "baselines", fs::perms(0555));
-        const Said said = says("cd " + place.path.string() + " && " + as_others + command + what);
+        const RunResult said =
+            shell("cd " + place.path.string() + " && " + as_others + command + what);
         fs::permissions(place.path, fs::perms(0755));
         fs::permissions(place.path / "baselines", fs::perms(0755));
         EXPECT_EQ(said.code, 2) << what << said.err;

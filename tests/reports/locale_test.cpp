@@ -25,8 +25,8 @@ struct German {
         return "LOCPATH=" + folder.path.string() + " LC_ALL=de_DE.UTF-8";
     }
     testing::AssertionResult make() const {
-        const auto made = support::says("localedef --no-archive -i de_DE -f UTF-8 " +
-                                        (folder.path / "de_DE.UTF-8").string());
+        const auto made = support::shell("localedef --no-archive -i de_DE -f UTF-8 " +
+                                         (folder.path / "de_DE.UTF-8").string());
         ::setenv("LOCPATH", folder.path.c_str(), 1);
         const locale_t german = ::newlocale(LC_ALL_MASK, "de_DE.UTF-8", nullptr);
         ::unsetenv("LOCPATH");
@@ -55,7 +55,7 @@ std::vector<Line> lines() {
 }
 
 struct Found {
-    support::Said said;
+    support::RunResult said;
     std::map<std::string, std::string> files;
 };
 Found run(const std::string& line, const std::string& environment) {
@@ -64,7 +64,7 @@ Found run(const std::string& line, const std::string& environment) {
     const Folder folder;
     folder.write("chain.yaml", chain_of(15));
     Found found;
-    found.said = support::says(
+    found.said = support::shell(
         fmt::format("cd {} && unset CI GITHUB_STEP_SUMMARY; export {} E={} SCENES={} SAMPLES={} "
                     "FIXTURES={}; {}",
                     folder.path.string(), environment, ELASTOCHECK_ELSEWHERE, ELASTOCHECK_SCENES,
@@ -113,7 +113,7 @@ TEST(DecimalComma, EveryCommandIsTestedInALocaleWithDecimalComma) {
     for (const auto& line : lines()) tried.insert(line.command);
     int count = 0;
     const std::string heading = ".SS elastocheck ";
-    for (const auto& line : parts_of(elastocheck_says("man").out, '\n')) {
+    for (const auto& line : parts_of(run_elastocheck("man").out, '\n')) {
         if (!line.starts_with(heading)) continue;
         std::string command = line.substr(heading.size());
         std::erase(command, '\\');

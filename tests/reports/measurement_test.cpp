@@ -233,7 +233,6 @@ TEST(Measurement, WheelLoadIsComparedAndItsHysteresisReported) {
     EXPECT_LE(rows[1]["equilibrium rms"].get<double>(), 1) << rows[1];
 }
 
-// Sign, unit and definition of a column that does not fit.
 TEST(Measurement, WrongSignUnitOrDefinitionOfAColumnIsNamed) {
     static const Solved rigid(support::scene("double_wishbone_rigid"), 10, "series");
     const auto& defined = rigid.defined;
@@ -282,7 +281,6 @@ TEST(Measurement, WrongSignUnitOrOffsetIsNamedForAnInexactModel) {
     }
 }
 
-// Each test has its own gradient, in the unit of what it goes over.
 TEST(Measurement, GradientOfEachTestIsInTheUnitOfItsAbscissa) {
     const json m = axle().measured(
         "branch,parameter_mm,load_N,left.toe_deg\nparallel,-20,,0.2\nparallel,0,,0.1\n"
@@ -303,7 +301,6 @@ TEST(Measurement, GradientOfEachTestIsInTheUnitOfItsAbscissa) {
     EXPECT_NEAR(rows[1]["gradient"].get<double>(), expected, 0.05 * std::abs(expected));
 }
 
-// What is asked for is read, the rest is counted.
 TEST(Measurement, RowsOfUnrequestedBranchesAreCountedByName) {
     const std::string csv =
         "Test,Wheel Travel LH [mm],Lateral Force [kN],Toe LH [deg]\nBounce,10,,0.1\n"
@@ -316,7 +313,6 @@ TEST(Measurement, RowsOfUnrequestedBranchesAreCountedByName) {
     EXPECT_THROW((void)axle().measured(csv, {}, {"steering"}), MeasurementError);
 }
 
-// Every position or angle can be measured.
 TEST(Measurement, EveryOutputOfTheStateCanBeMeasured) {
     const auto value = [](const char* name, std::size_t k) {
         return solved().value("jounce", name, k);
@@ -335,7 +331,6 @@ TEST(Measurement, EveryOutputOfTheStateCanBeMeasured) {
     }
 }
 
-// What a rig writes besides is listed, with the nearest name, and the rest is compared.
 TEST(Measurement, UnknownColumnsAreListedWithTheNearestName) {
     const json plain = measured("travel_mm,toe_deg\n50,-1.8\n");
     json m = measured("time [s],travel_mm,toe_deg,tow_deg,toe_kg\n0,50,-1.8,x,\n");
@@ -349,7 +344,6 @@ TEST(Measurement, UnknownColumnsAreListedWithTheNearestName) {
         << "with a byte order mark";
 }
 
-// The map of `judge`: name, unit, sign, offset.
 TEST(Measurement, MapGivesNameUnitSignAndOffsetAlsoInArcMinutes) {
     const json plain =
         measured("travel_mm,toe_deg,camber_change_deg\n-50,1.5,0.25\n50,-1.75,-0.5\n");
@@ -402,7 +396,6 @@ TEST(Measurement, MissingValueLeavesAGapInItsCurveOnly) {
     EXPECT_EQ(camber->rows[2], (std::vector{60.0, 0.3}));
 }
 
-// A point of one branch is not compared, drawn or tabulated on another.
 TEST(Measurement, PointsAreUsedOnlyOnTheirBranch) {
     // Assigned to rebound but in the range of jounce: no comparison.
     const json misplaced = measured("branch,travel_mm,toe_deg\nrebound,50,-1.8\n");

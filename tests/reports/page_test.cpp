@@ -129,9 +129,9 @@ TEST(Report, PageAndMarkdownHaveTheSameText) {
     EXPECT_EQ(all(md, "\\]\\((figures/)").size(), parts(html, "<svg", "</svg>").size());
 }
 
-support::Said in_a_browser(const Folder& folder, const std::string& html,
-                           const std::string& options) {
-    return support::says(
+support::RunResult in_a_browser(const Folder& folder, const std::string& html,
+                                const std::string& options) {
+    return support::shell(
         "chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr "
         "--user-data-dir=" +
         (folder.path / "profile").string() + " " + options + " file://" +
@@ -173,7 +173,7 @@ json measured_in_a_browser(std::string html, const std::vector<std::string>& scr
 
 struct Browser : testing::Test {
     void SetUp() override {
-        if (support::says("command -v chromium").code != 0)
+        if (support::shell("command -v chromium").code != 0)
             GTEST_SKIP() << "chromium is not installed";
     }
 };
@@ -198,8 +198,7 @@ TEST_F(Browser, OpensThePageWithoutAnErrorOrARequest) {
     }
 }
 
-// Values under the pointer, and curves switched by the legend. The policy of the page lets this
-// script run: it names its hash.
+// The content security policy of the page names the hash of this script, so that it runs.
 TEST_F(Browser, ShowsTheValueUnderThePointerAndSwitchesCurves) {
     const std::string html = page({compared_scene("front_axle")});
     const json seen = measured_in_a_browser(html, {"values"}, "1280");

@@ -60,7 +60,7 @@ TEST(Report, EqualScenesGiveEqualFilesByteByByte) {
 TEST(Report, EveryFigureIsWellFormed) {
     const Folder folder;
     write_report(report_of({sample_scene()}), folder.path / "r");
-    expect_said(support::read_xml((folder.path / "r" / "figures").string() + "/*.svg"), 0);
+    expect_result(support::read_xml((folder.path / "r" / "figures").string() + "/*.svg"), 0);
 }
 
 TEST(Report, NamesWithMarkupAreShownAsText) {
@@ -87,7 +87,7 @@ TEST(Report, FigureIsWellFormedForAnyText) {
         figure.bands.push_back({0, 1, evil});
         figure.y_ticks = {{0.5, evil}};
         EXPECT_EQ(draw({{&figure, "f"}}, folder.path).size(), 1u) << evil;
-        expect_said(support::read_xml((folder.path / "figures" / "f.svg").string()), 0);
+        expect_result(support::read_xml((folder.path / "figures" / "f.svg").string()), 0);
         expect_parts(text_of(folder.path / "figures" / "f.svg"), {}, {"<script"});
     }
 }
@@ -199,7 +199,6 @@ TEST(Report, InconclusiveSceneIsMarkedWithItsReason) {
         {"class=\"badge\">inconclusive", "<p class=\"answer\">Not judged: nothing was compared; "});
 }
 
-// Killed at any moment, the folder holds the old report or the new one.
 TEST(ReportCommand, KilledAtAnyMomentItLeavesTheOldReportOrTheNewOne) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();

@@ -19,7 +19,7 @@ const std::string strut = scenes + "/chrono_mcpherson.yaml";
 
 json scene_of(const Folder& folder, const std::string& arguments) {
     const std::string to = (folder.path / "report").string();
-    expect_says("report " + strut + " -o " + to + " " + arguments, 0);
+    expect_run("report " + strut + " -o " + to + " " + arguments, 0);
     return json::parse(text_of(to + "/result.json"))["scenes"][0];
 }
 

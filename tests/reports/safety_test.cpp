@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 const std::string scene = scenes + "/pinned_bar.yaml";
 
-Said in(const Folder& folder, const std::string& arguments) {
-    return support::says("cd " + folder.path.string() + " && env -u GITHUB_STEP_SUMMARY CI= " +
-                         ELASTOCHECK_COMMAND + " " + arguments);
+RunResult in(const Folder& folder, const std::string& arguments) {
+    return support::shell("cd " + folder.path.string() + " && env -u GITHUB_STEP_SUMMARY CI= " +
+                          ELASTOCHECK_COMMAND + " " + arguments);
 }
 
 TEST(HostileNames, ControlCharactersInFileNamesAreEscaped) {
@@ -25,9 +25,9 @@ TEST(HostileNames, ControlCharactersInFileNamesAreEscaped) {
          {"a\n::error::x.yaml", "a\x1b[2J.yaml", "a\u009b2J.yaml", "a\u202e.yaml", "a\xff.yaml"}) {
         folder.write(name, text_of(scene));
         for (const std::string command : {"solve", "compare", "inspect", "gate", "report -o out"}) {
-            const Said said = expect_said(
-                support::says("cd " + folder.path.string() + " && GITHUB_ACTIONS=true CI= " +
-                              ELASTOCHECK_COMMAND + " " + command + " '" + name + "'"),
+            const RunResult said = expect_result(
+                support::shell("cd " + folder.path.string() + " && GITHUB_ACTIONS=true CI= " +
+                               ELASTOCHECK_COMMAND + " " + command + " '" + name + "'"),
                 2);
             expect_parts("\n" + said.out + said.err, {},
                          {"\n::error", "\x1b", "\u009b", "\u202e", "\xff"});
@@ -39,7 +39,7 @@ TEST(HostileNames, ControlCharactersInFileNamesAreEscaped) {
     // A baseline in a folder is a name too, and so is the scene that it names.
     fs::create_directory(folder.path / "baselines");
     std::ofstream(folder.path / "baselines" / "x\n::error::y.json") << "{}";
-    const Said said = expect_said(in(folder, "gate"), 2);
+    const RunResult said = expect_result(in(folder, "gate"), 2);
     expect_parts("\n" + said.out + said.err, {}, {"\n::error"});
 }
 
@@ -48,11 +48,11 @@ TEST(HostileNames, BaselineOfASceneInAnUnprintableFolderIsRefused) {
     for (const std::string name : {"a\xff", "a\nb", "a\u202e"}) {
         fs::create_directory(folder.path / name);
         std::ofstream(folder.path / name / "s.yaml") << text_of(scene);
-        const Said said =
-            expect_said(support::says("cd '" + (folder.path / name).string() + "' && env -u CI " +
-                                      ELASTOCHECK_COMMAND +
-                                      " gate s.yaml --baseline ../baselines --accept --reason x"),
-                        2);
+        const RunResult said = expect_result(
+            support::shell("cd '" + (folder.path / name).string() + "' && env -u CI " +
+                           ELASTOCHECK_COMMAND +
+                           " gate s.yaml --baseline ../baselines --accept --reason x"),
+            2);
         EXPECT_TRUE(contains(said.err, "/s.yaml: ") &&
                     contains(said.err, "names are one line of UTF-8 text"))
             << said.err;
@@ -79,9 +79,9 @@ TEST(HostileNames, NewlineInABaselineCannotWriteAWorkflowAnnotation) {
         ASSERT_TRUE(found) << field;
         folder.write("pinned_bar.json", texts[0]);
         folder.write("curves/pinned_bar.json", texts[1]);
-        const Said said = expect_said(
-            support::says(std::string("env CI= GITHUB_ACTIONS=true ") + ELASTOCHECK_COMMAND +
-                          " gate " + scene + " --baseline " + folder.path.string()),
+        const RunResult said = expect_result(
+            support::shell(std::string("env CI= GITHUB_ACTIONS=true ") + ELASTOCHECK_COMMAND +
+                           " gate " + scene + " --baseline " + folder.path.string()),
             3);
         expect_parts("\n" + said.out + said.err, {}, {"\n::error file=a"});
     }

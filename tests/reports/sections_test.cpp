@@ -317,7 +317,6 @@ TEST(Sections, LateralMovementIsPositiveOutwardsForBothWheels) {
     }
 }
 
-// Both sides of the design position are one curve.
 TEST(Sections, JounceAndReboundAreDrawnAsOneCurve) {
     const Figure toe = figure(sample_scene(), "toe-travel");
     ASSERT_EQ(toe.series.size(), 1u);
@@ -349,7 +348,6 @@ TEST(Sections, AbscissasAreNamedByTheDriveOfTheirBranch) {
                  {"| rack [mm] | steer angle left [deg] |", "rack.drive force [N]"});
 }
 
-// What is drawn, and what the trim makes of it.
 TEST(Sections, FirstSectionShowsTheAlignmentAsDrawnAndAfterTheTrim) {
     SceneAnalyses scene = compared_scene("front_axle");
     const std::string text = said(scene, "first");
@@ -370,8 +368,8 @@ TEST(Sections, FirstSectionHasKeyFiguresWithUnitsAndNoVerdict) {
                  {"fail", "Fail", "off by", "published"});
 }
 
-// The wheels of an axle in roll: K = k t² / 2. What heave lacks is the bar's, but for the rubber that both
-// deform; preloads that turn have the rest of the sum.
+// K = k t² / 2 for the wheels of an axle in roll. The bar has the part that is missing in heave, except for rubber that
+// both deform; preloads that rotate have the rest of the sum.
 TEST(Sections, RollStiffnessFollowsFromTheWheelRatesAndIsTheSumOfItsParts) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     const double roll = rate(scene, "left.wheel_rate_in_roll"),
@@ -392,7 +390,7 @@ TEST(Sections, RollStiffnessFollowsFromTheWheelRatesAndIsTheSumOfItsParts) {
     EXPECT_NEAR((parts["springs"] + parts["bar"] + parts["rubber"]) / stiffness, 1, 0.1);
 }
 
-// Both wheels loaded; one alone only by name. And one sign for a curve and its figure: inwards.
+// A force acts on both wheels, on one alone only if it is named so. Curves and figures are positive inwards.
 TEST(Sections, CompliancesOfAnAxleAreThoseOfRigTestsWithBothWheelsLoaded) {
     const SceneAnalyses& scene = compared_scene("front_axle");
     expect_parts(said(scene, "first"),
@@ -507,7 +505,6 @@ TEST(Sections, MotionRatioOfASpringIsInTheColumnOfItsWheel) {
     expect_parts(text, {}, {"coil right", "coil left"});
 }
 
-// In solve, on the page and in its figure: from the drawn position.
 TEST(Sections, TrackChangeIsFromTheDrawnPositionInSolveOnThePageAndInItsFigure) {
     SceneAnalyses scene = compared_scene("front_axle");
     const std::size_t change = channel_of(scene, "left.track_change");

@@ -48,9 +48,9 @@ TEST(SolveCommand, WritesTheRowsOfThePointsBitByBitOnEveryScene) {
             const auto file = (folder.path / (name + method + ".csv")).string();
             const auto command =
                 fmt::format("solve {}/{}.yaml --steps 10 --method {}", scenes, name, method);
-            const Said said = elastocheck_says(command);
+            const RunResult said = run_elastocheck(command);
             EXPECT_EQ(said.out, csv_of_kept_points(model, solver, 10)) << command;
-            EXPECT_EQ(elastocheck_says(command + " -o " + file).code, said.code) << command;
+            EXPECT_EQ(run_elastocheck(command + " -o " + file).code, said.code) << command;
             EXPECT_EQ(text_of(file), said.out) << command;
         }
     }
@@ -104,8 +104,8 @@ TEST(ExportCommand, BlocksOverTravelAndRackEqualSolve) {
                                 "--format blocks --over steering --rows "
                                 "left.travel,right.travel=-0.04:0.04:3 ";
     constexpr double degree = 3.14159265358979323846 / 180;
-    const BlocksFile iso = blocks_of(expect_says(command, 0).out),
-                     sae = blocks_of(expect_says(command + "--axes sae", 0).out);
+    const BlocksFile iso = blocks_of(expect_run(command, 0).out),
+                     sae = blocks_of(expect_run(command + "--axes sae", 0).out);
     ASSERT_EQ(iso.blocks.size(), 18u);
     ASSERT_EQ(sae.blocks.size(), 18u);
     // column of solve, factor to ISO, sign in SAE against ISO
@@ -137,9 +137,9 @@ TEST(ExportCommand, BlocksOverTravelAndRackEqualSolve) {
     for (const double travel : {-0.04, 0.0, 0.04}) {
         const std::string held = fmt::format("{:g}", travel);
         const auto solved =
-            cells_of(elastocheck_says("solve " + scene + few + "--channels " + channels +
-                                      " --set branches.steering.hold.left.travel=" + held +
-                                      " --set branches.steering.hold.right.travel=" + held)
+            cells_of(run_elastocheck("solve " + scene + few + "--channels " + channels +
+                                     " --set branches.steering.hold.left.travel=" + held +
+                                     " --set branches.steering.hold.right.travel=" + held)
                          .out);
         for (const auto& row : solved) {
             if (row[0] != "steering") continue;
@@ -185,7 +185,7 @@ TEST(ExportCommand, BlocksOverTravelAndRackEqualSolve) {
 
     // coefficients: solve's, in deg/kN and deg/(100 N·m)
     const auto solved = cells_of(
-        elastocheck_says(
+        run_elastocheck(
             "solve " + scene + few +
             "--channels left.lateral_force_steer@parallel,left.aligning_torque_steer@opposed")
             .out);
@@ -212,14 +212,14 @@ TEST(ExportCommand, BlocksOverTravelAndRackEqualSolve) {
 TEST(ExportCommand, WritesBlocksOverOneVariable) {
     const std::string command = "export " + scenes + "/front_axle.yaml --format blocks --axes sae ";
     const BlocksFile parallel =
-        blocks_of(expect_says(command + "--over parallel --set branches.parallel.steps=4", 0).out);
+        blocks_of(expect_run(command + "--over parallel --set branches.parallel.steps=4", 0).out);
     const auto& toe = parallel.blocks.at("right.toe");
     EXPECT_EQ(toe.rows, (std::vector<double>{-0.08, -0.04, 0, 0.04, 0.08}));
     EXPECT_TRUE(toe.columns.empty());
     EXPECT_GT(std::abs(toe.values.front()[0]), 1e-3);
     expect_parts(toe.lines.at("rows"), {"downwards"});
     const BlocksFile opposite =
-        blocks_of(expect_says(command + "--over opposite --set branches.opposite.steps=2", 0).out);
+        blocks_of(expect_run(command + "--over opposite --set branches.opposite.steps=2", 0).out);
     expect_parts(opposite.blocks.at("right.toe").lines.at("rows"), {"as the scene counts it"});
 }
 

@@ -19,7 +19,7 @@ using json = nlohmann::ordered_json;
 TEST(StressCommand, PrintsTheDocumentThatItWrites) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
-    const auto said = elastocheck_says("stress " + scenes + "/four_bar.yaml --json -o " + out);
+    const auto said = run_elastocheck("stress " + scenes + "/four_bar.yaml --json -o " + out);
     EXPECT_EQ(said.out, text_of(out + "/result.json"));
     const json document = json::parse(said.out);
     const json& result = document["scenes"][0]["results"][0];
@@ -37,7 +37,7 @@ TEST(StressCommand, InvalidArgumentsAreRejectedBeforeTheWork) {
     for (const auto& [arguments, says] :
          {std::pair<std::string, const char*>{"stress --set points.tip.x=1", "give one"},
           {"stress there_is_none.yaml", "there_is_none.yaml"}})
-        expect_says(arguments, 2, {.err = {says}});
+        expect_run(arguments, 2, {.err = {says}});
 }
 
 TEST(StressCommand, ResultsOfExtremeScenesAreRightOrReportedAsFailed) {

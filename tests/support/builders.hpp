@@ -31,7 +31,7 @@ inline Branch load_branch(const LoadKind& load, double to) {
 inline Branch motion_branch(int joint, double to, ParameterUnit unit = ParameterUnit::metre) {
     return branch_of({{Motion{joint}, 0, 1}}, to, unit);
 }
-// 0, 1/steps, ... 1 of the branch.
+// Parameters at 0, 1/steps, ... 1 of the branch.
 inline std::vector<double> every_point(const Branch& branch, int steps = 0) {
     if (steps == 0) steps = branch.steps;
     std::vector<double> all;
@@ -129,17 +129,17 @@ struct Random {
     }
 };
 
-// The worst of many deviations and its place.
+// The largest of many deviations and its place; a NaN is the largest.
 struct Worst {
     double value = 0;
     std::string where = "nowhere";
     int compared = 0;
-    void see(double deviation, const std::string& at) {
+    void add(double deviation, const std::string& at) {
         ++compared;
         if (deviation <= value || std::isnan(value)) return;
         value = deviation, where = at;
     }
-    void see(double deviation, double at) { see(deviation, fmt::format("{}", at)); }
+    void add(double deviation, double at) { add(deviation, fmt::format("{}", at)); }
 };
 inline testing::AssertionResult within(const Worst& worst, double limit) {
     const bool ok = worst.compared > 0 && worst.value <= limit;

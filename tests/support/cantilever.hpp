@@ -1,4 +1,4 @@
-// A leaf of spring steel as a cantilever: its scene in any number of segments, and what is known of it.
+// A leaf of spring steel as a cantilever: its scene in any number of segments, its elastica and its critical load.
 #pragma once
 
 #include <fmt/format.h>
@@ -45,14 +45,15 @@ inline Tip elastica(double alpha) {  // P L²/EI
             1 - 2 / root * (std::ellint_2(k, quarter) - std::ellint_2(k, psi(k)))};
 }
 
-// The leaf, pressed along its axis by P: its critical load with n segments.
+// Critical load P [N] of the leaf with n segments under a compressive axial force.
 //
-// With φ_k and u_k = w_n - w_k of the nodes, a segment of length h bends under the moment of P about its middle, its
-// shear gives way to what of P is across it, β = P h²/(12EI), and it is shorter by ε = P/EA = β ρ, ρ = 12EI/(EA h²):
+// Node k has the rotation φ_k and, from the tip, the deflection u_k = w_n - w_k. A segment of length h bends under the
+// moment of P about its middle, shears under the part of P across it, with β = P h²/(12EI), and shortens by
+// ε = P/EA = β ρ, ρ = 12EI/(EA h²):
 //
 //   w_k+1 - w_k = h (1 + β - ε) ½ (φ_k + φ_k+1)   EI/h (φ_k+1 - φ_k) = P (½ (u_k + u_k+1) + ¼ h (φ_k+1 - φ_k))
 //
-// With φ_k ~ sin kμ, u_k ~ cos kμ both hold where T = tan²(μ/2) = 3β(1 + β - ε)/(1 - 3β), and the free tip asks for
+// φ_k ~ sin kμ, u_k ~ cos kμ satisfy both if T = tan²(μ/2) = 3β(1 + β - ε)/(1 - 3β), and the free tip requires
 // μ n = π/2:  3(1 - ρ)β² + 3(1 + T)β = T. P/P_E is then 1 + O(μ²), P_E = π² EI/(4 L²).
 inline double critical_load(int n) {
     const double T = std::pow(std::tan(std::numbers::pi / (4 * n)), 2), h = L / n,
@@ -62,7 +63,7 @@ inline double critical_load(int n) {
     return 12 * EI * beta / (h * h);
 }
 
-// log₂ of how much smaller an error is with twice as many segments.
+// Order of convergence from the errors at n and 2n segments.
 inline double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 }  // namespace elastocheck::support

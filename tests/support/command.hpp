@@ -1,4 +1,4 @@
-// A command as a user runs it: exit code, output, errors.
+// Runs a command as a user does and checks its exit code, output and errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,17 +13,17 @@
 
 namespace elastocheck::support {
 
-struct Said {
+struct RunResult {
     int code = -1;  // -1: killed
     std::string out, err;
 };
 
-// Runs a line of shell.
-inline Said says(const std::string& line) {
+// Runs a command line by the shell.
+inline RunResult shell(const std::string& line) {
     const Folder folder;
     const std::string error = (folder.path / "err").string();
     FILE* pipe = ::popen((line + " 2>" + error).c_str(), "r");
-    Said said;
+    RunResult said;
     char buffer[4096];
     for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
         said.out.append(buffer, n);
@@ -33,9 +33,9 @@ inline Said says(const std::string& line) {
     return said;
 }
 
-// Reads files as XML.
-inline Said read_xml(const std::string& files) {
-    return says(
+// Exit code 0 if the files are well-formed XML.
+inline RunResult read_xml(const std::string& files) {
+    return shell(
         "python3 -c 'import sys, xml.sax; [xml.sax.parse(f, xml.sax.ContentHandler()) for f in "
         "sys.argv[1:]]' " +
         files);
@@ -45,7 +45,7 @@ inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-// The claim about a text: it has these parts and not the others. A failure shows the text.
+// Expects that a text has all of `parts` and none of `absent`. A failure shows the text.
 inline void expect_parts(const std::string& text, const std::vector<std::string>& parts,
                          const std::vector<std::string>& absent = {},
                          std::source_location at = std::source_location::current()) {
@@ -58,14 +58,14 @@ inline void expect_parts(const std::string& text, const std::vector<std::string>
         ADD_FAILURE_AT(at.file_name(), static_cast<int>(at.line())) << wrong << "---- in\n" << text;
 }
 
-// Parts of what a command says, and what it must not say.
+// Parts that the output and the errors of a command must have, and those that they must not have.
 struct Parts {
     std::vector<std::string> out = {}, err = {}, not_out = {}, not_err = {};
 };
 
-// The claim about a command: its exit code and these parts. A failure shows all that it said.
-inline Said expect_said(Said said, int code, const Parts& parts = {},
-                        std::source_location at = std::source_location::current()) {
+// Expects the exit code and the parts. A failure shows the whole output.
+inline RunResult expect_result(RunResult said, int code, const Parts& parts = {},
+                               std::source_location at = std::source_location::current()) {
     std::string wrong;
     if (said.code != code)
         wrong = "exit code " + std::to_string(said.code) + ", not " + std::to_string(code) + "\n";

@@ -1,5 +1,4 @@
-// Test fixture: a named pipe without a writer. A reader that blocks on it reads end of file after
-// two seconds.
+// Test fixture: a named pipe without a writer. After two seconds a reader that waits reads the end of the file.
 #pragma once
 
 #include <fcntl.h>

@@ -1,22 +1,21 @@
-// A chain of bodies in a plane under a dead force at its end, solved link by link: what large scenes are held against.
+// A chain of bodies in a plane under a dead force at its end, solved link by link: the reference for large scenes.
 //
-// Bodies 1 ... n stand on elastic joints s = 1 ... n, each on the one before, the first on ground, which does not turn.
-// Body s turns by φ_s, e(φ) = (cos φ, sin φ) is along it, ℓ_s is from joint s to joint s+1 or to the end. Under F a
-// joint bends and gives way, in the axes half way between its bodies, φ_s-½ = ½ (φ_s-1 + φ_s), by a along them and by b
-// across:
+// Elastic joint s = 1 ... n connects body s to body s-1, the first to ground. Body s is rotated by φ_s, φ_0 = 0;
+// e(φ) = (cos φ, sin φ) is along it, ℓ_s is its length from joint s to joint s+1 or to the end. Joint s has the bending
+// stiffness c and deflects by Δ_s, with the compliances a along and b across the middle axes φ_s-½ = ½ (φ_s-1 + φ_s):
 //
 //   U_s = ½ c (φ_s - φ_s-1)² + ½ Δ_sᵀ C(φ_s-½)⁻¹ Δ_s     C(φ) = a e eᵀ + b e' e'ᵀ
 //
-// The end is where the Δ_s and ℓ_s e(φ_s) lead, so that F does the work F · Σ (Δ_s + ℓ_s e(φ_s)), the joints give way by
-// Δ_s = C F, and what is left for the angles is to make stationary
+// The end is at Σ (Δ_s + ℓ_s e(φ_s)). The energy less the work of F is stationary in Δ_s at Δ_s = C F, so that the
+// angles make stationary
 //
 //   Σ ½ c (φ_s - φ_s-1)² - ½ Fᵀ C(φ_s-½) F - ℓ_s F·e(φ_s)
 //
-// With M_s = c (φ_s - φ_s-1) and g(φ) = Fᵀ C' F = 2 (a - b)(F·e)(F·e'), from the end back:
+// With the bending moment M_s = c (φ_s - φ_s-1) and g(φ) = Fᵀ C' F = 2 (a - b)(F·e)(F·e'), from the end backwards:
 //
-//   M_s = M_s+1 + ℓ_s F·e'(φ_s) + ¼ (g(φ_s-½) + g(φ_s+½)),  M_n+1 = 0, and no g behind the end
+//   M_s = M_s+1 + ℓ_s F·e'(φ_s) + ¼ (g(φ_s-½) + g(φ_s+½)),  M_n+1 = 0, and without g(φ_n+½)
 //
-// An angle φ_n of the end gives all others, and is the right one if φ_0 = 0. As stiff along as across, g is zero.
+// φ_n determines all other angles; bisection finds the φ_n with φ_0 = 0. For a = b, g is zero.
 #pragma once
 
 #include <cmath>
@@ -31,33 +30,33 @@ struct PlanarChain {
     Real length = 1, last = 1;  // ℓ of all bodies, of the last
     Real origin = 0;            // of a body, from its joint
     Real c = 1, a = 0,
-         b = 0;  // a joint: stiffness in bending, what it gives along and across per force
+         b = 0;  // bending stiffness and compliances of a joint along and across
 
     struct Shape {
         std::vector<Real> phi, x, z;  // of the bodies' origins, 1 ... n
         Real end_x = 0, end_z = 0;
     };
 
-    // Links of this length on bushings as stiff in all directions, or on joints that do not give (1/k_T = 0).
+    // Links of this length on bushings of equal compliance in all directions; 0 for rigid joints.
     static PlanarChain links(int n, Real length, Real k_R, Real compliance) {
         return {n, 0, length, length, 0, k_R, compliance, compliance};
     }
-    // A beam of EI and EA cut into n segments, which bend in their middles (models/reader/definitions/beams.hpp); bodies at the nodes.
+    // A beam of EI and EA of n segments with elastic middles (models/reader/definitions/beams.hpp); bodies are at the nodes.
     static PlanarChain beam(int n, Real length, Real bending, Real stretching) {
         const Real h = length / n;
         return {n, h / 2, h, h / 2, h / 2, bending / h, h / stretching, h * h * h / (12 * bending)};
     }
 
-    // Under a force that bends it to the side of φ > 0 and no further than its own direction: φ_0 rises with φ_n there.
+    // Shape under a force that bends it to φ > 0, up to the direction of the force, where φ_0 increases with φ_n.
     Shape under(Real F_x, Real F_z) const {
         Shape shape;
         shape.phi.assign(static_cast<std::size_t>(n) + 1, 0);
         Real low = 0, high = std::atan2(F_z, F_x);
         for (int i = 0; i < 70; ++i) {
             const Real middle = (low + high) / 2;
-            (back(middle, F_x, F_z, shape.phi) < 0 ? low : high) = middle;
+            (first_angle(middle, F_x, F_z, shape.phi) < 0 ? low : high) = middle;
         }
-        place(F_x, F_z, shape);
+        place_bodies(F_x, F_z, shape);
         return shape;
     }
 
@@ -72,8 +71,8 @@ struct PlanarChain {
         return 2 * (a - b) * along(F_x, F_z, phi) * across(F_x, F_z, phi);
     }
 
-    // φ_0, from φ_n.
-    Real back(Real end, Real F_x, Real F_z, std::vector<Real>& phi) const {
+    // Angles from φ_n backwards; returns φ_0.
+    Real first_angle(Real end, Real F_x, Real F_z, std::vector<Real>& phi) const {
         Real M = 0, g_before = 0;
         phi[static_cast<std::size_t>(n)] = end;
         for (int s = n; s >= 1; --s) {
@@ -93,7 +92,7 @@ struct PlanarChain {
         return phi[0];
     }
 
-    void place(Real F_x, Real F_z, Shape& shape) const {
+    void place_bodies(Real F_x, Real F_z, Shape& shape) const {
         Real x = ground, z = 0;
         for (int s = 1; s <= n; ++s) {
             const Real phi = shape.phi[static_cast<std::size_t>(s)];

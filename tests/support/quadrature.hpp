@@ -1,4 +1,4 @@
-// Integrals over an interval, by Gauss and Legendre's points, and roots in one.
+// Gauss-Legendre quadrature over an interval, and the root of an increasing function in one.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Scenes that stand in files beside the tests.
+// Scenes in files beside the tests.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ inline std::filesystem::path scene_path(const std::string& name) {
     return std::filesystem::path(ELASTOCHECK_SCENES) / "../../tests" / (name + ".yaml");
 }
 inline std::string scene_text(const std::string& name) { return text_of(scene_path(name)); }
-// With something for each word that begins with a dollar: {"A", "[0, 0, 1]"} for $A.
+// The text of the scene with each $WORD replaced: {"A", "[0, 0, 1]"} for $A.
 using Places = std::vector<std::pair<std::string, std::string>>;
 inline std::string filled_text(const std::string& name, const Places& places) {
     std::string text = scene_text(name);

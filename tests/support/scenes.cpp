@@ -12,9 +12,9 @@
 namespace elastocheck::support {
 namespace {
 
-// What is written in metres and newtons, in millimetres and kilonewtons: "N·m/deg" is a thousand times a thousandth.
+// Factor that converts a number from metres and newtons to millimetres and kilonewtons: 1e-3 · 1e3 for "N·m/deg".
 double in_mm_and_kN(const std::string& unit) {
-    if (unit == "m/s²") return 1;  // gravity is, whatever the units
+    if (unit == "m/s²") return 1;  // gravity is in m/s² in all units
     const auto power = [&](std::string_view part) {
         double factor = 1;
         while (!part.empty()) {
@@ -73,7 +73,7 @@ std::vector<std::string> small_scene_names() {
     return names;
 }
 
-std::vector<std::string> family_names() {
+std::vector<std::string> trimmed_scene_names() {
     std::vector<std::string> names = scene_names();
     std::erase_if(names, [](const std::string& name) { return !scene(name).trim.has_value(); });
     return names;

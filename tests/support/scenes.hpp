@@ -13,15 +13,15 @@ namespace elastocheck::support {
 Scene scene(const std::string& name);
 std::vector<std::string> scene_names();
 
-// Of these the ones that ask for no trim: closed forms and studies, small enough to be solved in every way there is.
+// The scenes without a trim: closed forms and studies, small enough for every leg and method.
 std::vector<std::string> small_scene_names();
-// And the ones that do: a suspension as it stands under a car. tests/compare/scenes_test.cpp solves them.
-std::vector<std::string> family_names();
+// The scenes with a trim: suspensions under the weight of a car, which tests/compare/scenes_test.cpp solves.
+std::vector<std::string> trimmed_scene_names();
 
-// Whether every load and formulation has an energy, so that the energy leg answers.
+// Whether every load and bushing formulation has an energy, so that the energy leg can solve the scene.
 bool has_potential(const Scene& scene);
 
-// models/scenes/NAME.yaml, which is in m and N, with its numbers rewritten and read in mm and kN.
+// models/scenes/NAME.yaml with its units changed from m and N to mm and kN and its numbers converted.
 Scene in_millimetres_and_kilonewtons(const std::string& name);
 
 // A general axle corner: eight kinds of joints, bushings with full 6×6 rates and preload,

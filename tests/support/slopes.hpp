@@ -1,4 +1,4 @@
-// What a small disturbance does, by differences of whole solutions: what a leg's response is held against.
+// Response to a small disturbance by central differences of whole solutions: the reference for a leg's linear response.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,12 +14,13 @@
 
 namespace elastocheck::support {
 
-// The model on one way of the branch whose name begins so: the way towards the sign of `to`.
-struct OneWay {
+// A side of a branch and the model that is active on it.
+struct SideModel {
     Model model;
     Branch branch;
 };
-inline OneWay way_of(const Scene& scene, const std::string& name, double to) {
+// The side towards the sign of `to` of the branch whose name begins with `name`.
+inline SideModel side_named(const Scene& scene, const std::string& name, double to) {
     const Model model = compile(scene);
     for (const auto& branch : model.branches)
         for (const auto& way : branch_sides(branch))
@@ -27,8 +28,8 @@ inline OneWay way_of(const Scene& scene, const std::string& name, double to) {
     throw std::logic_error("no branch " + name);
 }
 
-// Nothing but the configuration and where on the branch it is.
-inline Equilibrium bare(const Equilibrium& state) { return {state.load, state.poses, {}, 0}; }
+// The poses and the parameter of a state, without reactions.
+inline Equilibrium poses_only(const Equilibrium& state) { return {state.load, state.poses, {}, 0}; }
 
 // (dr, dπ) of every body [6nb].
 inline Eigen::VectorXd stacked(const std::vector<Increment>& increments) {
@@ -40,7 +41,7 @@ inline Eigen::VectorXd stacked(const std::vector<Increment>& increments) {
     return all;
 }
 
-// Of the largest entry of b; infinite where they are not alike.
+// Largest difference of two entries over the largest entry of b; infinite for different sizes.
 inline double relative_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return a.size() == b.size() ? (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff()
                                 : INFINITY;
@@ -52,7 +53,7 @@ inline UnitWrench at_wheel(const Model& model, const Eigen::Vector3d& force,
     return {wheel.contact, force, moment};
 }
 
-// The disturbance `by` times, held on the whole branch.
+// The branch with `by` times the disturbance as a constant driver.
 inline Branch disturbed(Branch branch, const Disturbance& disturbance, double by) {
     if (const auto* wrench = std::get_if<UnitWrench>(&disturbance)) {
         branch.drivers.push_back({Load{"f", DeadForce{wrench->at, wrench->force}}, by, 0});
@@ -63,11 +64,11 @@ inline Branch disturbed(Branch branch, const Disturbance& disturbance, double by
     return branch;
 }
 
-// The state at the end of a branch, by some leg.
+// State at the end of a branch by a leg.
 using Solve = std::function<Equilibrium(const Model&, const Branch&)>;
 
-// Central differences of it.
-inline Eigen::VectorXd slope(const OneWay& way, const Disturbance& disturbance, double h,
+// Central difference of the end states by the disturbance [6nb].
+inline Eigen::VectorXd slope(const SideModel& way, const Disturbance& disturbance, double h,
                              const Solve& solve) {
     const Equilibrium plus = solve(way.model, disturbed(way.branch, disturbance, h)),
                       minus = solve(way.model, disturbed(way.branch, disturbance, -h));
@@ -81,13 +82,13 @@ inline Eigen::VectorXd slope(const OneWay& way, const Disturbance& disturbance, 
     return dq;
 }
 
-inline void expect_slope(const Eigen::VectorXd& answer, const OneWay& way,
+inline void expect_slope(const Eigen::VectorXd& answer, const SideModel& way,
                          const Disturbance& disturbance, double h, const Solve& solve,
                          const std::string& where) {
     const Eigen::VectorXd coarse = slope(way, disturbance, h, solve),
                           fine = slope(way, disturbance, h / 2, solve);
-    // What is of second order falls to a quarter, where it is more than rounding, and without it
-    // what is left is of fourth.
+    // The error of central differences is of second order, so that it falls to a quarter unless it is rounding;
+    // after extrapolation the error is of fourth order.
     const double missed = relative_distance(coarse, answer);
     if (missed > 1e-5) {
         EXPECT_NEAR(missed / relative_distance(fine, answer), 4, 0.5) << where;

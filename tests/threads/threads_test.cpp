@@ -139,7 +139,7 @@ TEST(Threads, EnergyLegDoesNotDependOnOtherThreads) {
         });
 }
 
-// Whoever compares asks all legs, how they answer at the wheels, and what each thinks of the others' states.
+// A comparison runs all legs, their responses at the wheels, and the residuals of each leg for the others' states.
 TEST(Threads, ComparisonDoesNotDependOnOtherThreads) {
     expect_undisturbed("chrono_mcpherson_travel.yaml", [](const Model& model, const Branch&) {
         compare::Options few;

@@ -27,7 +27,7 @@ namespace elastocheck::engines {
 namespace {
 
 using compare::Leg;
-using support::contains, support::says, support::text_of;
+using support::contains, support::shell, support::text_of;
 using Angles = Formulation::Angles;
 
 Scene with(Angles angles, Scene scene) {
@@ -109,7 +109,7 @@ constexpr double same = 1e-8;  // [mm] of one model: four digits above the round
 constexpr double known =
     1e-4;  // [mm] what Cardan angles may make of a suspension that is written with rotation vectors
 
-// Of all scenes that it has the elements for, in few steps; that the references agree is another test's.
+// All scenes of supported elements in few steps. That the references agree is tested elsewhere.
 TEST(Simbody, StatesEqualTheReferencesWithCardanAngleBushings) {
     int scenes_compared = 0, branches_compared = 0;
     double largest = 0;
@@ -176,7 +176,7 @@ TEST(Simbody, LoadOnAnUnresistedMotionDoesNotConverge) {
     EXPECT_TRUE(contains(path.detail, ": iteration limit")) << path.detail;
 }
 
-// A driven angle has the same sine half a turn on, where long steps would lead.
+// The constraint of a driven angle is a sine, which is also met half a turn further, where long steps would converge.
 TEST(Simbody, DrivenCrankTurnsByItsAngleInAnyNumberOfSteps) {
     const Scene scene = support::scene("slider_crank");
     const Model model = compile(scene);
@@ -267,8 +267,8 @@ const std::string scenes = ELASTOCHECK_SCENES;
 TEST(SimbodyCandidate, WritesEveryBodyAtEveryStepOfTheBranches) {
     const support::Folder folder;
     const std::string file = (folder.path / "states.jsonl").string();
-    const auto said = says(candidate + " " + scenes + "/chrono_mcpherson_travel.yaml 4 " + file +
-                           " travel braking");
+    const auto said = shell(candidate + " " + scenes + "/chrono_mcpherson_travel.yaml 4 " + file +
+                            " travel braking");
     ASSERT_EQ(said.code, 0) << said.err;
     const Model model = compile(compare::trim(support::scene("chrono_mcpherson_travel")).scene);
     std::istringstream lines(text_of(file));
@@ -294,7 +294,7 @@ TEST(SimbodyCandidate, WritesEveryBodyAtEveryStepOfTheBranches) {
 }
 
 // Curves of another engine on a scene with a hardpoint 2 mm from its place and a coil of another
-// rate. What the laws of the bushings differ by (`known`) is a thousandth of what is found.
+// rate. The known difference of the bushings' laws is a thousandth of the change to be found.
 TEST(SimbodyCandidate, FitToItsCurvesFindsTheChangedNumbers) {
     const std::string file = scenes + "/mcpherson.yaml";
     const std::vector<std::string> paths{"points.tie_rod_inner.z", "springs.K1_coil.rate"};
@@ -313,7 +313,7 @@ TEST(SimbodyCandidate, FitToItsCurvesFindsTheChangedNumbers) {
     const std::string changed =
         folder.write("changed.yaml", rewrite_scene(text_of(file), file, settings(truth)));
     const std::string states = (folder.path / "states.jsonl").string();
-    const auto said = says(candidate + " " + changed + " 6 " + states);
+    const auto said = shell(candidate + " " + changed + " 6 " + states);
     ASSERT_EQ(said.code, 0) << said.err;
     const Model model = compile(read_scene(changed));
     const auto channels = compare::channels(model);
@@ -364,7 +364,7 @@ TEST(SimbodyCandidate, BadInputIsReportedAndWritesNothing) {
     const std::string file = (folder.path / "states.jsonl").string(),
                       mcpherson = scenes + "/mcpherson.yaml";
     const auto fails = [&](const std::string& arguments, int code, const std::string& why) {
-        const auto said = says(candidate + " " + arguments);
+        const auto said = shell(candidate + " " + arguments);
         EXPECT_EQ(said.code, code) << arguments << ": " << said.err;
         EXPECT_TRUE(contains(said.err, why)) << said.err;
         EXPECT_FALSE(std::filesystem::exists(file)) << arguments;

@@ -58,11 +58,11 @@ TEST(Adm, StatementWithoutASceneElementIsAnErrorOrReportedInTheHead) {
         SCOPED_TRACE(line);
         const std::string said = refusal_of(text, "model.adm");
         for (const std::string& part : {std::string("model.adm:41: "), message, "--allow-missing"s})
-            EXPECT_TRUE(says(said, part));
+            EXPECT_TRUE(has_text(said, part));
         const std::string yaml = scene_of(text, {.allow_missing = true});
         for (const char* part :
              {"# MISSING: line 41", "NOT equivalent to the file", "\n  crank: {"})
-            EXPECT_TRUE(says(yaml, part));
+            EXPECT_TRUE(has_text(yaml, part));
     }
 }
 
@@ -103,7 +103,7 @@ TEST(Adm, ExpressionsMayBeSumsOfConstantsDisplacementsAndCurves) {
 
 // ---- Equilibrium at rest.
 
-// A block on a bushing whose markers are a centimetre and 13° apart, under its own preload: at rest
+// A block on a preloaded bushing whose markers are a centimetre and 13° apart: at rest
 // K δ = FORCE and KT θ = TORQUE, δ and θ of I in the axes of J, independent of the drawn position.
 TEST(Adm, BushingRestsWhereItsLawBalancesTheLoadForAnyMarkers) {
     const Scene scene = imported_fixture("bushing_at_rest");
@@ -227,7 +227,7 @@ TEST(Adm, SceneExportedAndImportedAgainHasTheSameEquilibrium) {
     EXPECT_GT((a.poses[0].r - first.bodies[0].design.r).norm(), 1e-4);
 
     // weights are masses and gravity, no forces
-    EXPECT_TRUE(says(exported.text, "ACCGRAV/\n, IGRAV = 0\n, JGRAV = 0\n, KGRAV = -9.8066"));
+    EXPECT_TRUE(has_text(exported.text, "ACCGRAV/\n, IGRAV = 0\n, JGRAV = 0\n, KGRAV = -9.8066"));
     EXPECT_EQ(exported.text.find("GFORCE"), exported.text.npos);
     ASSERT_EQ(first.static_loads.size(), 2u);
     ASSERT_EQ(second.static_loads.size(), 2u);
@@ -244,7 +244,7 @@ TEST(Adm, SceneExportedAndImportedAgainHasTheSameEquilibrium) {
 TEST(Adm, SceneElementWithoutADatasetStatementIsRefusedOnExport) {
     const Scene scene = read_scene(std::filesystem::path(ELASTOCHECK_SCENES) / "mcpherson.yaml");
     EXPECT_THROW(importer::export_adm(scene, false), SceneError);
-    EXPECT_TRUE(says(importer::export_adm(scene, true).text, "MISSING: element"));
+    EXPECT_TRUE(has_text(importer::export_adm(scene, true).text, "MISSING: element"));
 }
 
 // Sum of the forces of the springs and stops whose names begin with `name`, at a length [m].

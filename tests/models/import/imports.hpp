@@ -59,7 +59,7 @@ inline std::string notes_of(const importer::Imported& imported) {
     return lines;
 }
 
-inline testing::AssertionResult says(const std::string& text, const std::string& what) {
+inline testing::AssertionResult has_text(const std::string& text, const std::string& what) {
     if (text.find(what) != text.npos) return testing::AssertionSuccess();
     return testing::AssertionFailure() << what << " is not in\n" << text;
 }

@@ -138,7 +138,7 @@ TEST(Mechanism, AssettoCorsaFileGivesTheMechanismOfItsPoints) {
         });
 }
 
-// Another car: a strut whose spring stands along it, and a live axle with its bar.
+// A strut with its spring along it, and a live axle with its anti-roll bar.
 TEST(Mechanism, AssettoCorsaFileGivesSpringsAndBars) {
     const Scene pair = made_of("strut_and_axle.ini", axle_of_a_file("front", true)),
                 axle = made_of("strut_and_axle.ini", axle_of_a_file("rear"));
@@ -192,7 +192,7 @@ TEST(Mechanism, LiveAxleHasBothWheelsOnOneBody) {
     EXPECT_NO_THROW((void)wheel(five, "travel"));
 }
 
-// A row for each bushing, and one for the springs beside dampers; rigid where all is stiff.
+// The table has a row for each bushing and one for the springs; without its bushings the mechanism is rigid.
 TEST(Mechanism, RatesOfATableAreAssignedByRole) {
     const support::Folder place;
     auto options = as("strut");

@@ -23,8 +23,8 @@ TEST(Points, UnreadablePointsAreRefusedWithTheirLine) {
     expect_refusals("points", "name,x_mm,y_mm,z_mm\na,1,2,3\n", "p.csv",
                     [&](const std::string& text) { return refusal_of(text, "p.csv", options); });
     options.unit = "ft";
-    EXPECT_TRUE(says(refusal_of("name,x,y,z\na,2,4,8\n", "p.csv", options),
-                     "'ft' is not a unit of a coordinate"));
+    EXPECT_TRUE(has_text(refusal_of("name,x,y,z\na,2,4,8\n", "p.csv", options),
+                         "'ft' is not a unit of a coordinate"));
 }
 
 // A workbook of one sheet, or two, by its parts.
@@ -80,27 +80,28 @@ TEST(PointsTable, WorkbookIsReadAsTheTableOfItsSheet) {
         return parts;
     };
     const std::string yaml = read(saved_book);
-    EXPECT_TRUE(says(yaml, "Lower___ball_: [12.5, 562.5, -62.5]"));
-    EXPECT_TRUE(says(yaml, "Rack: [1, 2, 3]  # line 6, Rack"));
+    EXPECT_TRUE(has_text(yaml, "Lower___ball_: [12.5, 562.5, -62.5]"));
+    EXPECT_TRUE(has_text(yaml, "Rack: [1, 2, 3]  # line 6, Rack"));
     EXPECT_EQ(read(saved_book, "Front & more"), yaml);
-    EXPECT_TRUE(says(
+    EXPECT_TRUE(has_text(
         refused(with(4, "<x:v>3</x:v></x:c></x:row></x:s", "<x:v>#REF!</x:v></x:c></x:row></x:s")),
         "p.xlsx:6: Rack: z is not a number: '#REF!' in column E"));
-    EXPECT_TRUE(says(refused(saved_book, "Frnt & more"), "did you mean 'Front & more'?"));
-    EXPECT_TRUE(says(refused(saved_book, "Old"), "--sheet: there is no sheet 'Old'"));
-    EXPECT_TRUE(says(refused(saved_book, "Notes"), "no column name"));
+    EXPECT_TRUE(has_text(refused(saved_book, "Frnt & more"), "did you mean 'Front & more'?"));
+    EXPECT_TRUE(has_text(refused(saved_book, "Old"), "--sheet: there is no sheet 'Old'"));
+    EXPECT_TRUE(has_text(refused(saved_book, "Notes"), "no column name"));
     const Parts two = with(1, "sheet1.xml", "sheet2.xml");
-    EXPECT_TRUE(says(refused(two), "several sheets have numbers; choose one: Notes, Front & more"));
-    EXPECT_EQ(read(two, "Front & more"), yaml);
-    EXPECT_TRUE(says(refused(with(4, "row r=\"6\"", "row r=\"4\"")),
-                     "p.xlsx:4: Front & more: rows are not"));
     EXPECT_TRUE(
-        says(refused(with(4, "r=\"D5\"", "r=\"B5\"")), "p.xlsx:5: Front & more: cells are not"));
-    EXPECT_TRUE(says(refused(with(4, "</x:worksheet>", "")), "sheet2.xml' of the workbook: "));
-    EXPECT_TRUE(says(refused({saved_book[1]}), "a workbook without a visible sheet"));
+        has_text(refused(two), "several sheets have numbers; choose one: Notes, Front & more"));
+    EXPECT_EQ(read(two, "Front & more"), yaml);
+    EXPECT_TRUE(has_text(refused(with(4, "row r=\"6\"", "row r=\"4\"")),
+                         "p.xlsx:4: Front & more: rows are not"));
+    EXPECT_TRUE(has_text(refused(with(4, "r=\"D5\"", "r=\"B5\"")),
+                         "p.xlsx:5: Front & more: cells are not"));
+    EXPECT_TRUE(has_text(refused(with(4, "</x:worksheet>", "")), "sheet2.xml' of the workbook: "));
+    EXPECT_TRUE(has_text(refused({saved_book[1]}), "a workbook without a visible sheet"));
     Parts large = saved_book;
     large[2].second.assign(65 << 20, ' ');  // packs to a thousandth
-    EXPECT_TRUE(says(refused(large), "is larger than 64 MiB"));
+    EXPECT_TRUE(has_text(refused(large), "is larger than 64 MiB"));
     const std::string whole = support::text_of(workbook(place, saved_book));
     std::string damaged = whole;
     damaged[60] = static_cast<char>(damaged[60] ^ 0x55);
@@ -109,28 +110,28 @@ TEST(PointsTable, WorkbookIsReadAsTheTableOfItsSheet) {
         refusal_of([&] { importer::import_file(file, with_axes("x-forward,y-left")); }).empty());
 }
 
-// Points and markers of parts that are placed and turned; a place that is an expression is left out.
+// The parts of the markers are displaced and rotated; a point whose place is an expression is left out.
 TEST(Points, AdamsViewCoordinatesAreReadRelativeToTheMarkerOrPartOfTheirCommand) {
     const std::string text = support::text_of(import_folder / "points/view.cmd");
     importer::Options options = with_axes("x-rearward,y-left,z-up");
     const auto read = importer::import_text(text, "c.cmd", options);
-    EXPECT_TRUE(says(read.yaml, "hpl_uca_front: [100, 240, 280.8]  # line 12, hpl_uca_front"));
-    EXPECT_TRUE(says(read.yaml, "upper_ball: [-12, 540, 300]"));
-    EXPECT_TRUE(says(read.yaml, "lower_ball: [5, 575, 110]"));
-    EXPECT_TRUE(says(notes_of(read), "with a place that is an expression: line 41, "));
+    EXPECT_TRUE(has_text(read.yaml, "hpl_uca_front: [100, 240, 280.8]  # line 12, hpl_uca_front"));
+    EXPECT_TRUE(has_text(read.yaml, "upper_ball: [-12, 540, 300]"));
+    EXPECT_TRUE(has_text(read.yaml, "lower_ball: [5, 575, 110]"));
+    EXPECT_TRUE(has_text(notes_of(read), "with a place that is an expression: line 41, "));
     options.as = "double_wishbone";
     EXPECT_EQ(importer::import_text(text, "c.cmd", options).bodies, 4);
     const std::string listed = support::text_of(import_folder / "points/listed.cmd");
     const auto other = importer::import_text(listed, "c.cmd", with_axes("x-forward,y-left"));
-    EXPECT_TRUE(says(other.yaml, "arm_outer: [500, 250, 100]"));
-    EXPECT_TRUE(says(other.yaml, "arm_inner: [750, 500, 100]"));
+    EXPECT_TRUE(has_text(other.yaml, "arm_outer: [500, 250, 100]"));
+    EXPECT_TRUE(has_text(other.yaml, "arm_inner: [750, 500, 100]"));
     const auto refused = [&](const std::string& what, const std::string& by) {
         return refusal_of(replaced(listed, what, by), "c.cmd", with_axes("x-forward,y-left"));
     };
-    EXPECT_TRUE(says(refused("= .car.ground.turned\n", "= .car.arm\n"),
-                     "c.cmd:5: relative_to: no command before creates '.car.arm'"));
-    EXPECT_TRUE(says(refused("length = meter", "length = mile"), "c.cmd:2: length: 'mile'"));
-    EXPECT_TRUE(says(refused("length = meter", ""), "--unit: the file does not say its unit"));
+    EXPECT_TRUE(has_text(refused("= .car.ground.turned\n", "= .car.arm\n"),
+                         "c.cmd:5: relative_to: no command before creates '.car.arm'"));
+    EXPECT_TRUE(has_text(refused("length = meter", "length = mile"), "c.cmd:2: length: 'mile'"));
+    EXPECT_TRUE(has_text(refused("length = meter", ""), "--unit: the file does not say its unit"));
 }
 
 TEST(PointsTable, CellsAreSplitAtTheSeparatorThatTheFileDeclaresOrUses) {

@@ -115,8 +115,9 @@ TEST(ChronoVehicle, TheAntiRollBarActsInRollOnly) {
     const Data data;
     const std::string yaml = data.import(with_rack, "front").yaml;
     const Model model = compile(parse_scene(yaml, "scene"), Detail::everything);
-    EXPECT_TRUE(says(yaml, "antiroll_bar.twist: {bodies: [antiroll_bar_left, antiroll_bar_right]"));
-    EXPECT_TRUE(says(yaml, "rate: 10000"));
+    EXPECT_TRUE(
+        has_text(yaml, "antiroll_bar.twist: {bodies: [antiroll_bar_left, antiroll_bar_right]"));
+    EXPECT_TRUE(has_text(yaml, "rate: 10000"));
     const std::size_t left = position(model.bodies, "antiroll_bar_left"),
                       right = position(model.bodies, "antiroll_bar_right");
     // Arms at half of Arm/Length on each side, from [0.6586, 0, -0.2364] in the chassis.

@@ -56,8 +56,8 @@ TEST(Certificate, CentreOfTheBoxSatisfiesTheEquationsOfTheOtherLegs) {
             }
 }
 
-// A box that is proved for one leg proves the states of the others, with the distance of each, and
-// excludes what is not near; where a motion is idle each state has equations of its own.
+// A box that is proved for one leg proves nearby states of the others with their distances and excludes others. With an
+// idle motion each state has its own equations, so that no box is shared.
 TEST(Certificate, KnownBoxProvesTheStatesOfOtherLegsAndExcludesWrongOnes) {
     const auto walks = walked("double_wishbone", 1, exact_legs);
     for (std::size_t w = 0; w < walks.size(); w += exact_legs.size())
@@ -136,7 +136,7 @@ TEST(Certificate, PerturbedPointIsExcludedWithItsDistanceFromTheEquilibrium) {
         excluded(fmt::format("judged at {} N more", by), [&](Equilibrium& s) { s.load += by; });
 }
 
-// A spun strut is another equilibrium; a load on the spin has none.
+// The strut turned about its own axis is another equilibrium; under a moment about that axis there is none.
 TEST(Certificate, StrutTurnedAboutItsFreeAxisIsProvedAndAMomentAboutThatAxisIsExcluded) {
     const OnMcPherson p(0.4);
     const Certificate before = p.certify(p.state);

@@ -253,7 +253,7 @@ TEST(Derivatives, RateOfEveryGradientIsFirstOrderExact) {
     }
 }
 
-// The same for every constraint and its Jacobian.
+// As above, for every constraint and its Jacobian.
 TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
     Random random;
     for (int repeat = 0; repeat < 25; ++repeat) {

@@ -17,7 +17,7 @@ TEST(EquilibriumElements, LogarithmInvertsTheExponentialUpToHalfATurn) {
         const Quaterniond p(Eigen::AngleAxisd(angle, u));
         for (const double sign : {1., -1.}) {
             const auto log = logarithm(Quaterniond(sign * p.coeffs()));
-            worst.see((log.theta - angle * u).norm() / angle, fmt::format("{} rad", angle));
+            worst.add((log.theta - angle * u).norm() / angle, fmt::format("{} rad", angle));
         }
     }
     EXPECT_TRUE(within(worst, 2e-15 * 4));
@@ -122,7 +122,7 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
             const auto over_a = [&](double a) { return residual(system, {a}, x); };
             const Eigen::VectorXd E_rate =
                 (8 * (over_a(701) - over_a(699)) - (over_a(702) - over_a(698))) / 12;
-            worst.see((found.E_rate - E_rate).cwiseAbs().maxCoeff(),
+            worst.add((found.E_rate - E_rate).cwiseAbs().maxCoeff(),
                       s.name + " over the parameter");
             for (int k = 0; k < n; ++k) {
                 const auto E = [&](double by) {
@@ -132,7 +132,7 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
                 };
                 const Eigen::VectorXd differences =
                     (45 * (E(1) - E(-1)) - 9 * (E(2) - E(-2)) + (E(3) - E(-3))) / (60 * h);
-                worst.see((J.col(k) - differences).cwiseAbs().maxCoeff() / J.cwiseAbs().maxCoeff(),
+                worst.add((J.col(k) - differences).cwiseAbs().maxCoeff() / J.cwiseAbs().maxCoeff(),
                           fmt::format("{}, {} away, column {}", s.name, away, k));
             }
         }

@@ -18,7 +18,7 @@ void expect_points_in_balance(const Model& model, const Branch& branch, const Eq
     for (const auto& state : path.points) {
         const auto r = residuals(model, branch, state);
         for (const double part : {r.length, r.direction, r.force, r.moment})
-            worst.see(part, fmt::format("{}", state.load));
+            worst.add(part, fmt::format("{}", state.load));
     }
     EXPECT_TRUE(within(worst, limit));
 }
@@ -41,7 +41,7 @@ TEST(EquilibriumOutcome, MotionThirteenDecadesSofterIsNotIdle) {
         ASSERT_EQ(path.outcome, Outcome::converged) << stiff << ": " << path.detail;
         Worst worst;
         for (const auto& state : path.points)
-            worst.see((state.poses[0].r - state.load / 1e-4 * along).norm(),
+            worst.add((state.poses[0].r - state.load / 1e-4 * along).norm(),
                       fmt::format("{}", state.load));
         EXPECT_TRUE(within(worst, 1e-11)) << stiff;
     }

@@ -128,7 +128,7 @@ TEST(EquilibriumSparse, LeastStiffnessEqualsTheDenseEigenvalue) {
     Worst worst;
     at_stations([&](const Continuation& continuation, const std::string& what) {
         const double least = dense_smallest(continuation.system, continuation.here.linearised);
-        worst.see(std::abs(continuation.here.stiffness.least / least - 1), what);
+        worst.add(std::abs(continuation.here.stiffness.least / least - 1), what);
     });
     EXPECT_TRUE(within(worst, 1e-6));
 }
@@ -248,7 +248,7 @@ TEST(EquilibriumSparse, ThousandSpringsInSeriesCarryTheSameForce) {
     Worst worst;
     for (int b = 0; b < n; ++b) {
         const Vector3d exact((b + 1) * (h + P / k), 0, 0);
-        worst.see(
+        worst.add(
             (path.points[0].poses[static_cast<std::size_t>(b)].r - exact).norm() / exact.norm(),
             fmt::format("block {}", b));
     }
@@ -286,7 +286,7 @@ TEST(EquilibriumSparse, ThousandHingesNeedAsManyStepsAsTen) {
         Worst worst;
         for (int b = 0; b < n; ++b) {
             const Quaterniond turn(Eigen::AngleAxisd(M / (c * n) * (b + 1), Vector3d::UnitZ()));
-            worst.see(path.points[0].poses[static_cast<std::size_t>(b)].p.angularDistance(turn),
+            worst.add(path.points[0].poses[static_cast<std::size_t>(b)].p.angularDistance(turn),
                       fmt::format("bar {} of {}", b, n));
         }
         EXPECT_TRUE(within(worst, 1e-10));
