@@ -152,7 +152,7 @@ TEST(Deviation, ProfileIsTheLargestDeviationOfTheMainOutputsAtEachPoint) {
     EXPECT_TRUE(std::isnan(travel.apart[40].mm));  // not reached
 }
 
-TEST(Abscissa, ReasonNamesTheChannelThatReversesOrDoesNotMove) {
+TEST(Abscissa, ReasonForHavingNoneNamesTheOutputThatReversesOrDoesNotMove) {
     const Curve a = made(1, [](double x) { return (x - 4) * (x - 4); });
     EXPECT_EQ(abscissa(outputs, 0, a, a).why_not, "");
     EXPECT_EQ(abscissa(outputs, 1, a, a).why_not, "y turns back at 4 N (at 0 mm)");

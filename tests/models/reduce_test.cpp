@@ -229,7 +229,7 @@ TEST(Weld, BodyFixedToGroundIsRemovedWithItsLoads) {
     EXPECT_LE((coil.j.s_local - Vector3d(0, 0, 1)).norm(), 1e-15);
 }
 
-TEST(Weld, OpenJointsAndOutputsOnGroundAreKept) {
+TEST(Weld, GapPreventsMergingAndOutputsOnGroundAreKept) {
     Scene apart = bodies(2);
     Fixed weld = fixed(apart, 0, 1, Vector3d(1, 1, 1));
     weld.j.s_local.x() += 1e-9;

@@ -218,7 +218,7 @@ TEST(SeriesPieces, ArcLengthPassesTurningPointsOfACurve) {
     EXPECT_NEAR(sampled.points.back().load, 200, 1e-9);
 }
 
-TEST(SeriesPieces, SettlingCrossesKnots) {
+TEST(SeriesPieces, EquilibriumAtTheStartIsFoundAcrossKnots) {
     for (const double held : {700.0, 3000.0, -900.0}) {
         const SideModel w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(1500, {push(held, 1)}));

@@ -321,7 +321,7 @@ TEST(Series, ReachingTheExpansionLimitIsReported) {
     EXPECT_NE(first_order.detail.find("200 expansions were not enough"), std::string::npos);
 }
 
-TEST(Series, ChangePassEqualsTheTangentTimesTheCoefficient) {
+TEST(Series, LinearPartOfTheEquationsEqualsTheTangentTimesTheCoefficient) {
     // The second pass, linear in x_k, against the matrix of the solve: G_k with x_k
     // inserted must vanish.
     for (const auto& name : support::small_scene_names()) {
