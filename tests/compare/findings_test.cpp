@@ -198,7 +198,7 @@ TEST(MeasuredPoints, AreComparedOnlyWithTheBranchTheyName) {
     EXPECT_THROW((void)compare_measured(mcpherson(), compared(), measured), std::invalid_argument);
 }
 
-TEST(MeasuredPoints, WithoutABranchNameAreRefusedIfTwoBranchesHaveTheirSide) {
+TEST(MeasuredPoints, PointsWithoutABranchAreRefusedIfTwoBranchesHaveTheirSide) {
     Scene scene = support::scene("chrono_mcpherson");
     scene.branches[1].to = 1000;
     for (auto& branch : scene.branches) branch.steps = 5;

@@ -256,7 +256,7 @@ TEST(EveryNthRow, ReferencesSolveOnlyTheRowsThatAreWritten) {
     }
 }
 
-TEST(ResultRows, BeforeAFailureOnEitherSideAreKept) {
+TEST(ResultRows, RowsBeforeAFailureOnEitherSideAreKept) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches.resize(1);
     scene.branches[0].from = -300;  // the limit is at -211.5 N
@@ -281,7 +281,7 @@ TEST(ResultRows, BeforeAFailureOnEitherSideAreKept) {
     }
 }
 
-TEST(ResultRows, ContainTheStartOnceWhicheverSideSettles) {
+TEST(ResultRows, StartIsWrittenOnceWhicheverSideIsSolved) {
     const Model model = compile(support::scene("bushing_pair"));
     Branch branch = model.branches[0];
     branch.from = -branch.to;

@@ -449,7 +449,7 @@ TEST(Trade, WorkIsProportionalToStepsTimesCostPerStep) {
     EXPECT_EQ(find(result, "published", 160), nullptr);
 }
 
-TEST(Trade, WorkBudgetEndsTheStepCountsAfterAtLeastOne) {
+TEST(Trade, WorkBudgetOfZeroTriesTheSmallestStepCountOnly) {
     TradeOptions options = quick({0.01}, 2560);
     options.work_budget = 0;
     const Trade result = trade(shipped("pinned_bar"), options);

@@ -229,7 +229,7 @@ TEST(Trim, SymmetricSidesGetEqualAdjustments) {
 
 // Bushings with preloads such that the drawn position is the equilibrium: every leg settles there,
 // also the one that had no part in the trim.
-TEST(Trim, BalancedBushingsKeepEveryLegAtTheDesignPosition) {
+TEST(Trim, BalancingBushingPreloadsKeepEveryLegAtTheDesignPosition) {
     for (const char* name : {"double_wishbone", "front_axle"}) {
         Scene scene = support::scene(name);
         const auto moved = [&](Leg leg) {
@@ -258,7 +258,7 @@ TEST(Trim, BalancedBushingsKeepEveryLegAtTheDesignPosition) {
 
 // Two struts and a bar on a soft subframe: where springs carry much of the load, plain corrections would take hundreds
 // of iterations.
-TEST(Trim, BalancedBushingsAreFoundOnASoftSubframe) {
+TEST(Trim, BalancingBushingPreloadsAreFoundOnASoftSubframe) {
     Scene scene = read_scene(std::string(ELASTOCHECK_SCENES) +
                              "/../../tests/reports/axles/front_subframe_axle.yaml");
     scene.trim->bushings = Trim::Bushings::balanced;
@@ -267,7 +267,7 @@ TEST(Trim, BalancedBushingsAreFoundOnASoftSubframe) {
     EXPECT_TRUE(found.record->reached()) << found.record->detail;
 }
 
-TEST(Trim, BalancedBushingsRejectAConditionOffTheDesignPosition) {
+TEST(Trim, BalancingBushingPreloadsAreRefusedWithAConditionOffTheDesignPosition) {
     Scene scene = support::scene("double_wishbone");
     scene.trim->bushings = Trim::Bushings::balanced;
     scene.trim->until[0].value = 0.01;

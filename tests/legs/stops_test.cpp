@@ -88,7 +88,7 @@ TEST_P(Stops, SpringForceEqualsItsCurve) {
 // A bar is turned by its drive; a stop between its tip and a point on ground is longest, r + d,
 // where the bar points away. The clearance ends exactly there, or before; the effort of the drive is
 // f · ∂ℓ/∂α, with ℓ² = r² + d² - 2 r d cos α.
-TEST_P(Stops, StopThatTouchesOrReopensIsPassed) {
+TEST_P(Stops, BranchPassesAStopThatTouchesOrReopens) {
     const double r = 0.3, d = 0.5, k = 1e5;
     for (const double short_of : {0., 1e-15, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2})
         for (const int steps : {2, 5, 30}) {

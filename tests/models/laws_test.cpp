@@ -115,7 +115,7 @@ Vector6 force_in_ground(const Bushing& b, const Vector6& ground_e) {
     return result;
 }
 
-TEST(MirroredLaws, EqualTheTwinWrittenByHand) {
+TEST(MirroredLaws, SpringsAndBushingsEqualThoseOfTheTwinWrittenByHand) {
     const Scene mirrored = mirrored_axle(), by_hand = axle_by_hand();
     for (const char* name : {"coil_right", "coil_right.bump_stop", "axle_right.rebound"}) {
         const auto a = element<AxialSpring>(mirrored, name),

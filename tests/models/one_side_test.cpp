@@ -72,7 +72,7 @@ TEST(OneSide, ChangingBothSidesEqualsChangingTheSharedNumber) {
     }
 }
 
-TEST(OneSide, ElementsStopsAndFileSectionsFollowTheSide) {
+TEST(OneSide, NumbersOfASpringOnOneSideAreSetListedAndRewrittenAlone) {
     const Scene scene = axle(
         {{"springs.coil_left.rate@left", "80e3"}, {"springs.coil_left.preload@right", "5000"}});
     EXPECT_EQ(rate(scene, "coil_left"), 80e3);

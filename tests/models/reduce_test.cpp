@@ -378,7 +378,7 @@ TEST(Link, OneOfTwoLinksInSeriesIsKept) {
     }
 }
 
-TEST(Link, DuplicatedBallJointDoesNotPreventADistance) {
+TEST(Link, WithADuplicatedBallJointBecomesADistance) {
     Scene s = linked();
     s.joints.push_back({"again", s.joints[0].kind});
     EXPECT_EQ(names(compile(s).joints), "b root");

@@ -154,7 +154,7 @@ TEST(Knots, AdaptiveStepsEndOnKnotsAndKeepTheTolerance) {
         }
 }
 
-TEST(Knots, AdaptiveFollowsATableOfManyPoints) {
+TEST(Knots, AdaptiveReachesTheEndOverATableOfManyPoints) {
     // f = 1000 sinh(20 x) as a Hermite table every 10 mm with exact slopes: C1, and
     // its curvature jumps.
     const auto at = [](double x) { return 1e3 * std::sinh(20 * x); };

@@ -68,7 +68,7 @@ TEST(Adm, StatementWithoutASceneElementIsAnErrorOrReportedInTheHead) {
 
 // ---- Expressions.
 
-TEST(Adm, ExpressionsMayBeSumsOfConstantsDisplacementsAndCurves) {
+TEST(Adm, ExpressionIsReadAsASumOfAConstantDisplacementsAndCurves) {
     using namespace importer::adm;
     Context context;
     context.time = 2;
