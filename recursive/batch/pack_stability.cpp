@@ -23,18 +23,6 @@ bool may_push_idle(SteppingState& s) {
     return !(stiffness >= -noticed * acts / s.setup.length);
 }
 
-// Whether the determinant, 1 at τ = 0, may have a zero inside: as lost_inside() begins.
-bool may_dip(double in_middle, double at_end) {
-    constexpr double dips = 0.5, curved = 0.02;
-    if (!(in_middle > 0)) return true;
-    const auto [lowest, highest] = std::minmax({1., in_middle, at_end});
-    const double before = 2 * (in_middle - 1), behind = 2 * (at_end - in_middle),
-                 bend = behind - before, there = 0.25 - before / (2 * bend),
-                 least = 1 + there * (before + bend * (there - 0.5));
-    const double deep = std::max(dips * std::min(1.0, at_end), curved * (highest - lowest));
-    return bend > 0 && there > 0 && there < 1 && least < deep;
-}
-
 }  // namespace
 
 // As min_stiffness() of one variant: the same iteration with the factors of the lanes.
@@ -182,7 +170,7 @@ void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
         if (stable) {
             const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
             slot.inside = slot.inside && of_energy && mu > 0 && !may_push_idle(*slot.s) &&
-                          !may_dip(slot.in_middle, std::exp2(log_end - slot.log_begin));
+                          !may_reach_zero({1, slot.in_middle, std::exp2(log_end - slot.log_begin)});
         }
         slot.log_begin = log_end;
     });

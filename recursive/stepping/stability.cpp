@@ -179,6 +179,9 @@ Outcome check_start_stability(SteppingState& s, const StartStability& start) {
 
 namespace {
 
+// How far beside a step a predicted minimum counts, as a fraction of the step.
+constexpr double outside_step = 0.1;
+
 // Minimum of the parabola through d(t) at three t, in units of their interval: none if it has none
 // within the interval or `outside` of it. It dips below half of the least of the three, or below
 // 2 % of their range, which is the error of the parabola.
@@ -208,14 +211,18 @@ bool determinant_dips(double log_from, double log_middle, double log_to) {
            parabola_dips({0, 0.5, 1}, {from, middle, to}, 0).has_value();
 }
 
+bool may_reach_zero(const std::array<double, 3>& d) {
+    return !(d[1] >= 0) || parabola_dips({0, 0.5, 1}, d, outside_step).has_value();
+}
+
 Dip lowest_determinant(std::array<double, 3> d,
                        const std::function<double(double)>& determinant_at) {
     // Smallest distance of a new point from the others, as a fraction of their interval.
-    constexpr double separation = 0.05, outside = 0.1;
+    constexpr double separation = 0.05;
     constexpr int looks = 20;
     std::array<double, 3> t{0, 0.5, 1};
     for (int look = 0; look < looks && d[1] >= 0; ++look) {
-        const auto dip = parabola_dips(t, d, outside);
+        const auto dip = parabola_dips(t, d, outside_step);
         if (!dip) break;
         const double nearest = separation * (t[2] - t[0]);
         double place = std::clamp(dip->t, t[0] + nearest, t[2] - nearest);

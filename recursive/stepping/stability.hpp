@@ -53,6 +53,8 @@ struct Dip {
     double t = 0, value = 0;
 };
 Dip lowest_determinant(std::array<double, 3> values, const std::function<double(double)>& at);
+// Whether it evaluates the determinant a first time, given the same values.
+bool may_reach_zero(const std::array<double, 3>& values);
 
 // The smallest eigenvalue of the symmetric part of Q.
 double min_eigenvalue(const Eigen::MatrixXd& Q);

@@ -11,6 +11,7 @@
 #include "recursive/batch/kernels.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/sides.hpp"
+#include "recursive/stepping/stability.hpp"
 #include "tests/recursive/random.hpp"
 #include "tests/support/scene_text.hpp"
 #include "tests/support/scenes.hpp"
@@ -337,6 +338,19 @@ TEST(Batch, ResultsDoNotDependOnTheInstructionSet) {
     for (const auto& [k, paths] : chosen)
         for (std::size_t b = 0; b < paths.size(); ++b)
             EXPECT_EQ(difference(paths[b], baseline.at(k)[b]), 0) << "variant " << k;
+}
+
+// 1 - 1.4 t + ..., whose minimum of 0.014 lies at t = 1.08: the batch judged only minima within the step.
+TEST(Batch, LowDeterminantJustBesideTheStepIsLeftToTheScalarSolution) {
+    const std::array<double, 3> determinants{1, 0.3, 0.02};
+    EXPECT_TRUE(may_reach_zero(determinants));
+    int evaluations = 0;
+    (void)lowest_determinant(determinants, [&](double) {
+        ++evaluations;
+        return 1.;
+    });
+    EXPECT_GT(evaluations, 0);
+    EXPECT_FALSE(may_reach_zero({1, 0.9, 0.8}));
 }
 
 TEST(Batch, UnsupportedRecordingsAreRejected) {
