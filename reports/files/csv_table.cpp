@@ -5,9 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/tables/csv.hpp"
+#include "models/reader/reader.hpp"
+#include "models/reader/tables/sheet.hpp"
 
 namespace elastocheck::reports {
 
@@ -41,34 +43,29 @@ double number_or_none(std::string_view cell, const std::string& file, int line,
 void read_sheet(std::string_view csv, const std::string& file, std::size_t max_rows,
                 const std::function<void(const Cells&, int)>& head,
                 const std::function<void(const Cells&, int)>& row) {
-    if (csv.starts_with("\xFF\xFE") || csv.starts_with("\xFE\xFF"))
-        fail_at(file, 0, "is UTF-16; save it as CSV in UTF-8");
     if (file.ends_with(".yaml") || file.ends_with(".yml"))
         fail_at(file, 0, "is YAML; expected a table, CSV with the names of its columns first");
-    std::size_t columns = 0, rows = 0;
-    for (reader::CsvLines lines(csv); lines.next();) {
-        const int number = lines.number();
-        const Cells cells = lines.cells();
-        if (cells.size() > lines.max_cells)
-            fail_at(file, number,
-                    fmt::format("more columns than {}, the most that are read", lines.max_cells));
-        if (columns == 0) {
-            columns = cells.size();
-            head(cells, number);
-            continue;
+    const reader::Sheet sheet = [&] {
+        try {
+            return reader::read_sheet(csv, file, 2);
+        } catch (const SceneError& error) {
+            throw SheetError(error.what());
         }
-        if (cells.size() != columns)
-            fail_at(file, number,
+    }();
+    if (sheet.rows.empty()) fail_at(file, 0, "empty; the first line names the columns");
+    const std::size_t columns = sheet.rows.front().cells.size();
+    head(sheet.rows.front().cells, sheet.rows.front().line);
+    if (sheet.rows.size() == 1) fail_at(file, 0, "no point in it");
+    if (sheet.rows.size() > max_rows + 1)
+        fail_at(file, sheet.rows[max_rows + 1].line,
+                fmt::format("more points than {}, the most that are read", max_rows));
+    for (const reader::SheetRow& read : std::span(sheet.rows).subspan(1)) {
+        if (read.cells.size() != columns)
+            fail_at(file, read.line,
                     fmt::format("{} cells, but {} columns are named in the first line",
-                                cells.size(), columns));
-        if (rows == max_rows)
-            fail_at(file, number,
-                    fmt::format("more points than {}, the most that are read", max_rows));
-        ++rows;
-        row(cells, number);
+                                read.cells.size(), columns));
+        row(read.cells, read.line);
     }
-    if (columns == 0) fail_at(file, 0, "empty; the first line names the columns");
-    if (rows == 0) fail_at(file, 0, "no point in it");
 }
 
 }  // namespace elastocheck::reports

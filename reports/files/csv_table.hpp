@@ -16,10 +16,10 @@ struct SheetError : std::runtime_error {
 [[noreturn]] void fail_at(const std::string& file, int line,
                           const std::string& what);  // line 0: the file as a whole
 
-using Cells = std::vector<std::string_view>;  // trimmed, without the quotes around one
+using Cells = std::vector<std::string>;  // trimmed, without the quotes around one
 // Calls `head` for the first line with content, which names the columns, and `row` for every
-// further one. Throws SheetError for a line with another number of cells, more than `max_rows`
-// lines or 10 000 columns, UTF-16, or an empty table.
+// further one; any separator that `reader::read_sheet` finds. Throws SheetError for a line with another
+// number of cells, more than `max_rows` lines or 10 000 columns, UTF-16, or an empty table.
 void read_sheet(std::string_view csv, const std::string& file, std::size_t max_rows,
                 const std::function<void(const Cells&, int line)>& head,
                 const std::function<void(const Cells&, int line)>& row);

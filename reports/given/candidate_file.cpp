@@ -36,8 +36,7 @@ struct OutputTable {
 // The columns named in the first line. An unknown one is an error unless it may be left out.
 void read_headings(const Cells& cells, int line, const std::string& file, const Names& names,
                    const std::vector<compare::Channel>* also_known, OutputTable& table) {
-    for (const auto cell : cells) {
-        const std::string name(cell);
+    for (const std::string& name : cells) {
         if (std::ranges::find(table.columns, name, &Meaning::name) != table.columns.end())
             fail_at(file, line, fmt::format("column {} is named twice", reader::quote(name)));
         table.columns.push_back(meaning_of(name, names));

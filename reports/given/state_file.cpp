@@ -11,7 +11,7 @@
 
 #include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/tables/csv.hpp"
+#include "models/reader/tables/sheet.hpp"
 #include "reports/files/csv_table.hpp"
 #include "reports/files/limits.hpp"
 #include "reports/json/json.hpp"
@@ -195,11 +195,11 @@ bool begins_as_json(std::string_view content) {
 
 bool holds_states(std::string_view content) {
     if (begins_as_json(content)) return true;
-    reader::CsvLines lines(content);
-    if (!lines.next()) return false;
-    const auto cells = lines.cells();
-    return std::ranges::find(cells, "body") != cells.end() &&
-           std::ranges::find(cells, "qw") != cells.end();
+    const auto heading =
+        content.substr(0, content.find_first_of("\r\n", content.find_first_not_of("\r\n")));
+    const reader::Sheet sheet = reader::read_sheet(heading, "", 2);
+    return !sheet.rows.empty() && std::ranges::count(sheet.rows.front().cells, "body") > 0 &&
+           std::ranges::count(sheet.rows.front().cells, "qw") > 0;
 }
 
 std::vector<CandidateState> read_states(std::string_view content, const std::string& file,

@@ -46,7 +46,7 @@ double unit_of_rate(const std::string& heading, bool is_rotational, const std::s
 RateTable read_rate_table(const std::string& file) {
     const reader::TextFile read = reader::read_text(file, reader::Pipes::refused);
     if (!read.trouble.empty()) fail(file, 0, "", "{}", read.trouble);
-    const Sheet sheet = read_sheet(read.text, file, 4);
+    const Sheet sheet = reader::read_sheet(read.text, file, 4);
     if (sheet.rows.empty()) fail(file, 0, "", "an empty table; expected role, x, y, z, rx, ry, rz");
     const SheetRow& head = sheet.rows.front();
     std::size_t role = SheetRow::max_cells;

@@ -7,9 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "models/import/property/spreadsheet.hpp"
+#include "models/reader/tables/sheet.hpp"
 
 namespace elastocheck::importer {
+
+using reader::letters_of;
+using reader::Sheet;
+using reader::SheetRow;
 
 struct Triple {
     std::string prefix;  // of the names of its points: "left_", "right_", or empty

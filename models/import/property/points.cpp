@@ -9,7 +9,7 @@
 #include "models/import/import.hpp"
 #include "models/import/property/columns.hpp"
 #include "models/import/property/named_points.hpp"
-#include "models/import/property/spreadsheet.hpp"
+#include "models/reader/tables/sheet.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 
@@ -65,7 +65,7 @@ std::string words_of(const SheetRow& row) {
 
 std::vector<NamedPoint> points_of_table(std::string_view text, const std::string& file,
                                         const Options& options, Draft& draft) {
-    const Sheet sheet = read_sheet(text, file, narrowest);
+    const Sheet sheet = reader::read_sheet(text, file, narrowest);
     const PointColumns columns = point_columns(sheet, file, options.columns, options.unit);
     const bool decimal_comma = has_decimal_commas(sheet, columns, file);
     draft.remarks.push_back(fmt::format("Coordinates of the file in {}, {}{}.", columns.unit,

@@ -13,8 +13,8 @@
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
-#include "models/reader/tables/csv.hpp"
 #include "models/reader/tables/property_file.hpp"
+#include "models/reader/tables/sheet.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -49,8 +49,8 @@ std::vector<TablePoint> read_rows(const Cursor& field, const LawUnits& units) {
     return points;
 }
 
-// ---- CSV: two comma-separated numbers per line. Empty lines and lines that start with # are
-// ignored; the first other line may be a header.
+// ---- CSV: two numbers per line. Empty lines and lines that start with # are ignored; the first other
+// line may be a header.
 
 bool begins_with_number(std::string_view text) {
     if (text.starts_with('+')) text.remove_prefix(1);
@@ -60,15 +60,15 @@ bool begins_with_number(std::string_view text) {
 }
 
 // Parses CSV to a list as in a scene, with the line numbers of the CSV file.
-Value rows_of(std::string_view text) {
+Value rows_of(std::string_view text, const std::string& file) {
     Value table{.kind = Value::Kind::list};
     bool is_first = true;
-    for (CsvLines lines(text); lines.next();) {
-        if (lines.whole().starts_with('#')) continue;
-        Value row{.kind = Value::Kind::list, .line = lines.number()};
-        for (const auto cell : lines.cells())
+    for (SheetRow& read : read_sheet(text, file, 2).rows) {
+        if (read.cells.front().starts_with('#')) continue;
+        Value row{.kind = Value::Kind::list, .line = read.line};
+        for (std::string& cell : read.cells)
             row.items.push_back(
-                {.kind = Value::Kind::scalar, .text = std::string(cell), .line = lines.number()});
+                {.kind = Value::Kind::scalar, .text = std::move(cell), .line = read.line});
         const auto is_number = [](const Value& cell) { return begins_with_number(cell.text); };
         if (!std::exchange(is_first, false) || std::ranges::any_of(row.items, is_number))
             table.items.push_back(std::move(row));
@@ -127,7 +127,7 @@ std::vector<TablePoint> read_file(const Cursor& field, const LawUnits& units,
         return rows;
     }
     if (!is_utf8(text)) field.fail(fmt::format("{}: not plain text (UTF-8)", field.found()));
-    const Value table = rows_of(text);
+    const Value table = rows_of(text, file_name);
     std::vector<Number> not_of_the_scene;
     return read_rows({&table, field.path, &file_name, &not_of_the_scene}, units);
 }

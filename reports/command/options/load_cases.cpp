@@ -87,7 +87,7 @@ std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::
     std::vector<CaseColumn> columns;
     std::vector<compare::LoadCase> cases;
     const auto head = [&](const Cells& cells, int line) {
-        for (const auto cell : cells) {
+        for (const std::string& cell : cells) {
             columns.push_back(column_of(cell, known, file, line));
             if (std::ranges::count(columns, columns.back().heading, &CaseColumn::heading) > 1)
                 fail_at(file, line,

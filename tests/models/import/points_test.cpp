@@ -4,7 +4,7 @@
 #include <minizip/zip.h>
 
 #include "models/import/import.hpp"
-#include "models/import/property/spreadsheet.hpp"
+#include "models/reader/tables/sheet.hpp"
 #include "tests/models/import/imports.hpp"
 
 namespace elastocheck {
@@ -135,7 +135,7 @@ TEST(Points, AdamsViewCoordinatesAreReadRelativeToTheMarkerOrPartOfTheirCommand)
 }
 
 TEST(PointsTable, CellsAreSplitAtTheSeparatorThatTheFileDeclaresOrUses) {
-    const auto rows = [](const char* text) { return importer::read_sheet(text, "p.csv", 4); };
+    const auto rows = [](const char* text) { return reader::read_sheet(text, "p.csv", 4); };
     const auto sheet = rows("sep=|\r\n\r\n a |\"b\"\"|c\"|d|1,5;2\r\n");
     ASSERT_EQ(sheet.rows.size(), 1u);
     EXPECT_EQ(sheet.rows[0].line, 3);

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace elastocheck::importer {
+namespace elastocheck::reader {
 
 struct SheetRow {
     static constexpr std::size_t max_cells = 10'000;
@@ -31,4 +31,4 @@ Sheet read_sheet(std::string_view text, const std::string& file, std::size_t col
 // "A", "B", ..., "Z", "AA", ... as spreadsheets name the column.
 std::string letters_of(std::size_t column);
 
-}  // namespace elastocheck::importer
+}  // namespace elastocheck::reader

@@ -1,4 +1,4 @@
-#include "models/import/property/spreadsheet.hpp"
+#include "models/reader/tables/sheet.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,7 +6,7 @@
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/yaml.hpp"
 
-namespace elastocheck::importer {
+namespace elastocheck::reader {
 namespace {
 
 // RFC 4180, with any separator and with LF, CR LF or CR as line end.
@@ -55,7 +55,7 @@ struct Splitter {
         if (place < text.size() && text[place] == '"') cell = quoted();
         while (place < text.size() && text[place] != separator && !ends_line())
             cell += text[place++];
-        return std::string(reader::trimmed(cell));
+        return std::string(trimmed(cell));
     }
 
     SheetRow row() {
@@ -96,7 +96,7 @@ Trial split(std::string_view text, char separator, int first_line) {
 }
 
 Sheet checked(Trial trial, const std::string& file) {
-    if (trial.wrong != nullptr) reader::fail(file, trial.wrong_line, "", trial.wrong);
+    if (trial.wrong != nullptr) fail(file, trial.wrong_line, "", trial.wrong);
     return std::move(trial.sheet);
 }
 
@@ -115,7 +115,7 @@ std::pair<std::ptrdiff_t, std::size_t> score(const Trial& trial, std::size_t col
 
 Sheet read_sheet(std::string_view text, const std::string& file, std::size_t columns) {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-        reader::fail(file, 1, "", "UTF-16; allowed: a CSV file in UTF-8");
+        fail(file, 1, "", "UTF-16; allowed: a CSV file in UTF-8");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.starts_with("sep=") && text.size() > 5 && (text[5] == '\r' || text[5] == '\n')) {
         const char separator = text[4];
@@ -136,4 +136,4 @@ std::string letters_of(std::size_t column) {
     return letters;
 }
 
-}  // namespace elastocheck::importer
+}  // namespace elastocheck::reader
