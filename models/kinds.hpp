@@ -15,8 +15,8 @@
 
 namespace elastocheck {
 
-// ---- Members whose C++ type does not say what they are. T is the type of the number,
-// const or not.
+// ---- Members whose C++ type does not say what they are: a reference with its meaning. T is the type
+// of the member, const or not.
 
 template <class T>
 struct Length {
@@ -40,8 +40,8 @@ struct LoadVector {
     BodyId axes;     // its components are along the axes of this body, or of ground
     bool is_moment;  // then it is an axial vector
 };
-// A direction that a mirror reverses: a rotation axis. Passed as Direction where the visitor does
-// not distinguish it.
+// A rotation axis, an axial vector: a mirror image has it reversed. Visitors without an overload for it
+// receive it as a Direction.
 template <class T>
 struct RotationAxis {
     T& direction;
@@ -303,17 +303,18 @@ void each_member(K& kind, F&& f) {
     if constexpr (detail::is_variant<T>::value)
         std::visit([&](auto& held) { each_member(held, f); }, kind);
     else
-        Kind<T>::members(
-            kind, [&](auto&&... all) { (detail::pass(f, std::forward<decltype(all)>(all)), ...); });
+        Kind<T>::members(kind, [&](auto&&... members) {
+            (detail::pass(f, std::forward<decltype(members)>(members)), ...);
+        });
 }
 
 // Calls f(BodyId&) for the body of every member.
 template <class K, class F>
 void each_body(K& kind, F&& f) {
     using Id = std::conditional_t<std::is_const_v<K>, const BodyId, BodyId>;
-    const auto of = [&]<class M>(M & member) requires requires { member.body; }
+    const auto body_of_member = [&]<class M>(M & member) requires requires { member.body; }
     { f(member.body); };
-    each_member(kind, overloaded{of, [&](Id& body) { f(body); }});
+    each_member(kind, overloaded{body_of_member, [&](Id& body) { f(body); }});
 }
 
 // Calls f(Point&) or f(Marker&) for every point and marker: both have `body` and `s_local`.
@@ -333,12 +334,12 @@ std::vector<Point> points_of(const K& kind) {
 // The first member of type M, e.g. member<Formulation>(elastic.kind); nullptr if it has none.
 template <class M, class K>
 auto member(K& kind) {
-    using Found = std::conditional_t<std::is_const_v<K>, const M, M>;
-    Found* found = nullptr;
-    each_member(kind, [&](Found& m) {
-        if (found == nullptr) found = &m;
+    using Member = std::conditional_t<std::is_const_v<K>, const M, M>;
+    Member* first = nullptr;
+    each_member(kind, [&](Member& m) {
+        if (first == nullptr) first = &m;
     });
-    return found;
+    return first;
 }
 
 // The number that a driver changes: the length or offset of a joint or constraint [m] or its angle
@@ -351,7 +352,7 @@ auto driven_number(K& kind) {
                                  [&](PlaneAngle<Value> a) { found = &a.value; }});
     return found;
 }
-// Its preload; nullptr if it has none.
+// The preload of an element, or the direction of a driven one; nullptr if it has none.
 template <class K>
 auto preload(K& kind) {
     using Value = std::conditional_t<std::is_const_v<K>, const Vector6, Vector6>;
@@ -359,6 +360,7 @@ auto preload(K& kind) {
     each_member(kind, [&](ForceAndMoment<Value> w) { found = &w.value; });
     return found;
 }
+// Whether the driven number is an angle.
 template <class K>
 bool is_angle(const K& kind) {
     bool angle = false;
@@ -380,7 +382,7 @@ inline BodyId body_of(const LoadKind& load) {
     each_body(load, [&](BodyId body) { found = body; });
     return found;
 }
-// Its force or moment, and which of the two.
+// The force or moment of a load.
 template <class L>
 auto& load_vector(L& load) {
     using Value = std::conditional_t<std::is_const_v<L>, const Vector3, Vector3>;
@@ -393,7 +395,7 @@ inline bool is_moment(const LoadKind& load) {
     each_member(load, [&](LoadVector<const Vector3> v) { moment = v.is_moment; });
     return moment;
 }
-// Whether it rotates with its body.
+// Whether the load rotates with its body.
 inline bool is_follower(const LoadKind& load) {
     bool follows = false;
     each_member(load, [&](LoadVector<const Vector3> v) { follows = v.axes != ground; });

@@ -1,4 +1,4 @@
-// Data of force laws: values, scaling, reversal, and the curves of an element.
+// Force laws of springs and bushings: values, scaling, reversal.
 #pragma once
 
 #include "elastocheck/mechanism.hpp"
@@ -13,7 +13,7 @@ double force(const ScalarLaw& law, double x);
 bool is_zero(const ScalarLaw& law);
 bool is_zero(const SpatialLaw& law);
 
-// f(x) → -f(-x): the law for the opposite sign of the deformation.
+// The law x ↦ -f(-x), of the same element with the opposite sign of its deformation.
 Curve reversed(const Curve& curve);
 ScalarLaw reversed(const ScalarLaw& law);
 // The law for deformations and forces multiplied by `signs`, each 1 or -1.
