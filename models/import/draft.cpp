@@ -95,12 +95,6 @@ void comment(std::string_view what, Text& text, std::string_view indent = "") {
 
 }  // namespace
 
-const reader::Value* entry(const reader::Value& map, std::string_view name) {
-    const auto found = std::ranges::find(map.keys, name);
-    return found == map.keys.end() ? nullptr
-                                   : &map.items[static_cast<std::size_t>(found - map.keys.begin())];
-}
-
 std::string with(std::string text, std::string_view word, std::string_view by) {
     for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; at += by.size())
         text.replace(at, word.size(), by);

@@ -117,10 +117,6 @@ struct Notes {
     }
 };
 
-// The entry of a map in a table of another program's words (dataset.yaml, templates.yaml); null if there
-// is none.
-const reader::Value* entry(const reader::Value& map, std::string_view name);
-
 struct Draft {
     std::string title;                  // of the scene
     std::string source;                 // the file, as given by the user

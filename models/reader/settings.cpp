@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t longest_value = 256;
 
-// Path names of the entries of a map or list.
+// Names of the entries of a map or list in paths.
 std::vector<std::string> names_in(const Value& value) {
     if (value.kind == Value::Kind::map) return value.keys;
     std::vector<std::string> names;
@@ -85,8 +85,8 @@ struct Edit {
     const Setting* setting;
 };
 
-// Takes the comment of an earlier edited() off a line whose values end before it. Its entries for
-// other paths: "PATH was VALUE, ...".
+// Removes the comment "  # PATH was VALUE, ..." that an earlier edited() left at the end of a line.
+// Returns its entries for paths that are not edited now.
 std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
     const std::size_t comment = line.rfind("  # ");
     if (comment == line.npos || static_cast<std::size_t>(edits.front().value->column) > comment)
@@ -138,8 +138,9 @@ std::string edited(std::string line, const std::vector<Edit>& edits, const std::
 
 namespace {
 
-// Settings of one side alone are entries of the section `one_side`: the text with those that it lacks
-// at the section's beginning or, in a section of its own, at the end. The others remain to be replaced.
+// Settings of one side alone are entries of the section `one_side`. Returns the text with the entries
+// that it lacks added to that section, or in a new section at the end, and removes them from `settings`;
+// the settings that are left replace values of the text.
 std::string with_one_side(std::string text, const std::string& name,
                           std::vector<Setting>& settings) {
     reader::Value tree = reader::parse_yaml(text, name);
@@ -166,7 +167,7 @@ std::string with_one_side(std::string text, const std::string& name,
 
 std::string rewrite_scene(std::string_view original, const std::string& name,
                           std::span<const Setting> wanted) {
-    (void)reader::with_settings(reader::parse_yaml(original, name), wanted, name);  // rejects
+    (void)reader::with_settings(reader::parse_yaml(original, name), wanted, name);  // throws
     std::vector<Setting> settings(wanted.begin(), wanted.end());
     const std::string text = with_one_side(std::string(original), name, settings);
     reader::Value tree = reader::parse_yaml(text, name);

@@ -9,7 +9,7 @@ namespace elastocheck::reader {
 // One UTF-8 character, or an invalid byte.
 struct Character {
     std::string_view bytes;
-    char32_t code = 0;  // of an invalid byte its value
+    char32_t code = 0;  // code point; of an invalid byte its value
     bool valid = false;
 
     bool control() const;        // C0, DEL, C1, line and paragraph separator

@@ -1,3 +1,4 @@
+// Reads springs between two points and their stops.
 #include <fmt/format.h>
 
 #include <array>

@@ -11,9 +11,9 @@ namespace {
 
 // ---- Adjustments.
 
-// Whether it is active only on the branches that drive it: a jack, the drive of a joint not
-// held, a tyre.
-bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
+// Whether the quantity exists only on the branches that drive it: of a jack, of the drive of a joint that
+// is not held, of a tyre.
+bool is_active_only_where_driven(const Drivable& quantity, const Scene& scene) {
     const int element = driven_element(quantity.what);
     return quantity.joint.has_value() ||
            (element >= 0 &&
@@ -28,7 +28,7 @@ Trim::Adjustment read_adjustment(const Term& term, const Loads& loads, Drivables
                         "and offsets, named as in drive",
                         quote(term.name)));
     if (const auto found = drivables.table.find(term.name);
-        found != drivables.table.end() && stands_only_where_driven(found->second, scene))
+        found != drivables.table.end() && is_active_only_where_driven(found->second, scene))
         term.at.fail(
             fmt::format("{} is active only on the branches that drive it; allowed: elements and "
                         "joints that are active on all branches",

@@ -1,4 +1,4 @@
-// A branch that drives a length to zero: an error of a scene, a row with its reason of a study.
+// Error of a branch that drives a length to zero. A study records it as the outcome of a variant.
 #pragma once
 
 #include "elastocheck/read_scene.hpp"

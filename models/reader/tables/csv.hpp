@@ -20,8 +20,8 @@ class CsvLines {
 
     int number() const { return lines_.number(); }    // of the line, from 1
     std::string_view whole() const { return line_; }  // the line, trimmed
-    std::vector<std::string_view> cells() const;      // trimmed, without the quotes around one; at
-                                                      // most `max_cells` + 1 of them
+    // trimmed, without quotes around a cell; at most `max_cells` + 1 of them
+    std::vector<std::string_view> cells() const;
 
   private:
     Lines lines_;

@@ -14,10 +14,10 @@ namespace elastocheck::reader {
 // Units of a law's deflection, force and rate.
 struct LawUnits {
     Unit deflection, force, rate;
-    // a property file (.spr) then has compression and pushing force as positive
+    // of a spring: its property file (.spr) counts compression and pushing forces as positive
     bool of_spring = false;
 };
-LawUnits of_springs(const Units& units);  // of lengths
+LawUnits of_springs(const Units& units);  // length, force, force/length
 LawUnits of_lengths(const Units& units);  // length, force, force/length
 LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
 
