@@ -76,7 +76,7 @@ Model on_branch(const Model& model, const Branch& branch) {
     return result;
 }
 
-bool stands_on(const Model& model, const Branch& branch) {
+bool fits_branch(const Model& model, const Branch& branch) {
     const ActiveParts active = active_parts(model, branch);
     return branch.from == 0 && std::ranges::all_of(active.elastics, std::identity{}) &&
            std::ranges::all_of(model.constraints, [&](const Constraint& constraint) {

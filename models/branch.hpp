@@ -18,6 +18,6 @@ Model on_branch(const Model& model, const Branch& branch);
 
 // Whether every constraint and element of the model is active on the branch and the branch has one
 // side, as every leg requires.
-bool stands_on(const Model& model, const Branch& branch);
+bool fits_branch(const Model& model, const Branch& branch);
 
 }  // namespace elastocheck

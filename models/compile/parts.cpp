@@ -110,8 +110,8 @@ bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
     std::vector<Marker> markers;
     each_member(elastic, [&](const Marker& marker) { markers.push_back(marker); });
     if (markers.size() == 2) {
-        const auto at = [&](const Marker& m) { return position(scene, {m.body, m.s_local}); };
-        free = (at(markers[1]) - at(markers[0])).norm() <= as_drawn &&
+        const auto origin = [&](const Marker& m) { return position(scene, {m.body, m.s_local}); };
+        free = (origin(markers[1]) - origin(markers[0])).norm() <= as_drawn &&
                axes(markers[0]).angularDistance(axes(markers[1])) <= as_drawn;
     }
     Vector6 e = Vector6::Zero();

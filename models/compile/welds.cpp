@@ -72,9 +72,9 @@ struct ToRepresentative {
     void operator()(Marker& m) const {
         const BodyId c = sets.first(m.body);
         if (c == m.body) return;
-        Point at{m.body, m.s_local};
-        (*this)(at);
-        m = {c, at.s_local,
+        Point origin{m.body, m.s_local};
+        (*this)(origin);
+        m = {c, origin.s_local,
              (design(scene, c).p.conjugate() * design(scene, m.body).p * m.A_local).normalized()};
     }
     void operator()(LoadVector<Vector3> v) const {

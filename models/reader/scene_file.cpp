@@ -37,7 +37,6 @@ void check_version(const Cursor& scene) {
                                  version.found(), format_version));
 }
 
-// Every body must be attached to some joint or element.
 void check_all_held(const Cursor& scene, const Scene& result) {
     std::vector<bool> held(result.bodies.size(), false);
     const auto hold = [&](BodyId body) {

@@ -53,13 +53,15 @@ Value& apply(const Setting& setting, Value& tree, const std::string& file, Repea
     const auto names = names_in(*value);
     if (!rest.empty()) {
         const std::string head = setting.path.substr(0, setting.path.size() - rest.size());
-        const std::string in = head.empty() ? "the file" : shown(head.substr(0, head.size() - 1));
+        const std::string container =
+            head.empty() ? "the file" : shown(head.substr(0, head.size() - 1));
         if (names.empty())
-            fail(file, value->line, shown_path, fmt::format("{} is a single value", in));
+            fail(file, value->line, shown_path, fmt::format("{} is a single value", container));
         const bool ends_in_dot = rest.find('.') + 1 == rest.size();
         const std::string_view wrong = ends_in_dot ? rest : rest.substr(0, rest.find('.'));
         fail(file, 0, shown_path,
-             fmt::format("{} has no {}{}", in, quote(wrong), did_you_mean(wrong, names, "there")));
+             fmt::format("{} has no {}{}", container, quote(wrong),
+                         did_you_mean(wrong, names, "there")));
     }
     if (value->kind == Value::Kind::map || value->kind == Value::Kind::list)
         fail(file, value->line, shown_path,
@@ -181,10 +183,10 @@ std::string rewrite_scene(std::string_view original, const std::string& name,
     for (std::size_t from = 0; from < text.size(); ++row) {
         const std::size_t end = std::min(text.find('\n', from), text.size() - 1) + 1;
         std::string line(text.substr(from, end - from));
-        if (const auto here = edits.find(row); here != edits.end()) {
-            std::ranges::sort(here->second, std::ranges::greater{},
+        if (const auto line_edits = edits.find(row); line_edits != edits.end()) {
+            std::ranges::sort(line_edits->second, std::ranges::greater{},
                               [](const reader::Edit& edit) { return edit.value->column; });
-            line = reader::edited(std::move(line), here->second, name);
+            line = reader::edited(std::move(line), line_edits->second, name);
         }
         result += line;
         from = end;

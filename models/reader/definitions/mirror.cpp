@@ -94,8 +94,8 @@ std::optional<std::string> twin_name(const Mirror& mirror, const std::string& na
                                      const Cursor& section) {
     const auto twin = mirrored_name(mirror, name);
     if (twin)
-        if (const auto there = section.optional(*twin))
-            there->fail(
+        if (const auto twin_entry = section.optional(*twin))
+            twin_entry->fail(
                 fmt::format("the mirror generates it from {}; remove one of the two", quote(name)));
     return twin;
 }

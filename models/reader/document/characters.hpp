@@ -27,7 +27,6 @@ bool is_utf8(std::string_view text);
 inline constexpr std::string_view blanks{" \t\r\v\f\0", 6};
 inline bool is_blank(char c) { return blanks.find(c) != blanks.npos; }
 
-// Without the blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
 // ---- ASCII, in any locale.

@@ -28,7 +28,6 @@
 namespace elastocheck::reader {
 namespace {
 
-// Kind and unit of the parameter.
 struct Parameter {
     ParameterUnit kind;
     Unit unit;
@@ -119,7 +118,6 @@ void require_different(const Cursor& branch, const std::vector<Driver>& drivers)
         }
 }
 
-// Reads `from` and `to` in SI, and the number of steps.
 void read_range(const Cursor& field, const Parameter& parameter, std::size_t bodies,
                 Branch& branch) {
     const Cursor to = field.require("to");

@@ -112,7 +112,6 @@ const std::vector<JointType>& joint_types() {
     return types;
 }
 
-// The names of all types, and the fields of a joint of any type.
 const std::pair<std::vector<std::string>, std::vector<std::string>>& names_and_fields() {
     static const auto both = [] {
         std::pair<std::vector<std::string>, std::vector<std::string>> lists{{}, {"type", "bodies"}};

@@ -144,7 +144,7 @@ double deflection_at(const Cursor& field, const Curve& curve, double force, cons
     for (std::size_t k = 0; k < last; ++k)
         if (is_equal(k) && is_equal(k + 1)) fail_ambiguous();
 
-    const bool is_below = force<at_knot(0), is_above = force> at_knot(last);
+    const bool is_below = at_knot(0) > force, is_above = force > at_knot(last);
     if ((is_below && (!extrapolates || below == 0)) || (is_above && (!extrapolates || above == 0)))
         field.fail(fmt::format("the curve never has {:g} {}; its table goes from {:g} to {:g}",
                                unit.written(force), unit.name, unit.written(at_knot(0)),
