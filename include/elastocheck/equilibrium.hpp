@@ -14,8 +14,7 @@
 namespace elastocheck::reference::equilibrium {
 
 struct Options {
-    // on the largest scaled residual; a point is accepted by this residual, never by
-    // a solver's status
+    // on the largest scaled residual; a point is accepted by this residual, never by a solver's status
     double tolerance = 1e-12;
     int iteration_limit = 100;  // per solve
     // smallest step: the whole branch halved this often; then the branch counts as ended
@@ -34,8 +33,8 @@ struct Options {
 // load acts on an unresisted motion. `not_finite` and `iteration_limit` are numerical failures.
 // `detail` has the reason of an outcome.
 //
-// Throws std::invalid_argument unless stands_on(model, branch), and where a driver moves a quantity
-// that its joint or element does not have.
+// Throws std::invalid_argument unless fits_branch(model, branch) (models/branch.hpp), and where a driver moves
+// a quantity that its joint or element does not have.
 //
 // Thread-safe: calls share nothing except a model that must not change meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,

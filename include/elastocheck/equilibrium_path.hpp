@@ -15,7 +15,7 @@ struct Wrench {
 };
 
 struct Equilibrium {
-    double load = 0;          // load factor a of the branch
+    double load = 0;          // parameter a of the branch, in Branch::unit
     std::vector<Pose> poses;  // one per Model::bodies
     // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
     std::vector<Wrench> reactions;
