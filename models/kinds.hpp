@@ -83,15 +83,17 @@ struct JointSymbol {
 // The free coordinate of a joint that a driver may hold or move: the angle about axis_j, or the
 // displacement along it.
 enum class JointDrive { none, angle, displacement };
+struct NotDriven {
+    static constexpr JointDrive drive = JointDrive::none;
+};
 
 template <class T>
 struct Kind;
 
 template <>
-struct Kind<Spherical> {
+struct Kind<Spherical> : NotDriven {
     static constexpr const char* name = "spherical";
     static constexpr JointSymbol symbol{"spherical"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j); }
 };
 template <>
@@ -104,10 +106,9 @@ struct Kind<Revolute> {
     }
 };
 template <>
-struct Kind<Universal> {
+struct Kind<Universal> : NotDriven {
     static constexpr const char* name = "universal";
     static constexpr JointSymbol symbol{"universal"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.axis_i, s.axis_j); }
 };
 template <>
@@ -127,61 +128,53 @@ struct Kind<Translational> {
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.axis_i, s.axis_j); }
 };
 template <>
-struct Kind<Planar> {
+struct Kind<Planar> : NotDriven {
     static constexpr const char* name = "planar";
     static constexpr JointSymbol symbol{"plane"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.normal_i, s.normal_j); }
 };
 template <>
-struct Kind<Fixed> {  // x and y as a frame: its mirror image has y reversed
+struct Kind<Fixed> : NotDriven {  // x and y as a frame: its mirror image has y reversed
     static constexpr const char* name = "fixed";
     static constexpr JointSymbol symbol{"fixed"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) {
         f(s.i, s.j, s.x_i, RotationAxis{s.y_i}, s.x_j, RotationAxis{s.y_j});
     }
 };
 template <>
-struct Kind<Distance> {
+struct Kind<Distance> : NotDriven {
     static constexpr const char* name = "distance";
     static constexpr JointSymbol symbol{"spherical", false, true};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, Length{s.length}); }
 };
 template <>
-struct Kind<InPlane> {
+struct Kind<InPlane> : NotDriven {
     static constexpr const char* name = "in_plane";
     static constexpr JointSymbol symbol{"plane"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.normal_j, Length{s.offset}); }
 };
 template <>
-struct Kind<InLine> {
+struct Kind<InLine> : NotDriven {
     static constexpr const char* name = "in_line";
     static constexpr JointSymbol symbol{"sliding", true};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.axis_j); }
 };
 template <>
-struct Kind<Perpendicular> {
+struct Kind<Perpendicular> : NotDriven {
     static constexpr const char* name = "perpendicular";
     static constexpr JointSymbol symbol{};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j); }
 };
 template <>
-struct Kind<Parallel> {
+struct Kind<Parallel> : NotDriven {
     static constexpr const char* name = "parallel";
     static constexpr JointSymbol symbol{};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j); }
 };
 template <>
-struct Kind<Angle> {
+struct Kind<Angle> : NotDriven {
     static constexpr const char* name = "angle";
     static constexpr JointSymbol symbol{};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.y_j, PlaneAngle{s.angle}); }
 };
 

@@ -10,8 +10,7 @@
 
 namespace elastocheck::reduce {
 
-// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output
-// reads, ground included.
+// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output reads, ground included.
 template <class S, class F>
 void each_output_body(S& scene, F f) {
     for (auto& wheel : scene.wheels) {

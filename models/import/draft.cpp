@@ -22,13 +22,6 @@ constexpr double same_place = 1e-9;  // of the model's size
 const Vector3d sort_direction = Vector3d(0.6299, 0.5774, 0.5195).normalized();
 constexpr std::size_t max_listed = 40;  // parts listed for one kind of note, in the head of a scene
 
-std::string printable(std::string_view text) {
-    std::string result(text);
-    for (char& c : result)
-        if (c < 0x20 || c > 0x7E) c = '?';
-    return result;
-}
-
 std::string described(const SourceLocation& place) {
     const std::string file = place.file.empty() ? "" : printable(place.file) + ", ";
     return file + (place.line > 0 ? fmt::format("line {}, {}", place.line, printable(place.what))
@@ -87,6 +80,13 @@ void comment(std::string_view what, Text& text, std::string_view indent = "") {
 }
 
 }  // namespace
+
+std::string printable(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c < 0x20 || c > 0x7E) c = '?';
+    return result;
+}
 
 std::string replaced(std::string text, std::string_view word, std::string_view by) {
     for (auto at = text.find(word); at != text.npos; at = text.find(word, at + by.size()))

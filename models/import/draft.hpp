@@ -30,6 +30,9 @@ std::string replaced(std::string text, std::string_view word, std::string_view b
 // The pieces between the separators, trimmed.
 std::vector<std::string> split(std::string_view text, std::string_view separator);
 
+// Characters that are not printable ASCII replaced by '?'.
+std::string printable(std::string_view text);
+
 // "1 point", "2 points", "3 bodies"; keywords in capitals have no plural: "2 MARKER".
 std::string counted(int n, const std::string& kind);
 
@@ -133,8 +136,7 @@ struct Draft {
     std::vector<std::pair<const char*, std::vector<Entry>*>> sections();
 };
 
-// The text of the scene for the ordinary reader. `line_of[n]` is the source of the scene's line
-// n + 1.
+// The text of the scene for the ordinary reader. `line_of[n]` is the source of the scene's line n + 1.
 struct Text {
     std::string yaml;
     std::vector<SourceLocation> line_of;
@@ -149,8 +151,7 @@ Text write(Draft& draft);
 // Text as comment lines of a scene, wrapped, each with "# " and a line end.
 std::string commented(std::string_view what);
 
-// The notes as lines of text, for the head of the scene and the output of the command; without
-// comment marks.
+// The notes as lines of text, for the head of the scene and the output of the command; without comment marks.
 std::vector<std::string> described(const Notes& notes);
 
 }  // namespace elastocheck::importer

@@ -110,8 +110,7 @@ std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
     return kept;
 }
 
-// The line with the values replaced, the old ones in a comment at its end. `edits` from
-// right to left.
+// The line with the values replaced, the old ones in a comment at its end. `edits` from right to left.
 std::string edited(std::string line, const std::vector<Edit>& edits, const std::string& file) {
     std::string end;
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) {

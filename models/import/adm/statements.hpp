@@ -97,8 +97,7 @@ std::string form_of(std::string_view keyword);
 enum class Role { converted, without_effect, if_used, friction, missing };
 Role role_of(std::string_view keyword);
 
-// Reads "1", "-.4", "1.0E+05", "5.0D-02" or "90D" (degrees: sets the flag). Returns the length; 0
-// if none.
+// Reads "1", "-.4", "1.0E+05", "5.0D-02" or "90D" (degrees: sets the flag). Returns the length; 0 if none.
 std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees);
 
 using reader::capitals;

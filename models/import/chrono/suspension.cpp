@@ -145,8 +145,7 @@ void visit_scalars(const reader::Value& value,
     for (const auto& item : value.items) visit_scalars(item, visit);
 }
 
-// A field of an object that was not read, reported at the outermost level at which
-// nothing was read.
+// A field of an object that was not read, reported at the outermost level at which nothing was read.
 struct Unread {
     const reader::Value *object, *value;
     std::string path, key;

@@ -75,12 +75,9 @@ class AdmWriter {
         : scene_(scene), result_(result), gravity_(gravity_of(scene)) {}
 
     void write_dataset() {
-        std::string title = scene_.name;
-        for (char& c : title)
-            if (c < 0x20 || c > 0x7E) c = '?';
         put("Exported model name: {}\n!\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = "
             "METER\n, TIME = SECOND\n!\n",
-            title);
+            printable(scene_.name));
         if (!gravity_.isZero(0))
             put("ACCGRAV/\n, IGRAV = {}\n, JGRAV = {}\n, KGRAV = {}\n!\n", real(gravity_.x()),
                 real(gravity_.y()), real(gravity_.z()));

@@ -95,9 +95,8 @@ Vector3 named_axis(const Cursor& field) {
     const std::string& word = field.value->text;
     const double sign = word.starts_with('-') ? -1 : 1;
     const std::string letter = sign < 0 ? word.substr(1) : word;
-    if (letter == "x") return sign * Vector3::UnitX();
-    if (letter == "y") return sign * Vector3::UnitY();
-    if (letter == "z") return sign * Vector3::UnitZ();
+    for (int k = 0; k < 3; ++k)
+        if (letter == std::string(1, "xyz"[k])) return sign * Vector3::Unit(k);
     field.fail(
         fmt::format("{} is not a direction; allowed: x, y, z, -x, -y, -z, [x, y, z] or two "
                     "hardpoints [from, to]",

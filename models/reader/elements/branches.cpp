@@ -22,7 +22,6 @@
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/elements/sections.hpp"
-#include "models/reader/elements/vanishing.hpp"
 #include "models/vanishing_length.hpp"
 
 namespace elastocheck::reader {

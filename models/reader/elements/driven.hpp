@@ -21,8 +21,7 @@ struct Drivable {
     std::string drives = {};     // of the hand wheel: name of the quantity that it drives
 };
 
-// All such quantities by their names in the file, and why other joints and elements
-// cannot be driven.
+// All such quantities by their names in the file, and why other joints and elements cannot be driven.
 struct Drivables {
     std::map<std::string, Drivable> table;
     std::map<std::string, std::string> not_driven;

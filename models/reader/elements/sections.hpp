@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "elastocheck/model.hpp"
-#include "elastocheck/scene.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/reader/definitions/definitions.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/elements/driven.hpp"
@@ -38,7 +38,6 @@ Load read_static_load(const std::string& name, const Cursor& field, const Defini
                       const std::vector<Wheel>& wheels);
 // The body of a rolling wheel is added to `defs`.
 Wheel read_wheel(const std::string& name, const Cursor& field, Definitions& defs);
-// Adds the joints of the rolling wheels.
 void add_rolling_joints(const Cursor& scene, Scene& result);
 Probe read_probe(const std::string& name, const Cursor& field, const Definitions& defs);
 Damper read_damper(const std::string& name, const Cursor& field, const Definitions& defs);
@@ -47,14 +46,17 @@ Vehicle read_vehicle(const Cursor& field, const Definitions& defs);
 // `gravity`, and the masses of bodies: one static load "gravity.BODY" for each.
 void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result);
 
-// `tyres`: elements between ground and wheel, and the drivers of their road. Pre: the
-// wheels are read.
+// `tyres`: elements between ground and wheel, and the drivers of their road. Pre: the wheels are read.
 void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivables, Scene& result);
 
-// `trim`. Pre: adjustable quantities, wheels and probes are read. Its loads are added to
-// the static loads.
+// `trim`. Pre: adjustable quantities, wheels and probes are read. Its loads are added to the static loads.
 void read_trim(const Cursor& scene, const Units& units, const std::map<std::string, Load>& loads,
                Drivables& drivables, Scene& result);
+
+// Error of a branch that drives a length to zero. A study records it as the outcome of a variant.
+struct LengthVanishes : SceneError {
+    using SceneError::SceneError;
+};
 
 // Adds the branches and the joints that their drivers need, and lists unused loads in Scene::omitted.
 // Returns the compiled scene, without that list. Pre: all other parts are read.

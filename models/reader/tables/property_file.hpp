@@ -48,8 +48,7 @@ PropertyFile parse_property_file(std::string_view text, const std::string& file)
 double real(const PropertyFile& file, int line, const std::string& block, std::string_view text,
             double largest = std::numeric_limits<double>::max());
 
-// The rows of a table with two columns of numbers as points of a law: first
-// ascending, second non-decreasing.
+// The rows of a table with two columns of numbers as points of a law: first ascending, second non-decreasing.
 std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block,
                                    double x_unit, double f_unit);
 

@@ -21,8 +21,7 @@ LawUnits of_springs(const Units& units);  // length, force, force/length
 LawUnits of_lengths(const Units& units);  // length, force, force/length
 LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
 
-// Rows of `table` or `file` of a curve [SI]: at least two, deflections
-// ascending, forces non-decreasing.
+// Rows of `table` or `file` of a curve [SI]: at least two, deflections ascending, forces non-decreasing.
 std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
                                    const Definitions& defs);
 
