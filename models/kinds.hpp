@@ -1,8 +1,7 @@
 // The name and the members of every kind of joint, constraint, element, load and driven quantity.
 //
-// Each kind is listed once, here. Code that only moves, mirrors, renumbers, scales or counts the
-// members of a kind calls each_member() and needs no change for a new kind. The equations of a kind
-// belong to the legs.
+// Each kind is listed once, here. Code that only moves, mirrors, renumbers, scales or counts the members of a
+// kind calls each_member() and needs no change for a new kind. The equations of a kind belong to the legs.
 #pragma once
 
 #include <type_traits>

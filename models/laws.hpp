@@ -19,9 +19,8 @@ ScalarLaw reversed(const ScalarLaw& law);
 // The law for deformations and forces multiplied by `signs`, each 1 or -1.
 SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs);
 
-// The law for a deformation `stretch` times and a force `force` times as large:
-// f'(x) = force · f(x / stretch). A full matrix remains symmetric: its coupling terms take the
-// square roots of the factors of both axes.
+// The law for a deformation `stretch` times and a force `force` times as large: f'(x) = force · f(x / stretch).
+// A full matrix remains symmetric: its coupling terms take the square roots of the factors of both axes.
 ScalarLaw scaled(const ScalarLaw& law, double stretch, double force);
 SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& force);
 

@@ -29,10 +29,9 @@ struct Neighbour {
 };
 using Neighbours = std::vector<Neighbour>;  // the difference formula for one number
 
-// One state per neighbour, with its reactions; no states unless converged. Outcomes:
-// inconsistent_constraints where redundant joints close only at this value of the number,
-// loaded_idle_mode where the number loads a motion that nothing resists, singular at a limit point,
-// not_finite. Idle modes are held.
+// One state per neighbour, with its reactions; no states unless converged. Outcomes: inconsistent_constraints
+// where redundant joints close only at this value of the number, loaded_idle_mode where the number loads a
+// motion that nothing resists, singular at a limit point, not_finite. Idle modes are held.
 struct NeighbourStates {
     Outcome outcome = Outcome::converged;
     std::string detail;

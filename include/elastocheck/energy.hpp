@@ -27,10 +27,9 @@ struct Options {
     double operation_limit = 1e11;
 };
 
-// Equilibria at `values` of the branch's parameter, in the order of the visit. They are minima on
-// the curve that starts where the scene settles from its design position under the drivers at
-// a = 0. The continuation between them controls its own steps, so that the detection of singular
-// points does not depend on the values.
+// Equilibria at `values` of the branch's parameter, in the order of the visit. They are minima on the curve
+// that starts where the scene settles from its design position under the drivers at a = 0. The continuation
+// between them controls its own steps, so that the detection of singular points does not depend on the values.
 //
 // Throws std::invalid_argument unless fits_branch(model, branch) (models/branch.hpp).
 //
@@ -48,22 +47,20 @@ struct Options {
 //                             not solved
 //   too_large                 the predicted operations (cost.hpp) exceed Options' limit: not solved
 //
-// Reactions of redundant joints are not unique; those of minimum norm are returned. The reaction of
-// a driven joint is the effort of its driver: jack force, rack force, steering moment. Counts:
-// `evaluations` of energy or constraints with derivatives, `iterations` the charts of the rotations,
-// `factorisations` by QR.
+// Reactions of redundant joints are not unique; those of minimum norm are returned. The reaction of a driven
+// joint is the effort of its driver: jack force, rack force, steering moment. Counts: `evaluations` of energy
+// or constraints with derivatives, `iterations` the charts of the rotations, `factorisations` by QR.
 //
 // Thread-safe: calls share nothing except a model that must not change meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
                       const Options& options = {}, const Visit& visit = {});
 
-// Residuals of a state from any leg in this leg's conditions at its parameter value: the
-// constraints, and the gradient of the potential projected by the least-squares multipliers.
-// `direction` includes the deviation of orientations from unit quaternions; it is 2 for a driven angle in
-// the reversed direction. All residuals of a state that is not finite are NaN; so are the forces where a
-// bushing has turned to the end of its angles' range, and where `solve` would return
-// not_conservative. Sparse, for models of any size; the cost is proportional to the bodies of a chain or a
-// tree. Throws as `solve` does.
+// Residuals of a state from any leg in this leg's conditions at its parameter value: the constraints, and the
+// gradient of the potential projected by the least-squares multipliers. `direction` includes the deviation of
+// orientations from unit quaternions; it is 2 for a driven angle in the reversed direction. All residuals of a
+// state that is not finite are NaN; so are the forces where a bushing has turned to the end of its angles'
+// range, and where `solve` would return not_conservative. Sparse, for models of any size; the cost is
+// proportional to the bodies of a chain or a tree. Throws as `solve` does.
 Residuals residuals(const Model& model, const Branch& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::reference::energy

@@ -166,9 +166,8 @@ struct AxialSpring {
     double free_length = 0;  // ℓ₀ [m]
 };
 
-// Deformation measure of a bushing and the direction of its forces. Programs differ here and all
-// choices are valid. The default is eqs. (10)-(11) as an energy. B = A_iᵀ A_j is the rotation from
-// marker axes i to j.
+// Deformation measure of a bushing and the direction of its forces. Programs differ here and all choices are
+// valid. The default is eqs. (10)-(11) as an energy. B = A_iᵀ A_j is the rotation from marker axes i to j.
 struct Formulation {
     // The axes A_f of d:  on_i: A_i   middle: A_i B^½   on_j: A_j. A frame on j equals a frame on i
     // of the same bushing with its markers swapped and the signs of its deformations reversed:

@@ -26,9 +26,8 @@ struct Options {
 // poses, |Φ| of eq. (31), and the joint wrenches, eq. (22): of λⁿ⁻¹ with the Jacobian of its solve in
 // methods without following forces (published, closed), else of λ with the current Jacobian.
 //
-// The published method takes one factorisation per step, and one more where static loads or
-// preloads require λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded
-// points between them.
+// The published method takes one factorisation per step, and one more where static loads or preloads require
+// λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded points between them.
 //
 // The analysis of the model may be passed in and shared between branches and
 // threads; std::invalid_argument where it is of another model.
@@ -59,11 +58,10 @@ using VisitBatch =
 // branch from a = 0 to branch.to. A branch with two sides is two branches here (branch_sides() in
 // models/branch.hpp), and every part of a model is active on all its branches.
 //
-// The result of a variant is that of solve() with the method `series`, within 1e-12 of the largest
-// coordinate and of the largest force; it does not depend on the other variants. A variant that has
-// another structure than the design, ends early, or comes close to the threshold of any decision of the
-// algorithm is solved alone: its path is that of solve(), with its Outcome. So a NaN in one variant is
-// reported for that variant.
+// The result of a variant is that of solve() with the method `series`, within 1e-12 of the largest coordinate
+// and of the largest force; it does not depend on the other variants. A variant that has another structure than
+// the design, ends early, or comes close to the threshold of any decision of the algorithm is solved alone: its
+// path is that of solve(), with its Outcome. So a NaN in one variant is reported for that variant.
 //
 // Pivot order, scaling and idle modes are those of the design, whose analysis may be passed in.
 // Throws std::invalid_argument as solve() does. Thread-safe as solve(): divide the variants among

@@ -50,9 +50,8 @@ struct Branch {
     std::vector<Driver> drivers;
 };
 
-// Steering axis of the wheel at the design position: the line through two points, each fixed in its
-// body (two ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs
-// do not read it.
+// Steering axis of the wheel at the design position: the line through two points, each fixed in its body (two
+// ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs do not read it.
 struct SteeringAxis {
     Point lower, upper;  // or ground
 };

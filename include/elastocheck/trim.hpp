@@ -7,9 +7,8 @@
 //   J Δp = -c,     J e_k h_k = ½ (c(x(p + h_k e_k)) - c(x(p - h_k e_k))),
 //
 // where h_k moves the element by a tenth of a millimetre or changes its force by ten newtons. Δp is halved
-// until |c| decreases. The problem is well posed if J, with columns per step h_k and rows of length one,
-// is regular: since differences have about six digits, a singular value below 1e-6 of the largest counts
-// as zero.
+// until |c| decreases. The problem is well posed if J, with columns per step h_k and rows of length one, is
+// regular: since differences have about six digits, a singular value below 1e-6 of the largest counts as zero.
 //
 // The energy leg, which does not use p, then settles the trimmed scene, and its conditions are
 // checked too.

@@ -20,9 +20,8 @@ bool is_as_drawn(const Fixed& s, const Scene& scene) {
            same(direction(scene, s.y_i), direction(scene, s.y_j));
 }
 
-// Disjoint sets of merged bodies (union-find), represented by their first; ground is number 0, body b
-// is b + 1. A body with a wheel or a probe is not merged into ground; an end of a damper or of a
-// steering axis may be.
+// Disjoint sets of merged bodies (union-find), represented by their first; ground is number 0, body b is b + 1.
+// A body with a wheel or a probe is not merged into ground; an end of a damper or of a steering axis may be.
 class Sets {
   public:
     explicit Sets(const Scene& scene)

@@ -36,9 +36,8 @@ class ParsedScene {
     Folder folder_;
 };
 
-// A scene that is read again and again at other values of the same numbers, in a fraction of the time:
-// what does not depend on numbers is not checked, and Scene::numbers stays empty. Pre: the scene has
-// been read.
+// A scene that is read again and again at other values of the same numbers, in a fraction of the time: what
+// does not depend on numbers is not checked, and Scene::numbers stays empty. Pre: the scene has been read.
 class VariedScene {
   public:
     // `paths`: the numbers that vary; `settings`: other values, the same at each reading. Throws

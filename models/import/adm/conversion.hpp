@@ -29,9 +29,8 @@ struct TimeFunction {
     bool varies() const { return path.size() > 1; }
 };
 
-// A motion or load of the file that changes with time, which a branch drives or holds: the offset of a
-// joint from the design position [length of the scene, rad], or the change of a load from its value at
-// time 0.
+// A motion or load of the file that changes with time, which a branch drives or holds: the offset of a joint
+// from the design position [length of the scene, rad], or the change of a load from its value at time 0.
 struct Drive {
     enum class Kind { joint, force, moment } kind = Kind::joint;
     std::string quantity;           // "joints.crank", or the name of the load

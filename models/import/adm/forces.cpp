@@ -261,9 +261,8 @@ void convert_springdamper(Conversion& c, const Statement& s) {
 
 // ---- Forces given by expressions.
 
-// One component of a force or torque on I that does not depend on displacements, along an axis
-// fixed to the part (a follower) or to ground. Its value at time 0 is a static load; its change
-// over time becomes a branch.
+// One component of a force or torque on I that does not depend on displacements, along an axis fixed to the
+// part (a follower) or to ground. Its value at time 0 is a static load; its change over time becomes a branch.
 struct LoadComponent {
     Vector3d axis;
     bool is_moment = false;

@@ -1,8 +1,7 @@
 // Reads parts and markers of an ADAMS dataset, their poses, and the units.
 //
-// Lengths and forces are converted to the units of the scene, which are the file's if a scene
-// allows them: m or mm, N or kN. The four units of a dataset need not be coherent (kN, kg, m): each
-// quantity has its own factor.
+// Lengths and forces are converted to the units of the scene, which are the file's if a scene allows them: m or
+// mm, N or kN. The four units of a dataset need not be coherent (kN, kg, m): each quantity has its own factor.
 #pragma once
 
 #include <Eigen/Core>

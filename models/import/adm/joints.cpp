@@ -305,9 +305,8 @@ void convert_motion(Conversion& c, const Statement& s) {
     drive(c, s, name, *motion, c.geometry.units.length, J.axis(axis).dot(ends.separation()));
 }
 
-// COUPLER: Σ scale · displacement = 0 for two or three joints. A scene has no such joint. If
-// MOTIONs prescribe all displacements but one, that one is driven in proportion: the same motion,
-// but without the effort.
+// COUPLER: Σ scale · displacement = 0 for two or three joints. A scene has no such joint. If MOTIONs prescribe
+// all displacements but one, that one is driven in proportion: the same motion, but without the effort.
 void convert_coupler(Conversion& c, const Statement& s) {
     const auto joints = s.ids("JOINTS");
     const auto scales = s.numbers("SCALES", 1, 3);

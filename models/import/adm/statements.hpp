@@ -8,11 +8,10 @@
 //   argument     := FLAG | NAME "=" value ("," value)* | NAME "=" value ":" value ...
 //                   | FNAME "=" expression
 //
-// The comma at the start of a continuation separates values unless the line before ended with a comma or
-// "="; it is not part of an expression. So the kind of an argument must be known before lines are
-// joined. Keywords, names and flags are case-insensitive and may be abbreviated if
-// unambiguous. Any bytes are allowed; NUL counts as a blank except in the title, where it marks a
-// binary file.
+// The comma at the start of a continuation separates values unless the line before ended with a comma or "=";
+// it is not part of an expression. So the kind of an argument must be known before lines are joined. Keywords,
+// names and flags are case-insensitive and may be abbreviated if unambiguous. Any bytes are allowed; NUL counts
+// as a blank except in the title, where it marks a binary file.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,9 +1,8 @@
 // Mirror symmetry of a scene: entries written for one side are copied to the other side.
 //
-// The mirror plane is y = 0, S = diag(1, -1, 1). Positions, forces and translations are polar
-// vectors, v' = S v; moments and rotations are axial ones, m' = -S m. A right-handed frame A has
-// the right-handed image A' = S A S, in whose axes a deformation (d, θ) becomes P (d, θ) with
-// P = diag(S, -S), so that K' = P K P.
+// The mirror plane is y = 0, S = diag(1, -1, 1). Positions, forces and translations are polar vectors, v' = S
+// v; moments and rotations are axial ones, m' = -S m. A right-handed frame A has the right-handed image A' = S
+// A S, in whose axes a deformation (d, θ) becomes P (d, θ) with P = diag(S, -S), so that K' = P K P.
 #pragma once
 
 #include <Eigen/Core>
