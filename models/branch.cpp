@@ -11,21 +11,21 @@ namespace elastocheck {
 namespace {
 
 // Joints and elements that are active on the branch.
-struct Standing {
+struct ActiveParts {
     std::vector<bool> joints, elastics;
 };
-Standing standing(const Model& model, const Branch& branch) {
-    Standing stands;
-    for (const auto& joint : model.joints) stands.joints.push_back(!joint.active_only_where_driven);
+ActiveParts active_parts(const Model& model, const Branch& branch) {
+    ActiveParts active;
+    for (const auto& joint : model.joints) active.joints.push_back(!joint.active_only_where_driven);
     for (const auto& elastic : model.elastics)
-        stands.elastics.push_back(!elastic.active_only_where_driven);
+        active.elastics.push_back(!elastic.active_only_where_driven);
     for (const auto& driver : branch.drivers) {
         if (const int k = driven_joint(driver.what); k >= 0)
-            stands.joints[static_cast<std::size_t>(k)] = true;
+            active.joints[static_cast<std::size_t>(k)] = true;
         if (const int k = driven_element(driver.what); k >= 0)
-            stands.elastics[static_cast<std::size_t>(k)] = true;
+            active.elastics[static_cast<std::size_t>(k)] = true;
     }
-    return stands;
+    return active;
 }
 
 // The same element without law and preload.
@@ -56,31 +56,31 @@ std::vector<Branch> branch_sides(const Branch& branch) {
 }
 
 Model on_branch(const Model& model, const Branch& branch) {
-    const Standing stands = standing(model, branch);
+    const ActiveParts active = active_parts(model, branch);
     Model result = model;
     result.branches = {branch};
     result.constraints.clear();
     for (auto& joint : result.joints) joint.driven = -1;
     for (std::size_t k = 0; k < model.constraints.size(); ++k) {
         const auto joint = static_cast<std::size_t>(model.constraints[k].joint);
-        if (!stands.joints[joint]) continue;
+        if (!active.joints[joint]) continue;
         if (model.joints[joint].driven == static_cast<int>(k))
             result.joints[joint].driven = static_cast<int>(result.constraints.size());
         result.constraints.push_back(model.constraints[k]);
     }
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
-        if (!stands.elastics[k])
+        if (!active.elastics[k])
             result.elastics[k] = {model.elastics[k].name, without_force(model.elastics[k].kind),
                                   false, model.elastics[k].written_as,
                                   model.elastics[k].markers_swapped};
     return result;
 }
 
-bool stands_on(const Model& model, const Branch& branch) {
-    const Standing stands = standing(model, branch);
-    return branch.from == 0 && std::ranges::all_of(stands.elastics, std::identity{}) &&
+bool fits_branch(const Model& model, const Branch& branch) {
+    const ActiveParts active = active_parts(model, branch);
+    return branch.from == 0 && std::ranges::all_of(active.elastics, std::identity{}) &&
            std::ranges::all_of(model.constraints, [&](const Constraint& constraint) {
-               return stands.joints[static_cast<std::size_t>(constraint.joint)];
+               return active.joints[static_cast<std::size_t>(constraint.joint)];
            });
 }
 

@@ -9,8 +9,7 @@
 
 namespace elastocheck {
 
-// `Affine` has `start` and `rate` of one number type.
-
+// `Affine` is a leg's type for start + rate · a: two members `start` and `rate` of one number type.
 template <class Affine>
 struct DrivenElement {
     Affine free_length;             // of a spring; added to the undeformed d_z of a bushing [m]

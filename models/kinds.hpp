@@ -1,8 +1,7 @@
 // The name and the members of every kind of joint, constraint, element, load and driven quantity.
 //
-// Each kind is listed once, here. Code that only moves, mirrors, renumbers, scales or counts the
-// members of a kind calls each_member() and needs no change for a new kind. The equations of a kind
-// belong to the legs.
+// Each kind is listed once, here. Code that only moves, mirrors, renumbers, scales or counts the members of a
+// kind calls each_member() and needs no change for a new kind. The equations of a kind belong to the legs.
 #pragma once
 
 #include <type_traits>
@@ -15,8 +14,8 @@
 
 namespace elastocheck {
 
-// ---- Members whose C++ type does not say what they are. T is the type of the number,
-// const or not.
+// ---- Members whose C++ type does not say what they are: a reference with its meaning. T is the type
+// of the member, const or not.
 
 template <class T>
 struct Length {
@@ -40,8 +39,8 @@ struct LoadVector {
     BodyId axes;     // its components are along the axes of this body, or of ground
     bool is_moment;  // then it is an axial vector
 };
-// A direction that a mirror reverses: a rotation axis. Passed as Direction where the visitor does
-// not distinguish it.
+// A rotation axis, an axial vector: a mirror image has it reversed. Visitors without an overload for it
+// receive it as a Direction.
 template <class T>
 struct RotationAxis {
     T& direction;
@@ -83,15 +82,17 @@ struct JointSymbol {
 // The free coordinate of a joint that a driver may hold or move: the angle about axis_j, or the
 // displacement along it.
 enum class JointDrive { none, angle, displacement };
+struct NotDriven {
+    static constexpr JointDrive drive = JointDrive::none;
+};
 
 template <class T>
 struct Kind;
 
 template <>
-struct Kind<Spherical> {
+struct Kind<Spherical> : NotDriven {
     static constexpr const char* name = "spherical";
     static constexpr JointSymbol symbol{"spherical"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j); }
 };
 template <>
@@ -104,10 +105,9 @@ struct Kind<Revolute> {
     }
 };
 template <>
-struct Kind<Universal> {
+struct Kind<Universal> : NotDriven {
     static constexpr const char* name = "universal";
     static constexpr JointSymbol symbol{"universal"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.axis_i, s.axis_j); }
 };
 template <>
@@ -127,61 +127,53 @@ struct Kind<Translational> {
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.axis_i, s.axis_j); }
 };
 template <>
-struct Kind<Planar> {
+struct Kind<Planar> : NotDriven {
     static constexpr const char* name = "planar";
     static constexpr JointSymbol symbol{"plane"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.normal_i, s.normal_j); }
 };
 template <>
-struct Kind<Fixed> {  // x and y as a frame: its mirror image has y reversed
+struct Kind<Fixed> : NotDriven {  // x and y as a frame: its mirror image has y reversed
     static constexpr const char* name = "fixed";
     static constexpr JointSymbol symbol{"fixed"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) {
         f(s.i, s.j, s.x_i, RotationAxis{s.y_i}, s.x_j, RotationAxis{s.y_j});
     }
 };
 template <>
-struct Kind<Distance> {
+struct Kind<Distance> : NotDriven {
     static constexpr const char* name = "distance";
     static constexpr JointSymbol symbol{"spherical", false, true};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, Length{s.length}); }
 };
 template <>
-struct Kind<InPlane> {
+struct Kind<InPlane> : NotDriven {
     static constexpr const char* name = "in_plane";
     static constexpr JointSymbol symbol{"plane"};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.normal_j, Length{s.offset}); }
 };
 template <>
-struct Kind<InLine> {
+struct Kind<InLine> : NotDriven {
     static constexpr const char* name = "in_line";
     static constexpr JointSymbol symbol{"sliding", true};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.axis_j); }
 };
 template <>
-struct Kind<Perpendicular> {
+struct Kind<Perpendicular> : NotDriven {
     static constexpr const char* name = "perpendicular";
     static constexpr JointSymbol symbol{};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j); }
 };
 template <>
-struct Kind<Parallel> {
+struct Kind<Parallel> : NotDriven {
     static constexpr const char* name = "parallel";
     static constexpr JointSymbol symbol{};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j); }
 };
 template <>
-struct Kind<Angle> {
+struct Kind<Angle> : NotDriven {
     static constexpr const char* name = "angle";
     static constexpr JointSymbol symbol{};
-    static constexpr JointDrive drive = JointDrive::none;
     static void members(auto& s, auto&& f) { f(s.i, s.j, s.y_j, PlaneAngle{s.angle}); }
 };
 
@@ -303,17 +295,18 @@ void each_member(K& kind, F&& f) {
     if constexpr (detail::is_variant<T>::value)
         std::visit([&](auto& held) { each_member(held, f); }, kind);
     else
-        Kind<T>::members(
-            kind, [&](auto&&... all) { (detail::pass(f, std::forward<decltype(all)>(all)), ...); });
+        Kind<T>::members(kind, [&](auto&&... members) {
+            (detail::pass(f, std::forward<decltype(members)>(members)), ...);
+        });
 }
 
 // Calls f(BodyId&) for the body of every member.
 template <class K, class F>
 void each_body(K& kind, F&& f) {
     using Id = std::conditional_t<std::is_const_v<K>, const BodyId, BodyId>;
-    const auto of = [&]<class M>(M & member) requires requires { member.body; }
+    const auto body_of_member = [&]<class M>(M & member) requires requires { member.body; }
     { f(member.body); };
-    each_member(kind, overloaded{of, [&](Id& body) { f(body); }});
+    each_member(kind, overloaded{body_of_member, [&](Id& body) { f(body); }});
 }
 
 // Calls f(Point&) or f(Marker&) for every point and marker: both have `body` and `s_local`.
@@ -333,12 +326,12 @@ std::vector<Point> points_of(const K& kind) {
 // The first member of type M, e.g. member<Formulation>(elastic.kind); nullptr if it has none.
 template <class M, class K>
 auto member(K& kind) {
-    using Found = std::conditional_t<std::is_const_v<K>, const M, M>;
-    Found* found = nullptr;
-    each_member(kind, [&](Found& m) {
-        if (found == nullptr) found = &m;
+    using Member = std::conditional_t<std::is_const_v<K>, const M, M>;
+    Member* first = nullptr;
+    each_member(kind, [&](Member& m) {
+        if (first == nullptr) first = &m;
     });
-    return found;
+    return first;
 }
 
 // The number that a driver changes: the length or offset of a joint or constraint [m] or its angle
@@ -351,7 +344,7 @@ auto driven_number(K& kind) {
                                  [&](PlaneAngle<Value> a) { found = &a.value; }});
     return found;
 }
-// Its preload; nullptr if it has none.
+// The preload of an element, or the direction of a driven one; nullptr if it has none.
 template <class K>
 auto preload(K& kind) {
     using Value = std::conditional_t<std::is_const_v<K>, const Vector6, Vector6>;
@@ -359,6 +352,7 @@ auto preload(K& kind) {
     each_member(kind, [&](ForceAndMoment<Value> w) { found = &w.value; });
     return found;
 }
+// Whether the driven number is an angle.
 template <class K>
 bool is_angle(const K& kind) {
     bool angle = false;
@@ -380,7 +374,7 @@ inline BodyId body_of(const LoadKind& load) {
     each_body(load, [&](BodyId body) { found = body; });
     return found;
 }
-// Its force or moment, and which of the two.
+// The force or moment of a load.
 template <class L>
 auto& load_vector(L& load) {
     using Value = std::conditional_t<std::is_const_v<L>, const Vector3, Vector3>;
@@ -393,7 +387,7 @@ inline bool is_moment(const LoadKind& load) {
     each_member(load, [&](LoadVector<const Vector3> v) { moment = v.is_moment; });
     return moment;
 }
-// Whether it rotates with its body.
+// Whether the load rotates with its body.
 inline bool is_follower(const LoadKind& load) {
     bool follows = false;
     each_member(load, [&](LoadVector<const Vector3> v) { follows = v.axes != ground; });

@@ -24,14 +24,14 @@ Cubic reversed(const Cubic& c) { return {-c[0], c[1], -c[2], c[3]}; }
 }  // namespace
 
 double force(const ScalarLaw& law, double x) {
-    const auto at = [&](const Curve& curve) {
+    const auto value = [&](const Curve& curve) {
         const auto piece = std::ranges::upper_bound(curve.knots, x) - curve.knots.begin();
         const Cubic& c = curve.pieces[static_cast<std::size_t>(piece)];
         const double t =
             x - curve.knots[static_cast<std::size_t>(std::max<std::ptrdiff_t>(piece - 1, 0))];
         return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
     };
-    return std::visit(overloaded{[&](const LinearRate& u) { return u.k * x; }, at}, law);
+    return std::visit(overloaded{[&](const LinearRate& u) { return u.k * x; }, value}, law);
 }
 
 Curve reversed(const Curve& curve) {
@@ -40,8 +40,8 @@ Curve reversed(const Curve& curve) {
     std::ranges::transform(curve.knots, result.knots.rbegin(), [](double x) { return -x; });
     result.pieces.front() = reversed(curve.pieces.back());
     result.pieces.back() = reversed(curve.pieces.front());
-    // A piece between two knots refers to its left knot, which was the right one
-    // before the reversal.
+    // A piece between two knots is a polynomial about its left knot; the left one after the reversal
+    // is the right one before.
     for (std::size_t k = 1; k < n; ++k)
         result.pieces[n - k] =
             reversed(shifted(curve.pieces[k], curve.knots[k] - curve.knots[k - 1]));

@@ -1,4 +1,4 @@
-// Data of force laws: values, scaling, reversal, and the curves of an element.
+// Force laws of springs and bushings: values, scaling, reversal.
 #pragma once
 
 #include "elastocheck/mechanism.hpp"
@@ -13,15 +13,14 @@ double force(const ScalarLaw& law, double x);
 bool is_zero(const ScalarLaw& law);
 bool is_zero(const SpatialLaw& law);
 
-// f(x) → -f(-x): the law for the opposite sign of the deformation.
+// The law x ↦ -f(-x), of the same element with the opposite sign of its deformation.
 Curve reversed(const Curve& curve);
 ScalarLaw reversed(const ScalarLaw& law);
 // The law for deformations and forces multiplied by `signs`, each 1 or -1.
 SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs);
 
-// The law for a deformation `stretch` times and a force `force` times as large:
-// f'(x) = force · f(x / stretch). A full matrix remains symmetric: its coupling terms take the
-// square roots of the factors of both axes.
+// The law for a deformation `stretch` times and a force `force` times as large: f'(x) = force · f(x / stretch).
+// A full matrix remains symmetric: its coupling terms take the square roots of the factors of both axes.
 ScalarLaw scaled(const ScalarLaw& law, double stretch, double force);
 SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& force);
 

@@ -1,16 +1,18 @@
-// States of neighbouring models: how every leg takes part in derivatives by
-// differences (compare/sensitivity/sensitivity.hpp).
+// Equilibria of models that differ from a solved one in a single number of the scene: each leg's
+// contribution to derivatives by finite differences (compare/sensitivity/sensitivity.hpp).
 //
-// A model m(t) changes with a number p + t of its scene; m(0) has the state x. With the leg's own
-// residual G at the fixed x, a stencil t_k with weights w_k, and the leg's own J at (m(0), x),
+// m(t) is the model with the number p + t, x the equilibrium of m(0), G the leg's residual and
+// J = ∂G/∂x at (m(0), x). With the points t_k and weights w_k of a difference formula,
 //
-//   dx/dp = -J⁻¹ Σ w_k (G(m(t_k), x) - G(m(0), x))
+//   dx/dp = -J⁻¹ Σ w_k (G(m(t_k), x) - G(m(0), x)).
 //
-// decides whether there is a derivative. The states of the neighbours are those of the chord method,
+// There is no derivative where this system has no finite solution. The equilibria x_k of the
+// neighbours m(t_k) follow by the chord method (Newton's method with a constant J),
 //
-//   x_k ← x_k - J⁻¹ (G(m(t_k), x_k) - G(m(0), x))   from x_k = x,
+//   x_k ← x_k - J⁻¹ (G(m(t_k), x_k) - G(m(0), x)),   x_k = x at first,
 //
-// which gains one to three digits a step. Terms that the number does not change cancel to the last digit.
+// which gains one to three digits a step. Subtracting G(m(0), x) cancels all terms that p does not
+// change.
 #pragma once
 
 #include <cmath>
@@ -21,33 +23,32 @@
 
 namespace elastocheck {
 
-// `model`: on one side of one branch, which is its only one; with the structure of m(0).
 struct Neighbour {
-    const Model* model = nullptr;
-    double t = 0, weight = 0;
+    const Model* model = nullptr;  // m(t): one side of one branch; the structure of m(0)
+    double t = 0, weight = 0;      // t_k, w_k
 };
-using Neighbours = std::vector<Neighbour>;  // the stencil of one number
+using Neighbours = std::vector<Neighbour>;  // the difference formula for one number
 
-// One state per neighbour, with its reactions. Empty unless converged. Outcomes:
-// inconsistent_constraints where redundant joints close only at this value of the number,
-// loaded_idle_mode where the number loads a motion that nothing resists, singular at a limit point,
-// not_finite. Idle modes are held.
+// One state per neighbour, with its reactions; no states unless converged. Outcomes: inconsistent_constraints
+// where redundant joints close only at this value of the number, loaded_idle_mode where the number loads a
+// motion that nothing resists, singular at a limit point, not_finite. Idle modes are held.
 struct NeighbourStates {
     Outcome outcome = Outcome::converged;
     std::string detail;
     std::vector<Equilibrium> states;
-    bool settled = true;  // every chord method has met (of the equilibrium leg)
+    // the chord method converged for every neighbour; judged by the equilibrium leg only
+    bool settled = true;
 };
 
-// Its largest number of steps, and the change of motion and reactions in the last but one as a share of
-// that in the first. Reactions follow the motion by one step, and may need more where the first one meets
-// the motion: a joint driven to half a turn.
-inline constexpr int chord_steps = 10;
+// Convergence of the chord method. A step has converged where its changes of motion and of reactions
+// are below chord_met times those of the first step (the reactions also below chord_reactions times
+// their size). One more step follows, since the reactions lag the motion by one step.
+inline constexpr int chord_steps = 10;  // at most
 inline constexpr double chord_met = 1e-9;
-inline constexpr double chord_reactions = 1e-11;  // of a change, in shares of the reactions
-inline constexpr double chord_rounding = 1e-14;   // of a motion, in shares of the model's size
+inline constexpr double chord_reactions = 1e-11;
+inline constexpr double chord_rounding = 1e-14;  // a motion that is round-off, of the model's size
 
-// Σ |w|: the rounding of G is amplified by it.
+// Σ |w_k|, by which the difference formula amplifies the rounding of G.
 inline double amplification(const Neighbours& stencil) {
     double sum = 0;
     for (const Neighbour& k : stencil) sum += std::abs(k.weight);

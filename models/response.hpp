@@ -28,11 +28,10 @@ struct Increment {
     Eigen::Vector3d dpi = Eigen::Vector3d::Zero();  // [rad] per unit
 };
 
-// One response per disturbance, in their order, each with one increment per Model::bodies; empty
-// unless converged. Idle modes are held (minimum norm √(|dr|² + L²|dπ|²) over all bodies, L a
-// length of the leg). A disturbance that acts on an idle mode gives loaded_idle_mode, an offset
-// that redundant joints hold gives inconsistent_constraints, a state that has lost its stiffness
-// gives singular.
+// One response per disturbance, in their order, each with one increment per Model::bodies; empty unless
+// converged. Idle modes are held (minimum norm √(|dr|² + L²|dπ|²) over all bodies, L a length that the leg chooses). A
+// disturbance that acts on an idle mode gives loaded_idle_mode, an offset that redundant joints hold gives
+// inconsistent_constraints, a state that has lost its stiffness gives singular.
 //
 // Compliance to dead wrenches is reciprocal, C = Cᵀ, with the work-conjugate displacements (force
 // with dp of its point, moment with dπ), if all forces have a potential: no follower, no

@@ -1,4 +1,4 @@
-// Whether two models differ in their numbers only: the kinds of their parts and what they connect.
+// Structure of a model: the kinds of its parts and what they connect, without its numbers.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace elastocheck {
 
-// The structure of a model as a list of numbers: kinds, bodies, laws, formulations, branches, their
-// sides and what they drive.
+// Replaces `list` by integers for kinds, bodies, laws, formulations, branches, their sides and drivers:
+// models with equal lists differ in their numbers only.
 void structure(const Model& model, std::vector<int>& list);
 
 }  // namespace elastocheck

@@ -11,9 +11,9 @@ std::optional<Vanishing> vanishing_length(const Model& model, const Branch& side
     for (const Driver& driver : side.drivers) {
         const int joint = driven_joint(driver.what);
         if (joint < 0 || model.joints.at(static_cast<std::size_t>(joint)).driven < 0) continue;
-        const auto c =
-            static_cast<std::size_t>(model.joints[static_cast<std::size_t>(joint)].driven);
-        const auto* link = std::get_if<DistanceBetween>(&model.constraints[c].kind);
+        const int driven = model.joints[static_cast<std::size_t>(joint)].driven;
+        const Constraint& constraint = model.constraints[static_cast<std::size_t>(driven)];
+        const auto* link = std::get_if<DistanceBetween>(&constraint.kind);
         if (link == nullptr) continue;
         double start = link->length, rate = 0;
         for (const Driver& other : side.drivers)

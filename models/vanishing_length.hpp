@@ -7,13 +7,13 @@
 
 namespace elastocheck {
 
-// A joint that holds two points at a distance, and the parameter from 0 on at which the drivers of a
-// side of the branch have shortened that distance to zero.
+// The first Distance joint whose length the drivers of a side of a branch shorten to zero or below.
 struct Vanishing {
-    int joint = -1;
-    double at = 0;
-    double to = 0;  // the distance at the end of the side, not positive [m]
+    int joint = -1;  // position in Model::joints
+    double at = 0;   // parameter at which the length is zero
+    double to = 0;   // length at the end of the side, not positive [m]
 };
+// None if all lengths stay positive.
 std::optional<Vanishing> vanishing_length(const Model& model, const Branch& side);
 
 }  // namespace elastocheck

@@ -181,7 +181,7 @@ CandidateJudgement outline_of(const Model& model, const Comparison& comparison,
     CandidateJudgement result;
     result.name = candidate.name;
     result.tolerance = tolerance;
-    result.leftovers = candidate.leftovers;
+    result.state_residuals = candidate.state_residuals;
     result.notes = candidate.notes;
     result.columns = as_they_stand(model, comparison, candidate.points.columns);
     const auto& channels = comparison.channels;
@@ -309,7 +309,7 @@ int judge_columns(const std::vector<Compared>& readings, const std::vector<Chann
 
 // Whether its states meet the constraints.
 void judge_states(CandidateJudgement& result, bool& within) {
-    for (const auto& left : result.leftovers) {
+    for (const auto& left : result.state_residuals) {
         double missed = 0;  // [mm]; NaN is largest
         for (const auto& r : left.truth) missed = worse(1e3 * r.length, missed);
         if (!left.why_not.empty() || missed <= result.tolerance.mm) continue;

@@ -60,7 +60,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
         const Branch& branch = model.branches[b];
         const auto sides = sides_of(model, branch);
-        Leftover left;
+        StateResiduals left;
         left.branch = branch.name;
         left.unit = unit_of(branch.unit);
         left.second = comparison.branches[b].second;
@@ -93,7 +93,8 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
             for (std::size_t c = 0; c < values.size(); ++c)
                 result.points.columns[c].values.push_back(values[c]);
         }
-        if (!left.a.empty() || !left.why_not.empty()) result.leftovers.push_back(std::move(left));
+        if (!left.a.empty() || !left.why_not.empty())
+            result.state_residuals.push_back(std::move(left));
     }
     // Outputs of a body without a given pose have no values.
     std::erase_if(result.points.columns, [](const PointColumn& column) {

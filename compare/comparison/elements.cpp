@@ -145,7 +145,7 @@ std::vector<Channel> element_channels(const Model& model) {
             list.push_back({.name = free_name(elastic.name, name, taken) + "." + name,
                             .unit = unit_of_component(component),
                             .main = false,
-                            .reads = OfElement{k, component},
+                            .reads = ElementComponent{k, component},
                             .definition = definition});
         }
     }
@@ -174,7 +174,7 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
             of != nullptr && of->entry->kind == ChannelKind::element)
             values[c] =
                 in_unit(channels[c].unit) * of->entry->formula({model, &state, of->of, &branch});
-        const auto* of = std::get_if<OfElement>(&channels[c].reads);
+        const auto* of = std::get_if<ElementComponent>(&channels[c].reads);
         if (of == nullptr) continue;
         if (of->element != element) {
             element_state = state_of(model, branch, state, of->element);
@@ -245,7 +245,7 @@ std::vector<Channel> sums(const Model& model) {
 LargestForces::LargestForces(const Model& of_model, const BranchSide& on_side)
     : model(&of_model), side(&on_side), analyses(std::make_shared<Analyses>()) {
     for (auto& channel : element_channels(of_model)) {
-        const auto* of = std::get_if<OfElement>(&channel.reads);
+        const auto* of = std::get_if<ElementComponent>(&channel.reads);
         if (of != nullptr && of->component < 6) continue;
         const std::string element = element_of(channel);
         if (largest.empty() || largest.back().element != element ||
@@ -274,7 +274,7 @@ void LargestForces::add(const Equilibrium& state) {
         }
         largest_force.value = values[c];
         largest_force.a = parameter_in(unit_of(branch.unit), state.load);
-        const auto* read = std::get_if<OfElement>(&channels[c].reads);
+        const auto* read = std::get_if<ElementComponent>(&channels[c].reads);
         if (read == nullptr) continue;
         largest_force.deformation_unit = unit_of_component(read->component - 6);
         largest_force.deformation =

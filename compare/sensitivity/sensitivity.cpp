@@ -153,7 +153,7 @@ BranchSide at_rest(const Model& model) {
 // turn with it. Empty for other outputs.
 std::string idle_motion_of(const BranchSide& side, const Channel& output) {
     constexpr double moves = 1e-9, h = 1e-5;  // [m, rad] of a unit motion
-    const auto* of = std::get_if<OfElement>(&output.reads);
+    const auto* of = std::get_if<ElementComponent>(&output.reads);
     if (of == nullptr || side.analysis->diagnosis.idle.empty()) return {};
     const auto element = static_cast<std::size_t>(of->element);
     const Index axes = member<ScalarLaw>(side.model.elastics[element].kind) != nullptr ? 1 : 6;

@@ -168,7 +168,7 @@ void VariantSolver::place(const Model& design) {
 
     for (const Way& way : ways)
         together_ =
-            together_ && stands_on(design, branch_sides(design.branches[way.branch])[way.side]);
+            together_ && fits_branch(design, branch_sides(design.branches[way.branch])[way.side]);
     for (Way& way : ways)
         if (!groups_.empty() && (together_ || groups_.back().ways.front().branch == way.branch))
             groups_.back().ways.push_back(std::move(way));

@@ -1,5 +1,4 @@
-// Output channels: quantities computed from a configuration, the same for every leg and independent
-// of all legs.
+// Output channels: quantities computed from a state, by the same functions for every leg.
 #pragma once
 
 #include <limits>
@@ -42,27 +41,27 @@ Unit unit_of(ParameterUnit unit);  // display unit of a branch parameter
 // ---- Kinds of channels: the quantity that a channel reads, one type each.
 
 enum class ChannelKind {
-    motion,    // of the configuration alone: a position or an angle
-    drive,     // effort of a driver
-    reaction,  // of a joint, or of several together
-    element,   // deformation or force of an element, axial force of a link
-    characteristic,
+    motion,          // a position or an angle, of the poses alone
+    drive,           // effort of a driver
+    reaction,        // of a joint, or of several together
+    element,         // deformation or force of an element, axial force of a link
+    characteristic,  // a K&C rate, of the response to a small change
 };
 const char* name(ChannelKind kind);  // "motion", ...
 
-// p_axis - counted_from
+// Coordinate of a point, p_axis - counted_from.
 struct Coordinate {
     static constexpr ChannelKind kind = ChannelKind::motion;
     Point at;
     int axis = 0;             // 0 x, 1 y, 2 z
     double counted_from = 0;  // [m]
 };
-// Deformation, or elastic force, of an element in its own axes; evaluated only by
-// compare/comparison/elements.hpp, which needs the branch.
-struct OfElement {
+// Component of the deformation or elastic force of an element in its own axes. Evaluated only by
+// compare/comparison/elements.hpp, since it needs the branch.
+struct ElementComponent {
     static constexpr ChannelKind kind = ChannelKind::element;
     int element = 0;  // position in Model::elastics
-    // 0-5 along and about x y z, of a spring 0; then 6-11 the conjugate forces and moments
+    // 0-5: displacement and rotation along x y z; 6-11: force and moment; of a spring 0 and 6
     int component = 0;
 };
 // Axial force of a joint that fixes the distance of two points, positive in tension:
@@ -87,21 +86,22 @@ struct Reaction {
     int joint = 0;
     int component = 0;
 };
-// Total wrench of several joints on one body about the point of the first: it stays determined
-// where redundant joints share a load in an undetermined way.
+// Component of the total wrench of several joints on one body, about the point of the first. The total is
+// determined where redundant joints share a load in an undetermined way.
 struct Total {
     static constexpr ChannelKind kind = ChannelKind::reaction;
     std::vector<int> joints;
     BodyId on = ground;
-    int component = 0;
+    int component = 0;  // as of Reaction
 };
 // A figure of a wheel, axle, spring or damper (compare/outputs/catalogue/catalogue.hpp).
 struct Entry;
 struct Catalogued {
     const Entry* entry = nullptr;
-    std::size_t of = 0;  // its owner, in Model::wheels, elastics or dampers
+    std::size_t of = 0;  // its owner: position in Model::wheels, elastics or dampers
 };
-using Reads = std::variant<Coordinate, Catalogued, Effort, Reaction, Total, OfElement, AxialForce>;
+using Reads =
+    std::variant<Coordinate, Catalogued, Effort, Reaction, Total, ElementComponent, AxialForce>;
 
 // Value of an output that is undefined, for example the length of an arm whose end is at infinity.
 // NaN means a failure.
@@ -110,7 +110,7 @@ inline constexpr double undefined = std::numeric_limits<double>::infinity();
 struct Channel {
     std::string name;  // "toe", "left.travel", "tie_rod.force_x", "rack.drive_force"
     Unit unit = Unit::mm;
-    bool main = true;  // false: joint forces, and other forms of the wheel's position and angles
+    bool main = true;  // false: joint forces, and alternative measures of the wheel's pose
     Reads reads = {};
     std::string definition = {};  // one line with its sign convention; written only here
     // meaning of an undefined value; empty where the channel always has a value
@@ -118,17 +118,17 @@ struct Channel {
 
     ChannelKind kind() const;
     bool kinematic() const { return kind() == ChannelKind::motion; }
-    // a quotient: `undefined` at a zero of its denominator, and large beside it
+    // whether it is a quotient: undefined where its denominator is zero, and large nearby
     bool may_be_undefined() const;
     std::vector<int> joints() const;  // joints whose wrenches it reads
 };
 
-// The channels of a model, in order; those of a wheel with a name as NAME.toe and so on:
-//   the figures of the catalogue that a state has, wheel by wheel; of the axle
+// The channels of a model, in order; those of a wheel with a name are NAME.toe and so on:
+//   figures of the catalogue that need the state alone: of each wheel, then of the axle
 //   PROBE_x, _y, _z          position of a probe
 //   NAME.compression         of every spring and damper
 //   wheel_load               of every wheel
-//   JOINT.drive_force or .drive_moment   effort of the driver, of every joint moved by some branch
+//   JOINT.drive_force or .drive_moment   driver effort of every joint moved by some branch
 //   JOINT.force_x ... moment_z           wrench of a joint on its first body
 std::vector<Channel> channels(const Model& model);
 
@@ -139,13 +139,13 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
 // Position of a channel by its name, or -1.
 int find_channel(std::span<const Channel> channels, std::string_view name);
 
-// Channel values at one equilibrium, in the same order. NaN for a characteristic, an element and a
-// wheel load, which need more than the state.
+// Channel values at one state, in the same order and in the units of the channels. NaN for
+// characteristics, elements and wheel loads, which need more than the state.
 std::vector<double> evaluate(const Model& model, std::span<const Channel> channels,
                              const Equilibrium& state);
 std::vector<double> evaluate(const Model& model, const Equilibrium& state);  // of channels(model)
 
-// The scene in its design position, no load acting.
+// The model in its design position, without reactions.
 Equilibrium design_state(const Model& model);
 
 }  // namespace elastocheck::compare

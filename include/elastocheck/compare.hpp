@@ -26,7 +26,6 @@ struct Curve {
     std::vector<double> channel(std::size_t c) const;
 };
 
-// Path of a leg as a curve.
 struct PathCurve {
     Outcome outcome = Outcome::converged;
     std::string detail = {};
@@ -36,9 +35,10 @@ struct PathCurve {
     double seconds = 0;                         // processor time of the leg alone
 };
 
-// ---- Deviation between two curves, at equal parameter and at equal abscissa (for a suspension:
+// ---- Deviation between two curves a and b, at equal parameter and at equal abscissa (for a suspension:
 // equal load and equal travel).
 
+// Of one channel.
 struct Deviation {
     double max = 0;         // largest |b - a|, in the channel's unit
     double signed_max = 0;  // b - a where it is largest
@@ -50,9 +50,10 @@ struct Deviation {
     int compared = 0;          // numbers compared; 0 means no comparison
 };
 
+// Of all channels, at equal parameter or at equal abscissa.
 struct Reading {
     std::vector<Deviation> channels;  // one per channel
-    std::string not_compared;         // reason why there is none, empty when there is
+    std::string not_compared;         // reason why there is no comparison, else empty
     int outside = 0;                  // points of a that b does not reach (equal abscissa)
 };
 
@@ -99,7 +100,8 @@ const char* name(Grade verdict);  // "pass", "fail", "not judged"
 
 // ---- Scale of a branch, and bounds within which the references have to agree.
 
-// Shares by which the bounds are made (compare/deviation/agreement.hpp).
+// Within which the references have to agree, in shares of the scale of the branch
+// (compare/deviation/agreement.hpp).
 struct Agreement {
     double length = 1e-9;  // of L: distance between the positions of the references
     double angle = 1e-6;   // [deg]
@@ -112,9 +114,10 @@ struct Agreement {
 struct Scale {
     double force = 0;      // F [N]
     double length = 0;     // L [m], never zero
-    double round_off = 0;  // ε k X [N]
+    double round_off = 0;  // ε k X, rounding of a position X times the largest stiffness k [N]
 };
 
+// The shares of Agreement times the scale.
 struct Bounds {
     double length = 0;                               // [mm]
     double angle = 0;                                // [deg]
@@ -126,8 +129,8 @@ struct Bounds {
 
 // ---- Proofs that computed points are near equilibria.
 
-// Distances, the largest over all bodies and joints: a body's origin [m], its orientation [rad], a
-// joint's reaction force [N] and moment [N·m].
+// Largest distances over all bodies and joints: of origins [m], orientations [rad], reaction forces [N] and
+// moments [N·m].
 struct ProvedBound {
     double length = std::numeric_limits<double>::infinity();
     double angle = std::numeric_limits<double>::infinity();
@@ -135,14 +138,15 @@ struct ProvedBound {
     double moment = std::numeric_limits<double>::infinity();
 };
 
-// Counts over some points of a path, and the largest proved error bounds.
+// Proofs of some points of a path: counts, and the largest error bounds.
 struct Tally {
+    // proved: an equilibrium is within the bounds; excluded: none is; open: neither could be shown
     int points = 0, proved = 0, excluded = 0, open = 0;
     int stable = 0;  // of the proved points
     // Of the proved points: largest distance to the true equilibrium, and smallest radius within
     // which it is unique. [m, rad, N, N·m]
     ProvedBound error{0, 0, 0, 0}, unique;
-    // greatest wrench that holds an idle motion [N, N·m], gap of redundant constraints [m, rad]
+    // largest wrench that holds an idle motion [N, N·m], and largest gap of redundant constraints [m, rad]
     double held = 0, gap = 0;
     // additional statement of the certificate at the last point; empty: none
     std::string theorem = {};
@@ -151,8 +155,8 @@ struct Tally {
 
 // ---- Runs and comparisons.
 
-// States that are kept after a run: first point, a = 0, middle of the requested points, last point;
-// as far as the run came.
+// States that are kept after a run, as far as it came: first point, a = 0, middle of the requested points,
+// last point.
 struct Landmarks {
     std::optional<Equilibrium> front, start, middle, back;
 };
@@ -187,8 +191,8 @@ struct LegRun : PathCurve {
     Scale scale = {};  // of the acting forces over the points
     Landmarks landmarks = {};
     Tally proved = {};  // proofs of the landmarks; empty unless requested
-    std::vector<Compliance> compliance =
-        {};  // at front, start and back, as far as they differ; for scenes with wheels
+    // for scenes with wheels: at front, start and back, as far as they differ
+    std::vector<Compliance> compliance = {};
     // Of the equilibrium leg: states at evenly spaced points, in ascending order of the load, and
     // the largest forces over all points.
     std::vector<Equilibrium> stations = {};
@@ -237,12 +241,11 @@ struct BranchComparison {
 };
 
 struct Comparison {
-    std::vector<Channel> channels;  // of the model, then the totals of what redundant joints share
+    std::vector<Channel> channels;  // of the model, then totals() of redundant joints
     std::vector<BranchComparison> branches;
     int compared = 0;  // numbers compared in all
 
-    // every leg converged, the references agree, every branch moves some output, and
-    // something was compared
+    // every leg converged, the references agree, every branch moves some output, and something was compared
     bool conclusive() const;
     // The branch of this name. Pre: there is one.
     const BranchComparison& branch(std::string_view name) const;
@@ -257,8 +260,7 @@ struct Options {
     reference::energy::Options energy = {};
     Agreement agreement = {};
     std::string abscissa = {};  // name of a channel; empty: default_abscissa
-    // prove that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; a disproved landmark
-    // is an objection
+    // prove that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; a disproved landmark is an objection
     bool prove = true;
     // of these, only the last point of the equilibrium leg on each side of a branch
     bool prove_ends_only = false;

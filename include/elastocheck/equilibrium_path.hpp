@@ -15,7 +15,7 @@ struct Wrench {
 };
 
 struct Equilibrium {
-    double load = 0;          // load factor a of the branch
+    double load = 0;          // parameter a of the branch, in Branch::unit
     std::vector<Pose> poses;  // one per Model::bodies
     // one per Model::joints: exerted by the joint on its body i, about ModelJoint::at
     std::vector<Wrench> reactions;
@@ -84,9 +84,8 @@ struct EquilibriumPath {
     Counts counts;
 };
 
-// Visitor that receives each point as it is found, in order, so that the path need not be
-// stored: with a visitor a leg returns the path without points. The reference is valid during
-// the call only.
+// Visitor that receives each point as it is found, in order, so that the path need not be stored: with a
+// visitor a leg returns the path without points. The reference is valid during the call only.
 using Visit = std::function<void(const Equilibrium&)>;
 
 }  // namespace elastocheck

@@ -24,7 +24,7 @@ struct BranchSide {
     std::string name;  // "jounce"; "bounce to -80 mm" for one side of a two-sided branch
     Model model;
     Branch branch;  // `steps`: number of recorded equal increments of a
-    // of the model, for many runs of the recursion; empty: each run makes it
+    // of the model, shared by runs of the recursion; empty: each run computes it
     std::shared_ptr<const recursive::Analysis> analysis = {};
 };
 
@@ -32,10 +32,9 @@ struct BranchSide {
 // as many as the branch has steps.
 std::vector<BranchSide> sides_of(const Model& model, Branch branch, int points = 0);
 
-// Solver settings of a run. The recursion takes `refine` equal steps between two recorded points,
-// which determines `recursion.steps` and `.record`. Of the recorded points every `every`-th,
-// counted from a = 0, and the last are requested: the recursion passes through the others, the
-// references skip them.
+// Solver settings of a run. The recursion takes `refine` equal steps between two recorded points, which
+// determines `recursion.steps` and `.record`. Of the recorded points every `every`-th, counted from a = 0, and
+// the last are requested: the recursion passes through the others, the references skip them.
 struct SolverSettings {
     Leg leg = Leg::recursive;
     recursive::Options recursion = {};
@@ -44,9 +43,8 @@ struct SolverSettings {
     reference::energy::Options energy = {};
 };
 
-// Runs one branch side by any leg. Ends before the first point at which an element is deformed
-// beyond the end of a curve that is not extrapolated: Outcome::outside_table. With a `visit`,
-// points are not kept.
+// Runs one branch side by any leg. Ends with Outcome::outside_table before the first point at which an element
+// is deformed beyond the end of a curve that is not extrapolated. With a `visit`, points are not kept.
 EquilibriumPath solve_branch(const BranchSide& side, const SolverSettings& solver,
                              const Visit& visit = {});
 

@@ -1,8 +1,8 @@
 // Plain data of a suspension mechanism: bodies, joints, elastic elements, loads.
 //
-// Units are SI (m, N, rad), axes ISO 8855 (x forward, y left, z up). A name ending in _local is in
-// body axes; no suffix means ground axes. models/ contains no mechanics, not even r + A s: each leg
-// has its own.
+// Units are SI (m, N, rad, and products of these), axes ISO 8855 (x forward, y left, z up). A name ending in
+// _local is in body axes; no suffix means ground axes. models/ contains no mechanics, not even r + A s:
+// each leg has its own.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,12 +11,9 @@
 #include <variant>
 #include <vector>
 
-// All numbers are in SI units, m, N, rad and their products; the comment of a field says which.
-// Counts, positions in lists and kinds are int and enumerations, so that a number that may be varied
-// shows in its type.
+namespace elastocheck {
 
 // ---- Bodies and what is fixed in them.
-namespace elastocheck {
 
 using BodyId = int;  // position in Scene::bodies or Model::bodies
 inline constexpr BodyId ground = -1;
@@ -107,8 +104,8 @@ struct Parallel {
     Direction i, j;
 };
 
-// i stays in the plane of x_j = j and y_j at this angle from x_j towards y_j, provided that it is
-// in that plane already: the drive of a revolute or cylindrical joint, never a joint by itself.
+// Direction i is at this angle from x_j = j towards y_j, if it is in their plane: the drive of a revolute or
+// cylindrical joint, which keeps it there; never a joint by itself.
 struct Angle {
     Direction i;
     Direction j, y_j;  // perpendicular
@@ -169,9 +166,8 @@ struct AxialSpring {
     double free_length = 0;  // ℓ₀ [m]
 };
 
-// Deformation measure of a bushing and the direction of its forces. Programs differ here and all
-// choices are valid. The default is eqs. (10)-(11) as an energy. B = A_iᵀ A_j is the rotation from
-// marker axes i to j.
+// Deformation measure of a bushing and the direction of its forces. Programs differ here and all choices are
+// valid. The default is eqs. (10)-(11) as an energy. B = A_iᵀ A_j is the rotation from marker axes i to j.
 struct Formulation {
     // The axes A_f of d:  on_i: A_i   middle: A_i B^½   on_j: A_j. A frame on j equals a frame on i
     // of the same bushing with its markers swapped and the signs of its deformations reversed:
@@ -203,8 +199,9 @@ constexpr bool has_energy(const Formulation& f) { return f.conjugate && f.offset
 // [N], moment [N·m]) in marker axes at e = e₀, positive where it pulls j back against +e, as ∂u/∂e
 // does. `undeformed` is e₀ [m, rad], where the law has zero force.
 //
-// A torsion spring is a bushing that resists only θ_z, a tyre one to ground that only pushes along
-// z (the road moves its undeformed d_z), a beam one at half its length with its frame in the middle (models/reader/definitions/beams.hpp).
+// A torsion spring is a bushing that resists only θ_z; a tyre is one to ground that only pushes along z (the
+// road moves its undeformed d_z); a segment of a beam is one at half its length with its frame in the
+// middle (models/reader/definitions/beams.hpp).
 struct Bushing {
     Marker i, j;
     SpatialLaw law;
@@ -223,7 +220,7 @@ struct Elastic {
     ElasticKind kind;
     bool active_only_where_driven = false;  // a tyre: active only on the branches that drive it
     WrittenAs written_as = WrittenAs::itself;
-    // Markers swapped by compile(), since the frame is on j: deformations and forces change sign.
+    // compile() swapped the markers, since the frame was on j: deformations and forces have changed sign
     bool markers_swapped = false;
 };
 
@@ -246,9 +243,9 @@ struct FollowerMoment {
     BodyId body = ground;
     Vector3 m_local = Vector3::Zero();  // [N·m], [m] or [-], body axes
 };
-// The force of the road on a braked wheel, which the caliper holds to its carrier `body`: a dead
-// force f on the carrier along a line through the contact patch p, a point of the wheel, with the
-// moment (p - r) × f about the carrier's origin r. No potential.
+// The force of the road on a braked wheel, which the caliper holds to its carrier `body`: a dead force f on
+// the carrier, along a line through the contact patch p of the wheel, so that its moment about the
+// carrier's origin r is (p - r) × f. No potential.
 struct BrakeForce {
     Point patch;
     BodyId body = ground;

@@ -54,7 +54,7 @@ constexpr int rows(const ConstraintKind& kind) {
     return std::holds_alternative<CoincidentPoints>(kind) ? 3 : 1;
 }
 
-// Remainder of a joint after lowering: its name, and the point of its reaction wrench.
+// A joint after lowering: its name, its bodies and the point of its reaction wrench.
 struct ModelJoint {
     std::string name;
     BodyId i = ground, j = ground;
@@ -64,7 +64,6 @@ struct ModelJoint {
     bool active_only_where_driven = false;
 };
 
-// Size of the problem.
 struct Size {
     int bodies = 0, joints = 0, elastics = 0;
     int rows = 0;  // of the joints' constraints
@@ -87,10 +86,10 @@ struct Model {
     Size as_written, as_solved;  // of the scene, and of the reduced model
 };
 
-inline int coordinates(const Model& model) {
-    return 6 * static_cast<int>(model.bodies.size());
-}  // 6 nb
-inline int constraint_rows(const Model& model) {  // m
+// 6 nb, the number of coordinates.
+inline int coordinates(const Model& model) { return 6 * static_cast<int>(model.bodies.size()); }
+// m, the number of constraint equations.
+inline int constraint_rows(const Model& model) {
     int m = 0;
     for (const auto& constraint : model.constraints) m += rows(constraint.kind);
     return m;

@@ -30,7 +30,7 @@ struct Setting {
 // Parses "points.tie_rod_inner.z=-0.055". Throws SceneError if path or value is missing.
 Setting parse_setting(std::string_view text);
 
-// The number of this path, or of one side of it; none where the scene has no such number.
+// The number of this path, "PATH" or "PATH@left"; none if the scene has no such number.
 std::optional<Number> find_number(const Scene& scene, std::string_view path);
 
 // A setting with the shortest text that reads back as the same number.
@@ -44,10 +44,10 @@ Scene read_scene(const std::filesystem::path& file, std::span<const Setting> set
 Scene parse_scene(std::string_view text, const std::string& name,
                   std::span<const Setting> settings = {});
 
-// The text of a scene file with these values replaced where they are written, each old value in a
-// comment at the end of its line; all else stays as it is. Numbers of one side alone are entries of
-// the section `one_side`. Throws SceneError for text that is not
-// YAML, a setting as read_scene() rejects it, and a value that is not written as one word.
+// The text of a scene file with these values replaced where they are written, each old value in a comment at
+// the end of its line; numbers of one side alone become entries of the section `one_side`. All else is
+// unchanged. Throws SceneError for text that is not YAML, settings that read_scene() rejects, and values
+// that are not written as one word.
 std::string rewrite_scene(std::string_view text, const std::string& name,
                           std::span<const Setting> settings);
 

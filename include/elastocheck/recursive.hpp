@@ -18,17 +18,16 @@ struct Options {
     Method method = {};  // published; its kind holds the method's own settings
     // equal increments of the parameter over the branch; 0: the branch's own number
     int steps = 0;
-    int record = 0;  // equal increments between recorded points, a divisor of steps; 0: every step
+    // number of equal increments of the branch that are recorded, a divisor of steps; 0: every step
+    int record = 0;
 };
 
-// Follows one branch from load factor 0 to branch.to and returns the recorded points, record + 1
-// (or steps + 1) of them. A point holds its configuration, |Φ| of eq. (31), and the joint wrenches.
-// In methods without following forces these are λⁿ⁻¹ with the Jacobian of its solve, eq. (22); else
-// λ with the current Jacobian.
+// Follows one branch from a = 0 to branch.to and returns record + 1 (or steps + 1) points. A point holds the
+// poses, |Φ| of eq. (31), and the joint wrenches, eq. (22): of λⁿ⁻¹ with the Jacobian of its solve in
+// methods without following forces (published, closed), else of λ with the current Jacobian.
 //
-// The published method takes one factorisation per step, and one more where static loads or
-// preloads require λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded
-// points between them.
+// The published method takes one factorisation per step, and one more where static loads or preloads require
+// λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded points between them.
 //
 // The analysis of the model may be passed in and shared between branches and
 // threads; std::invalid_argument where it is of another model.
@@ -42,8 +41,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
 // ---- Many variants of a model: the same parts between the same bodies, with other numbers.
 
 struct BatchOptions {
-    // With the parameter of the branch, not arc length. In a high order one expansion, which both sides
-    // share, mostly reaches the ends of both.
+    // Over the parameter of the branch, not arc length. At a high order one expansion, which both sides of a
+    // branch share, mostly reaches both ends.
     Series series = {.order = 32};
     int points = 20;  // equal increments between recorded points of a branch
     // Record the joint wrenches of the points, and |Φ|; else the wrenches are zero, |Φ| is NaN.
@@ -56,12 +55,12 @@ using VisitBatch =
     std::function<void(std::size_t variant, std::size_t branch, const EquilibriumPath& path)>;
 
 // Follows all branches of all variants by `series`, four variants at a time in one arithmetic, each
-// branch from load factor 0 to branch.to. A branch with two sides is two branches here (branch_sides() in
+// branch from a = 0 to branch.to. A branch with two sides is two branches here (branch_sides() in
 // models/branch.hpp), and every part of a model is active on all its branches.
 //
-// The result of a variant is that of solve() with the method `series`, within 1e-12 of the largest
-// coordinate and of the largest force; it does not depend on the other variants. A variant that has
-// another structure than the design, ends early, or is near to any decision, is solved alone: its
+// The result of a variant is that of solve() with the method `series`, within 1e-12 of the largest coordinate
+// and of the largest force; it does not depend on the other variants. A variant that has another structure than
+// the design, ends early, or comes close to the threshold of any decision of the algorithm is solved alone: its
 // path is that of solve(), with its Outcome. So a NaN in one variant is reported for that variant.
 //
 // Pivot order, scaling and idle modes are those of the design, whose analysis may be passed in.

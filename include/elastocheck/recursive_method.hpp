@@ -1,6 +1,5 @@
-// The stepping methods and their settings.
-// Each method solves one saddle-point system per step; they differ in the terms that
-// they leave out.
+// The stepping methods and their settings. Each method solves saddle-point systems of the form (24); they
+// differ in the terms that they leave out.
 //
 //   method      right-hand side                                  matrix         solves  order
 //   published   what (29) carries over; constraints (7)          K of (19)      1       0
@@ -15,8 +14,8 @@
 //
 // The order is that of convergence to the true equilibrium; 0: the limit is another configuration.
 //
-// A method that starts each step from the true residual does not accumulate errors: the error at a
-// point is that of the last step, so an order p in one step is the order p at the end.
+// A method that starts each step from the true residual does not accumulate errors: the error at a point is
+// that of the last step, so that its order in one step is its order at the end.
 //
 // Force curves have knots. An equal step across a knot has, at that one point, an error of order
 //
@@ -65,15 +64,13 @@ struct Consistent {
         midpoint
     } solve = Solve::once;
 };
-// Variable step size.
 struct Adaptive {
     double length_tolerance = 1e-5;     // error of any body's origin [m] ...
     double angle_tolerance = 1.745e-5;  // ... and orientation [rad] at any point of the branch
 };
-// Power series of the branch.
 struct Series {
     int order = 16;  // p
-    // truncation error of any body's position [m], and of its orientation times L [m]
+    // truncation error of any body's position [m], and of its orientation times the model's size [m]
     double tolerance = 1e-12;
     // maximum number; as many again for each knot of a curve that the branch crosses
     int expansions = 200;

@@ -37,9 +37,9 @@ struct Driver {
 
 enum class ParameterUnit { newton, newton_metre, metre, radian, none };
 
-// A path of equilibria. At a = 0 it starts with the scene at the design position, settled under the
-// start values. From there a goes to `to`, and to `from` if that is on the other side of 0: one
-// path with two sides. The paper's example is two branches driven by a load, to +3000 and to -3000
+// A path of equilibria. At a = 0 it starts from the equilibrium near the design position under the start
+// values (the settled state). From there a goes to `to`, and to `from` if that is on the other side of 0:
+// one path with two sides. The paper's example is two branches driven by a load, to +3000 and to -3000
 // N, 300 steps each.
 struct Branch {
     std::string name;
@@ -50,21 +50,20 @@ struct Branch {
     std::vector<Driver> drivers;
 };
 
-// Steering axis of the wheel at the design position: the line through two points, each fixed in its
-// body (two ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs
-// do not read it.
+// Steering axis of the wheel at the design position: the line through two points, each fixed in its body (two
+// ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs do not read it.
 struct SteeringAxis {
     Point lower, upper;  // or ground
 };
 
-// A wheel that rolls is a body of its own, without mass, between its carrier and the road. With e
-// the spin axis, n the normal of the road and h a unit vector across both at the design pose:
+// A rolling wheel is a massless body of its own between its carrier and the road. With e the spin axis, n
+// the normal of the road and h the unit vector along e × n at the design pose, its joints are
 //
 //   bearing   revolute about e at the wheel centre c, wheel on carrier
 //   spin      h · n = 0, h fixed in the wheel, n in ground
 //
-// so that the direction e × h from c to the patch stays -(n - (n·e) e) / |n - (n·e) e|, and the
-// patch, a point of this body, the lowest point of the disc: p(q) = c - R (n - (n·e) e) / |...|.
+// They keep e × h along -(n - (n·e) e), so that the patch, a point of this body, stays the lowest point of
+// the disc of radius R: p(q) = c - R (n - (n·e) e) / |n - (n·e) e|.
 struct Wheel {
     std::string name;                        // "left"; empty if the scene has one wheel
     BodyId body = ground;                    // the carrier
@@ -111,11 +110,11 @@ struct Hardpoint {
 
 // A number of the scene file, as written and in the unit declared there.
 struct Number {
-    std::string path;  // "points.tie_rod_inner.z": name for a Setting
+    std::string path;  // "points.tie_rod_inner.z", as in Setting::path
     double value = 0;
     std::string unit;  // "mm", "N·m/deg"; empty for a pure number
-    // Under a mirror, of a number that makes both sides: "left" and "right", each with its value. One
-    // side alone is PATH@left or PATH@right.
+    // Under a mirror, of a number of both sides: "left" and "right", each with its value. The number of one
+    // side alone has the path PATH@left or PATH@right.
     std::vector<std::pair<std::string, double>> sides = {};
 };
 
@@ -123,19 +122,18 @@ struct Number {
 // of every branch. As many conditions as adjustments. Solved first (compare/comparison/trim.hpp);
 // the branches start from there.
 
-// Of the centre, up from the design position [m].
+// Kinds of conditions, by positions in Scene::wheels and Scene::probes.
+// Rise of the wheel centre from the design position [m].
 struct WheelTravel {
     int wheel = 0;
 };
-// [rad]
-struct WheelToe {
+struct WheelToe {  // [rad]
     int wheel = 0;
 };
-// [rad]
-struct WheelCamber {
+struct WheelCamber {  // [rad]
     int wheel = 0;
 };
-// Position relative to that at the design position [m].
+// Displacement from the design position [m].
 struct ProbeCoordinate {
     int probe = 0;
     int axis = 2;  // 0 x, 1 y, 2 z
@@ -145,8 +143,7 @@ using ConditionKind = std::variant<WheelTravel, WheelToe, WheelCamber, ProbeCoor
 struct Trim {
     struct Adjustment {
         std::string name;  // named as a driver: "springs.coil.preload"
-        // relative to its value in the scene; never a Load
-        Driven what;
+        Driven what;       // changed relative to its value in the scene; never a Load
         // change of `what` for one unit of the named quantity [SI/SI]
         double per_unit = 1;
         ParameterUnit unit = ParameterUnit::newton;  // of the named quantity

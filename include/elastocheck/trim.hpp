@@ -1,30 +1,28 @@
-// Trim: free lengths, preloads and offsets for which a scene settles, under the loads held on every
-// branch, at the requested conditions.
+// Trim: free lengths, preloads and offsets (adjustments p) for which the equilibrium under the loads that
+// act on every branch meets the requested conditions.
 //
-// x(p): the state settled by the equilibrium leg, the adjustments p held by the drivers of a branch
-// without motion. c(x): the residuals of the conditions, lengths and angles together. Newton's
-// method on c(x(p)) = 0,
+// x(p) is the equilibrium of the equilibrium leg with the adjustments p held, c(x) the residuals of the
+// conditions, lengths and angles together. Newton's method solves c(x(p)) = 0 with central differences,
 //
 //   J Δp = -c,     J e_k h_k = ½ (c(x(p + h_k e_k)) - c(x(p - h_k e_k))),
 //
-// h_k is a step that moves the element by a tenth of a millimetre or changes its stress by ten
-// newtons; Δp is halved until |c| decreases. The rank of J (every condition answered by exactly one
-// Δp) is judged on J with columns per step h and rows scaled to length one. Differences have about
-// six digits, so a singular value below 1e-6 of the largest counts as zero.
+// where h_k moves the element by a tenth of a millimetre or changes its force by ten newtons. Δp is halved
+// until |c| decreases. The problem is well posed if J, with columns per step h_k and rows of length one, is
+// regular: since differences have about six digits, a singular value below 1e-6 of the largest counts as zero.
 //
 // The energy leg, which does not use p, then settles the trimmed scene, and its conditions are
 // checked too.
 //
-// Trim::Bushings::balanced: the drawn position shall be the equilibrium. With preloads P of the
-// bushings (none at first) the scene is trimmed and settles at x; what the laws then carry beyond
-// what they carry as drawn is added,
+// Trim::Bushings::balanced: the drawn position shall be the equilibrium. With preloads P of the bushings
+// (zero at first) the scene is trimmed, with the equilibrium x, and the change of the bushings' forces from
+// the drawn position to x is added to P,
 //
 //   P ← P + u'(e(x)) - u'(e(drawn)),
 //
-// again until no body is farther than 1e-12 m from where it is drawn. The first state, of bushings
-// that are unloaded as drawn, decides what they and the adjusted springs carry. Each correction leaves
-// what springs and preloads bear of the motion; corrections are combined (Anderson 1965), since on a
-// soft subframe that is most of it.
+// until no body is farther than 1e-12 m from its drawn position. The first x, with bushings that are
+// unloaded as drawn, determines how bushings and adjusted springs share the load. A correction removes
+// only the part of the motion that the bushings' stiffness resists, on a soft subframe little of it;
+// hence successive corrections are combined by Anderson acceleration (Anderson 1965).
 #pragma once
 
 #include <optional>
@@ -42,8 +40,8 @@ struct TrimRecord {
         std::string name;  // "springs.coil.preload"
         Unit unit = Unit::newton;
         double by = 0;  // found change relative to the value in the scene
-        // "force 3521.4 N in compression, free length 412.3 mm": resulting values
-        std::string makes;
+        std::string
+            makes;  // resulting values: "force 3521.4 N in compression, free length 412.3 mm"
     };
     struct Met {
         std::string name;  // "left.travel"
@@ -70,11 +68,10 @@ struct Trimmed {
     std::optional<TrimRecord> record;  // empty where the scene requests no trim and is unchanged
 };
 
-// Throws std::invalid_argument for an ill-posed trim, naming the entries: different numbers of
-// conditions and adjustments, an adjustment that moves no condition, conditions that no adjustment
-// moves or that move only together; a condition of a balanced trim that differs from its value as
-// drawn. Where no solution is reached, or the second reference does not
-// confirm it, the record has the reason and the scene is the one given.
+// Throws std::invalid_argument for an ill-posed trim, naming the entries: different numbers of conditions and
+// adjustments, an adjustment that moves no condition, conditions that no adjustment moves or that move only
+// together, a condition of a balanced trim that differs from its drawn value. If no solution is reached, or
+// the second reference does not confirm it, the record has the reason and the scene is the one given.
 Trimmed trim(const Scene& scene);
 
 }  // namespace elastocheck::compare

@@ -10,17 +10,16 @@
 namespace elastocheck {
 namespace {
 
-// Point of a joint's end on its body.
-Point place(const Point& end) { return end; }
-Point place(const Direction& end) { return {end.body, Vector3::Zero()}; }
+// Point of a joint's end; the body's origin for an end that is a direction.
+Point point_of_end(const Point& end) { return end; }
+Point point_of_end(const Direction& end) { return {end.body, Vector3::Zero()}; }
 
 ModelJoint summary(const Joint& joint) {
     const auto [i, j] = ends(joint.kind);
-    const Point at = std::visit([](const auto& s) { return place(s.i); }, joint.kind);
+    const Point at = std::visit([](const auto& s) { return point_of_end(s.i); }, joint.kind);
     return {joint.name, i, j, at, -1, joint.active_only_where_driven};
 }
 
-// Whether compile() must swap the element's markers.
 bool is_framed_on_j(const ElasticKind& elastic) {
     const auto* formulation = member<Formulation>(elastic);
     return formulation != nullptr && formulation->frame == Formulation::Frame::on_j;
@@ -35,15 +34,15 @@ Size size_of(const Scene& scene) {
     return {count(scene.bodies), count(scene.joints), count(scene.elastics), rows_of_joints};
 }
 
-void reduce_to_what_is_required(Scene& scene) {
-    reduce::drop_what_does_nothing(scene);
-    reduce::drop_what_never_stands(scene);
+void reduce_to_required(Scene& scene) {
+    reduce::drop_zero_loads(scene);
+    reduce::drop_never_active(scene);
     reduce::weld(scene);
-    reduce::drop_what_is_within_one_body(scene);
-    reduce::drop_what_no_output_sees(scene);
+    reduce::drop_within_one_body(scene);
+    reduce::drop_unconnected_to_outputs(scene);
     reduce::drop_free_followers(scene);
     reduce::drop_duplicates(scene);
-    reduce::shorten_links(scene);
+    reduce::replace_links(scene);
 }
 
 void lower_joints(const Scene& scene, Model& model) {
@@ -59,8 +58,9 @@ void lower_joints(const Scene& scene, Model& model) {
     }
 }
 
-// Swaps the markers of bushings with their frame on j, and the sign of drivers of their preload.
-void turn_round(Model& model) {
+// Swaps the markers of bushings with their frame on j, so that the legs need the frame on i only, and
+// the sign of drivers of their preload.
+void swap_markers_framed_on_j(Model& model) {
     const auto element = [&](int k) -> ElasticKind& {
         return model.elastics[static_cast<std::size_t>(k)].kind;
     };
@@ -76,9 +76,8 @@ void turn_round(Model& model) {
         }
 }
 
-// Removes drivers of joints without a length, offset or angle, and reports branches
-// that move nothing.
-void name_what_cannot_move(Model& model) {
+// Removes drivers of joints without a length, offset or angle, and lists branches that move nothing.
+void drop_immovable_drivers(Model& model) {
     for (Branch& branch : model.branches) {
         std::erase_if(branch.drivers, [&](const Driver& driver) {
             const int moved = driven_joint(driver.what);
@@ -99,25 +98,25 @@ void name_what_cannot_move(Model& model) {
 
 }  // namespace
 
-Model compile(const Scene& asked, Detail detail) {
-    Scene scene = asked;
-    if (detail == Detail::required) reduce_to_what_is_required(scene);
+Model compile(const Scene& unreduced, Detail detail) {
+    Scene scene = unreduced;
+    if (detail == Detail::required) reduce_to_required(scene);
     Model model;
     model.name = scene.name;
-    model.as_written = size_of(asked);
+    model.as_written = size_of(unreduced);
     model.as_solved = size_of(scene);
     model.bodies = scene.bodies;
     lower_joints(scene, model);
     model.elastics = scene.elastics;
     model.static_loads = scene.static_loads;
     model.branches = scene.branches;
-    turn_round(model);
+    swap_markers_framed_on_j(model);
     model.wheels = scene.wheels;
     model.probes = scene.probes;
     model.dampers = scene.dampers;
     model.vehicle = scene.vehicle;
     model.omitted = scene.omitted;
-    name_what_cannot_move(model);
+    drop_immovable_drivers(model);
     return model;
 }
 

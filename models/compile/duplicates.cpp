@@ -1,5 +1,5 @@
-// Removes joints that repeat another.
-// Other redundancy depends on the position and is found by the legs.
+// Removes joints whose constraints another joint already imposes. Other redundancy depends on the
+// position and is found by the legs.
 #include <algorithm>
 #include <map>
 
@@ -21,13 +21,14 @@ bool same(const Direction& a, const Direction& b) {
 bool same_line(const Direction& a, const Direction& b) {
     return same(a, b) || same(a, {b.body, -b.u_local});
 }
+// Whether the ends i and j are the same, in either order.
 template <class T>
 bool same_pair(const T& a, const T& b,
-               bool (*same_one)(const decltype(T::i)&, const decltype(T::i)&)) {
-    return (same_one(a.i, b.i) && same_one(a.j, b.j)) || (same_one(a.i, b.j) && same_one(a.j, b.i));
+               bool (*same_end)(const decltype(T::i)&, const decltype(T::i)&)) {
+    return (same_end(a.i, b.i) && same_end(a.j, b.j)) || (same_end(a.i, b.j) && same_end(a.j, b.i));
 }
 
-// Whether the two are the same equation up to sign.
+// Whether two constraints are the same equation up to sign.
 bool same(const CoincidentPoints& a, const CoincidentPoints& b) { return same_pair(a, b, same); }
 bool same(const PointInPlane& a, const PointInPlane& b) {
     if (!same(a.i, b.i) || !same(a.j, b.j)) return false;
@@ -46,18 +47,19 @@ bool same(const DirectionAtAngle& a, const DirectionAtAngle& b) {
 
 using Equations = std::vector<ConstraintKind>;
 
-bool holds(const Equations& all, const ConstraintKind& one) {
-    return std::ranges::any_of(all, [&](const ConstraintKind& other) {
-        return other.index() == one.index() &&
+bool contains(const Equations& equations, const ConstraintKind& wanted) {
+    return std::ranges::any_of(equations, [&](const ConstraintKind& other) {
+        return other.index() == wanted.index() &&
                std::visit(
                    [&](const auto& a) {
                        return same(a, std::get<std::decay_t<decltype(a)>>(other));
                    },
-                   one);
+                   wanted);
     });
 }
-bool holds(const Equations& all, const Equations& some) {
-    return std::ranges::all_of(some, [&](const ConstraintKind& one) { return holds(all, one); });
+bool contains(const Equations& equations, const Equations& wanted) {
+    return std::ranges::all_of(
+        wanted, [&](const ConstraintKind& equation) { return contains(equations, equation); });
 }
 
 }  // namespace
@@ -79,8 +81,8 @@ void drop_duplicates(Scene& scene) {
         for (std::size_t k = 0; k < joints.size(); ++k)
             for (std::size_t l = 0; l < joints.size(); ++l) {
                 if (l == k || !kept.joints[joints[l]] || !kept.joints[joints[k]]) continue;
-                if (!holds(equations[l], equations[k])) continue;
-                if (l > k && holds(equations[k], equations[l]))
+                if (!contains(equations[l], equations[k])) continue;
+                if (l > k && contains(equations[k], equations[l]))
                     continue;  // of two equal joints the first stays
                 kept.joints[joints[k]] = false;
                 leave_out(scene, named("joint", scene.joints[joints[k]].name),

@@ -31,7 +31,7 @@ struct Attached {
 Attached attached(const Scene& scene) {
     Attached result{std::vector<std::vector<std::size_t>>(scene.bodies.size()),
                     std::vector<bool>(scene.bodies.size())};
-    const auto more = [&](BodyId body) {
+    const auto mark = [&](BodyId body) {
         if (body != ground) result.has_more[static_cast<std::size_t>(body)] = true;
     };
     for (std::size_t k = 0; k < scene.joints.size(); ++k) {
@@ -41,31 +41,32 @@ Attached attached(const Scene& scene) {
     }
     for (const Elastic& elastic : scene.elastics) {
         const auto [i, j] = ends(elastic.kind);
-        more(i);
-        more(j);
+        mark(i);
+        mark(j);
     }
-    for (const Load& load : scene.static_loads) more(body_of(load.kind));
+    for (const Load& load : scene.static_loads) mark(body_of(load.kind));
     each_driven(scene, [&](const Driven& driven) {
-        if (const Load* load = driven_load(driven)) more(body_of(load->kind));
+        if (const Load* load = driven_load(driven)) mark(body_of(load->kind));
     });
-    each_output_body(scene, more);
+    each_output_body(scene, mark);
     return result;
 }
 
 }  // namespace
 
-void shorten_links(Scene& scene) {
-    const Attached on = attached(scene);
+void replace_links(Scene& scene) {
+    const Attached attachments = attached(scene);
     Kept kept(scene);
     std::set<std::string> names;
     for (const Joint& joint : scene.joints) names.insert(joint.name);
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-        if (on.has_more[b] || on.joints[b].size() != 2) continue;
-        // Of two links in series one stays: the joint of the other link is no ball any more.
-        if (!kept.joints[on.joints[b][0]] || !kept.joints[on.joints[b][1]]) continue;
+        const std::vector<std::size_t>& joints = attachments.joints[b];
+        if (attachments.has_more[b] || joints.size() != 2) continue;
+        // Of two links in series one stays: the joint between them no longer exists.
+        if (!kept.joints[joints[0]] || !kept.joints[joints[1]]) continue;
         const BodyId body = static_cast<BodyId>(b);
-        Joint& joint = scene.joints[on.joints[b][0]];
-        const std::size_t second = on.joints[b][1];
+        Joint& joint = scene.joints[joints[0]];
+        const std::size_t second = joints[1];
         const auto first_ball = ball(joint, body), second_ball = ball(scene.joints[second], body);
         if (!first_ball || !second_ball || first_ball->on_other.body == second_ball->on_other.body)
             continue;
@@ -76,7 +77,7 @@ void shorten_links(Scene& scene) {
         names.erase(scene.joints[second].name);
         std::string name = scene.bodies[b].name;
         while (!names.insert(name).second) name += ".link";
-        for (const std::size_t k : on.joints[b])
+        for (const std::size_t k : joints)
             if (scene.joints[k].name != name)
                 leave_out(scene, named("joint", scene.joints[k].name),
                           "an end of " + named("body", scene.bodies[b].name) +

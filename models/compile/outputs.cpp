@@ -1,4 +1,4 @@
-// Removes bodies that no output depends on, and bodies that follow another freely.
+// Removes bodies that no output depends on, and free followers: bodies attached to one other body only.
 #include <numeric>
 #include <optional>
 #include <set>
@@ -32,13 +32,13 @@ Graph graph_of(const Scene& scene) {
         connect(ends(elastic.kind), is_loaded_at_design(elastic.kind, scene));
     each_output_body(scene, [&](BodyId body) { graph.outputs.insert(body); });
     for (const auto& load : scene.static_loads) graph.loaded.insert(body_of(load.kind));
-    const auto both = [&](Ends e) { graph.loaded.insert({e.i, e.j}); };
+    const auto load_both = [&](Ends e) { graph.loaded.insert({e.i, e.j}); };
     each_driven(scene, [&](const Driven& driven) {
         if (const Load* load = driven_load(driven)) graph.loaded.insert(body_of(load->kind));
         if (const int k = driven_joint(driven); k >= 0)
-            both(ends(scene.joints[static_cast<std::size_t>(k)].kind));
+            load_both(ends(scene.joints[static_cast<std::size_t>(k)].kind));
         if (const int k = driven_element(driven); k >= 0)
-            both(ends(scene.elastics[static_cast<std::size_t>(k)].kind));
+            load_both(ends(scene.elastics[static_cast<std::size_t>(k)].kind));
     });
     return graph;
 }
@@ -73,7 +73,7 @@ bool is_free_follower(const Graph& graph, const std::vector<bool>& kept, BodyId 
 
 }  // namespace
 
-void drop_what_no_output_sees(Scene& scene) {
+void drop_unconnected_to_outputs(Scene& scene) {
     Kept kept(scene);
     kept.bodies = connected_to_output(graph_of(scene));
     for (std::size_t b = 0; b < kept.bodies.size(); ++b)
@@ -82,7 +82,7 @@ void drop_what_no_output_sees(Scene& scene) {
     keep_only(scene, kept);
 }
 
-// Removes them one by one, from the ends of chains inwards.
+// From the ends of chains inwards: a removed follower may make its neighbour one.
 void drop_free_followers(Scene& scene) {
     const Graph graph = graph_of(scene);
     Kept kept(scene);

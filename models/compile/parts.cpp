@@ -12,7 +12,7 @@ namespace {
 
 using std::cos, std::sin;
 
-// Whether the law has zero force at x within the rounding of a position [m] or [rad].
+// Whether the force is zero somewhere in x ± rounding [m] or [rad].
 bool is_free(const ScalarLaw& law, double x, double rounding) {
     const double below = force(law, x - rounding), above = force(law, x + rounding);
     return std::min(below, above) <= 0 && 0 <= std::max(below, above);
@@ -99,7 +99,7 @@ bool is_strained_at_design(const JointKind& joint, const Scene& scene) {
 
 bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
     const auto axes = [&](const Marker& m) { return design(scene, m.body).p * m.A_local; };
-    bool free = false;  // an element between other members counts as loaded
+    bool free = false;  // so for a future kind without two points or two markers
     const std::vector<Point> points = points_of(elastic);
     const double* free_length = driven_number(elastic);
     if (points.size() == 2 && free_length != nullptr) {
@@ -110,8 +110,8 @@ bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
     std::vector<Marker> markers;
     each_member(elastic, [&](const Marker& marker) { markers.push_back(marker); });
     if (markers.size() == 2) {
-        const auto at = [&](const Marker& m) { return position(scene, {m.body, m.s_local}); };
-        free = (at(markers[1]) - at(markers[0])).norm() <= as_drawn &&
+        const auto origin = [&](const Marker& m) { return position(scene, {m.body, m.s_local}); };
+        free = (origin(markers[1]) - origin(markers[0])).norm() <= as_drawn &&
                axes(markers[0]).angularDistance(axes(markers[1])) <= as_drawn;
     }
     Vector6 e = Vector6::Zero();
@@ -181,7 +181,7 @@ void keep_only(Scene& scene, Kept kept) {
     const auto renumber = [&](BodyId& b) {
         if (b != ground) b = body[static_cast<std::size_t>(b)];
     };
-    // returns whether it stays
+    // these two return whether the load or driven input stays
     const auto renumber_load = [&](Load& load, const std::string& where) {
         if (!stays(body_of(load.kind))) {
             leave_out(scene, named("load", load.name), "its body is left out" + where);
@@ -191,14 +191,16 @@ void keep_only(Scene& scene, Kept kept) {
         return true;
     };
     const auto renumber_driven = [&](Driven& driven, const std::string& where) {
-        const auto part = [](int& id, const std::vector<int>& ids) {
-            return (id = ids[static_cast<std::size_t>(id)]) >= 0;
+        const auto renumber_part = [](int& id, const std::vector<int>& ids) {
+            id = ids[static_cast<std::size_t>(id)];
+            return id >= 0;
         };
         bool stay = true;
-        each_member(driven,
-                    overloaded{[&](Load& load) { stay = renumber_load(load, where); },
-                               [&](JointIndex<int> k) { stay = part(k.value, joint); },
-                               [&](ElasticIndex<int> k) { stay = part(k.value, elastic); }});
+        each_member(
+            driven,
+            overloaded{[&](Load& load) { stay = renumber_load(load, where); },
+                       [&](JointIndex<int> k) { stay = renumber_part(k.value, joint); },
+                       [&](ElasticIndex<int> k) { stay = renumber_part(k.value, elastic); }});
         return stay;
     };
     std::erase_if(scene.static_loads, [&](Load& load) { return !renumber_load(load, ""); });

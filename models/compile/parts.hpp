@@ -10,8 +10,7 @@
 
 namespace elastocheck::reduce {
 
-// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output
-// reads, ground included.
+// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output reads, ground included.
 template <class S, class F>
 void each_output_body(S& scene, F f) {
     for (auto& wheel : scene.wheels) {
@@ -38,17 +37,17 @@ DrivenParts driven_parts(const Scene& scene);
 
 // ---- At the design position.
 
-// [m], or of a unit vector: tolerance for equality at the design position
+// Tolerance for equality at the design position: of positions [m] and of components of unit vectors.
 inline constexpr double as_drawn = 1e-12;
 
 Pose design(const Scene& scene, BodyId body);
 Vector3 position(const Scene& scene, const Point& p);
 Vector3 direction(const Scene& scene, const Direction& u);
 
-// Whether a length, offset or angle of the joint differs from the drawing, so that it
-// moves without load.
+// Whether the joint's length, offset or angle differs from the design position, so that bodies move
+// without load.
 bool is_strained_at_design(const JointKind& joint, const Scene& scene);
-// Whether the element has a force; assumed if its markers are apart or rotated.
+// Whether the element has a force. A bushing whose markers do not coincide counts as loaded.
 bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene);
 
 bool is_zero(const LoadKind& load);
@@ -58,9 +57,10 @@ bool is_zero(const ElasticKind& elastic);  // no law and no preload
 
 std::string named(const char* kind, const std::string& name);  // "body 'arm'"
 std::string named(const Scene& scene, BodyId body);            // the same, or "ground"
+// Adds an entry to Scene::omitted.
 void leave_out(Scene& scene, const std::string& what, const std::string& why);
 
-// Flags of the parts that stay; initially all.
+// Flags of the parts that stay, initially all true.
 struct Kept {
     explicit Kept(const Scene& scene)
         : bodies(scene.bodies.size(), true),
@@ -69,13 +69,13 @@ struct Kept {
     std::vector<bool> bodies, joints, elastics;
 };
 
-// Removes the joints and elements for which `why` gives a reason.
+// Removes the joints and elements, by position, for which a reason is returned (empty: it stays).
 void drop_parts(Scene& scene, const std::function<std::string(std::size_t)>& why_joint,
                 const std::function<std::string(std::size_t)>& why_elastic);
 
-// Removes all other parts, which the caller has listed in omitted, and the joints, elements and
-// loads attached to a removed body, which are listed here. Drivers of removed parts are removed;
-// other references are renumbered. Pre: no output reads a removed body.
+// Removes the parts that are not kept, which the caller has listed in Scene::omitted, and the joints,
+// elements and loads attached to a removed body, which this function lists. Drivers of removed parts
+// are removed, other references renumbered. Pre: no output reads a removed body.
 void keep_only(Scene& scene, Kept kept);
 
 }  // namespace elastocheck::reduce

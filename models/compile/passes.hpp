@@ -9,11 +9,11 @@
 namespace elastocheck::reduce {
 
 // Removes zero loads, and drivers without effect.
-void drop_what_does_nothing(Scene& scene);
+void drop_zero_loads(Scene& scene);
 
-// Removes joints and elements that are active only where driven and are never driven; and elements
+// Removes joints and elements that are active only where driven but never driven, and elements
 // without law and preload, unless their preload is driven.
-void drop_what_never_stands(Scene& scene);
+void drop_never_active(Scene& scene);
 
 // Merges bodies connected by Fixed joints at the design position into one, with the name of the
 // first, or into ground. A body with a wheel or a probe is never merged into ground.
@@ -21,10 +21,10 @@ void weld(Scene& scene);
 
 // Removes joints and elements with both ends on one body, or on ground: nothing deforms or moves
 // them. Strained or driven ones stay, for the legs to judge.
-void drop_what_is_within_one_body(Scene& scene);
+void drop_within_one_body(Scene& scene);
 
 // Removes bodies that no chain of joints and elements, not through ground, connects to an output.
-void drop_what_no_output_sees(Scene& scene);
+void drop_unconnected_to_outputs(Scene& scene);
 
 // Removes bodies connected to one other body only, without load, preload, driver or output.
 void drop_free_followers(Scene& scene);
@@ -32,8 +32,8 @@ void drop_free_followers(Scene& scene);
 // Removes joints whose equations are contained in those of another joint between the same bodies.
 void drop_duplicates(Scene& scene);
 
-// Replaces bodies with two spherical joints to two other bodies, and nothing else, by a distance
+// Replaces bodies with two spherical joints to two other bodies, and nothing else, by a distance joint
 // with the body's name. Their spin about their own axis, which nothing resists, is removed too.
-void shorten_links(Scene& scene);
+void replace_links(Scene& scene);
 
 }  // namespace elastocheck::reduce

@@ -1,11 +1,9 @@
 // Merges bodies held together by Fixed joints.
 //
-// Body b is fixed to body c at the design position and keeps its pose in the axes of c: with r, A
-// the design positions,
+// Points s, directions u and marker axes A_local of a body b that is fixed to body c are, as fixed in
+// c, with r, A the design poses,
 //
 //   s_c = A_cᵀ (r_b + A_b s_b - r_c)      u_c = A_cᵀ A_b u_b      A_local,c = A_cᵀ A_b A_local,b
-//
-// give the same points, directions and markers as fixed in c.
 #include <numeric>
 
 #include "models/compile/parts.hpp"
@@ -22,9 +20,8 @@ bool is_as_drawn(const Fixed& s, const Scene& scene) {
            same(direction(scene, s.y_i), direction(scene, s.y_j));
 }
 
-// Disjoint sets of merged bodies, represented by their first; ground is number 0, body b is b
-// + 1. A body with a wheel or a probe is not merged into ground; an end of a damper or of an
-// axis may be.
+// Disjoint sets of merged bodies (union-find), represented by their first; ground is number 0, body b is b + 1.
+// A body with a wheel or a probe is not merged into ground; an end of a damper or of a steering axis may be.
 class Sets {
   public:
     explicit Sets(const Scene& scene)
@@ -35,6 +32,7 @@ class Sets {
         for (const Probe& probe : scene.probes) has_output_[number(probe.at.body)] = true;
     }
     BodyId first(BodyId body) { return static_cast<BodyId>(find(number(body))) - 1; }
+    // False, and nothing is merged, where ground would take in a wheel or a probe.
     bool unite(BodyId a, BodyId b) {
         const std::size_t low = std::min(find(number(a)), find(number(b)));
         const std::size_t high = std::max(find(number(a)), find(number(b)));
@@ -54,8 +52,8 @@ class Sets {
     std::vector<bool> has_output_;
 };
 
-// Expresses a member in the axes of the body that represents its own.
-struct OnMerged {
+// Expresses members of kinds in the axes of the body that represents their own.
+struct ToRepresentative {
     const Scene& scene;
     Sets& sets;
 
@@ -73,9 +71,9 @@ struct OnMerged {
     void operator()(Marker& m) const {
         const BodyId c = sets.first(m.body);
         if (c == m.body) return;
-        Point at{m.body, m.s_local};
-        (*this)(at);
-        m = {c, at.s_local,
+        Point origin{m.body, m.s_local};
+        (*this)(origin);
+        m = {c, origin.s_local,
              (design(scene, c).p.conjugate() * design(scene, m.body).p * m.A_local).normalized()};
     }
     void operator()(LoadVector<Vector3> v) const {
@@ -97,8 +95,8 @@ struct OnMerged {
     }
 };
 
-// Removes a load on a body merged into ground, where nothing moves.
-bool falls_on_ground(Scene& scene, const Load& load, Sets& sets, const std::string& where) {
+// Whether a load acts on a body merged into ground, where it moves nothing; lists it as omitted then.
+bool acts_on_ground(Scene& scene, const Load& load, Sets& sets, const std::string& where) {
     const BodyId body = body_of(load.kind);
     if (body == ground || sets.first(body) != ground) return false;
     leave_out(scene, named("load", load.name), named(scene, body) + " is welded to ground" + where);
@@ -131,14 +129,14 @@ void weld(Scene& scene) {
     }
 
     std::erase_if(scene.static_loads,
-                  [&](const Load& load) { return falls_on_ground(scene, load, sets, ""); });
+                  [&](const Load& load) { return acts_on_ground(scene, load, sets, ""); });
     for (Branch& branch : scene.branches)
         std::erase_if(branch.drivers, [&](const Driver& driver) {
             const Load* load = driven_load(driver.what);
             return load != nullptr &&
-                   falls_on_ground(scene, *load, sets, " (branch '" + branch.name + "')");
+                   acts_on_ground(scene, *load, sets, " (branch '" + branch.name + "')");
         });
-    const OnMerged express{scene, sets};
+    const ToRepresentative express{scene, sets};
     for (Joint& joint : scene.joints) each_member(joint.kind, express);
     for (Elastic& elastic : scene.elastics) each_member(elastic.kind, express);
     each_load(scene, [&](LoadKind& load) { each_member(load, express); });

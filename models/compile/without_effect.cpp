@@ -5,21 +5,22 @@
 namespace elastocheck::reduce {
 namespace {
 
-// Reason why the driver has no effect; empty if it has one: a non-zero start or rate of an input
-// that exists. A Motion at 0 still holds its joint; a tyre with its road at 0 still acts.
-std::string idle(const Driver& driver, const Scene& scene) {
-    const bool is_never = driver.start == 0 && driver.rate == 0;
+// Reason why the driver has no effect; empty if it has one. At value zero, a Motion still holds its
+// joint, and a FreeLength (the road of a tyre) activates an element that is active only where driven.
+std::string no_effect(const Driver& driver, const Scene& scene) {
+    const bool is_always_zero = driver.start == 0 && driver.rate == 0;
     return std::visit(
-        overloaded{[&](const Load& l) { return is_never || is_zero(l.kind) ? "it is zero" : ""; },
-                   [](const Motion&) { return ""; },
-                   [&](const FreeLength& f) {
-                       const Elastic& elastic = scene.elastics[static_cast<std::size_t>(f.elastic)];
-                       const bool stays = !is_never || elastic.active_only_where_driven;
-                       return stays && !is_zero(elastic.kind) ? "" : "it moves nothing";
-                   },
-                   [&](const Preload& p) {
-                       return is_never || p.direction.isZero(0) ? "it is zero" : "";
-                   }},
+        overloaded{
+            [&](const Load& l) { return is_always_zero || is_zero(l.kind) ? "it is zero" : ""; },
+            [](const Motion&) { return ""; },
+            [&](const FreeLength& f) {
+                const Elastic& elastic = scene.elastics[static_cast<std::size_t>(f.elastic)];
+                const bool acts = !is_always_zero || elastic.active_only_where_driven;
+                return acts && !is_zero(elastic.kind) ? "" : "it moves nothing";
+            },
+            [&](const Preload& p) {
+                return is_always_zero || p.direction.isZero(0) ? "it is zero" : "";
+            }},
         driver.what);
 }
 
@@ -38,7 +39,7 @@ std::string name_of(const Driven& what, const Scene& scene) {
 
 }  // namespace
 
-void drop_what_does_nothing(Scene& scene) {
+void drop_zero_loads(Scene& scene) {
     std::erase_if(scene.static_loads, [&](const Load& load) {
         if (!is_zero(load.kind)) return false;
         leave_out(scene, named("load", load.name), "it is zero");
@@ -46,30 +47,31 @@ void drop_what_does_nothing(Scene& scene) {
     });
     for (Branch& branch : scene.branches)
         std::erase_if(branch.drivers, [&](const Driver& driver) {
-            const std::string why = idle(driver, scene);
+            const std::string why = no_effect(driver, scene);
             if (why.empty()) return false;
             leave_out(scene, name_of(driver.what, scene), why + " (branch '" + branch.name + "')");
             return true;
         });
 }
 
-void drop_what_never_stands(Scene& scene) {
+void drop_never_active(Scene& scene) {
     const DrivenParts driven = driven_parts(scene);
     drop_parts(
         scene,
         [&](std::size_t k) {
-            const bool stands = !scene.joints[k].active_only_where_driven || driven.joints[k];
-            return stands ? "" : "no branch drives it";
+            const bool is_active = !scene.joints[k].active_only_where_driven || driven.joints[k];
+            return is_active ? "" : "no branch drives it";
         },
         [&](std::size_t k) {
             const Elastic& elastic = scene.elastics[k];
-            const bool vanishes = is_zero(elastic.kind);
-            if (driven.elastics[k] || (!elastic.active_only_where_driven && !vanishes)) return "";
-            return vanishes ? "its rates and preload are zero" : "no branch drives it";
+            const bool has_no_force = is_zero(elastic.kind);
+            if (driven.elastics[k] || (!elastic.active_only_where_driven && !has_no_force))
+                return "";
+            return has_no_force ? "its rates and preload are zero" : "no branch drives it";
         });
 }
 
-void drop_what_is_within_one_body(Scene& scene) {
+void drop_within_one_body(Scene& scene) {
     const DrivenParts driven = driven_parts(scene);
     const auto both_on = [&](BodyId body) { return "both its ends are on " + named(scene, body); };
     drop_parts(
@@ -83,11 +85,12 @@ void drop_what_is_within_one_body(Scene& scene) {
         [&](std::size_t k) {
             const ElasticKind& kind = scene.elastics[k].kind;
             const auto [i, j] = ends(kind);
-            // An element without energy may exert a net moment on its body if it is loaded.
+            // A bushing law without energy may exert a net moment on its one body if it is loaded.
             const auto* formulation = member<Formulation>(kind);
-            const bool turns = i != ground && formulation != nullptr && !has_energy(*formulation) &&
-                               (driven.elastics[k] || is_loaded_at_design(kind, scene));
-            return i != j || turns ? "" : both_on(i);
+            const bool has_moment = i != ground && formulation != nullptr &&
+                                    !has_energy(*formulation) &&
+                                    (driven.elastics[k] || is_loaded_at_design(kind, scene));
+            return i != j || has_moment ? "" : both_on(i);
         });
 }
 

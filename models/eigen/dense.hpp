@@ -1,23 +1,22 @@
 // Explicit instantiation of Eigen's decompositions of MatrixXd and of sparse matrices (in dense.cpp
 // and sparse.cpp), each of which costs the compiler seconds wherever it is used.
 //
-// Included by the precompiled headers; a file that calls its functions includes it itself. A
-// decomposition's argument has to be a matrix, not an expression: for every type of an expression
-// Eigen instantiates the decomposition again.
+// Included by the precompiled headers; a file that calls its functions includes it itself. Pass
+// matrices and vectors, not expressions, to decompositions and their solve(): Eigen instantiates both
+// again for every type of expression.
 #pragma once
 
 #include <Eigen/Dense>
 
 namespace elastocheck {
 
-// Q of A = Q R, as of qr.householderQ(). (The members of Eigen's Householder sequence are inline, so
-// that no declaration keeps them from being instantiated; so are solutions with an expression on the
-// right, for which callers pass a vector.)
+// Products with Q of A = Q R, as qr.householderQ() returns it. They are functions here, since the
+// members of Eigen's Householder sequence are inline: `extern template` does not apply to them.
 using Reflections = Eigen::HouseholderSequence<Eigen::MatrixXd, Eigen::VectorXd>;
 Eigen::MatrixXd times_matrix(const Reflections& Q, Eigen::MatrixXd B);             // Q B
 Eigen::VectorXd times_vector(const Reflections& Q, Eigen::VectorXd b);             // Q b
 Eigen::VectorXd transposed_times_vector(const Reflections& Q, Eigen::VectorXd b);  // Qᵀ b
-// As a square matrix.
+// Q as a square matrix.
 Eigen::MatrixXd matrix_Q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 Eigen::MatrixXd inverse_of(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu);
@@ -27,7 +26,7 @@ double rcond_of(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu);  // in the 1-no
 Eigen::VectorXcd eigenvalues_of(const Eigen::MatrixXd& A);
 struct Svd {
     Eigen::VectorXd values;  // singular values, descending
-    Eigen::MatrixXd U, V;    // those of the parts asked for
+    Eigen::MatrixXd U, V;    // empty unless `parts` requests them
 };
 Svd svd_of(const Eigen::MatrixXd& A, unsigned parts);  // Eigen::ComputeFullU, ...
 // Products of matrices, which cost a second wherever a factor is an expression.

@@ -11,9 +11,11 @@ namespace {
 
 constexpr int samples = 16;  // per piece
 
-using Theirs = std::function<double(std::size_t piece, double x)>;
+// The interpolant of the other program on the piece behind a row.
+using OtherInterpolant = std::function<double(std::size_t row, double x)>;
 
-Apart off(const Rows& rows, const Theirs& theirs, Between between = Between::monotone) {
+InterpolantDeviation deviation(const Rows& rows, const OtherInterpolant& other,
+                               Interpolation own = Interpolation::monotone) {
     if (rows.size() < 2) return {};
     std::vector<reader::TablePoint> points;
     double largest = 0;
@@ -22,15 +24,15 @@ Apart off(const Rows& rows, const Theirs& theirs, Between between = Between::mon
         points.push_back({x, f});
         largest = std::max(largest, std::abs(f));
     }
-    const Curve ours =
-        between == Between::straight ? reader::polygon(points) : reader::interpolant(points);
-    Apart worst{.of = largest};
+    const Curve curve =
+        own == Interpolation::linear ? reader::polygon(points) : reader::interpolant(points);
+    InterpolantDeviation worst{.largest_force = largest};
     for (std::size_t k = 0; k + 1 < rows.size(); ++k)
         for (int n = 1; n < samples; ++n) {
             const double t = (rows[k + 1].first - rows[k].first) * n / samples,
                          x = rows[k].first + t;
-            const auto& c = ours.pieces[k + 1];
-            const double force = std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - theirs(k, x));
+            const auto& c = curve.pieces[k + 1];
+            const double force = std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - other(k, x));
             if (force > worst.force) {
                 worst.force = force;
                 worst.at = x;
@@ -39,6 +41,7 @@ Apart off(const Rows& rows, const Theirs& theirs, Between between = Between::mon
     return worst;
 }
 
+// The cubic with the values and slopes of rows k and k + 1.
 double hermite(const Rows& rows, const std::vector<double>& slope, std::size_t k, double x) {
     const double h = rows[k + 1].first - rows[k].first, t = (x - rows[k].first) / h;
     const double f0 = rows[k].second, f1 = rows[k + 1].second;
@@ -46,16 +49,17 @@ double hermite(const Rows& rows, const std::vector<double>& slope, std::size_t k
            h * slope[k] * t * (1 - t) * (1 - t) - h * slope[k + 1] * t * t * (1 - t);
 }
 
+// Slope of the line from row k to row k + 1.
 double secant(const Rows& rows, std::size_t k) {
     return (rows[k + 1].second - rows[k].second) / (rows[k + 1].first - rows[k].first);
 }
 
 }  // namespace
 
-// Akima's slope at a point is a weighted mean of the two adjacent secants. The weight of
-// each is the difference of the two secants on the other side. Beyond the ends the secants
-// are extrapolated linearly.
-Apart off_akima(const Rows& rows, Between ours) {
+// With secants s_1, s_2 before a row and s_3, s_4 behind it, Akima's slope there is
+//   (|s_4 - s_3| s_2 + |s_2 - s_1| s_3) / (|s_4 - s_3| + |s_2 - s_1|).
+// Beyond the ends the secants are extrapolated linearly.
+InterpolantDeviation deviation_from_akima(const Rows& rows, Interpolation own) {
     const std::size_t n = rows.size();
     if (n < 2) return {};
     std::vector<double> m(n + 3);  // m[k + 2] is the secant behind row k
@@ -71,12 +75,13 @@ Apart off_akima(const Rows& rows, Between ours) {
         slope[k] =
             a + b > 0 ? (a * m[k + 1] + b * m[k + 2]) / (a + b) : 0.5 * (m[k + 1] + m[k + 2]);
     }
-    return off(
-        rows, [&](std::size_t k, double x) { return hermite(rows, slope, k, x); }, ours);
+    return deviation(
+        rows, [&](std::size_t k, double x) { return hermite(rows, slope, k, x); }, own);
 }
 
-// Second derivatives M by the tridiagonal equations, zero at the ends.
-Apart off_natural(const Rows& rows) {
+// Second derivatives M_k at the rows, zero at the ends, from the tridiagonal equations
+//   h_k-1 M_k-1 + 2 (h_k-1 + h_k) M_k + h_k M_k+1 = 6 (s_k - s_k-1),  h widths and s secants of the pieces.
+InterpolantDeviation deviation_from_natural_spline(const Rows& rows) {
     const std::size_t n = rows.size();
     if (n < 2) return {};
     const auto h = [&](std::size_t k) { return rows[k + 1].first - rows[k].first; };
@@ -91,7 +96,7 @@ Apart off_natural(const Rows& rows) {
         }
     }
     for (std::size_t k = n - 1; k-- > 1;) M[k] = (right[k] - h(k) * M[k + 1]) / diagonal[k];
-    return off(rows, [&](std::size_t k, double x) {
+    return deviation(rows, [&](std::size_t k, double x) {
         const double H = h(k), a = rows[k + 1].first - x, b = x - rows[k].first;
         return M[k] * a * a * a / (6 * H) + M[k + 1] * b * b * b / (6 * H) +
                (rows[k].second / H - M[k] * H / 6) * a +
@@ -99,8 +104,8 @@ Apart off_natural(const Rows& rows) {
     });
 }
 
-Apart off_straight(const Rows& rows) {
-    return off(rows, [&](std::size_t k, double x) {
+InterpolantDeviation deviation_from_lines(const Rows& rows) {
+    return deviation(rows, [&](std::size_t k, double x) {
         return rows[k].second + secant(rows, k) * (x - rows[k].first);
     });
 }
@@ -109,8 +114,8 @@ bool is_straight(const Curve& law) {
     return std::ranges::all_of(law.pieces, [](const auto& c) { return c[2] == 0 && c[3] == 0; });
 }
 
-Apart off_power(const Rows& rows, double factor, double exponent) {
-    return off(rows, [&](std::size_t, double x) { return factor * std::pow(x, exponent); });
+InterpolantDeviation deviation_from_power(const Rows& rows, double factor, double exponent) {
+    return deviation(rows, [&](std::size_t, double x) { return factor * std::pow(x, exponent); });
 }
 
 }  // namespace elastocheck::importer

@@ -8,21 +8,23 @@
 
 namespace elastocheck::importer {
 
-using Rows = std::vector<std::pair<double, double>>;
+using Rows = std::vector<std::pair<double, double>>;  // deformation, force
 
-// Largest difference of the two interpolants between the rows [unit of their force], the
-// deformation at which it occurs, and the largest force of the rows.
-struct Apart {
-    double force = 0, at = 0, of = 0;
+// Largest difference between two interpolants of the same rows, in units of the rows.
+struct InterpolantDeviation {
+    double force = 0;          // absolute difference
+    double at = 0;             // deformation at which it occurs
+    double largest_force = 0;  // of the rows
 };
 // Interpolant of the scene: its default, or straight lines (`interpolation: linear`).
-enum class Between { monotone, straight };
-// The largest difference from the interpolant of the other program: that of Akima (H. Akima, J. ACM
-// 17 (1970) 589), the polygon, the natural cubic spline, or factor · x^exponent.
-Apart off_akima(const Rows& rows, Between ours = Between::monotone);
-Apart off_straight(const Rows& rows);
-Apart off_natural(const Rows& rows);
-Apart off_power(const Rows& rows, double factor, double exponent);
+enum class Interpolation { monotone, linear };
+// Deviation of the scene's interpolant from that of the other program: Akima's (H. Akima, J. ACM 17
+// (1970) 589), straight lines, the natural cubic spline, or factor · x^exponent.
+InterpolantDeviation deviation_from_akima(const Rows& rows,
+                                          Interpolation own = Interpolation::monotone);
+InterpolantDeviation deviation_from_lines(const Rows& rows);
+InterpolantDeviation deviation_from_natural_spline(const Rows& rows);
+InterpolantDeviation deviation_from_power(const Rows& rows, double factor, double exponent);
 
 // Whether every piece of the curve is a straight line.
 bool is_straight(const Curve& law);

@@ -14,19 +14,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t widest = 118;
+constexpr std::size_t widest = 118;  // characters of a line
 constexpr std::size_t longest_name = 64;
 constexpr double same_place = 1e-9;  // of the model's size
-// x, tilted out of the planes in which models have points.
-const Vector3d askew = Vector3d(0.6299, 0.5774, 0.5195).normalized();
+// Hardpoints are sorted by their projection onto this direction, which is not normal to any plane in which
+// models usually have many points.
+const Vector3d sort_direction = Vector3d(0.6299, 0.5774, 0.5195).normalized();
 constexpr std::size_t max_listed = 40;  // parts listed for one kind of note, in the head of a scene
-
-std::string printable(std::string_view text) {
-    std::string result(text);
-    for (char& c : result)
-        if (c < 0x20 || c > 0x7E) c = '?';
-    return result;
-}
 
 std::string described(const SourceLocation& place) {
     const std::string file = place.file.empty() ? "" : printable(place.file) + ", ";
@@ -36,35 +30,30 @@ std::string described(const SourceLocation& place) {
 
 // Writes an entry of a section, with line breaks at commas; its source goes at the end or above.
 void write_entry(const Entry& entry, Text& text) {
-    const auto put = [&](const std::string& line) {
-        text.yaml += line + "\n";
-        text.line_of.push_back(entry.from);
-    };
     const std::string comment = entry.from.what.empty() ? "" : "# " + described(entry.from);
     std::string line = fmt::format("  {}: {}", entry.name, entry.fields);
     if (!comment.empty() && line.size() + 2 + comment.size() <= widest) {
-        put(line + "  " + comment);
+        text.add_line(line + "  " + comment, entry.from);
         return;
     }
-    if (!comment.empty()) put("  " + comment);
+    if (!comment.empty()) text.add_line("  " + comment, entry.from);
     while (line.size() > widest) {
         std::size_t cut = line.rfind(", ", widest - 1);
         if (cut == std::string::npos || cut < 12) cut = line.find(", ", widest);
         if (cut == std::string::npos) break;
-        put(line.substr(0, cut + 1));
+        text.add_line(line.substr(0, cut + 1), entry.from);
         line = "      " + line.substr(cut + 2);
     }
-    put(line);
+    text.add_line(line, entry.from);
 }
 
 void write_section(const char* name, const std::vector<Entry>& entries, Text& text) {
     if (entries.empty()) return;
-    text.yaml += fmt::format("\n{}:\n", name);
-    text.line_of.insert(text.line_of.end(), 2, SourceLocation{});
+    text.add_line("");
+    text.add_line(fmt::format("{}:", name));
     for (const Entry& entry : entries) write_entry(entry, text);
 }
 
-// Quotes a title for YAML.
 std::string in_quotes(std::string_view title) {
     std::string result = "\"";
     for (const char c : printable(title)) {
@@ -74,35 +63,33 @@ std::string in_quotes(std::string_view title) {
     return result + "\"";
 }
 
-// Writes text as comment lines.
 void comment(std::string_view what, Text& text, std::string_view indent = "") {
     std::string line = "# ", words(what);
     while (!words.empty()) {
         const std::size_t end = std::min(words.find(' '), words.size());
         if (line.size() + end > widest && line.size() > 2 + indent.size()) {
             line.pop_back();
-            text.yaml += line + "\n";
-            text.line_of.emplace_back();
+            text.add_line(line);
             line = fmt::format("# {}  ", indent);
         }
         line += words.substr(0, end) + " ";
         words.erase(0, std::min(end + 1, words.size()));
     }
     line.pop_back();
-    text.yaml += line + "\n";
-    text.line_of.emplace_back();
+    text.add_line(line);
 }
 
 }  // namespace
 
-const reader::Value* entry(const reader::Value& map, std::string_view name) {
-    const auto found = std::ranges::find(map.keys, name);
-    return found == map.keys.end() ? nullptr
-                                   : &map.items[static_cast<std::size_t>(found - map.keys.begin())];
+std::string printable(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c < 0x20 || c > 0x7E) c = '?';
+    return result;
 }
 
-std::string with(std::string text, std::string_view word, std::string_view by) {
-    for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; at += by.size())
+std::string replaced(std::string text, std::string_view word, std::string_view by) {
+    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + by.size()))
         text.replace(at, word.size(), by);
     return text;
 }
@@ -177,16 +164,16 @@ std::string Names::take(std::string_view wanted) {
 
 void Hardpoints::add(const Vector3d& position, std::string_view wanted,
                      const SourceLocation& from) {
-    by_x_.emplace(position.dot(askew), positions_.size());
+    by_projection_.emplace(position.dot(sort_direction), positions_.size());
     positions_.push_back(position);
     entries_.push_back({names_.take(wanted), triple(position, size_), from});
 }
 
 std::string Hardpoints::at(const Vector3d& position, std::string_view wanted,
                            const SourceLocation& from) {
-    const double near = same_place * size_, key = position.dot(askew);
-    for (auto found = by_x_.lower_bound(key - near);
-         found != by_x_.end() && found->first <= key + near; ++found)
+    const double near = same_place * size_, key = position.dot(sort_direction);
+    for (auto found = by_projection_.lower_bound(key - near);
+         found != by_projection_.end() && found->first <= key + near; ++found)
         if ((positions_[found->second] - position).norm() <= near)
             return entries_[found->second].name;
     add(position, wanted, from);
@@ -196,15 +183,16 @@ std::string Hardpoints::at(const Vector3d& position, std::string_view wanted,
 namespace {
 
 using Warning = std::pair<SourceLocation, std::string>;
-struct Kind {
+// Warnings that differ only in their numbers.
+struct WarningGroup {
     const Warning* worst;  // the one with the largest first number
-    double size;
+    double size;           // that number
     std::vector<const Warning*> all;
 };
 
-// Groups warnings that differ only in their numbers, in the order of their first occurrence.
-std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
-    std::vector<Kind> result;
+// The groups of warnings, in the order of their first occurrence.
+std::vector<WarningGroup> grouped(const std::vector<Warning>& warnings) {
+    std::vector<WarningGroup> result;
     std::map<std::string, std::size_t> by_text;
     for (const Warning& warning : warnings) {
         std::string text;
@@ -225,11 +213,11 @@ std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
         }
         const auto [found, is_new] = by_text.try_emplace(text, result.size());
         if (is_new) result.push_back({&warning, first, {}});
-        Kind& kind = result[found->second];
-        kind.all.push_back(&warning);
-        if (first > kind.size) {
-            kind.worst = &warning;
-            kind.size = first;
+        WarningGroup& group = result[found->second];
+        group.all.push_back(&warning);
+        if (first > group.size) {
+            group.worst = &warning;
+            group.size = first;
         }
     }
     return result;
@@ -259,15 +247,15 @@ std::vector<std::string> described(const Notes& notes) {
             list += fmt::format("; and {} more", what.size() - max_listed);
         lines.push_back(fmt::format("Left out, {}: {}.", why, list));
     }
-    for (const Kind& kind : kinds(notes.warnings)) {
-        const auto& [place, what] = *kind.worst;
+    for (const WarningGroup& group : grouped(notes.warnings)) {
+        const auto& [place, what] = *group.worst;
         std::string line = fmt::format("Warning: {}: {}", described(place), what);
-        if (kind.all.size() > 1) {
-            line += fmt::format(" ({} of this kind, this is the largest; also ", kind.all.size());
+        if (group.all.size() > 1) {
+            line += fmt::format(" ({} of this kind, this is the largest; also ", group.all.size());
             std::string others;
             std::size_t shown = 0;
-            for (const auto* warning : kind.all)
-                if (warning != kind.worst && ++shown <= max_listed)
+            for (const auto* warning : group.all)
+                if (warning != group.worst && ++shown <= max_listed)
                     others += (others.empty() ? "" : "; ") + described(warning->first);
             if (shown > max_listed) others += fmt::format("; and {} more", shown - max_listed);
             line += others + ")";
@@ -305,19 +293,15 @@ std::vector<std::pair<const char*, std::vector<Entry>*>> Draft::sections() {
 Text write(Draft& draft) {
     Text text;
     comment(fmt::format("Imported from {} ({}).", printable(draft.source), draft.format), text);
-    for (const std::string& remark : draft.remarks)  // may have text of the file
+    for (const std::string& remark : draft.remarks)  // a remark may quote the file
         comment(reader::is_utf8(remark) ? remark : printable(remark), text);
     for (const std::string& line : described(draft.notes)) comment(line, text);
-    const auto put = [&](const std::string& line) {
-        text.yaml += line + "\n";
-        text.line_of.emplace_back();
-    };
-    put("");
-    put("elastocheck: 1");
-    put("name: " + in_quotes(draft.title));
-    put("units: " + draft.units);
-    if (draft.mirror) put("mirror: " + *draft.mirror);
-    if (draft.gravity) put("gravity: " + triple(*draft.gravity));
+    text.add_line("");
+    text.add_line("elastocheck: 1");
+    text.add_line("name: " + in_quotes(draft.title));
+    text.add_line("units: " + draft.units);
+    if (draft.mirror) text.add_line("mirror: " + *draft.mirror);
+    if (draft.gravity) text.add_line("gravity: " + triple(*draft.gravity));
     write_section("points", draft.points.entries(), text);
     for (const auto& [name, entries] : draft.sections()) {
         if (entries != &draft.wheels || draft.wheels.size() != 1 ||
@@ -326,9 +310,9 @@ Text write(Draft& draft) {
             continue;
         }
         const Entry& wheel = draft.wheels[0];  // the short form for one
-        put("");
-        put(fmt::format("wheel: {}{}", wheel.fields,
-                        wheel.from.what.empty() ? "" : "  # " + described(wheel.from)));
+        text.add_line("");
+        text.add_line(fmt::format("wheel: {}{}", wheel.fields,
+                                  wheel.from.what.empty() ? "" : "  # " + described(wheel.from)));
     }
     return text;
 }

@@ -25,20 +25,22 @@ struct SourceLocation {
 
 // ---- Words.
 
-// Each occurrence of the word replaced.
-std::string with(std::string text, std::string_view word, std::string_view by);
-// What stands between the separators, trimmed.
+// The text with each occurrence of the word replaced.
+std::string replaced(std::string text, std::string_view word, std::string_view by);
+// The pieces between the separators, trimmed.
 std::vector<std::string> split(std::string_view text, std::string_view separator);
 
-// "1 point", "2 points", "3 bodies"; words of a file in capitals stay: "2 MARKER".
+// Characters that are not printable ASCII replaced by '?'.
+std::string printable(std::string_view text);
+
+// "1 point", "2 points", "3 bodies"; keywords in capitals have no plural: "2 MARKER".
 std::string counted(int n, const std::string& kind);
 
 // ---- Numbers and fields in the format of a scene.
 
 std::string number(double x);  // the shortest text that reads back as x
-std::string computed(double x,
-                     // for calculated numbers: twelve digits, 0 below 1e-12 of scale
-                     double scale = 1);
+// A calculated number: twelve digits, and 0 below 1e-12 of `scale`.
+std::string computed(double x, double scale = 1);
 std::string triple(const Eigen::Vector3d& v, double scale = 1);  // "[1, 2, 3]", computed
 std::string direction(const Eigen::Vector3d& u);                 // "x", "-y", "[0.6, 0, 0.8]"
 // "{table: [[x, f], ...]}"; `linear`: with straight lines between the rows.
@@ -74,8 +76,8 @@ class Names {
     std::unordered_map<std::string, int> last_;
 };
 
-// Hardpoints: `at` returns one name for each position, equal to 1e-9 of the model's size; `add`
-// adds a separate hardpoint even at the same position.
+// Hardpoints: at() returns the name of the hardpoint at this position, within 1e-9 of the model's size,
+// and adds it where there is none; add() always adds one.
 class Hardpoints {
   public:
     explicit Hardpoints(double size = 1) : size_(size) {}
@@ -91,7 +93,7 @@ class Hardpoints {
     Names names_;
     std::vector<Entry> entries_;
     std::vector<Eigen::Vector3d> positions_;
-    std::multimap<double, std::size_t> by_x_;
+    std::multimap<double, std::size_t> by_projection_;  // positions, for at()
 };
 
 // ---- Notes in the head of the scene and in the output of the command.
@@ -117,10 +119,6 @@ struct Notes {
     }
 };
 
-// The entry of a map in a table of another program's words (dataset.yaml, templates.yaml); null if there
-// is none.
-const reader::Value* entry(const reader::Value& map, std::string_view name);
-
 struct Draft {
     std::string title;                  // of the scene
     std::string source;                 // the file, as given by the user
@@ -134,23 +132,26 @@ struct Draft {
         loads, branches, wheels, probes, dampers;
     Notes notes;
 
-    // Its sections behind the points, in the order of a scene.
+    // The sections that follow the points, in their order in the file.
     std::vector<std::pair<const char*, std::vector<Entry>*>> sections();
 };
 
-// The text of the scene for the ordinary reader. `line_of[n]` is the source of the scene's line
-// n + 1.
+// The text of the scene for the ordinary reader. `line_of[n]` is the source of the scene's line n + 1.
 struct Text {
     std::string yaml;
     std::vector<SourceLocation> line_of;
+
+    void add_line(const std::string& line, const SourceLocation& from = {}) {
+        yaml += line + "\n";
+        line_of.push_back(from);
+    }
 };
 Text write(Draft& draft);
 
-// A line of the head, wrapped, each with its mark and its end.
+// Text as comment lines of a scene, wrapped, each with "# " and a line end.
 std::string commented(std::string_view what);
 
-// The notes as lines of text, for the head of the scene and the output of the command; without
-// comment marks.
+// The notes as lines of text, for the head of the scene and the output of the command; without comment marks.
 std::vector<std::string> described(const Notes& notes);
 
 }  // namespace elastocheck::importer

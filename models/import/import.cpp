@@ -38,8 +38,9 @@ std::string where(const SourceLocation& place) {
     throw SceneError(message);
 }
 
-// Throws the reader's error with the source line of the scene's line.
-[[noreturn]] void explain(const std::string& file, const Text& text, std::string_view message) {
+// Throws the reader's error on the draft with the place in the imported file in front.
+[[noreturn]] void throw_with_source(const std::string& file, const Text& text,
+                                    std::string_view message) {
     int line = 0;
     if (message.starts_with(name_of_text)) {
         message.remove_prefix(name_of_text.size() + 1);
@@ -56,14 +57,14 @@ std::string where(const SourceLocation& place) {
                                  fmt::format("the resulting scene is refused: {}", message)));
 }
 
-// What is read, by the extension of the file, and the options that it takes.
 struct Format {
-    std::string_view ending;
+    std::string_view ending;  // extension of the file
     const char* what;
     Draft (*read)(std::string_view text, const std::string& file, Options& options);
-    bool has_bodies;
-    std::string_view options;
+    bool has_bodies;           // else points only
+    std::string_view options;  // that apply to it
 };
+// An importer that does not change the options.
 template <auto read>
 Draft read_by(std::string_view text, const std::string& file, Options& options) {
     return read(text, file, options);
@@ -99,16 +100,16 @@ void check_options(const Format& format, const Options& options, const std::stri
                                         {&options.as, "--as"}})
         if (!given->empty() && format.options.find(option) == format.options.npos)
             fail(file, 0, option, "only for {}", formats_with(option));
-    const bool makes = !options.as.empty() || format.read == import_assetto;
-    const bool has_parts = !options.pushrod.empty() || !options.damper.empty() ||
-                           !options.roles.empty() || !options.rates.empty() ||
-                           options.both_wheels || options.rocker;
-    if (!makes && has_parts)
+    const bool makes_mechanism = !options.as.empty() || format.read == import_assetto;
+    const bool has_mechanism_options = !options.pushrod.empty() || !options.damper.empty() ||
+                                       !options.roles.empty() || !options.rates.empty() ||
+                                       options.both_wheels || options.rocker;
+    if (!makes_mechanism && has_mechanism_options)
         fail(file, 0, "--as",
              "missing; --pushrod, --rocker, --damper, --role, --rates and --both-wheels are of a "
              "mechanism: --as {}",
              fmt::join(mechanisms(), ", "));
-    if (!makes && !options.axle.empty() && !format.has_bodies)
+    if (!makes_mechanism && !options.axle.empty() && !format.has_bodies)
         fail(file, 0, "--axle", "of points only with --as: {}", fmt::join(mechanisms(), ", "));
 }
 
@@ -124,9 +125,10 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
     check_options(*format, given, file);
     Options options = given;
     Draft draft = format->read(text, file, options);
-    const bool makes = !options.as.empty(), points_only = !format->has_bodies && !makes;
+    const bool makes_mechanism = !options.as.empty(),
+               points_only = !format->has_bodies && !makes_mechanism;
     if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
-    if (makes) make_mechanism(file, options, draft);
+    if (makes_mechanism) make_mechanism(file, options, draft);
     if (draft.bodies.empty() && !points_only)
         fail(file, 0, "",
              "the model has no moving part: no part has a joint or element that a scene "
@@ -140,7 +142,7 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
         result.joints = static_cast<int>(scene.joints.size());
         result.elements = static_cast<int>(scene.elastics.size());
     } catch (const SceneError& error) {
-        explain(file, written, error.what());
+        throw_with_source(file, written, error.what());
     }
     return result;
 }

@@ -41,7 +41,7 @@ struct Options {
     std::string rates = {};               // file of a table of rates by role; empty: rigid
 };
 
-// Allowed values of `axes`. Without z it is up, where that is right-handed; elsewhere z must be given.
+// Allowed values of `axes`. z may be left out where z up makes the axes right-handed.
 inline constexpr const char* axes_of_tables[] = {
     "x-forward,y-left",         "x-rearward,y-right",     "x-forward,y-right,z-down",
     "x-rearward,y-left,z-down", "x-forward,y-right,z-up", "x-rearward,y-left,z-up"};
@@ -59,12 +59,12 @@ struct Imported {
     int bodies = 0, elements = 0, joints = 0;
 };
 
-// Selects the format by extension: .adm, .json, .sub, .csv, .xlsx, .shk, .cmd, .ini (points). Throws SceneError "file:line:
-// ..." for errors in the file and parts that a scene cannot represent.
+// Selects the format by extension: .adm, .json, .sub, .csv, .xlsx, .shk, .cmd, .ini. Throws SceneError
+// "file:line: ..." for errors in the file and, unless allowed, for parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 
-// The same from text, of a workbook the CSV of its sheet. `file` names it in messages and in the head of
-// the scene, and gives the format.
+// The same from text; for a workbook the text is the CSV of its sheet. `file` gives the format by its
+// extension, and the name in messages and in the head of the scene.
 Imported import_text(std::string_view text, const std::string& file, const Options& options);
 
 // ---- Importers, one per format.
@@ -72,23 +72,23 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
 Draft import_chrono(std::string_view text, const std::string& file, const Options& options);
 Draft import_subsystem(std::string_view text, const std::string& file, const Options& options);
 Draft import_points(std::string_view text, const std::string& file, const Options& options);
-// One sheet of a workbook (.xlsx) as CSV, a row a line, so that lines of errors are rows: the one called `sheet`, or
-// the only visible one with numbers. Formulas have the values that were saved with them.
-// Throws SceneError for files that are no workbook, and where several sheets have numbers.
+// One sheet of a workbook (.xlsx) as CSV with one line per row, so that line numbers of errors are rows:
+// the sheet called `sheet`, or the only visible one with numbers. Formulas have their saved values.
+// Throws SceneError for files that are not workbooks, and where several sheets have numbers.
 std::string csv_of_workbook(const std::filesystem::path& file, const std::string& sheet);
-// The same of its parts, "xl/workbook.xml", by their names; a part that is not there is empty.
+// The same from the parts of the workbook, such as "xl/workbook.xml"; a missing part is empty.
 using WorkbookParts = std::function<std::string(const std::string& name)>;
 std::string csv_of_workbook(const WorkbookParts& parts, const std::string& file,
                             const std::string& sheet);
-// Chooses the mechanism and its roles in `options`, and drops the axle that it has read.
+// Sets the mechanism and its roles in `options`, and clears the axle, which it has read.
 Draft import_assetto(std::string_view text, const std::string& file, Options& options);
 
 // ---- Mechanisms made of named points by templates of roles (mechanism/mechanisms.yaml).
 
-// Gives the points of a draft, whose sources have their names in the file (those of line 0 stay as they
-// are), the roles of the template options.as, and adds its bodies, joints, wheels and branches: rigid, or
-// with options.rates. Notes the point of each role and those without one. Throws SceneError for roles
-// without a point, or with several.
+// Assigns the points of a draft, by their names in the file (Entry::from), to the roles of the template
+// options.as, and adds its bodies, joints, wheels and branches: rigid, or with options.rates. Points of
+// line 0 stay as they are. Notes the point of each role and points without one. Throws SceneError for
+// roles without a point, or with several.
 void make_mechanism(const std::string& file, const Options& options, Draft& draft);
 
 // Replaces joints at roles by bushings with the rates of a table, and adds springs beside dampers.
@@ -97,18 +97,18 @@ void add_rates(const std::string& file, Draft& draft);
 // A section of mechanisms.yaml.
 const reader::Value& mechanism_table(std::string_view name);
 
-// Names of the templates; and the one that words such as those of a file ("Double Wishbone, damper to
-// lower wishbone") mean, empty if none.
+// Names of the templates; and the template that a description in a file means, such as "Double Wishbone,
+// damper to lower wishbone"; empty if none.
 const std::vector<std::string>& mechanisms();
 std::string mechanism_called(std::string_view words);
 
 // A draft without points, in mm, deg and N.
 Draft draft_of_points(const std::string& file, const char* format);
 
-// Signs of x, y and z of a table of hardpoints in the axes of a scene. Throws SceneError for axes that
+// Factors ±1 from the axes of a table of hardpoints to x, y, z of a scene. Throws SceneError for axes that
 // are not among axes_of_tables.
 std::array<double, 3> directions(const std::string& axes, const std::string& file);
-// For the head of a scene of points alone; that of a mechanism has none.
+// Adds a remark to the head of a scene of points alone; a mechanism does not get it.
 void remark_on_points(const Options& options, const char* remark, Draft& draft);
 std::string remark_on_axes(const std::string& axes, const std::array<double, 3>& along);
 

@@ -18,27 +18,21 @@ constexpr std::array<std::string_view, 14> mirrored_sections{
     "points", "bodies", "joints",       "springs", "stops",  "torsion_springs", "bushings",
     "beams",  "tyres",  "static_loads", "loads",   "wheels", "probes",          "dampers"};
 
-// A path without its side, and the side; empty where it is of both.
+// The path before "@", and the side behind it; empty for a number of both sides.
 std::pair<std::string, std::string> path_and_side(std::string_view path) {
     const auto at = path.rfind('@');
     if (at == path.npos) return {std::string(path), ""};
     return {std::string(path.substr(0, at)), std::string(path.substr(at + 1))};
 }
 
-const Value* entry(const Value& map, std::string_view key) {
-    const auto found = std::ranges::find(map.keys, key);
-    return found == map.keys.end() ? nullptr
-                                   : &map.items[static_cast<std::size_t>(found - map.keys.begin())];
-}
-
 std::optional<Mirror> mirror_of(const Value& tree, const std::string& file) {
-    const Value* at = entry(tree, "mirror");
+    const Value* mirror = entry(tree, "mirror");
     std::vector<Number> ignored;
-    if (at == nullptr) return std::nullopt;
-    return read_mirror({at, "mirror", &file, &ignored}, {&tree, "", &file, &ignored});
+    if (mirror == nullptr) return std::nullopt;
+    return read_mirror({mirror, "mirror", &file, &ignored}, {&tree, "", &file, &ignored});
 }
 
-// A setting of one side alone, to the trees.
+// Applies a setting of one side alone to the tree of that side.
 void apply_to_side(const Setting& setting, const std::optional<Mirror>& mirror,
                    const std::string& file, Trees& trees, std::vector<Value*>* places) {
     const auto [path, side] = path_and_side(setting.path);
@@ -48,7 +42,7 @@ void apply_to_side(const Setting& setting, const std::optional<Mirror>& mirror,
         fail(file, 0, setting.path,
              fmt::format("{} is not a side; allowed: {}, {}", quote(side), mirror->from,
                          mirror->to));
-    if (!sides_of(&*mirror, path))
+    if (!mirror_of_number(&*mirror, path))
         fail(file, 0, setting.path,
              fmt::format("both sides share it, since no name in it has the word {}; allowed: {}",
                          quote(mirror->from), path));
@@ -58,7 +52,7 @@ void apply_to_side(const Setting& setting, const std::optional<Mirror>& mirror,
 }
 
 template <class T>
-void take(const Mirror& mirror, const std::vector<T>& from, std::vector<T>& to) {
+void replace_twins(const Mirror& mirror, const std::vector<T>& from, std::vector<T>& to) {
     if (from.size() != to.size())
         throw SceneError(
             "a number of one side alone decides which parts the scene has; allowed: of "
@@ -69,53 +63,52 @@ void take(const Mirror& mirror, const std::vector<T>& from, std::vector<T>& to) 
 
 }  // namespace
 
-const Mirror* sides_of(const Mirror* mirror, const std::string& path) {
+const Mirror* mirror_of_number(const Mirror* mirror, const std::string& path) {
     const bool mirrored = mirror != nullptr &&
                           std::ranges::find(mirrored_sections, path.substr(0, path.find('.'))) !=
                               mirrored_sections.end() &&
-                          turned(*mirror, path);
+                          mirrored_name(*mirror, path);
     return mirrored ? mirror : nullptr;
 }
 
 Trees with_settings(const Value& tree, std::span<const Setting> settings, const std::string& file,
                     std::vector<std::vector<Value*>>* places) {
     Trees trees{.written = tree};
-    std::vector<Setting> of_one_side;
+    std::vector<Setting> in_file;  // the section one_side
     if (const Value* section = entry(tree, "one_side"))
         for (std::size_t k = 0; k < section->keys.size(); ++k) {
-            of_one_side.push_back({section->keys[k], section->items[k].text});
+            in_file.push_back({section->keys[k], section->items[k].text});
             if (section->keys[k].find('@') == std::string::npos)
                 fail(file, section->items[k].line, "one_side",
                      quote(section->keys[k]) + " has no side; allowed: PATH@SIDE: VALUE");
         }
-    const std::size_t in_file = of_one_side.size();
-    if (in_file > 0 || std::ranges::any_of(settings, [](const Setting& s) {
-            return s.path.find('@') != std::string::npos;
-        }))
-        trees.twins = {tree};
+    const auto is_of_one_side = [](const Setting& setting) {
+        return setting.path.find('@') != std::string::npos;
+    };
+    if (!in_file.empty() || std::ranges::any_of(settings, is_of_one_side)) trees.twins = {tree};
     const std::optional<Mirror> mirror = trees.twins.empty() ? std::nullopt : mirror_of(tree, file);
-    std::vector<std::vector<Value*>> found(settings.size());
+    std::vector<std::vector<Value*>> replaced(settings.size());
     for (std::size_t k = 0; k < settings.size(); ++k) {  // first those of both sides
-        if (settings[k].path.find('@') != std::string::npos) continue;
-        found[k].push_back(&apply(settings[k], trees.written, file));
-        for (Value& twins : trees.twins) found[k].push_back(&apply(settings[k], twins, file));
+        if (is_of_one_side(settings[k])) continue;
+        replaced[k].push_back(&apply(settings[k], trees.written, file));
+        for (Value& twins : trees.twins) replaced[k].push_back(&apply(settings[k], twins, file));
     }
-    for (const Setting& setting : of_one_side) apply_to_side(setting, mirror, file, trees, nullptr);
+    for (const Setting& setting : in_file) apply_to_side(setting, mirror, file, trees, nullptr);
     for (std::size_t k = 0; k < settings.size(); ++k)
-        if (settings[k].path.find('@') != std::string::npos)
-            apply_to_side(settings[k], mirror, file, trees, &found[k]);
-    if (places != nullptr) *places = std::move(found);
+        if (is_of_one_side(settings[k]))
+            apply_to_side(settings[k], mirror, file, trees, &replaced[k]);
+    if (places != nullptr) *places = std::move(replaced);
     return trees;
 }
 
 void take_twins(const Mirror& mirror, const Scene& from, Scene& to) {
-    take(mirror, from.joints, to.joints);
-    take(mirror, from.elastics, to.elastics);
-    take(mirror, from.static_loads, to.static_loads);
-    take(mirror, from.wheels, to.wheels);
-    take(mirror, from.probes, to.probes);
-    take(mirror, from.dampers, to.dampers);
-    const auto of_twin = [&](const Driven& what) {
+    replace_twins(mirror, from.joints, to.joints);
+    replace_twins(mirror, from.elastics, to.elastics);
+    replace_twins(mirror, from.static_loads, to.static_loads);
+    replace_twins(mirror, from.wheels, to.wheels);
+    replace_twins(mirror, from.probes, to.probes);
+    replace_twins(mirror, from.dampers, to.dampers);
+    const auto is_of_twin = [&](const Driven& what) {
         const auto element = driven_element(what), joint = driven_joint(what);
         const Load* load = driven_load(what);
         return is_twin(mirror, load         ? load->name
@@ -124,10 +117,10 @@ void take_twins(const Mirror& mirror, const Scene& from, Scene& to) {
     };
     for (std::size_t b = 0; b < to.branches.size(); ++b)
         for (std::size_t d = 0; d < to.branches[b].drivers.size(); ++d)
-            if (Driver& driver = to.branches[b].drivers[d]; of_twin(driver.what))
+            if (Driver& driver = to.branches[b].drivers[d]; is_of_twin(driver.what))
                 driver = from.branches[b].drivers[d];
     for (std::size_t k = 0; to.trim && k < to.trim->adjust.size(); ++k)
-        if (auto& adjusted = to.trim->adjust[k]; of_twin(adjusted.what))
+        if (auto& adjusted = to.trim->adjust[k]; is_of_twin(adjusted.what))
             adjusted = from.trim->adjust[k];
 }
 

@@ -1,5 +1,5 @@
-// A scene that is read many times with other values of its numbers: its text is parsed once, which
-// is most of the time of read_scene().
+// A scene that is read many times with other values of its numbers. Its text is parsed once; parsing
+// takes most of the time of read_scene().
 #pragma once
 
 #include <optional>
@@ -18,13 +18,13 @@ namespace elastocheck::reader {
 
 class ParsedScene {
   public:
-    // `folder` is that of the scene's file, for the files that it refers to. Throws SceneError for
-    // text that is not YAML.
+    // `folder`: that of the files to which the text refers. Throws SceneError for text that is not YAML.
     ParsedScene(std::string_view text, std::string name, Folder folder);
-    // Of a file. Throws SceneError if it cannot be read.
+    // Throws SceneError for a file that cannot be read or is not YAML.
     explicit ParsedScene(const std::filesystem::path& file);
 
-    // As read_whole() of the text; `warnings` null: not looked for. Throws SceneError. Thread-safe.
+    // As read_whole() of the text. With `warnings` null the plausibility checks are left out. Throws
+    // SceneError. Thread-safe.
     Scene read(std::span<const Setting> settings,
                std::vector<std::string>* warnings = nullptr) const;
     std::vector<RequestedDefinition> definitions(std::span<const Setting> settings) const;
@@ -36,23 +36,23 @@ class ParsedScene {
     Folder folder_;
 };
 
-// A scene that is read again at other values of the same numbers, in a fraction of the time: what does
-// not depend on numbers is not checked again, and the scene has no list of its numbers.
-// Pre: the scene has been read.
+// A scene that is read again and again at other values of the same numbers, in a fraction of the time: what
+// does not depend on numbers is not checked, and Scene::numbers stays empty. Pre: the scene has been read.
 class VariedScene {
   public:
-    // `paths`: the numbers that vary; `settings`: of other values, the same at each reading. Throws
-    // SceneError for a path that is not one of a value, or is given twice.
+    // `paths`: the numbers that vary; `settings`: other values, the same at each reading. Throws
+    // SceneError for a path that does not lead to one value, or is given twice.
     VariedScene(const ParsedScene& scene, std::vector<std::string> paths,
                 std::vector<Setting> settings = {});
-    // The values in the units of the file. `model`: the scene compiled, where its reader did that.
-    // Throws SceneError, as ParsedScene::read().
+    // `values`, one per path, are in the units of the file. `model` receives the compiled scene, unless a
+    // trim or another side is still to change it. Throws SceneError, as ParsedScene::read().
     Scene read(std::span<const double> values, std::optional<Model>* model = nullptr);
 
   private:
     const ParsedScene& scene_;
-    std::vector<Setting> settings_;            // then those of the paths
-    std::vector<std::vector<Value*>> places_;  // of each path; two where it is of both sides
+    std::vector<Setting> settings_;  // the constant ones, then one per path
+    std::vector<std::vector<Value*>>
+        places_;  // in trees_, of each path; two if it is of both sides
     Trees trees_;
 };
 

@@ -16,7 +16,7 @@ using std::sqrt;
 constexpr double largest_car = 20, smallest_car = 0.02;  // [m]
 constexpr double smallest_bushing = 0.4e-3;              // [m]
 
-std::string at(const Cursor& field, const std::string& what) {
+std::string warning(const Cursor& field, const std::string& what) {
     return fmt::format("{}:{}: {}: {}", *field.file, field.value->line, field.path, what);
 }
 
@@ -28,10 +28,10 @@ void check_size(const Cursor& scene, const Units& units, const Scene& read,
         high = high.cwiseMax(point.position);
     }
     const double extent = (high - low).maxCoeff();
-    const bool huge = extent > largest_car,
-               tiny = !read.wheels.empty() && extent > 0 && extent < smallest_car;
-    if (!huge && !tiny) return;
-    warnings.push_back(at(
+    const bool is_huge = extent > largest_car,
+               is_tiny = !read.wheels.empty() && extent > 0 && extent < smallest_car;
+    if (!is_huge && !is_tiny) return;
+    warnings.push_back(warning(
         scene.require("units").require("length"),
         fmt::format("the hardpoints extend over {:.3g} m, far from the size of a car; are they in "
                     "{}, not in {}?",
@@ -49,16 +49,16 @@ struct Rates {
 };
 Rates rates_of(const SpatialLaw& law) {
     Rates rates;
-    const auto see = [&](Eigen::Index k, double rate) {
+    const auto add = [&](Eigen::Index k, double rate) {
         double& largest = k < 3 ? rates.translational : rates.rotational;
         largest = std::max(largest, rate);
     };
     std::visit(overloaded{[&](const LinearStiffness& u) {
-                              for (Eigen::Index k = 0; k < 6; ++k) see(k, u.K(k, k));
+                              for (Eigen::Index k = 0; k < 6; ++k) add(k, u.K(k, k));
                           },
                           [&](const PerAxis& u) {
                               for (std::size_t k = 0; k < 6; ++k)
-                                  see(static_cast<Eigen::Index>(k), rate_as_drawn(u.axis[k]));
+                                  add(static_cast<Eigen::Index>(k), rate_as_drawn(u.axis[k]));
                           }},
                law);
     return rates;
@@ -83,7 +83,7 @@ void check_bushings(const Cursor& scene, const Units& units, const Scene& read,
             continue;
         }
         const auto given = bushing.optional("rotational_rates");
-        first = at(
+        first = warning(
             given.value_or(bushing),
             fmt::format("{:.3g} {} beside {:.3g} {} is the rotational stiffness of a bushing "
                         "with a radius of {:.2g} mm; {}",
@@ -97,7 +97,7 @@ void check_bushings(const Cursor& scene, const Units& units, const Scene& read,
     if (!first.empty()) warnings.push_back(std::move(first));
 }
 
-// Lengths of a car [m].
+// Plausible range of a length of a car [m].
 struct Length {
     const char* field;
     double from, to;
@@ -111,7 +111,7 @@ void check_vehicle(const Cursor& scene, const Units& units, std::vector<std::str
         const Cursor given = vehicle->require(field);
         const double value = units.length.si(given.number());
         if (value >= from && value <= to) continue;
-        warnings.push_back(at(
+        warnings.push_back(warning(
             given,
             fmt::format("{:.6g} {}, expected {:g} to {:g} {}; `units` says that lengths are in {}",
                         given.number(), units.length.name, units.length.written(from),
@@ -119,7 +119,7 @@ void check_vehicle(const Cursor& scene, const Units& units, std::vector<std::str
     }
 }
 
-// The entry of that name under `trim.under` or `static_loads`; the section for a mirrored one.
+// The entry of this name under `static_loads` or `trim.under`; the section itself for a mirrored load.
 Cursor place_of_load(const Cursor& scene, const std::string& name) {
     Cursor place = scene;
     if (const auto trim = scene.optional("trim"))
@@ -130,7 +130,7 @@ Cursor place_of_load(const Cursor& scene, const std::string& name) {
     return place;
 }
 
-// Static vertical loads on a wheel without the weight of its body: what the road exerts [N].
+// Plausible static vertical load on a wheel, gravity on its body not counted [N].
 constexpr double lightest_wheel = 50, heaviest_wheel = 1e5;
 
 void check_wheels(const Cursor& scene, const Units& units, const Scene& read,
@@ -140,8 +140,9 @@ void check_wheels(const Cursor& scene, const Units& units, const Scene& read,
         if (wheel.contact.s_local.z() > (wheel.rolls() ? 0 : wheel.centre_local.z())) {
             const Cursor section =
                 wheel.name.empty() ? scene.require("wheel") : scene.require("wheels");
-            warnings.push_back(at(section.optional(wheel.name).value_or(section),
-                                  "the contact patch is above the wheel centre; does z point up?"));
+            warnings.push_back(
+                warning(section.optional(wheel.name).value_or(section),
+                        "the contact patch is above the wheel centre; does z point up?"));
             return;
         }
         double up = 0;
@@ -156,15 +157,15 @@ void check_wheels(const Cursor& scene, const Units& units, const Scene& read,
             name = load.name;
         }
         if (up == 0 || (up >= lightest_wheel && up <= heaviest_wheel)) continue;
-        warnings.push_back(
-            at(place_of_load(scene, name),
-               up < 0 ? fmt::format("the static load pulls wheel{} down with {:.6g} {}; the road "
-                                    "pushes it up, which is +z",
-                                    wheel.name.empty() ? "" : " '" + wheel.name + "'",
-                                    units.force.written(-up), units.force.name)
-                      : fmt::format("a static wheel load of {:.6g} N, plausible: {} to {} N; is it "
-                                    "in another unit than {}?",
-                                    up, lightest_wheel, heaviest_wheel, units.force.name)));
+        warnings.push_back(warning(
+            place_of_load(scene, name),
+            up < 0 ? fmt::format("the static load pulls wheel{} down with {:.6g} {}; the road "
+                                 "pushes it up, which is +z",
+                                 wheel.name.empty() ? "" : " '" + wheel.name + "'",
+                                 units.force.written(-up), units.force.name)
+                   : fmt::format("a static wheel load of {:.6g} N, plausible: {} to {} N; is it "
+                                 "in another unit than {}?",
+                                 up, lightest_wheel, heaviest_wheel, units.force.name)));
         return;  // one for all wheels
     }
 }

@@ -1,5 +1,5 @@
-// The definitions of figures that a scene asks for. The reader knows no definition: the caller
-// checks the names (compare/outputs/catalogue/catalogue.hpp).
+// Definitions of K&C figures that a scene requests in its section `definitions`. The caller checks the
+// names, by compare/outputs/catalogue/catalogue.hpp.
 #pragma once
 
 #include <string>

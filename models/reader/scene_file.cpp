@@ -37,7 +37,6 @@ void check_version(const Cursor& scene) {
                                  version.found(), format_version));
 }
 
-// Every body must be attached to some joint or element.
 void check_all_held(const Cursor& scene, const Scene& result) {
     std::vector<bool> held(result.bodies.size(), false);
     const auto hold = [&](BodyId body) {
@@ -53,7 +52,7 @@ void check_all_held(const Cursor& scene, const Scene& result) {
                     "no joint or element is attached to it; a joint, spring or bushing is needed");
 }
 
-// The mirrored entry, still with its own name; first that of a joint, an element or a load.
+// The twin of an entry, still with the name of the entry: of a joint, element or load by its kind.
 template <class T>
 T mirrored(T entry, const Definitions& defs) {
     entry.kind = twin(entry.kind, defs);
@@ -70,8 +69,7 @@ Damper mirrored(Damper damper, const Definitions& defs) {
 }
 Wheel mirrored(Wheel wheel, const Definitions& defs) { return twin(wheel, defs); }
 
-// Reads the entries of a section and appends their twins. Sections that may exist on one side only
-// are not checked.
+// Whether shared entries of a section must be attached to both sides or neither, or to any.
 enum class Sides { both, any };
 
 template <class T>
@@ -83,6 +81,7 @@ void append(std::vector<T>& list, std::vector<T> entries) {
     std::ranges::move(entries, std::back_inserter(list));
 }
 
+// Reads the entries of a section and appends their twins.
 template <class T, class Read>
 void read_section(const Cursor& scene, const char* key, const Definitions& defs, Sides sides,
                   std::vector<T>& list, Read read) {
@@ -100,7 +99,8 @@ void read_section(const Cursor& scene, const char* key, const Definitions& defs,
         }
 }
 
-// Reads a section of elements that branches refer to by name (excludes e.g. the stops of a spring).
+// Reads a section of elements and notes in `named` those to which a branch may refer; the stops of a
+// spring, elements of their own, are not among them.
 template <class Read>
 void read_elements(const Cursor& scene, const char* key, const Definitions& defs,
                    std::vector<Elastic>& elastics, NamedElements& named, Read read) {
@@ -111,7 +111,7 @@ void read_elements(const Cursor& scene, const char* key, const Definitions& defs
     std::unordered_map<std::string, bool> is_written;  // false for a twin created by the mirror
     for (const std::string& name : section->value->keys) {
         is_written[name] = true;
-        if (const auto twin = defs.mirror ? turned(*defs.mirror, name) : std::nullopt)
+        if (const auto twin = defs.mirror ? mirrored_name(*defs.mirror, name) : std::nullopt)
             is_written.emplace(*twin, false);
     }
     for (std::size_t k = begin; k < elastics.size(); ++k)
@@ -136,7 +136,7 @@ void read_wheels(const Cursor& scene, Definitions& defs, std::vector<Wheel>& whe
                  });
 }
 
-// Adds the drives of held joints, active on every branch. Returns them by the joint that they hold.
+// Adds the drives of held joints, active on every branch. Returns joint -> drive, by position.
 std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene& result) {
     std::map<int, int> drives;
     const auto section = scene.optional("joints");
@@ -153,12 +153,13 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
         if (!is_held(field)) continue;
         hold(field, name);
         if (defs.mirror)
-            if (const auto twin = turned(*defs.mirror, name)) hold(field, *twin);
+            if (const auto twin = mirrored_name(*defs.mirror, name)) hold(field, *twin);
     }
     return drives;
 }
 
-// The angle of the hand wheel, which displaces the joint with `per_turn` by that length in a turn.
+// Adds the angle of the hand wheel as a drivable quantity: a turn displaces the joint with `per_turn` by
+// that length.
 void add_hand_wheel(const Cursor& scene, const Units& units, Drivables& drivables) {
     const auto section = scene.optional("joints");
     if (!section) return;
@@ -175,31 +176,31 @@ void add_hand_wheel(const Cursor& scene, const Units& units, Drivables& drivable
 }
 
 // The names that the reader gives to stops must be unused.
-void require_own_names(const Cursor& scene, const Definitions& defs,
-                       const std::vector<Elastic>& elastics) {
-    std::unordered_map<std::string, int> called;
-    for (const Elastic& elastic : elastics) ++called[elastic.name];
+void require_free_stop_names(const Cursor& scene, const Definitions& defs,
+                             const std::vector<Elastic>& elastics) {
+    std::unordered_map<std::string, int> uses;
+    for (const Elastic& elastic : elastics) ++uses[elastic.name];
     for (const char* key : {"springs", "stops"}) {
         const auto section = scene.optional(key);
         if (!section) continue;
-        for (const auto& [owner, at] : section->entries())
+        for (const auto& [owner, entry] : section->entries())
             for (const char* field : {"bump_stop", "rebound_stop", "bump", "rebound"}) {
-                const auto stop = at.optional(field);
+                const auto stop = entry.optional(field);
                 if (!stop) continue;
                 const std::string name = owner + "." + field;
-                const auto twin = defs.mirror ? turned(*defs.mirror, name) : std::nullopt;
-                for (const std::string& made : {name, twin.value_or(name)})
-                    if (called[made] > 1)
+                const auto twin = defs.mirror ? mirrored_name(*defs.mirror, name) : std::nullopt;
+                for (const std::string& stop_name : {name, twin.value_or(name)})
+                    if (uses[stop_name] > 1)
                         stop->fail(
                             fmt::format("the element name {} is reserved for its stop, but already "
                                         "in use; rename the other element",
-                                        quote(made)));
+                                        quote(stop_name)));
             }
     }
 }
 
-// A spring and a damper each have an output NAME.compression.
-void require_own_names(const Cursor& scene, const Scene& result) {
+// A spring and a damper each have an output NAME.compression, so that their names must differ.
+void require_different_outputs(const Cursor& scene, const Scene& result) {
     for (const Damper& damper : result.dampers)
         for (const Elastic& elastic : result.elastics) {
             if (elastic.name != damper.name || elastic.written_as != WrittenAs::itself ||
@@ -214,7 +215,7 @@ void require_own_names(const Cursor& scene, const Scene& result) {
         }
 }
 
-// A number that is read twice is recorded once.
+// Removes repeated records of a number that is read twice.
 void keep_each_once(std::vector<Number>& numbers) {
     std::set<std::string> seen;
     std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
@@ -228,16 +229,16 @@ bool drives_parts(const Cursor& scene) {
     });
 }
 
-// What the reader of a tree returns beside the scene.
-struct Beside {
-    std::vector<std::string>* warnings = nullptr;  // null: not looked for
+// Results of read_tree() other than the scene.
+struct TreeResults {
+    std::vector<std::string>* warnings = nullptr;  // null: no plausibility checks
     Definitions defs = {};
     Model model = {};  // the scene compiled
 };
 
-// `twins`: definitions of the other side.
+// `twins`: definitions with the numbers of the twins' side, or null.
 Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* twins,
-                Beside& beside) {
+                TreeResults& results) {
     if (scene.value->kind == Value::Kind::empty)
         scene.fail("empty; a scene begins with `elastocheck: 1`");
     scene.only_keys({"elastocheck",     "name",     "units",    "mirror",      "gravity",
@@ -245,7 +246,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* tw
                      "torsion_springs", "bushings", "beams",    "tyres",       "static_loads",
                      "loads",           "trim",     "branches", "wheel",       "wheels",
                      "probes",          "dampers",  "vehicle",  "definitions", "one_side"});
-    if (scene.is_first) {
+    if (scene.first_reading) {
         check_version(scene);
         (void)requested_definitions(scene);
     }
@@ -271,7 +272,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* tw
     read_elements(scene, "bushings", defs, result.elastics, named, read_bushing);
     read_section(scene, "stops", defs, Sides::both, result.elastics, read_stops);
     read_elements(scene, "torsion_springs", defs, result.elastics, named, read_torsion_spring);
-    if (scene.is_first) require_own_names(scene, defs, result.elastics);
+    if (scene.first_reading) require_free_stop_names(scene, defs, result.elastics);
     read_section(scene, "static_loads", defs, Sides::both, result.static_loads,
                  with_wheels(read_static_load));
     read_gravity(scene, defs, result);
@@ -279,7 +280,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* tw
     read_section(scene, "loads", defs, Sides::any, loads, with_wheels(read_load));
     read_section(scene, "probes", defs, Sides::any, result.probes, read_probe);
     read_section(scene, "dampers", defs, Sides::both, result.dampers, read_damper);
-    if (scene.is_first) require_own_names(scene, result);
+    if (scene.first_reading) require_different_outputs(scene, result);
     if (const auto vehicle = scene.optional("vehicle"))
         result.vehicle = read_vehicle(*vehicle, defs);
     if (result.wheels.empty() && result.probes.empty())
@@ -288,7 +289,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* tw
     std::map<std::string, Load> by_name;
     for (const Load& load : loads) by_name.emplace(load.name, load);
     const auto drives = add_held(scene, defs, result);
-    Drivables drivable = scene.is_first || drives_parts(scene)
+    Drivables drivable = scene.first_reading || drives_parts(scene)
                              ? drivables(result, defs.units, drives, named)
                              : Drivables{};
     add_hand_wheel(scene, defs.units, drivable);
@@ -296,39 +297,42 @@ Scene read_tree(const Cursor& scene, const Folder& folder, const Definitions* tw
     add_joints_of_bars(scene, defs, result);
     read_beams(scene, defs, result.elastics);
     read_tyres(scene, defs, drivable, result);
-    if (scene.is_first) check_all_held(scene, result);
+    if (scene.first_reading) check_all_held(scene, result);
     read_trim(scene, defs.units, by_name, drivable, result);
-    beside.model = read_branches(scene, defs.units, by_name, drivable, result);
-    if (beside.warnings) *beside.warnings = implausible(scene, defs.units, result);
-    beside.defs = std::move(defs);
+    results.model = read_branches(scene, defs.units, by_name, drivable, result);
+    if (results.warnings) *results.warnings = implausible(scene, defs.units, result);
+    results.defs = std::move(defs);
     return result;
 }
 
-// Of a scene that is not read for the first time `model` has the model, unless a trim or another
-// side is still to change it.
-Scene read_trees(const Trees& trees, const std::string& name, const Folder& folder, bool is_first,
-                 std::vector<std::string>* warnings, std::optional<Model>* model = nullptr) {
-    std::vector<Number> numbers, of_twins;
+// `model` receives the compiled scene, unless a trim or another side is still to change it.
+Scene read_trees(const Trees& trees, const std::string& name, const Folder& folder,
+                 bool first_reading, std::vector<std::string>* warnings,
+                 std::optional<Model>* model = nullptr) {
+    std::vector<Number> numbers, twin_numbers;
     const auto cursor = [&](const Value& tree, std::vector<Number>& list) {
-        return Cursor{
-            .value = &tree, .path = "", .file = &name, .numbers = &list, .is_first = is_first};
+        return Cursor{.value = &tree,
+                      .path = "",
+                      .file = &name,
+                      .numbers = &list,
+                      .first_reading = first_reading};
     };
-    Beside of_other, own{.warnings = warnings};
-    std::optional<Scene> other;
+    TreeResults twin_results, results{.warnings = warnings};
+    std::optional<Scene> twins;
     if (!trees.twins.empty())
-        other = read_tree(cursor(trees.twins.front(), of_twins), folder, nullptr, of_other);
-    Scene scene =
-        read_tree(cursor(trees.written, numbers), folder, other ? &of_other.defs : nullptr, own);
-    if (other) take_twins(*own.defs.mirror, *other, scene);
-    if (model != nullptr && !other && !scene.trim) *model = std::move(own.model);
-    if (!is_first) return scene;
+        twins = read_tree(cursor(trees.twins.front(), twin_numbers), folder, nullptr, twin_results);
+    Scene scene = read_tree(cursor(trees.written, numbers), folder,
+                            twins ? &twin_results.defs : nullptr, results);
+    if (twins) take_twins(*results.defs.mirror, *twins, scene);
+    if (model != nullptr && !twins && !scene.trim) *model = std::move(results.model);
+    if (!first_reading) return scene;
     keep_each_once(numbers);
-    keep_each_once(of_twins);
-    const Mirror* mirror = own.defs.mirror ? &*own.defs.mirror : nullptr;
+    keep_each_once(twin_numbers);
+    const Mirror* mirror = results.defs.mirror ? &*results.defs.mirror : nullptr;
     for (std::size_t k = 0; k < numbers.size(); ++k)
-        if (sides_of(mirror, numbers[k].path))
+        if (mirror_of_number(mirror, numbers[k].path))
             numbers[k].sides = {{mirror->from, numbers[k].value},
-                                {mirror->to, other ? of_twins[k].value : numbers[k].value}};
+                                {mirror->to, twins ? twin_numbers[k].value : numbers[k].value}};
     scene.numbers = std::move(numbers);
     return scene;
 }
@@ -353,7 +357,7 @@ Scene ParsedScene::read(std::span<const Setting> settings,
 }
 
 namespace {
-// Converts the numbers of a tree from text, once for all readings of it.
+// Converts scalars that are numbers from text, once for all readings of the tree.
 void convert_numbers(Value& value) {
     for (Value& item : value.items) convert_numbers(item);
     const char *const begin = value.text.data(), *const end = begin + value.text.size();
@@ -380,7 +384,7 @@ Scene VariedScene::read(std::span<const double> values, std::optional<Model>* mo
         for (Value* place : places_[k]) place->number = values[k];
     try {
         return read_trees(trees_, scene_.name_, scene_.folder_, false, nullptr, model);
-    } catch (const SceneError&) {  // again, to say where
+    } catch (const SceneError&) {  // read as text for an error with path and line
         std::vector<Setting> settings = settings_;
         for (std::size_t k = 0; k < places_.size(); ++k) {
             Setting& varied = settings[settings.size() - places_.size() + k];

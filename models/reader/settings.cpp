@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t longest_value = 256;
 
-// Path names of the entries of a map or list.
+// Names of the entries of a map or list in paths.
 std::vector<std::string> names_in(const Value& value) {
     if (value.kind == Value::Kind::map) return value.keys;
     std::vector<std::string> names;
@@ -53,13 +53,15 @@ Value& apply(const Setting& setting, Value& tree, const std::string& file, Repea
     const auto names = names_in(*value);
     if (!rest.empty()) {
         const std::string head = setting.path.substr(0, setting.path.size() - rest.size());
-        const std::string in = head.empty() ? "the file" : shown(head.substr(0, head.size() - 1));
+        const std::string container =
+            head.empty() ? "the file" : shown(head.substr(0, head.size() - 1));
         if (names.empty())
-            fail(file, value->line, shown_path, fmt::format("{} is a single value", in));
+            fail(file, value->line, shown_path, fmt::format("{} is a single value", container));
         const bool ends_in_dot = rest.find('.') + 1 == rest.size();
         const std::string_view wrong = ends_in_dot ? rest : rest.substr(0, rest.find('.'));
         fail(file, 0, shown_path,
-             fmt::format("{} has no {}{}", in, quote(wrong), did_you_mean(wrong, names, "there")));
+             fmt::format("{} has no {}{}", container, quote(wrong),
+                         did_you_mean(wrong, names, "there")));
     }
     if (value->kind == Value::Kind::map || value->kind == Value::Kind::list)
         fail(file, value->line, shown_path,
@@ -85,8 +87,8 @@ struct Edit {
     const Setting* setting;
 };
 
-// Takes the comment of an earlier edited() off a line whose values end before it. Its entries for
-// other paths: "PATH was VALUE, ...".
+// Removes the comment "  # PATH was VALUE, ..." that an earlier edited() left at the end of a line.
+// Returns its entries for paths that are not edited now.
 std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
     const std::size_t comment = line.rfind("  # ");
     if (comment == line.npos || static_cast<std::size_t>(edits.front().value->column) > comment)
@@ -108,8 +110,7 @@ std::string earlier_comment(std::string& line, const std::vector<Edit>& edits) {
     return kept;
 }
 
-// The line with the values replaced, the old ones in a comment at its end. `edits` from
-// right to left.
+// The line with the values replaced, the old ones in a comment at its end. `edits` from right to left.
 std::string edited(std::string line, const std::vector<Edit>& edits, const std::string& file) {
     std::string end;
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) {
@@ -138,8 +139,9 @@ std::string edited(std::string line, const std::vector<Edit>& edits, const std::
 
 namespace {
 
-// Settings of one side alone are entries of the section `one_side`: the text with those that it lacks
-// at the section's beginning or, in a section of its own, at the end. The others remain to be replaced.
+// Settings of one side alone are entries of the section `one_side`. Returns the text with the entries
+// that it lacks added to that section, or in a new section at the end, and removes them from `settings`;
+// the settings that are left replace values of the text.
 std::string with_one_side(std::string text, const std::string& name,
                           std::vector<Setting>& settings) {
     reader::Value tree = reader::parse_yaml(text, name);
@@ -166,7 +168,7 @@ std::string with_one_side(std::string text, const std::string& name,
 
 std::string rewrite_scene(std::string_view original, const std::string& name,
                           std::span<const Setting> wanted) {
-    (void)reader::with_settings(reader::parse_yaml(original, name), wanted, name);  // rejects
+    (void)reader::with_settings(reader::parse_yaml(original, name), wanted, name);  // throws
     std::vector<Setting> settings(wanted.begin(), wanted.end());
     const std::string text = with_one_side(std::string(original), name, settings);
     reader::Value tree = reader::parse_yaml(text, name);
@@ -180,10 +182,10 @@ std::string rewrite_scene(std::string_view original, const std::string& name,
     for (std::size_t from = 0; from < text.size(); ++row) {
         const std::size_t end = std::min(text.find('\n', from), text.size() - 1) + 1;
         std::string line(text.substr(from, end - from));
-        if (const auto here = edits.find(row); here != edits.end()) {
-            std::ranges::sort(here->second, std::ranges::greater{},
+        if (const auto line_edits = edits.find(row); line_edits != edits.end()) {
+            std::ranges::sort(line_edits->second, std::ranges::greater{},
                               [](const reader::Edit& edit) { return edit.value->column; });
-            line = reader::edited(std::move(line), here->second, name);
+            line = reader::edited(std::move(line), line_edits->second, name);
         }
         result += line;
         from = end;

@@ -66,7 +66,7 @@ Inputs<Real> inputs_as_drawn(const Model& model) {
 
 // ---- Values along the branch.
 
-// The constraint whose offset a motion changes. Pre: `stands_on`.
+// The constraint whose offset a motion changes. Pre: `fits_branch`.
 inline std::size_t constraint_of(const Model& model, const Motion& motion) {
     return static_cast<std::size_t>(model.joints[static_cast<std::size_t>(motion.joint)].driven);
 }
@@ -108,9 +108,9 @@ inline void check(const Model& model, const Branch& branch) {
         require(f->conjugate || f->frame == Formulation::Frame::on_i,
                 "a bushing's forces are not conjugate, which is defined with its frame on i only");
     }
-    require(
-        stands_on(model, branch),
-        "the model has parts that are inactive on it, or it does not begin at 0 (on_branch, ways)");
+    require(fits_branch(model, branch),
+            "the model has parts that are inactive on it, or it does not begin at 0 (on_branch, "
+            "branch_sides)");
 }
 
 // The last parameter that is followed: `to` unless a driven length between two points vanishes

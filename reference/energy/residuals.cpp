@@ -26,7 +26,7 @@ double max_or_nan(double a, double b) {
 
 Residuals residuals(const Model& given_model, const Branch& branch,
                     const Equilibrium& given_state) {
-    if (!stands_on(given_model, branch))
+    if (!fits_branch(given_model, branch))
         throw std::invalid_argument("the model has parts that are inactive on branch '" +
                                     branch.name + "', or the branch has two sides");
     if (given_state.poses.size() != given_model.bodies.size())

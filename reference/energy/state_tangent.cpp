@@ -24,7 +24,7 @@ constexpr double open = 1e-9;          // of Φ_rate: largest part that redundan
 }  // namespace
 
 StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state) {
-    if (!stands_on(model, branch))
+    if (!fits_branch(model, branch))
         throw std::invalid_argument("the model has parts that are inactive on branch '" +
                                     branch.name + "', or the branch has two sides");
     if (state.poses.size() != model.bodies.size())

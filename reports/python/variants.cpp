@@ -14,7 +14,7 @@
 #include "compare/variants/solve_variants.hpp"
 #include "elastocheck/trim.hpp"
 #include "models/kinds.hpp"
-#include "models/reader/elements/vanishing.hpp"
+#include "models/reader/elements/sections.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/files/provenance.hpp"
 #include "reports/python/analyses.hpp"

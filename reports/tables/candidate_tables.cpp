@@ -145,7 +145,7 @@ compare::Table deviations(const CandidateBranch& branch, const CandidateJudgemen
 
 // Residuals of a state of the candidate in the equations of one leg.
 struct Left {
-    const compare::Leftover* of = nullptr;
+    const compare::StateResiduals* of = nullptr;
     const char* leg = "";
     double a = 0;
     Residuals residuals;
@@ -166,7 +166,7 @@ std::vector<ColumnOf<Left>> columns_of_states(bool of_all) {
 }
 
 // The largest residuals of the states on a branch, and those of every state.
-void add_states(const compare::Leftover& left, compare::Result& result) {
+void add_states(const compare::StateResiduals& left, compare::Result& result) {
     std::vector<Left> states, largest;
     for (const auto& [leg, list] :
          {std::pair{"equilibrium", &left.truth}, {compare::name(left.second), &left.by_second}}) {
@@ -197,7 +197,7 @@ void add_states(const compare::Leftover& left, compare::Result& result) {
 // NaN is ignored.
 std::pair<double, double> imbalance(const CandidateJudgement& j) {
     double force = 0, moment = 0;
-    for (const auto& left : j.leftovers)
+    for (const auto& left : j.state_residuals)
         for (const auto& of : left.truth) {
             force = std::max(force, of.force);
             moment = std::max(moment, of.moment);
@@ -271,7 +271,7 @@ compare::Result result_of(const CandidateJudgement& j, const compare::Comparison
                     j.name)};
     for (const auto& branch : j.branches) {
         result.tables.push_back(deviations(branch, j, comparison));
-        for (const auto& left : j.leftovers)
+        for (const auto& left : j.state_residuals)
             if (left.branch == branch.branch) add_states(left, result);
     }
     for (const auto& missing : j.not_given) result.notes.push_back("not given: " + missing);

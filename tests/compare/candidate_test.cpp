@@ -426,21 +426,21 @@ TEST(Candidate, LegAsASolverFunctionIsJudgedAsThatLeg) {
     const auto exact = run(Leg::energy), off = run(Leg::recursive);
     EXPECT_EQ(exact.verdict, Grade::pass) << texts(exact);
     EXPECT_EQ(off.verdict, Grade::fail) << texts(off);
-    ASSERT_EQ(exact.leftovers.size(), 2u);
+    ASSERT_EQ(exact.state_residuals.size(), 2u);
     for (std::size_t b = 0; b < 2; ++b) {
         const Bounds& bounds = all.branches[b].bounds;
         double by_energy = 0, length = 0;
-        for (std::size_t k = 0; k < exact.leftovers[b].truth.size(); ++k) {
-            EXPECT_LE(exact.leftovers[b].truth[k].force, bounds.residual_force);
-            EXPECT_LE(exact.leftovers[b].truth[k].moment, bounds.residual_moment);
-            EXPECT_LE(1e3 * exact.leftovers[b].truth[k].length, bounds.residual_length);
-            EXPECT_LE(exact.leftovers[b].by_second[k].force, bounds.residual_force);
+        for (std::size_t k = 0; k < exact.state_residuals[b].truth.size(); ++k) {
+            EXPECT_LE(exact.state_residuals[b].truth[k].force, bounds.residual_force);
+            EXPECT_LE(exact.state_residuals[b].truth[k].moment, bounds.residual_moment);
+            EXPECT_LE(1e3 * exact.state_residuals[b].truth[k].length, bounds.residual_length);
+            EXPECT_LE(exact.state_residuals[b].by_second[k].force, bounds.residual_force);
         }
         // The energy leg uses no reactions: its residuals are the same for the recursion and
         // for a candidate.
-        for (std::size_t k = 0; k < off.leftovers[b].truth.size(); ++k) {
-            by_energy = std::max(by_energy, off.leftovers[b].by_second[k].force);
-            length = std::max(length, off.leftovers[b].truth[k].length);
+        for (std::size_t k = 0; k < off.state_residuals[b].truth.size(); ++k) {
+            by_energy = std::max(by_energy, off.state_residuals[b].by_second[k].force);
+            length = std::max(length, off.state_residuals[b].truth[k].length);
         }
         const auto& judged_then = all.branches[b].runs[0].judged;
         EXPECT_NEAR(by_energy, judged_then[2].force, 1e-6 * by_energy);
@@ -458,11 +458,12 @@ TEST(Candidate, StateDisplacedByATenthOfAMillimetreHasAForceResidual) {
     for (auto& pose : states.back().poses)
         pose.r += Eigen::Vector3d(0, 0, 1e-4);  // all bodies by 0.1 mm: bushings and springs deform
     const auto moved = candidate_of(solved().model, all, "mine", states);
-    ASSERT_EQ(moved.leftovers.size(), 1u);
-    EXPECT_LE(at_rest.leftovers[0].truth.back().force, 1e-6);
-    EXPECT_GE(moved.leftovers[0].truth.back().force, 1);
-    EXPECT_GE(moved.leftovers[0].by_second.back().force, 1);
-    EXPECT_EQ(moved.leftovers[0].truth.front().force, at_rest.leftovers[0].truth.front().force);
+    ASSERT_EQ(moved.state_residuals.size(), 1u);
+    EXPECT_LE(at_rest.state_residuals[0].truth.back().force, 1e-6);
+    EXPECT_GE(moved.state_residuals[0].truth.back().force, 1);
+    EXPECT_GE(moved.state_residuals[0].by_second.back().force, 1);
+    EXPECT_EQ(moved.state_residuals[0].truth.front().force,
+              at_rest.state_residuals[0].truth.front().force);
 }
 
 TEST(Candidate, CandidateOfAFailedSolverIsNotJudged) {

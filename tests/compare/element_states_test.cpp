@@ -99,10 +99,10 @@ double out_of_balance(const Model& model, const Branch& branch, const Equilibriu
             double sum = on[b][k];
             size = std::max(size, std::abs(sum));
             for (std::size_t c = 0; c < all.size(); ++c) {
-                const auto* of = std::get_if<OfElement>(&all[c].reads);
+                const auto* of = std::get_if<ElementComponent>(&all[c].reads);
                 if (of == nullptr || of->component < 6 || std::isnan(values[c])) continue;
                 std::size_t d = c;  // the deformation along the same axis
-                while (std::get<OfElement>(all[d].reads).component != of->component - 6) --d;
+                while (std::get<ElementComponent>(all[d].reads).component != of->component - 6) --d;
                 const double taken_up =
                     values[c] * (there[d] - here[d]) / in_unit(all[d].unit) / (2 * h);
                 sum -= taken_up;

@@ -102,9 +102,9 @@ TEST(ModelOnABranch, JackIsActiveOnlyWhereItIsDriven) {
     ASSERT_EQ(model.joints.size(), 8U);
     for (const Branch& branch : model.branches) {
         // else some constraints are inactive
-        EXPECT_EQ(stands_on(model, branch), branch.name == "both") << branch.name;
+        EXPECT_EQ(fits_branch(model, branch), branch.name == "both") << branch.name;
         const Model here = on_branch(model, branch);
-        EXPECT_TRUE(stands_on(here, branch)) << branch.name;
+        EXPECT_TRUE(fits_branch(here, branch)) << branch.name;
         ASSERT_EQ(here.branches.size(), 1U);
         EXPECT_EQ(here.branches[0].name, branch.name);
         ASSERT_EQ(here.joints.size(), model.joints.size());  // reactions keep their positions
@@ -134,9 +134,9 @@ TEST(ModelOnABranch, JackIsActiveOnlyWhereItIsDriven) {
 TEST(ModelOnABranch, BranchWithTwoSidesIsRejectedByTheLegs) {
     const Scene scene = parsed(rig("  up: {drive: travel, from: -9, to: 9, steps: 2}"));
     const Model model = compile(scene);
-    EXPECT_FALSE(stands_on(model, model.branches[0]));
+    EXPECT_FALSE(fits_branch(model, model.branches[0]));
     for (const Branch& way : branch_sides(model.branches[0]))
-        EXPECT_TRUE(stands_on(on_branch(model, way), way));
+        EXPECT_TRUE(fits_branch(on_branch(model, way), way));
 }
 
 }  // namespace

@@ -553,9 +553,9 @@ TEST(CompileDetail, DriversReferToTheSamePartsAfterAllPasses) {
 TEST(CompileDetail, ReducedModelIsNotReducedFurther) {
     for (Scene scene : {linked(), welded()}) {
         const auto reduced = [](Scene s) {
-            reduce::drop_what_does_nothing(s), reduce::drop_what_never_stands(s), reduce::weld(s);
-            reduce::drop_what_is_within_one_body(s), reduce::drop_what_no_output_sees(s);
-            reduce::drop_free_followers(s), reduce::drop_duplicates(s), reduce::shorten_links(s);
+            reduce::drop_zero_loads(s), reduce::drop_never_active(s), reduce::weld(s);
+            reduce::drop_within_one_body(s), reduce::drop_unconnected_to_outputs(s);
+            reduce::drop_free_followers(s), reduce::drop_duplicates(s), reduce::replace_links(s);
             return s;
         };
         Scene once = reduced(scene);

@@ -205,12 +205,13 @@ double lift_without_road(const Model& model, const Branch& branch, const Equilib
                above = compare::evaluate(model, branch, all, up),
                below = compare::evaluate(model, branch, all, down);
     for (std::size_t c = 0; c < all.size(); ++c) {
-        const auto* of = std::get_if<compare::OfElement>(&all[c].reads);
+        const auto* of = std::get_if<compare::ElementComponent>(&all[c].reads);
         if (of == nullptr || of->component < 6 ||
             model.elastics[static_cast<std::size_t>(of->element)].written_as == WrittenAs::tyre)
             continue;
         std::size_t d = c;  // the deformation along the same axis
-        while (std::get<compare::OfElement>(all[d].reads).component != of->component - 6) --d;
+        while (std::get<compare::ElementComponent>(all[d].reads).component != of->component - 6)
+            --d;
         sum -= values[c] * (above[d] - below[d]) / compare::in_unit(all[d].unit) / (2 * h);
     }
     return sum;

@@ -79,7 +79,7 @@ double read(const Subject& subject, const Total& c) {
     return sum;
 }
 // Needs more than the state.
-double read(const Subject&, const OfElement&) { return nan; }
+double read(const Subject&, const ElementComponent&) { return nan; }
 
 // ---- Units, in the order of Unit.
 

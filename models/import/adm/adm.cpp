@@ -74,10 +74,10 @@ Value Conversion::function(const std::string& text, double time, std::vector<dou
     return static_value(text, context);
 }
 
-// Evaluates the FUNCTION at every time. The smallest and largest values are refined by golden
-// section search between the two neighbouring times.
-Programme Conversion::programme(const std::string& text) {
-    Programme result{.first = function(text, 0)};
+// The extrema are refined by golden-section search between the times next to that of the smallest and
+// largest value.
+TimeFunction Conversion::time_function(const std::string& text) {
+    TimeFunction result{.first = function(text, 0)};
     Value& first = result.first;
     const double start = first.constant;
     result.path = {start};
@@ -99,15 +99,20 @@ Programme Conversion::programme(const std::string& text) {
     for (std::size_t k = 1; k < times.size() && first.is_known(); ++k)
         result.path.push_back(value_at(times[k]));
     if (!first.is_known()) return result;
+    constexpr double golden = 0.381966;  // (3 - √5) / 2
+    // sign +1: maximum, -1: minimum
     const auto extremum = [&](double sign, auto found) {
         const auto k = static_cast<std::size_t>(found - result.path.begin());
         double low = times[k == 0 ? 0 : k - 1], high = times[std::min(k + 1, times.size() - 1)],
                best = *found;
         for (int n = 0; n < 50 && first.is_known(); ++n) {
-            const double a = low + 0.381966 * (high - low), b = high - 0.381966 * (high - low);
+            const double a = low + golden * (high - low), b = high - golden * (high - low);
             const double f_a = value_at(a), f_b = value_at(b);
             best = sign * std::max({sign * best, sign * f_a, sign * f_b});
-            (sign * f_a > sign * f_b ? high : low) = sign * f_a > sign * f_b ? b : a;
+            if (sign * f_a > sign * f_b)
+                high = b;
+            else
+                low = a;
         }
         return best;
     };
@@ -140,8 +145,7 @@ void note_without_effect(Conversion& c, const Statement& s) {
         same->what.insert(same->what.size() - 1, ", ...");
 }
 
-// Notes every statement that is not converted.
-void sort_out(Conversion& c) {
+void note_unconverted(Conversion& c) {
     for (const Statement& s : c.data.statements) {
         const Role role = role_of(s.keyword);
         const reader::Value* equivalent = entry(dataset_table("without_equivalent"), s.keyword);
@@ -210,18 +214,18 @@ void report_unread(Conversion& c) {
                 c.leave_out(s, argument, "since ground is fixed");
                 continue;
             }
-            const auto& list =
-                dataset_table("without_influence").items;  // its name, why, arguments
-            const auto found = std::ranges::find_if(list, [&](const reader::Value& some) {
-                return has_word(some.items[2].text, argument);
+            // entries: [common name or empty, reason, arguments]
+            const auto& list = dataset_table("without_influence").items;
+            const auto found = std::ranges::find_if(list, [&](const reader::Value& known) {
+                return has_word(known.items[2].text, argument);
             });
             if (found == list.end()) {
                 c.miss(s, "{}: not used in combination with the other arguments", argument);
                 continue;
             }
             const std::string& name = found->items[0].text;
-            const std::string& called = name.empty() ? argument : name;
-            if (listed.insert(called).second) c.leave_out(s, called, found->items[1].text);
+            const std::string& shown = name.empty() ? argument : name;
+            if (listed.insert(shown).second) c.leave_out(s, shown, found->items[1].text);
         }
     }
 }
@@ -254,9 +258,9 @@ void write_bodies(Conversion& c) {
         const std::string origin = c.origin(s.id);
         Fields fields;
         fields.add("origin", origin);
-        const bool heavy = part.mass > 0 && (c.draft.gravity || !c.options.drop_dynamics);
-        if (heavy) fields.add("mass", computed(part.mass));
-        any_mass |= heavy;
+        const bool has_mass = part.mass > 0 && (c.draft.gravity || !c.options.drop_dynamics);
+        if (has_mass) fields.add("mass", computed(part.mass));
+        any_mass |= has_mass;
         c.draft.bodies.push_back({c.body(s.id), fields.braced(), s.place()});
         if (c.options.wheel.empty())
             c.draft.probes.push_back(
@@ -264,8 +268,8 @@ void write_bodies(Conversion& c) {
     }
     if (!any_mass) c.draft.gravity.reset();
     for (const auto& [i, j, entry] : c.dampers) {
-        const auto is_there = [&](int part) { return c.is_ground(part) || c.held.contains(part); };
-        if (is_there(i) && is_there(j))
+        const auto is_held = [&](int part) { return c.is_ground(part) || c.held.contains(part); };
+        if (is_held(i) && is_held(j))
             c.draft.dampers.push_back(entry);
         else
             c.draft.notes.leave_out("since nothing is attached to them", entry.from);
@@ -291,7 +295,7 @@ bool is_called(const Statement& s, const std::string& wanted) {
            capitals(s.name) == capitals(wanted);
 }
 
-// The part that --wheel names, or that of the marker which it names.
+// The part that --wheel names, or the part of the marker that it names; sets `marker` then.
 int wheel_body(Conversion& c, const Marker*& marker) {
     const std::string& wanted = c.options.wheel;
     const auto fail = [&](const std::string& what) { reader::fail(c.file, 0, "--wheel", what); };
@@ -363,10 +367,10 @@ std::optional<double> ratio(const Drive& drive, const Drive& first) {
     return r;
 }
 
-// Proportional drives, which share a branch, in their order in Conversion::drives.
+// Proportional drives, which share a branch.
 struct Group {
     const Drive* first = nullptr;
-    std::map<const Drive*, double> members = {};
+    std::map<const Drive*, double> members = {};  // with their ratios to the first
 };
 
 std::vector<Group> groups_of(const std::vector<Drive>& drives) {
@@ -383,21 +387,22 @@ std::vector<Group> groups_of(const std::vector<Drive>& drives) {
     return groups;
 }
 
-// Whether a motion does not begin at the position in the file.
-bool stands(const Conversion& c, const Drive& drive) {
+// Whether a motion starts away from the position in the file.
+bool starts_displaced(const Conversion& c, const Drive& drive) {
     return drive.kind == Drive::Kind::joint && std::abs(drive.path[0]) > 1e-12 * c.geometry.size;
 }
 
-// The end of a branch, on which all motions but those of the group keep their position at time 0.
-std::string held(const Conversion& c, const Group& moving) {
+// ", hold: {...}}", the end of a branch's text: motions outside the group keep their positions of time 0.
+std::string hold_others(const Conversion& c, const Group& moving) {
     Fields holds;
     for (const Drive& drive : c.drives)
-        if (!moving.members.contains(&drive) && stands(c, drive))
+        if (!moving.members.contains(&drive) && starts_displaced(c, drive))
             holds.add(drive.quantity, computed(drive.path[0]));
     return holds.text().empty() ? "}" : fmt::format(", hold: {}}}", holds.braced());
 }
 
-// A branch with the weights of all parts, or a force on the first.
+// Writes, for a file without drives, a branch of more weight, or without gravity of a force on the first
+// part.
 void write_branch_of_loads(Conversion& c) {
     Draft& draft = c.draft;
     if (draft.gravity) {
@@ -454,7 +459,7 @@ void write_drives(Conversion& c) {
         if (most > 0 && least < 0) fields.add("from", computed(least));
         fields.add("to", computed(to)).add("steps", "100");
         branches.push_back({branch_names.take(is_motion ? "motion" : "load"),
-                            "{" + fields.text() + held(c, group),
+                            "{" + fields.text() + hold_others(c, group),
                             {}});
     }
     if (!groups.empty())
@@ -471,7 +476,7 @@ void write_drives(Conversion& c) {
                         "on which the others keep their value at time 0",
                         groups.size()));
     for (const Drive& drive : c.drives)
-        if (stands(c, drive))
+        if (starts_displaced(c, drive))
             draft.notes.warn(
                 drive.from,
                 fmt::format("{}: the file's motion starts {:.4g} from where the parts are drawn{}",
@@ -479,7 +484,7 @@ void write_drives(Conversion& c) {
                             drive.moves() ? "; its branch begins at the position in the file"
                                           : "; the branches hold it at that position"));
     if (draft.branches.empty() && branches.empty()) write_branch_of_loads(c);
-    for (Entry& branch : draft.branches) branch.fields += held(c, {});
+    for (Entry& branch : draft.branches) branch.fields += hold_others(c, {});
     draft.branches.insert(draft.branches.end(), branches.begin(), branches.end());
 }
 
@@ -516,7 +521,7 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
     }
     draft.notes.understood["MARKER"] = static_cast<int>(geometry.markers.size());
     read_gravity(c);
-    sort_out(c);
+    note_unconverted(c);
     read_times(c);
     read_splines(c);
     convert_joints(c);

@@ -1,14 +1,14 @@
 // Converts ADAMS elastic elements with six components.
 //
-// A BUSHING, FIELD or BEAM exerts on the part of I, at I's origin and in the moving axes of J,
+// A BUSHING, FIELD or BEAM exerts on the part of marker I, at its origin and in the axes of marker J,
 //
-//   F = FORCE - K (x - x_0),   x = (δ; a, b, c),   δ = A_Jᵀ (p_I - p_J),   a, b, c projected angles
-//                                                                          of I in J,
+//   F = FORCE - K (x - x_0),   x = (δ; a, b, c),   δ = A_Jᵀ (p_I - p_J),
 //
-// and the opposite wrench at the same point on the part of J. In a scene this is a bushing from J's
-// body to I's body at I's origin, with `angles: projected` and `conjugate: false`. Its d is
-// δ - δ_drawn, so its undeformed position is x_0 - δ_drawn. If I is rotated relative to J at the
-// design position, frame_j is that of I.
+// a, b, c the projected angles of I in J, and the opposite wrench at the same point on the part of J.
+// In a scene this is a bushing from J's body (i) to I's body (j), both markers at I's origin, with
+// `angles: projected` and `conjugate: false`. Its displacement is d = δ - δ_drawn, δ_drawn the value at
+// the design position, so that its undeformed position is x_0 - δ_drawn. If I is rotated relative to J at
+// the design position, frame_j has the axes of I.
 #include "models/import/adm/bushings.hpp"
 
 #include <algorithm>
@@ -20,9 +20,8 @@ using Eigen::Matrix3d, Eigen::Vector3d;
 
 namespace {
 
-constexpr double turned = 1e-9;  // larger: two frames are not parallel [rad]
-// of the model's size: larger distances between markers are reported
-constexpr double far = 0.05;
+constexpr double parallel = 1e-9;  // largest angle between parallel frames [rad]
+constexpr double far = 0.05;  // distance of markers that is reported, in shares of the model's size
 
 std::string stiffness_text(const Matrix6& K) {
     std::string rows;
@@ -44,7 +43,7 @@ void put_bushing(Conversion& c, const Statement& s, const Marker& I, int part_j,
         fields.add(name, fmt::format("{{x: {}, y: {}}}", direction(A.col(0)), direction(A.col(1))));
     };
     if (!((J.A - Matrix3d::Identity()).norm() <= 1e-12)) add_frame("frame", J.A);
-    if (Eigen::AngleAxisd(Matrix3d(J.A.transpose() * I.pose.A)).angle() > turned)
+    if (Eigen::AngleAxisd(Matrix3d(J.A.transpose() * I.pose.A)).angle() > parallel)
         add_frame("frame_j", I.pose.A);
     const Vector6 rates = laws.K.diagonal();
     if (laws.is_coupled())
@@ -58,7 +57,7 @@ void put_bushing(Conversion& c, const Statement& s, const Marker& I, int part_j,
         if (!laws.curves[k].empty())
             curves += fmt::format("{}{}: {}", curves.empty() ? "" : ", ",
                                   std::array{"x", "y", "z", "rx", "ry", "rz"}[k],
-                                  curve_of_rows(laws.curves[k], laws.goes_on[k]));
+                                  curve_of_rows(laws.curves[k], laws.extrapolates[k]));
     if (!curves.empty()) fields.add("curves", "{" + curves + "}");
     const auto add = [&](const char* name, const Vector3d& v, double least, double scale) {
         if (v.norm() > least) fields.add(name, triple(v, scale));
@@ -87,13 +86,14 @@ Vector6 wrench_in_scene_units(Vector6 F, const Units& units) {
 
 namespace {
 
-// Reason why a scene cannot represent the stiffness: not symmetric, or negative; empty if it can.
-std::string fault(Matrix6& K) {
+// Makes K symmetric. Returns the reason why a scene cannot represent it: asymmetric beyond the printed
+// digits, or indefinite; empty if it can.
+std::string symmetrised(Matrix6& K) {
     for (int i = 0; i < 6; ++i)
         for (int k = 0; k < i; ++k) {
             const double larger = std::max(std::abs(K(i, k)), std::abs(K(k, i)));
-            const double rows = std::sqrt(std::abs(K(i, i) * K(k, k)));
-            if (std::abs(K(i, k) - K(k, i)) > 1e-4 * std::max(larger, 1e-6 * rows))
+            const double diagonal = std::sqrt(std::abs(K(i, i) * K(k, k)));
+            if (std::abs(K(i, k) - K(k, i)) > 1e-4 * std::max(larger, 1e-6 * diagonal))
                 return fmt::format(
                     "its stiffness is not symmetric: {:g} in row {} and column {}, {:g} in the "
                     "transposed entry",
@@ -108,7 +108,7 @@ std::string fault(Matrix6& K) {
                 "its stiffness is indefinite: row {} has a zero diagonal and other entries", i + 1);
         d[i] = d[i] > 0 ? 1 / std::sqrt(d[i]) : 1;
     }
-    const Matrix6 S = d.asDiagonal() * K * d.asDiagonal();
+    const Matrix6 S = d.asDiagonal() * K * d.asDiagonal();  // unit diagonal
     if (Eigen::LDLT<Matrix6> factors(S + 1e-10 * Matrix6::Identity());
         !(factors.vectorD().minCoeff() >= 0))
         return "its stiffness is indefinite";
@@ -119,7 +119,7 @@ std::string fault(Matrix6& K) {
 
 bool make_symmetric(Conversion& c, const Statement& s, Matrix6& K) {
     const Matrix6 written = K;
-    const std::string why = fault(K);
+    const std::string why = symmetrised(K);
     if (!why.empty()) c.miss(s, why);
     const double off = (written - K).cwiseAbs().maxCoeff();
     if (why.empty() && off > 0)
@@ -171,10 +171,10 @@ void convert_field(Conversion& c, const Statement& s) {
     put_bushing(c, s, I, J.part, J.pose, laws);
 }
 
-// From J along its x axis to I: Timoshenko beam, with the shear term P = 12 E I s / (G A L²).
+// A Timoshenko beam from J along x of J to I, with the shear terms P = 12 E I s / (G A L²), s = ASY or ASZ.
 void convert_beam(Conversion& c, const Statement& s) {
     const Marker &I = c.marker(s, "I"), &J = c.marker(s, "J");
-    s.has("LINEAR");
+    s.has("LINEAR");  // marks it as read
     if (s.has("STRING") || s.has("NONLINEAR") ||
         !std::string_view("LINEAR").starts_with(s.word("FORMULATION")))
         return c.miss(s, "a beam with another formulation than LINEAR, an unsupported law");

@@ -20,12 +20,13 @@ constexpr std::size_t longest_function = 1 << 16;  // [bytes]
 Value unknown(std::string why) { return {.unknown = std::move(why)}; }
 Value constant(double x) { return {.constant = x}; }
 
+// Marks `to` as dependent on what `from` depends on.
 void inherit(Value& to, const Value& from) {
     to.of_time |= from.of_time;
     to.of_velocity |= from.of_velocity;
 }
 
-// 0 · x is 0 for any x.
+// factor · a; exactly zero for factor 0, whatever a.
 Value scaled(Value a, double factor) {
     if (factor == 0) {
         Value zero;
@@ -112,7 +113,7 @@ class Parser {
   public:
     Parser(std::string_view text, const Context& context) : text_(text), context_(context) {}
 
-    Value whole() {
+    Value parse() {
         Value value = expression();
         skip();
         return text_.empty() ? value : unreadable();
@@ -143,7 +144,7 @@ class Parser {
         return value;
     }
 
-    // Sums of products of powers, from left to right.
+    // A sum of products of powers, or a product, from left to right.
     Value operations(std::string_view operators) {
         const bool sums = operators == "+-";
         const auto operand = [&] { return sums ? operations("*/") : power(); };
@@ -261,7 +262,7 @@ class Parser {
         return of_numbers(name, p);
     }
 
-    // A function that is known where its arguments are.
+    // A function of constant arguments.
     Value of_numbers(const std::string& name, const std::vector<Value>& p) const {
         const auto of_one_argument =
             std::ranges::find(unary, name, &std::pair<std::string_view, Unary>::first);
@@ -295,7 +296,7 @@ class Parser {
         return result;
     }
 
-    // The time when x, linear in TIME, is `at`.
+    // Adds the time at which x, linear in TIME, has the value `at` to the events.
     void note_event(const Value& x, double at) const {
         if (!context_.events || !x.of_time || !std::isfinite(x.per_time) || x.per_time == 0) return;
         const double time = context_.time + (at - x.constant) / x.per_time;
@@ -319,8 +320,8 @@ class Parser {
         return result;
     }
 
-    // Extracts one measure with scale and offset; returns the reason if the value has another form.
-    static std::string only_measure(const Value& x, CurveTerm& term) {
+    // Sets u = scale · x + offset of a term from a value of this form; else returns the reason.
+    static std::string set_argument(const Value& x, CurveTerm& term) {
         if (!x.is_known()) return x.unknown;
         if (!x.curves.empty() || x.linear.size() != 1)
             return "a curve that is not over one displacement";
@@ -330,8 +331,8 @@ class Parser {
         return {};
     }
 
-    // The curve alone, of what `x` depends on.
-    static Value only(const CurveTerm& curve, const Value& x) {
+    // A value that is the curve alone, with the dependences of its argument x.
+    static Value value_of(const CurveTerm& curve, const Value& x) {
         Value value;
         inherit(value, x);
         value.curves.push_back(curve);
@@ -349,19 +350,18 @@ class Parser {
         CurveTerm term;
         if (is_penetration(p[0]))
             term = p[0].curves.front();
-        else if (const std::string why = only_measure(p[0], term); !why.empty())
+        else if (const std::string why = set_argument(p[0], term); !why.empty())
             return unknown(p[0].is_constant() ? name + " without a displacement" : why);
         term.is_akima = name == "AKISPL";
         term.spline = *number;
-        return only(term, p[0]);
+        return value_of(term, p[0]);
     }
 
-    // DIM(a, b) = max(a - b, 0) of a displacement and a constant: a contact of rate
-    // 1 without damping.
+    // DIM(a, b) = max(a - b, 0) of a displacement and a constant, as an impact of rate 1.
     static Value penetration(const std::vector<Value>& p) {
-        const Value one = constant(1);
-        Value value = p[0].is_constant() ? contact(p[1], p[0], one, one)
-                                         : contact(scaled(p[0], -1), scaled(p[1], -1), one, one);
+        const Value unit = constant(1);
+        Value value = p[0].is_constant() ? contact(p[1], p[0], unit, unit)
+                                         : contact(scaled(p[0], -1), scaled(p[1], -1), unit, unit);
         value.of_velocity = p[0].of_velocity || p[1].of_velocity;
         return value;
     }
@@ -392,13 +392,13 @@ class Parser {
             if (!value->is_constant())
                 return unknown(value->is_known() ? "IMPACT or BISTOP with variable parameters"
                                                  : value->unknown);
-        if (const std::string why = only_measure(x, term); !why.empty()) return unknown(why);
+        if (const std::string why = set_argument(x, term); !why.empty()) return unknown(why);
         term.contact = at.constant;
         term.rate = rate.constant;
         term.exponent = exponent.constant;
         if (!(term.rate >= 0) || !(term.exponent > 0))
             return unknown("IMPACT or BISTOP with a tensile force");
-        Value value = only(term, x);
+        Value value = value_of(term, x);
         value.of_velocity = true;
         return value;
     }
@@ -413,7 +413,7 @@ class Parser {
 Value static_value(std::string_view text, const Context& context) {
     if (text.size() > longest_function) return unknown("too long for a function");
     Parser parser(text, context);
-    Value value = parser.whole();
+    Value value = parser.parse();
     if (value.is_known() && !std::isfinite(value.constant))
         return unknown("a number that is not finite");
     for (const auto& [measure, k] : value.linear)

@@ -15,28 +15,27 @@ using Eigen::Vector3d;
 
 struct StopLaw {
     bool is_bump = true;
-    double touches = 0;  // x
-    Rows curve = {};     // over the penetration; empty: the rate
+    double touches = 0;  // deformation x at which it touches
+    Rows curve = {};     // force over the penetration; empty: the rate applies
     double rate = 0;
-    bool goes_on = true;
+    bool extrapolates = true;
 };
 
-// Law of one deformation u = scale · x + offset in a Value, as the restoring force f(x) = -value, in
-// units of the scene.
+// Restoring force f(x) = -value of one deformation x, in units of the scene.
 struct OneLaw {
-    double rate = 0;     // of x
+    double rate = 0;     // df/dx
     double at_zero = 0;  // f(0)
-    Rows curve = {};     // replaces both
-    bool goes_on = true;
+    Rows curve = {};     // replaces rate and at_zero
+    bool extrapolates = true;
     std::vector<StopLaw> stops = {};
 
-    bool is_nothing() const { return curve.empty() && rate == 0 && at_zero == 0 && stops.empty(); }
+    bool is_zero() const { return curve.empty() && rate == 0 && at_zero == 0 && stops.empty(); }
 };
 
-constexpr int rows_of_power = 24;
+constexpr int rows_of_power = 24;  // of the table of an impact with an exponent
 
-// The terms of a Value, which are in one measure, as a law. A function returns the reason if a scene
-// cannot represent a term; empty if it can.
+// Converts a Value whose terms are all of one measure to a law. The functions that return text return the
+// reason why a scene cannot represent a term; empty if it can.
 struct LawConversion {
     Conversion& c;
     const Statement& s;
@@ -51,15 +50,17 @@ struct LawConversion {
 
     // Warns if the scene's interpolant of a SPLINE deviates from that of ADAMS.
     void warn_of_spline(const CurveTerm& term, const Rows& rows) const {
-        const Apart apart = term.is_akima ? off_akima(rows) : off_natural(rows);
-        if (apart.force > 1e-6 * apart.of)
+        const InterpolantDeviation deviation =
+            term.is_akima ? deviation_from_akima(rows) : deviation_from_natural_spline(rows);
+        if (deviation.force > 1e-6 * deviation.largest_force)
             c.warn(s,
                    "differs by up to {:.3g} {} (of {:.4g}), at {:.4g} {}: between the points of "
                    "SPLINE/{} the file has {}, the scene the monotone interpolant",
-                   apart.force, unit_of_force, apart.of, apart.at, unit_of_x, term.spline,
-                   term.is_akima ? "Akima's curve" : "a cubic spline");
+                   deviation.force, unit_of_force, deviation.largest_force, deviation.at, unit_of_x,
+                   term.spline, term.is_akima ? "Akima's curve" : "a cubic spline");
     }
 
+    // The points of the term's SPLINE; null, with the reason in `why`, if there are none.
     const Table* points_of(const CurveTerm& term, std::string& why) const {
         const auto found = c.splines.find(term.spline);
         if (found != c.splines.end()) return &found->second;
@@ -80,7 +81,7 @@ struct LawConversion {
             if (points->x.front() != 0 || points->y.front() != 0)
                 return fmt::format("SPLINE/{} of a penetration does not begin at 0, 0",
                                    term.spline);
-            stop.goes_on = points->goes_on;
+            stop.extrapolates = points->extrapolates;
             for (std::size_t n = 0; n < points->x.size(); ++n)
                 stop.curve.emplace_back(points->x[n] / scale * unit, size * points->y[n] * force);
             warn_of_spline(term, stop.curve);
@@ -103,11 +104,12 @@ struct LawConversion {
             const double p = depth * n * n / (rows_of_power * rows_of_power);
             stop.curve.emplace_back(p, factor * std::pow(p, exponent));
         }
-        const Apart apart = off_power(stop.curve, factor, exponent);
+        const InterpolantDeviation deviation = deviation_from_power(stop.curve, factor, exponent);
         c.warn(s,
                "differs by up to {:.2g} {} (of {:.4g}): a contact with exponent {:g} becomes a "
                "table of {} rows up to {:.4g} {}",
-               apart.force, unit_of_force, apart.of, exponent, rows_of_power + 1, depth, unit_of_x);
+               deviation.force, unit_of_force, deviation.largest_force, exponent, rows_of_power + 1,
+               depth, unit_of_x);
     }
 
     std::string add_curve(const CurveTerm& term, OneLaw& law) const {
@@ -115,7 +117,7 @@ struct LawConversion {
         std::string why;
         const Table* points = points_of(term, why);
         if (!points) return why;
-        law.goes_on = points->goes_on;
+        law.extrapolates = points->extrapolates;
         for (std::size_t n = 0; n < points->x.size(); ++n)
             law.curve.emplace_back((points->x[n] - term.offset) / term.scale * unit,
                                    -term.factor * points->y[n] * force);
@@ -147,14 +149,15 @@ struct LawConversion {
 
 void add_stops(Fields& fields, const OneLaw& law, double drawn, const std::string& ending) {
     for (const StopLaw& stop : law.stops) {
-        Fields its;
-        its.add("clearance", computed(stop.is_bump ? drawn - stop.touches : stop.touches - drawn,
-                                      std::max(1.0, std::abs(drawn))));
+        Fields stop_fields;
+        stop_fields.add("clearance",
+                        computed(stop.is_bump ? drawn - stop.touches : stop.touches - drawn,
+                                 std::max(1.0, std::abs(drawn))));
         if (stop.curve.empty())
-            its.add("rate", stop.rate);
+            stop_fields.add("rate", stop.rate);
         else
-            its.add("curve", curve_of_rows(stop.curve, stop.goes_on));
-        fields.add((stop.is_bump ? "bump" : "rebound") + ending, its.braced());
+            stop_fields.add("curve", curve_of_rows(stop.curve, stop.extrapolates));
+        fields.add((stop.is_bump ? "bump" : "rebound") + ending, stop_fields.braced());
     }
 }
 
@@ -173,7 +176,7 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
     if (law.stops.size() > 2 ||
         (law.stops.size() == 2 && law.stops[0].is_bump == law.stops[1].is_bump))
         return c.miss(s, "more than one stop per direction");
-    if (law.is_nothing()) {
+    if (law.is_zero()) {
         if (!is_damper || c.options.drop_dynamics) return c.leave_out(s, "without force at rest");
         const std::string bodies = fmt::format("[{}, {}]", c.body(I.part), c.body(J.part));
         c.dampers.push_back({I.part, J.part, {name, ends(bodies).braced(), s.place()}});
@@ -184,15 +187,15 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         const double h = 0.5 * drawn;
         fields.add("curve", curve_of_rows({{-h, f - slope * h}, {h, f + slope * h}}, true));
     };
-    const double free = -law.at_zero / law.rate;  // where a straight law is zero
+    const double free = -law.at_zero / law.rate;  // free length of a linear law
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", curve_of_rows(law.curve, law.goes_on));
+        fields.add("curve", curve_of_rows(law.curve, law.extrapolates));
     } else if (law.rate > 0 && free > 0) {
         fields.add("rate", law.rate).add("free_length", computed(free));
         if (free < drawn * (1 - 1e-9))
             c.warn(s, "this spring is in tension at the position in the file");
-    } else if (law.rate > 0) {  // a spring needs a positive length
+    } else if (law.rate > 0) {  // as a table, since a free length must be positive
         add_line(law.at_zero + law.rate * drawn, law.rate);
     } else if (law.at_zero != 0) {
         add_line(law.at_zero, 0);
@@ -212,17 +215,17 @@ void put_torsion(Conversion& c, const Statement& s, const Marker& I, const Marke
     if (const double off = z.cross(I.axis(2)).norm(); off > 1e-2)
         s.fail("the axes z of I and J are {:.3g} deg apart; a torque needs one axis",
                off * 180 / std::numbers::pi);
-    const double drawn = turn_of(I, J);
+    const double drawn = angle_about_z(I, J);
     OneLaw law;
     const std::string why = LawConversion{c, s, true, -3.14, 3.14}.convert(value, law);
     if (!why.empty()) return c.miss(s, why);
     if (!law.stops.empty()) return c.miss(s, "a stop of a rotation, which a scene does not have");
-    if (law.is_nothing()) return c.leave_out(s, "without force at rest");
+    if (law.is_zero()) return c.leave_out(s, "without force at rest");
     Fields fields;
     fields.add("bodies", c.pair(J.part, I.part)).add("at", c.point(I)).add("axis", direction(z));
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", curve_of_rows(law.curve, law.goes_on));
+        fields.add("curve", curve_of_rows(law.curve, law.extrapolates));
     } else {
         fields.add("rate", law.rate);
         const double moment = law.at_zero + law.rate * drawn;
@@ -246,7 +249,8 @@ void convert_springdamper(Conversion& c, const Statement& s) {
     const double k = s.number(rotates ? "KT" : "K", 0);
     const bool damps = s.number(rotates ? "CT" : "C", 0) != 0;
     if (damps && k != 0) c.leave_out(s, "damping", "without effect at rest");
-    const double free = rotates ? s.angle("ANGLE", 0) : s.number("LENGTH", 0);
+    const double free =
+        rotates ? s.number("ANGLE", 0, Statement::Unit::angle) : s.number("LENGTH", 0);
     Value value{.constant = s.number(rotates ? "TORQUE" : "FORCE", 0) + k * free};
     if (k != 0) value.linear[{.kind = rotates ? Measure::Kind::AZ : Measure::Kind::DM}] = -k;
     if (rotates)
@@ -257,13 +261,12 @@ void convert_springdamper(Conversion& c, const Statement& s) {
 
 // ---- Forces given by expressions.
 
-// One component of a force or torque on I that does not depend on displacements, along an axis
-// fixed to the part (a follower) or to ground. Its value at time 0 is a static load; its change
-// over time becomes a branch.
+// One component of a force or torque on I that does not depend on displacements, along an axis fixed to the
+// part (a follower) or to ground. Its value at time 0 is a static load; its change over time becomes a branch.
 struct LoadComponent {
     Vector3d axis;
     bool is_moment = false;
-    Programme value;  // [unit of the file]
+    TimeFunction value;  // [unit of the file]
 };
 
 void put_load(Conversion& c, const Statement& s, const Marker& I,
@@ -301,18 +304,18 @@ void put_load(Conversion& c, const Statement& s, const Marker& I,
 // A scene has no branch for a force between two parts that changes with time. If all its values lie
 // between the first and the last, it is held at the last, with a warning. Returns the reason if
 // that is not possible; else empty.
-std::string held_at_its_end(Conversion& c, const Statement& s, const Programme& programme,
+std::string held_at_its_end(Conversion& c, const Statement& s, const TimeFunction& time_function,
                             Value& value) {
-    if (!programme.varies()) return {};
-    const double first = programme.path.front(), last = programme.path.back();
-    const double round_off = 1e-12 * (programme.most - programme.least);
-    const bool goes_one_way = std::min(first, last) <= programme.least + round_off &&
-                              std::max(first, last) >= programme.most - round_off;
+    if (!time_function.varies()) return {};
+    const double first = time_function.path.front(), last = time_function.path.back();
+    const double round_off = 1e-12 * (time_function.most - time_function.least);
+    const bool goes_one_way = std::min(first, last) <= time_function.least + round_off &&
+                              std::max(first, last) >= time_function.most - round_off;
     if (!goes_one_way || !value.is_constant())
         return fmt::format(
             "a force between two parts that changes with time, {:g} to {:g}, which a scene cannot "
             "represent",
-            programme.least, programme.most);
+            time_function.least, time_function.most);
     c.warn(s,
            "a force between two parts that changes from {:g} to {:g} over {:g} of time; the scene "
            "has its final value",
@@ -327,10 +330,10 @@ void convert_sforce(Conversion& c, const Statement& s) {
     if (s.has("ROUTINE")) return c.miss(s, "its force is a user-written function");
     const std::string* text = s.expression("FUNCTION");
     if (!text) s.fail("FUNCTION is missing");
-    const Programme programme = c.programme(*text);
-    Value value = programme.first;
+    const TimeFunction time_function = c.time_function(*text);
+    Value value = time_function.first;
     if (!value.is_known()) return c.miss(s, value.unknown);
-    const bool is_zero = value.is_constant() && value.constant == 0 && !programme.varies();
+    const bool is_zero = value.is_constant() && value.constant == 0 && !time_function.varies();
     if (is_zero && !value.of_velocity) return c.leave_out(s, "without force at rest");
     if (s.has("ACTIONONLY")) {
         if (I.floats || c.is_flexible(I) || c.is_ground(I.part))
@@ -342,12 +345,12 @@ void convert_sforce(Conversion& c, const Statement& s) {
         if (!follows && !c.is_ground(J.part))
             return c.miss(s, "a force on a single part along an axis of another moving part");
         c.count("SFORCE");
-        return put_load(c, s, I, {{J.axis(2), rotates, programme}}, follows);
+        return put_load(c, s, I, {{J.axis(2), rotates, time_function}}, follows);
     }
-    if (const std::string why = held_at_its_end(c, s, programme, value); !why.empty())
+    if (const std::string why = held_at_its_end(c, s, time_function, value); !why.empty())
         return c.miss(s, why);
     if (!c.is_between_two(s, I, J)) return;
-    // Whichever marker is named first: DM is symmetric in the two, AZ changes its sign.
+    // Expresses the value by DM(I, J) = DM(J, I), or by AZ(I, J) = -AZ(J, I).
     const int i = I.statement->id, j = J.statement->id;
     const auto kind = rotates ? Measure::Kind::AZ : Measure::Kind::DM;
     const auto sign = [&](const Measure& m) {
@@ -377,9 +380,9 @@ void convert_sforce(Conversion& c, const Statement& s) {
 
 constexpr const char* components[] = {"FX", "FY", "FZ", "TX", "TY", "TZ"};
 
-// Three or six components of a force in the axes of RM, acting at I, and the opposite on the part of
-// JFLOAT, which depend on displacements of I from one marker on that part. The functions return the
-// reason if a scene cannot represent it; empty if it can.
+// VFORCE, VTORQUE or GFORCE: components in the axes of RM of a wrench on I, with the opposite wrench on the
+// part of JFLOAT, that depend on displacements of I from one marker on that part. The functions that
+// return text return the reason why a scene cannot represent it; empty if it can.
 struct VectorForce {
     Conversion& c;
     const Statement& s;
@@ -389,21 +392,21 @@ struct VectorForce {
     const Marker* from = nullptr;  // the marker on the other part
     SixLaws laws = {};
 
-    // The component of a displacement in the axes of RM, or of an angle about them, and its sign; -1
-    // for any other.
+    // The component 0-5 of a displacement of I in the axes of RM, or of an angle about them, and its sign; -1
+    // for any other measure.
     int axis_of(const Measure& m, double& sign) {
-        const auto at_rm = [&](int id) {
+        const auto has_axes_of_rm = [&](int id) {
             const Marker& other = c.marker(s, id);
             return other.part == RM.part && (other.pose.A - RM.pose.A).norm() <= 1e-9;
         };
         const int k = static_cast<int>(m.kind) - static_cast<int>(Measure::Kind::DX);
         if (k < 0 || m.j == 0) return -1;
-        const bool straight = m.i == I.statement->id, reversed = m.j == I.statement->id;
-        const int other = straight ? m.j : m.i;
-        if (straight == reversed || c.marker(s, other).part != RM.part) return -1;
-        sign = straight ? 1 : -1;
-        if (k >= 3) return straight && at_rm(other) ? k : -1;
-        if (m.rm == 0 || !at_rm(m.rm)) return -1;
+        const bool of_I = m.i == I.statement->id, from_I = m.j == I.statement->id;
+        const int other = of_I ? m.j : m.i;
+        if (of_I == from_I || c.marker(s, other).part != RM.part) return -1;
+        sign = of_I ? 1 : -1;
+        if (k >= 3) return of_I && has_axes_of_rm(other) ? k : -1;
+        if (m.rm == 0 || !has_axes_of_rm(m.rm)) return -1;
         const Marker& origin = c.marker(s, other);
         if (from && (from->pose.r - origin.pose.r).norm() > 1e-12 * c.geometry.size) return -1;
         from = &origin;
@@ -435,19 +438,19 @@ struct VectorForce {
         return {};
     }
 
-    // The curve of one component, with the rate that the stiffness has for it.
+    // Sets the curve of one component, to which the rate of its stiffness is added.
     std::string put_curve(int row, const Value& own) {
         OneLaw law;
         const double rate = laws.K(row, row);
-        const auto at = static_cast<std::size_t>(row);
+        const auto component = static_cast<std::size_t>(row);
         std::string why = LawConversion{c, s, row >= 3, -1, 1}.convert(own, law);
         laws.K(row, row) = 0;
         if (why.empty() && !laws.K.row(row).isZero(0))
             why = "a spline in combination with a coupled stiffness";
-        if (!why.empty()) return fmt::format("{}: {}", components[at], why);
+        if (!why.empty()) return fmt::format("{}: {}", components[component], why);
         for (auto& [x, f] : law.curve) f += rate * x;
-        laws.curves[at] = law.curve;
-        laws.goes_on[at] = law.goes_on;
+        laws.curves[component] = law.curve;
+        laws.extrapolates[component] = law.extrapolates;
         return {};
     }
 
@@ -480,19 +483,19 @@ void convert_vector(Conversion& c, const Statement& s) {
     if (c.is_flexible(I) || c.is_flexible(RM) || c.is_flexible(floating))
         return c.miss(s, "it is on a flexible body, which a scene does not have");
     VectorForce force{c, s, I, RM};
-    std::array<Programme, 6> programmes;
+    std::array<TimeFunction, 6> time_functions;
     std::vector<LoadComponent> given;
     bool is_constant = true, is_zero = true, damps = false;
     for (std::size_t k = 0; k < 6; ++k) {
         const std::string* text = s.expression(components[k]);
         if (!text) continue;
-        programmes[k] = c.programme(*text);
-        const Value& value = force.value[k] = programmes[k].first;
+        time_functions[k] = c.time_function(*text);
+        const Value& value = force.value[k] = time_functions[k].first;
         if (!value.is_known()) return c.miss(s, "{}: {}", components[k], value.unknown);
         is_constant &= value.is_constant();
-        is_zero &= value.is_constant() && value.constant == 0 && !programmes[k].varies();
+        is_zero &= value.is_constant() && value.constant == 0 && !time_functions[k].varies();
         damps |= value.of_velocity;
-        given.push_back({RM.axis(static_cast<int>(k % 3)), k >= 3, programmes[k]});
+        given.push_back({RM.axis(static_cast<int>(k % 3)), k >= 3, time_functions[k]});
     }
     if (is_zero) return c.leave_out(s, "without force at rest");
     if (I.part == floating.part) return c.leave_out(s, "since both ends are on one part");
@@ -506,7 +509,7 @@ void convert_vector(Conversion& c, const Statement& s) {
     }
     Vector6 F;
     for (std::size_t k = 0; k < 6; ++k) {
-        if (const std::string why = held_at_its_end(c, s, programmes[k], force.value[k]);
+        if (const std::string why = held_at_its_end(c, s, time_functions[k], force.value[k]);
             !why.empty())
             return c.miss(s, "{}: {}", components[k], why);
         F[static_cast<int>(k)] = force.value[k].constant;
@@ -529,11 +532,12 @@ void read_splines(Conversion& c) {
         }
         const Table table{.x = s.numbers("X", 2, 10'000),
                           .y = s.numbers("Y", 2, 10'000),
-                          .goes_on = s.has("LINEAR_EXTRAPOLATE")};
+                          .extrapolates = s.has("LINEAR_EXTRAPOLATE")};
         if (table.x.empty() || table.x.size() != table.y.size())
             s.fail("{} X and {} Y; their numbers must be equal", table.x.size(), table.y.size());
-        const auto at = std::ranges::adjacent_find(table.x, std::ranges::greater_equal{});
-        if (at != table.x.end()) s.fail("X: {:g} is not larger than the value before", *(at + 1));
+        const auto not_rising = std::ranges::adjacent_find(table.x, std::ranges::greater_equal{});
+        if (not_rising != table.x.end())
+            s.fail("X: {:g} is not larger than the value before", *(not_rising + 1));
         c.splines.emplace(s.id, table);
         c.count("SPLINE");
     }

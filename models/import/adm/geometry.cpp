@@ -28,13 +28,12 @@ double size_of(const reader::Value& table, std::string_view name) {
     return si;
 }
 
-// The size of a unit, whose name may be abbreviated; if the statement does not have it, that
-// of the system.
+// The size of a unit in SI; its name may be abbreviated. Without the argument, that of the system.
 double unit(const Statement& s, std::string_view argument, const reader::Value* system) {
     if (!s.has(argument)) return system && argument != "TIME" ? size_of(*system, argument) : 1;
     const std::string word = s.word(argument);
     const reader::Value& table = *entry(dataset_table("units"), argument);
-    if (const auto found = meant(word, table.keys); found.size() == 1)
+    if (const auto found = matches(word, table.keys); found.size() == 1)
         return size_of(table, found[0]);
     s.fail("{}: {} is not a known unit{}", argument, reader::quote(word),
            reader::did_you_mean(word, table.keys, "known"));
@@ -126,13 +125,13 @@ Part read_part(const Statement& s, const Units& units) {
     return part;
 }
 
-// Poses of markers in the part, or in another marker of the part.
+// Pose of a marker in its part, or in another marker of the part.
 struct Local {
     Frame frame;
-    int in = 0;  // a marker, or 0
+    int in = 0;  // id of that marker; 0: in the part
 };
 
-// Resolves a chain of RM references, each link once.
+// Expresses the pose of a marker, and of all markers on its chain of RM references, in the part.
 void resolve(const Geometry& geometry, int id, std::map<int, Local>& local) {
     std::vector<int> chain;
     for (int next = id; next; next = local.at(next).in) {

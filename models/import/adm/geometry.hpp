@@ -1,8 +1,7 @@
 // Reads parts and markers of an ADAMS dataset, their poses, and the units.
 //
-// Lengths and forces are converted to the units of the scene, which are the file's if a scene
-// allows them: m or mm, N or kN. The four units of a dataset need not be coherent (kN, kg, m): each
-// quantity has its own factor.
+// Lengths and forces are converted to the units of the scene, which are the file's if a scene allows them: m or
+// mm, N or kN. The four units of a dataset need not be coherent (kN, kg, m): each quantity has its own factor.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +20,8 @@ struct Units {
     double length = 1;  // scene units per unit of the file
     double force = 1;
     double mass = 1;          // [kg]
-    double metre = 1;         // per length unit of the file
-    double second = 1;        // per time unit of the file
+    double metre = 1;         // metres per length unit of the file
+    double second = 1;        // seconds per time unit of the file
     std::string length_name;  // of the scene: "mm"
     std::string force_name;
     std::string remark;
@@ -32,7 +31,7 @@ struct Frame {
     Eigen::Vector3d r = Eigen::Vector3d::Zero();      // [length of the scene]
     Eigen::Matrix3d A = Eigen::Matrix3d::Identity();  // its axes as columns
 };
-// The frame b, given in the axes of a, in the axes of a's reference.
+// b, given in the axes of a, in the axes in which a is given.
 Frame placed(const Frame& a, const Frame& b_in_a);
 
 struct Part {
@@ -46,8 +45,8 @@ struct Part {
 struct Marker {
     const Statement* statement = nullptr;
     int part = 0;
-    bool floats = false;
-    Frame pose;  // in the axes of ground
+    bool floats = false;  // FLOATING: without a position
+    Frame pose;           // in the axes of ground
 
     Eigen::Vector3d axis(int k) const { return pose.A.col(k); }
 };
@@ -56,7 +55,7 @@ struct Geometry {
     Units units;
     std::map<int, Part> parts;
     std::map<int, Marker> markers;
-    double size = 1;  // of the bounding box of all markers
+    double size = 1;  // diagonal of the bounding box of all markers [length of the scene]
 };
 
 // Throws SceneError for missing, duplicate or circular definitions.

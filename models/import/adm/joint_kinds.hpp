@@ -1,20 +1,22 @@
-// Joints and primitives of ADAMS, and what a scene has for each.
+// Joints (JOINT) and joint primitives (JPRIM) of ADAMS, and the joint of a scene for each.
 #pragma once
 
 #include <string_view>
 
 namespace elastocheck::importer::adm {
 
-enum class Position { any, meet, on_line, on_plane };       // of I in J
-enum class Parallel { none, z, z_and_x, z_and_x_one_way };  // axes of I and J
+// Where the origin of I is: anywhere, at that of J, on z of J, in the plane xy of J.
+enum class Position { any, meet, on_line, on_plane };
+// Which axes of I and J are parallel; one way: and point in the same direction.
+enum class Parallel { none, z, z_and_x, z_and_x_one_way };
 
 struct JointOfAdams {
     std::string_view keyword, flag;
-    std::string_view type;  // in a scene; the first of a type is the one that is exported
+    std::string_view type;  // in a scene; the first entry of a type is used for exports
     Position position = Position::any;
     Parallel parallel = Parallel::none;
-    const char* along = nullptr;   // its field for the axis z of J
-    int axis_i = -1, axis_j = -1;  // of the markers, which the joint keeps perpendicular
+    const char* along = nullptr;   // field of the scene's joint for z of J
+    int axis_i = -1, axis_j = -1;  // axes of I and J that it keeps perpendicular: 0 x, 1 y, 2 z
 };
 inline constexpr JointOfAdams joints_of_adams[] = {
     {"JOINT", "REVOLUTE", "revolute", Position::meet, Parallel::z, "axis"},

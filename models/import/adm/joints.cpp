@@ -17,11 +17,12 @@ namespace {
 using Eigen::Vector3d;
 using enum Position;
 
-constexpr double round_off = 1e-6;  // of the model's size, or radians: not reported
+// Misalignments in shares of the model's size, or radians: not reported up to the first, rejected above
+// the second.
+constexpr double round_off = 1e-6, assembled = 1e-2;
 constexpr std::size_t max_motions = 10'000;
-constexpr double assembled = 1e-2;  // larger misalignment: rejected
 
-// Keeps ORIENTATION from turning about z.
+// Of ORIENTATION, the rotation about z; its `parallel` joint fixes the other two.
 constexpr JointOfAdams about_z{
     "JPRIM", "ORIENTATION", "perpendicular", any, Parallel::none, nullptr, 0, 1};
 
@@ -31,7 +32,7 @@ struct JointConversion {
     const Marker& I;
     const Marker& J;
 
-    Vector3d apart() const { return I.pose.r - J.pose.r; }
+    Vector3d separation() const { return I.pose.r - J.pose.r; }
 
     void require_small(double off, double scale, const std::string& what,
                        const std::string& unit) const {
@@ -52,7 +53,7 @@ struct JointConversion {
         require_small(angle / degree, 1 / degree, what, "deg");
     }
     void require(Position position) const {
-        const Vector3d d = apart(), z = J.axis(2);
+        const Vector3d d = separation(), z = J.axis(2);
         if (position == meet) require_small(d.norm(), "I and J are apart by");
         if (position == on_line)
             require_small((d - z * z.dot(d)).norm(), "I is off the axis of J by");
@@ -77,7 +78,7 @@ struct JointConversion {
     Fields fields(std::string_view type) const {
         return Fields{}.add("type", type).add("bodies", c.pair(I.part, J.part));
     }
-    // A plane of J with this normal, in which I stays.
+    // Adds an in_plane joint: I stays in a plane of J with this normal.
     std::size_t in_plane(const std::string& name, const Vector3d& normal) const {
         return put(name, fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
     }
@@ -87,16 +88,17 @@ struct JointConversion {
         require(kind.position);
         if (kind.parallel != Parallel::none) require_parallel(2, either_way);
         if (kind.parallel == Parallel::z_and_x || !either_way) require_parallel(0, either_way);
-        Fields all = fields(kind.type);
-        if (kind.position != any) all.add("at", c.point(I));
-        if (kind.along) all.add(kind.along, direction(J.axis(2)));
+        Fields joint_fields = fields(kind.type);
+        if (kind.position != any) joint_fields.add("at", c.point(I));
+        if (kind.along) joint_fields.add(kind.along, direction(J.axis(2)));
         if (kind.axis_i >= 0) {  // the second is made exactly perpendicular
             const Vector3d u = I.axis(kind.axis_i), v = J.axis(kind.axis_j);
             require_small_angle(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))),
                                 "the axes deviate from the right angle by");
-            all.add("axis_i", triple(u)).add("axis_j", triple((v - u.dot(v) * u).normalized()));
+            joint_fields.add("axis_i", triple(u))
+                .add("axis_j", triple((v - u.dot(v) * u).normalized()));
         }
-        return put(name, all);
+        return put(name, joint_fields);
     }
 };
 
@@ -161,7 +163,7 @@ void convert_gcon(Conversion& c, const Statement& s) {
     const JointConversion joint{c, s, I, J};
     const std::string name = c.name(c.joint_names, s);
     if (measure.kind == Measure::Kind::DM) {
-        const double drawn = joint.apart().norm();
+        const double drawn = joint.separation().norm();
         if (!(offset > 0) || !(drawn > 0)) return c.miss(s, "a distance that is zero or negative");
         c.count("GCON of a distance");
         Fields fields = joint.fields("distance").add("from", c.point(I)).add("to", c.point(J));
@@ -179,7 +181,8 @@ void convert_gcon(Conversion& c, const Statement& s) {
                       "a constraint other than of a distance, or of a displacement in the axes "
                       "of its second marker");
     const Vector3d normal = c.marker(s, measure.rm).axis(axis);
-    joint.require_small(std::abs(normal.dot(joint.apart()) - offset), "the constraint is off by");
+    joint.require_small(std::abs(normal.dot(joint.separation()) - offset),
+                        "the constraint is off by");
     c.count("GCON of a displacement");
     joint.in_plane(name, normal);
 }
@@ -198,7 +201,7 @@ std::optional<Displacement> displacement(Conversion& c, const Statement& s) {
     if (!text) s.fail("FUNCTION is missing");
     const bool is_velocity = s.has("VELOCITY"), is_acceleration = s.has("ACCELERATION");
     s.has("DISPLACEMENT");
-    const Programme f = c.programme(*text);
+    const TimeFunction f = c.time_function(*text);
     if (!f.first.is_constant()) {
         c.miss(s, f.first.is_known() ? "a motion that depends on displacements"
                                      : "its motion: " + f.first.unknown);
@@ -222,12 +225,13 @@ std::optional<Displacement> displacement(Conversion& c, const Statement& s) {
     return std::nullopt;
 }
 
-// `drawn`: the file's displacement at the design position [length of the scene, rad].
+// Adds the drive of a joint. `scale`: scene units per unit of the file; `drawn`: the file's displacement at
+// the design position [length of the scene, rad].
 void drive(Conversion& c, const Statement& s, const std::string& joint, const Displacement& motion,
            double scale, double drawn) {
     const bool is_angle = s.has("JOINT") && s.has("ROTATIONAL");
     const double start = motion.path[0] * scale;
-    double offset = 0;  // from the file's displacement to that from the design position
+    double offset = 0;  // to add to the file's displacement to count from the design position
     if (!motion.from_design) {
         offset = -drawn;  // of equivalent angles the closest to zero
         if (is_angle) offset = std::remainder(start + offset, 2 * std::numbers::pi) - start;
@@ -242,6 +246,7 @@ void drive(Conversion& c, const Statement& s, const std::string& joint, const Di
     c.count("MOTION");
 }
 
+// Adds `held: true` to a joint.
 void hold(Conversion& c, std::size_t entry) {
     std::string& fields = c.draft.joints[entry].fields;
     if (!fields.ends_with(", held: true}")) fields.replace(fields.size() - 1, 1, ", held: true}");
@@ -262,11 +267,11 @@ void convert_motion_of_joint(Conversion& c, const Statement& s,
     const WrittenJoint& joint = found->second;
     const JointConversion ends{c, s, c.marker(s, joint.i), c.marker(s, joint.j)};
     const bool rotates = s.has("ROTATIONAL");
-    const double length = c.geometry.units.length, along = ends.J.axis(2).dot(ends.apart());
+    const double length = c.geometry.units.length, along = ends.J.axis(2).dot(ends.separation());
     std::string name = c.draft.joints[joint.entry].name;
     if (rotates && (joint.kind == "REVOLUTE" || joint.kind == "CYLINDRICAL")) {
         hold(c, joint.entry);
-        drive(c, s, name, *motion, 1, turn_of(ends.I, ends.J));
+        drive(c, s, name, *motion, 1, angle_about_z(ends.I, ends.J));
     } else if (!rotates && joint.kind == "TRANSLATIONAL") {
         hold(c, joint.entry);
         drive(c, s, name, *motion, length, along);
@@ -297,12 +302,11 @@ void convert_motion(Conversion& c, const Statement& s) {
     const JointConversion ends{c, s, I, J};
     const std::string name = c.name(c.joint_names, s);
     ends.in_plane(name, J.axis(axis));
-    drive(c, s, name, *motion, c.geometry.units.length, J.axis(axis).dot(ends.apart()));
+    drive(c, s, name, *motion, c.geometry.units.length, J.axis(axis).dot(ends.separation()));
 }
 
-// COUPLER: Σ scale · displacement = 0 for two or three joints. A scene has no such joint. If
-// MOTIONs prescribe all displacements but one, that one is driven in proportion: the same motion,
-// but without the effort.
+// COUPLER: Σ scale · displacement = 0 for two or three joints. A scene has no such joint. If MOTIONs prescribe
+// all displacements but one, that one is driven in proportion: the same motion, but without the effort.
 void convert_coupler(Conversion& c, const Statement& s) {
     const auto joints = s.ids("JOINTS");
     const auto scales = s.numbers("SCALES", 1, 3);
@@ -356,7 +360,7 @@ void convert_coupler(Conversion& c, const Statement& s) {
 
 }  // namespace
 
-double turn_of(const Marker& I, const Marker& J) {
+double angle_about_z(const Marker& I, const Marker& J) {
     return std::atan2(I.axis(0).dot(J.axis(1)), I.axis(0).dot(J.axis(0)));
 }
 

@@ -37,7 +37,7 @@ const std::vector<std::string>& keywords() {
 // The one word that an abbreviation means. `kind` and `label` complete the message.
 std::string_view resolved(std::string_view word, const std::vector<std::string>& words,
                           std::string_view kind, const char* label, const auto& fail) {
-    const auto found = meant(word, words);
+    const auto found = matches(word, words);
     if (found.size() > 1)
         fail(fmt::format("{} is ambiguous: {}", reader::quote(word), fmt::join(found, " or ")));
     if (found.empty())
@@ -49,17 +49,19 @@ std::string_view resolved(std::string_view word, const std::vector<std::string>&
 bool is_letter(char c) { return reader::is_letter(c) || c == '_'; }
 bool is_in(char c, std::string_view set) { return set.find(c) != set.npos; }
 
-// How many characters from `from` on are of a kind.
+// Number of characters from `from` on that are of a kind.
 std::size_t length(std::string_view text, std::size_t from, const auto& is_of_kind) {
     const auto end =
         std::find_if_not(text.begin() + static_cast<std::ptrdiff_t>(from), text.end(), is_of_kind);
     return static_cast<std::size_t>(end - text.begin()) - from;
 }
+// Removes blanks and the characters `also` from the beginning.
 void skip(std::string_view& text, std::string_view also) {
     text.remove_prefix(length(text, 0, [&](char c) { return is_blank(c) || is_in(c, also); }));
 }
 
-struct Reading {
+// Splits a dataset into statements, line by line.
+struct LineReader {
     Dataset& data;
     const std::string& file;
     std::string name = {};      // of the next statement
@@ -119,8 +121,8 @@ struct Reading {
 
 }  // namespace
 
-std::vector<std::string_view> meant(std::string_view beginning,
-                                    const std::vector<std::string>& words) {
+std::vector<std::string_view> matches(std::string_view beginning,
+                                      const std::vector<std::string>& words) {
     std::vector<std::string_view> found;
     for (const std::string& word : words) {
         if (word == beginning) return {word};
@@ -165,7 +167,7 @@ void Statement::fail(const std::string& what) const {
 
 Dataset read_statements(std::string_view text, const std::string& file) {
     Dataset data;
-    Reading reading{data, file};
+    LineReader reading{data, file};
     for (reader::Lines lines(text); lines.next();) {
         const std::string_view line = lines.line();
         data.last_line = lines.number();
@@ -214,20 +216,20 @@ std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees)
 
 namespace {
 
-struct Scanner {
+struct ArgumentScanner {
     const Statement& statement;
     std::string form = form_of(statement.keyword);
     std::vector<std::string> flags = {}, names = {};
     std::string_view text = statement.rest;
 
-    explicit Scanner(const Statement& s) : statement(s) {
+    explicit ArgumentScanner(const Statement& s) : statement(s) {
         for (std::string_view rest = form; !rest.empty();) {
             const std::string_view word = next_word(rest), name = word.substr(0, word.find('='));
             (name == word ? flags : names).emplace_back(name);
         }
     }
 
-    // The word at the beginning, and whether "=" follows.
+    // The word at the beginning; sets whether "=" follows.
     static std::string_view word(std::string_view rest, bool& assigns) {
         const bool begins = !rest.empty() && is_letter(rest[0]);
         const std::size_t n = begins ? length(rest, 0, reader::is_word) : 0,
@@ -236,15 +238,14 @@ struct Scanner {
         return rest.substr(0, n);
     }
 
-    // Whether another argument begins here, after a comma or on a new line of
-    // a complete expression.
+    // Whether another argument begins here, after a comma or on a new line of a complete expression.
     bool is_argument(std::string_view rest) const {
         skip(rest, ",\n");
         bool assigns = false;
         const std::string_view name = word(rest, assigns);
         if (assigns) return true;
         rest = trimmed(rest.substr(name.size()));
-        return !name.empty() && !meant(capitals(name), flags).empty() &&
+        return !name.empty() && !matches(capitals(name), flags).empty() &&
                (rest.empty() || is_in(rest.front(), ",\n"));
     }
 
@@ -319,7 +320,7 @@ struct Scanner {
 }  // namespace
 
 const Argument* Statement::find(std::string_view argument) const {
-    if (!arguments) Scanner(*this).read(arguments.emplace());
+    if (!arguments) ArgumentScanner(*this).read(arguments.emplace());
     const auto found = std::ranges::find(*arguments, argument, &Argument::name);
     return found == arguments->end() ? nullptr : &*found;
 }
@@ -395,13 +396,9 @@ std::vector<double> Statement::numbers(std::string_view argument, std::size_t le
     return result;
 }
 
-double Statement::number(std::string_view argument, double missing) const {
-    const auto one = numbers(argument, 1, 1);
-    return one.empty() ? missing : one[0];
-}
-double Statement::angle(std::string_view argument, double missing) const {
-    const auto one = numbers(argument, 1, 1, Unit::angle);
-    return one.empty() ? missing : one[0];
+double Statement::number(std::string_view argument, double missing, Unit unit) const {
+    const auto given = numbers(argument, 1, 1, unit);
+    return given.empty() ? missing : given[0];
 }
 
 const std::string* Statement::expression(std::string_view argument) const {

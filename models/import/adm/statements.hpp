@@ -8,11 +8,10 @@
 //   argument     := FLAG | NAME "=" value ("," value)* | NAME "=" value ":" value ...
 //                   | FNAME "=" expression
 //
-// The comma at the start of a continuation separates values if the line before did not end with one
-// (or with "="), and is not part of an expression. So the kind of an argument must be known before
-// lines are joined. Keywords, names and flags are case-insensitive and may be abbreviated if
-// unambiguous. Any bytes are allowed; NUL counts as a blank except in the title, where it marks a
-// binary file.
+// The comma at the start of a continuation separates values unless the line before ended with a comma or "=";
+// it is not part of an expression. So the kind of an argument must be known before lines are joined. Keywords,
+// names and flags are case-insensitive and may be abbreviated if unambiguous. Any bytes are allowed; NUL counts
+// as a blank except in the title, where it marks a binary file.
 #pragma once
 
 #include <fmt/format.h>
@@ -33,9 +32,9 @@ inline constexpr std::size_t max_statements = 200'000;
 // Whether a list "A B= C=f" has the word.
 bool has_word(std::string_view list, std::string_view word);
 
-// What an abbreviation can mean: the exact match alone, else all words that begin with it.
-std::vector<std::string_view> meant(std::string_view beginning,
-                                    const std::vector<std::string>& words);
+// The words that an abbreviation can mean: the exact match alone, else all that begin with it.
+std::vector<std::string_view> matches(std::string_view beginning,
+                                      const std::vector<std::string>& words);
 
 struct Argument {
     std::string name;  // in full, in capitals
@@ -53,7 +52,7 @@ struct Statement {
     std::string rest = {};  // text after the id; '\n' replaces the comma of a continuation
     std::string name = {};  // from the comment adams_view_name='...' above it; or empty
     int line = 0;
-    mutable std::optional<std::vector<Argument>> arguments = {};  // once one of them was looked for
+    mutable std::optional<std::vector<Argument>> arguments = {};  // parsed at the first look-up
 
     SourceLocation place() const;  // "JOINT/1 'knuckle'"
     [[noreturn]] void fail(const std::string& what) const;
@@ -69,9 +68,8 @@ struct Statement {
     std::string word(std::string_view argument) const;  // one value, in capitals
     int id_of(std::string_view argument) const;         // of another statement; 0 if missing
     std::vector<int> ids(std::string_view argument) const;
-    double number(std::string_view argument, double missing) const;
-    double angle(std::string_view argument, double missing) const;  // [rad]; suffix D: degrees
-    enum class Unit { any, angle };
+    enum class Unit { any, angle };  // an angle may have the suffix D for degrees
+    double number(std::string_view argument, double missing, Unit unit = Unit::any) const;
     std::vector<double> numbers(std::string_view argument, std::size_t least, std::size_t most,
                                 Unit unit = Unit::any) const;
     const std::string* expression(std::string_view argument) const;
@@ -90,7 +88,6 @@ struct Dataset {
 // Throws SceneError if the text is not a dataset. `file` must outlive the statements.
 Dataset read_statements(std::string_view text, const std::string& file);
 
-// A table of dataset.yaml.
 const reader::Value& dataset_table(std::string_view table);
 
 // The arguments of a statement, "FLAG NAME= NAME=f"; empty for one that is not read.
@@ -99,8 +96,7 @@ std::string form_of(std::string_view keyword);
 enum class Role { converted, without_effect, if_used, friction, missing };
 Role role_of(std::string_view keyword);
 
-// Reads "1", "-.4", "1.0E+05", "5.0D-02" or "90D" (degrees: sets the flag). Returns the length; 0
-// if none.
+// Reads "1", "-.4", "1.0E+05", "5.0D-02" or "90D" (degrees: sets the flag). Returns the length; 0 if none.
 std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees);
 
 using reader::capitals;

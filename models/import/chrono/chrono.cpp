@@ -1,6 +1,5 @@
-// Imports Chrono::Vehicle suspension templates.
-// Points and joints as in the templates, whose steps are in templates.yaml; chassis and subchassis are
-// ground, and so is the steering of a suspension without its vehicle.
+// Imports Chrono::Vehicle suspension templates: runs the steps that templates.yaml lists for each.
+// Chassis and subchassis are ground, and so is the steering of a suspension without its vehicle.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -24,9 +23,9 @@ const Value& templates_section(std::string_view name) {
 
 namespace {
 
-const Matrix3d no_turn = Matrix3d::Identity();
+const Matrix3d no_rotation = Matrix3d::Identity();
 
-void both(Suspension& s, const std::function<void()>& make) {
+void for_both_sides(Suspension& s, const std::function<void()>& make) {
     for (const int side : {+1, -1}) {
         s.side = side;
         make();
@@ -36,8 +35,10 @@ void both(Suspension& s, const std::function<void()>& make) {
 
 using Words = std::vector<std::string>;
 
-// Half of a leaf spring (SAE), from its clamp to its end: a spring about z and one about y at the clamp.
-// Both halves have an equal part of the preload.
+// Half of a leaf spring (SAE), from its clamp to its far end: torsion springs about z and y at the clamp,
+// of the rates k |arm|² for the rates k of the end. The stiffness is shared 1 : bias between front and
+// rear half, the preload equally.
+// Words: body of the clamp, body of the leaf, clamp point, end point.
 void half_leaf(Suspension& s, const Words& words) {
     const std::string &name = words.at(0), &half = words.at(1), &clamp = words.at(2),
                       &end = words.at(3), in = "Leafspring/";
@@ -48,15 +49,14 @@ void half_leaf(Suspension& s, const Words& words) {
                  vertical = s.real(in + "Vertical Stiffness") / (1 + bias),
                  lateral = s.real(in + "Lateral Stiffness") / (1 + bias),
                  square = arm.squaredNorm();
-    s.joint_or_bushing("revolute", {name + ".yaw*", name + "*", "axle"}, p, no_turn,
+    s.joint_or_bushing("revolute", {name + ".yaw*", name + "*", "axle"}, p, no_rotation,
                        s.optional(in + "Clamp Bushing Data"));
     s.torsion({name + ".lateral*", name + "*", "axle"}, p, Vector3d::UnitZ(),
               share * lateral * square);
     s.joint_or_bushing("revolute", {name + ".pitch*", name + "*", half}, p,
                        frame_along(-Vector3d::UnitY(), Vector3d::UnitZ()),
                        s.optional(in + "Leafspring Bushing Data"));
-    // Moment about y on the leaf whose far end then pushes the chassis up with half the preload:
-    // arm × force.
+    // The end pushes the chassis up with half the preload: the moment about y is that of arm × force.
     s.torsion({name + ".vertical*", name + "*", half}, p, Vector3d::UnitY(),
               share * vertical * square, -0.5 * preload * arm.x());
     if (preload != 0 && s.side > 0 && half != "front_leaf*")
@@ -84,13 +84,11 @@ std::string scene_name(const std::string& name) {
     return result;
 }
 
-// Joints of Chrono: one that a bushing may replace, another of a scene with the axis of the joint's
-// frame that is its direction, or one that Chrono's reader treats as a lock.
 struct ChronoJoint {
     std::string_view name, capitals;
-    const char* type = nullptr;
-    bool may_be_bushing = false;
-    int axis = -1;
+    const char* type = nullptr;   // in a scene; null: Chrono's reader treats it as a lock
+    bool may_be_bushing = false;  // with "Bushing Data"
+    int axis = -1;                // of its frame, the direction of the scene's joint; -1: none
 };
 constexpr ChronoJoint chrono_joints[] = {
     {"Revolute", "REVOLUTE", "revolute", true},
@@ -105,7 +103,7 @@ constexpr ChronoJoint chrono_joints[] = {
 
 struct Generic {
     Suspension& s;
-    std::set<std::string> sided = {}, shared = {};
+    std::set<std::string> sided = {}, shared = {};  // bodies with and without a mirror image
 
     std::string body(const Cursor& cursor) const {
         std::string name;
@@ -152,16 +150,16 @@ struct Generic {
         if (!s.has(section)) return;
         for (const Cursor& entry : s.at(section).items()) {
             const std::string name = scene_name(entry.require("Name").text("a name"));
-            const auto one = [&](const std::string& called) {
+            const auto make_part = [&](const std::string& part_name) {
                 make({*this,
                       entry,
-                      called,
-                      {entry.value->line, fmt::format("{}/{}", section, called)}});
+                      part_name,
+                      {entry.value->line, fmt::format("{}/{}", section, part_name)}});
             };
             if (is_mirrored(entry))
-                both(s, [&] { one(name + s.on_side("*")); });
+                for_both_sides(s, [&] { make_part(name + s.on_side("*")); });
             else
-                one(name);
+                make_part(name);
         }
     }
 
@@ -181,7 +179,7 @@ struct Generic {
         const FilePoint position = part.at("Position");
         const auto rotated = part.entry.optional("Rotation"),
                    data = part.entry.optional("Bushing Data");
-        const Matrix3d A = rotated ? rotation_on_side(s, *rotated) : no_turn;
+        const Matrix3d A = rotated ? rotation_on_side(s, *rotated) : no_rotation;
         const auto kind = std::ranges::find_if(chrono_joints, [&](const ChronoJoint& joint) {
             return name == joint.name || name == joint.capitals;
         });
@@ -225,13 +223,13 @@ void generic(Suspension& s) {
         s.rsda(part.name, part.body1(), part.body2(), part.vector_at("Position"),
                part.vector_at("Axis").normalized(), part.entry);
     });
-    both(s, [&] { s.spindle(g.body(s.at("Spindle/Attachment Body"))); });
+    for_both_sides(s, [&] { s.spindle(g.body(s.at("Spindle/Attachment Body"))); });
 }
 
 // ---- Steps of a template, by their names in templates.yaml.
 
-// A joint with the directions and perhaps "held" behind its point; "along": with the axes x and y of a
-// frame; "or bushing": of the last field where it is given.
+// [JOINT, NAME, BODY, BODY, POINT, VECTOR..., held]; "JOINT along": with the axes x and y of a frame from two
+// vectors; "JOINT or bushing": the last word is the field of a bushing that replaces the joint if given.
 void joint_step(Suspension& s, const std::string& verb, const Words& w) {
     const std::string type = verb.substr(0, verb.find(' '));
     const FilePoint place = s.point(w.at(3));
@@ -242,7 +240,7 @@ void joint_step(Suspension& s, const std::string& verb, const Words& w) {
         along.push_back(s.vector_of(w[k]));
     const Matrix3d frame = along.size() == 2 && (has_frame || may_be_bushing)
                                ? frame_along(along[0], along[1])
-                               : no_turn;
+                               : no_rotation;
     if (has_frame) along = {frame.col(0), frame.col(1)};
     if (may_be_bushing)
         s.joint_or_bushing(type, {w[0], w[1], w[2]}, place, frame, s.optional(w.back()));
@@ -250,7 +248,7 @@ void joint_step(Suspension& s, const std::string& verb, const Words& w) {
         s.joint(type, {w[0], w[1], w[2]}, place, along, held);
 }
 
-// A warning if two vectors are not perpendicular.
+// Warns if two vectors are not perpendicular.
 void expect_across(Suspension& s, const Words& w) {
     const Vector3d a = s.vector_of(w.at(1)), b = s.vector_of(w.at(2));
     if (!(std::abs(a.normalized().dot(b)) <= 1e-6 * b.norm()))
@@ -313,7 +311,7 @@ const std::map<std::string_view, Step> steps{
     {"half leaf", half_leaf},
     {"generic", [](Suspension& s, const Words&) { generic(s); }}};
 
-// `given`: what stands for $1, $2, ... of a group.
+// `given` replaces $1, $2, ... of a group.
 void run(Suspension& s, std::span<const Value> list, const Words& given) {
     for (const Value& step : list) {
         const std::string& verb = step.items[0].text;
@@ -322,10 +320,10 @@ void run(Suspension& s, std::span<const Value> list, const Words& given) {
         for (const Value& word : rest) {
             words.push_back(word.text);
             for (std::size_t k = 0; k < given.size(); ++k)
-                words.back() = with(words.back(), fmt::format("${}", k + 1), given[k]);
+                words.back() = replaced(words.back(), fmt::format("${}", k + 1), given[k]);
         }
         if (verb == "both") {
-            both(s, [&] { run(s, rest, given); });
+            for_both_sides(s, [&] { run(s, rest, given); });
         } else if (verb == "like") {
             run(s, entry(templates_section("groups"), words[0])->items,
                 {words.begin() + 1, words.end()});

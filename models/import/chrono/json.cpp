@@ -8,8 +8,8 @@
 namespace elastocheck::importer::chrono {
 namespace {
 
-// Blanks comments, which JSON does not have; lines keep their numbers. YAML has no line that
-// ends in CR alone.
+// Replaces comments, which JSON does not have, by blanks, and CR alone, which does not end a line in YAML,
+// by LF. Lines keep their numbers.
 std::string without_comments(std::string_view text) {
     std::string result(text);
     const auto at = [&](std::size_t k) { return k < text.size() ? text[k] : '\n'; };
@@ -29,8 +29,8 @@ std::string without_comments(std::string_view text) {
     return result;
 }
 
-// nlohmann's parser says whether the text is JSON, yaml-cpp, of whose language JSON is a part, has the
-// lines of its values.
+// nlohmann's parser checks that the text is JSON. yaml-cpp, of whose language JSON is a part, then parses it
+// with the line of each value.
 reader::Value parse_json(std::string_view text, const std::string& file) {
     if (text.size() > largest_json)
         reader::fail(file, 0, "", "larger than 1 MiB, the limit for a suspension");

@@ -88,7 +88,7 @@ std::string Suspension::on_side(const std::string& name) {
     if (const auto at = name.find(beside); at != name.npos)
         return name.substr(0, at) +
                (point(name.substr(at + beside.size())).y() > 0 ? "_left" : "_right");
-    return with(name, "*", side > 0 ? "_left" : "_right");
+    return replaced(name, "*", side > 0 ? "_left" : "_right");
 }
 
 FilePoint Suspension::point(const std::string& words) const {
@@ -145,8 +145,7 @@ void visit_scalars(const reader::Value& value,
     for (const auto& item : value.items) visit_scalars(item, visit);
 }
 
-// A field of an object that was not read, reported at the outermost level at which
-// nothing was read.
+// A field of an object that was not read, reported at the outermost level at which nothing was read.
 struct Unread {
     const reader::Value *object, *value;
     std::string path, key;
@@ -229,14 +228,14 @@ std::string Suspension::hardpoint(const std::string& name, const FilePoint& p) {
 
 void Suspension::body(const std::string& name, const std::string& part, const Vector3d& com,
                       const std::string& mass) {
-    const std::string called = on_side(name);
+    const std::string body_name = on_side(name);
     Fields fields;
-    fields.add("origin", draft_.points.at(com, called + ".cm", {}));
+    fields.add("origin", draft_.points.at(com, body_name + ".cm", {}));
     if (const auto given = optional(part + "/" + mass)) {
         const double m = given->number();
         if (!options_.drop_dynamics && m > 0) fields.add("mass", m);
     }
-    draft_.bodies.push_back({body_names_.take(called), fields.braced(), place(part)});
+    draft_.bodies.push_back({body_names_.take(body_name), fields.braced(), place(part)});
     draft_.notes.count("body");
 }
 
@@ -410,7 +409,7 @@ std::string linear(const Rows& rows, bool known_outside) {
 
 }  // namespace
 
-// Stops at the lengths of the file; `alone`: without a spring.
+// Adds the stops at the lengths of the file to `fields`, of a spring or, `alone`, of stops without one.
 void Suspension::add_stops(const Cursor& data, double drawn, bool alone, Fields& fields) {
     const auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
     if (!least || !most) return;
@@ -440,35 +439,34 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     ends.add("bodies", pair(i, j))
         .add("from", hardpoint(name + ".top", {from, source}))
         .add("to", hardpoint(name + ".seat", {to, source}));
-    const auto put = [&](std::vector<Entry>& list) {
+    const auto append = [&](std::vector<Entry>& list) {
         list.push_back({element_names_.take(on_side(name)), ends.braced(), source});
     };
-    const auto put_damper = [&] {
+    const auto append_damper = [&] {
         if (options_.drop_dynamics)
             draft_.notes.leave_out("by --drop dynamics", source);
         else
-            put(draft_.dampers);
+            append(draft_.dampers);
     };
     const Law law = law_of(data);
     if (law == Law::none)
         return draft_.notes.miss(
             source, "neither a spring nor a damper: Chrono has no element of these fields");
-    if (law == Law::damper) return put_damper();
+    if (law == Law::damper) return append_damper();
     const double preload = number_or_zero(data, "Preload");
     const auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
     const bool has_stops = least && most;
     if (!has_stops)
         ignore(least ? least : most,
                "Chrono has stops only if both lengths are given, so here it has none");
-    // The force at the design position, pushing apart.
-    double force = 0;
-    bool is_nothing = false;
+    double force = 0;  // at the design position, pushing apart [N]
+    bool has_no_force = false;
     if (law == Law::linear) {
         const Cursor k = data.require("Spring Coefficient");
         const double rate = k.number(), free = data.require("Free Length").number();
         if (rate < 0) k.fail("negative, which a scene does not allow");
         force = preload - rate * (drawn - free);
-        is_nothing = rate == 0 && preload == 0;
+        has_no_force = rate == 0 && preload == 0;
         const double length = preload == 0 ? free : free + preload / rate;
         if (rate == 0)
             law_fields.add("curve",
@@ -493,15 +491,15 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
             force = -value_at(rows, 0);
             law_fields.add("curve", linear(rows, true));
         }
-        is_nothing = std::ranges::all_of(rows, [](const auto& row) { return row.second == 0; });
+        has_no_force = std::ranges::all_of(rows, [](const auto& row) { return row.second == 0; });
     }
-    if (is_nothing && !has_stops) return put_damper();
-    if (side > 0 && force < 0 && !is_nothing)
+    if (has_no_force && !has_stops) return append_damper();
+    if (side > 0 && force < 0 && !has_no_force)
         draft_.notes.warn(source,
                           fmt::format("in tension at the design position: {:.4g} N", -force));
-    if (!is_nothing) ends.add(law_fields);
-    if (has_stops) add_stops(data, drawn, is_nothing, ends);
-    put(is_nothing ? draft_.stops : draft_.springs);
+    if (!has_no_force) ends.add(law_fields);
+    if (has_stops) add_stops(data, drawn, has_no_force, ends);
+    append(has_no_force ? draft_.stops : draft_.springs);
     draft_.notes.count("spring");
 }
 
@@ -555,8 +553,8 @@ void Suspension::torsion(const Between& part, const FilePoint& at, const Vector3
     torsion(part, at, axis, law);
 }
 
-// Rz(∓toe) Rx(∓camber) of the chassis, - on the left. The spin is fixed, since nothing at rest
-// resists it.
+// Spin axis Rz(-side · toe) Rx(-side · camber) y in the axes of the chassis, side +1 left, -1 right. The
+// spindle is fixed to its carrier, since nothing resists its spin at rest.
 void Suspension::spindle(const std::string& carrier) {
     const std::string name = on_side("spindle*");
     const FilePoint centre = point("Spindle/COM");

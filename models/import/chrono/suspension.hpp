@@ -1,5 +1,5 @@
-// Building blocks of the Chrono::Vehicle suspension templates on one side of the car.
-// Parts, joints, springs and bushings. The file gives the left side; the right side has -y.
+// Building blocks of the Chrono::Vehicle suspension templates: parts, joints, springs and bushings on one
+// side of the car. The file gives the left side; the right side has -y.
 #pragma once
 
 #include <optional>
@@ -35,7 +35,7 @@ struct JsonFile {
 // constant beyond the last row.
 extern const Rows stop_table;
 
-// A position in the axes of the scene and the entry that its joint has in the file.
+// A position in the axes of the scene, and its place in the file.
 struct FilePoint : Vector3d {
     FilePoint(const Vector3d& p, SourceLocation place, std::string how = {})
         : Vector3d(p), from(std::move(place)), calculated(std::move(how)) {}
@@ -57,15 +57,14 @@ class Suspension {
     Draft& draft() { return draft_; }
     const Options& options() const { return options_; }
 
-    bool one_freedom = false;  // the wheels share one freedom: one is driven, the other follows
+    bool one_freedom = false;  // both wheels share one degree of freedom: the left one is driven
 
-    // ---- The rest of the vehicle.
+    // ---- The rest of the vehicle: the bodies for "steering link" and "bar body" of templates.yaml.
     std::string steering_link = "ground", antiroll_body = {};
-    bool is_steered = false;  // something is attached to the steering link
-    // of a steering: what moves its link, and how far to each side [m] or [rad]
-    std::string steering_joint = {};
-    double steering_range = 0;
-    // The frame of the file in that of the scene.
+    bool is_steered = false;          // something is attached to the steering link
+    std::string steering_joint = {};  // of a steering: the joint that moves its link,
+    double steering_range = 0;        // and how far to each side [m] or [rad]
+    // Frame of the file in the axes of the scene.
     Vector3d origin = Vector3d::Zero();
     Matrix3d turn = Matrix3d::Identity();
 
@@ -75,9 +74,8 @@ class Suspension {
         if (side < 0) v.y() = -v.y();
         return v;
     }
-    // The body, joint or hardpoint that a template names: * stands for the side, steering link for the
-    // steering link, bar body for the body to which a bar is attached; "knuckle beside FIELD" is the one on
-    // the side of that point.
+    // Name in the scene of a body, joint or hardpoint of a template: * is the side; "steering link" and "bar
+    // body" are the bodies above; "knuckle beside FIELD" is the one on the side of that point.
     std::string on_side(const std::string& name);
 
     // ---- Reading. Fields are named "Part/Field".

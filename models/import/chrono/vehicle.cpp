@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Files of a vehicle: Chrono names them relative to its data folder.
+// Reads the files of a vehicle, whose names are relative to Chrono's data folder.
 class DataFolder {
   public:
     explicit DataFolder(const std::string& vehicle) : from_(fs::path(vehicle).parent_path()) {}
@@ -31,7 +31,7 @@ class DataFolder {
     }
 
   private:
-    // The first file decides which folder it is.
+    // The first file that is read determines the data folder.
     fs::path find(const std::string& name, const Cursor& named) {
         std::error_code error;
         if (!folder_.empty()) {
@@ -58,8 +58,8 @@ class DataFolder {
     fs::path from_, folder_;
 };
 
-// Marks all that came into the draft without the name of a file as from this one.
-void from_file(Draft& draft, const std::string& file) {
+// Gives all entries and notes of the draft without a file name this one.
+void set_file(Draft& draft, const std::string& file) {
     const auto mark = [&](SourceLocation& from) {
         if (from.file.empty() && !from.what.empty()) from.file = file;
     };
@@ -89,23 +89,23 @@ std::size_t axle_of(const Options& options, const Cursor& axles, const std::stri
                              allowed));
 }
 
-// The steering of an axle: its file is known before the suspension is attached to it.
+// The steering of an axle, read before the suspension that may be attached to it.
 struct AxleSteering {
-    std::optional<Cursor> subsystem = {};
+    std::optional<Cursor> subsystem = {};  // its entry in the vehicle's file
     std::unique_ptr<JsonFile> file = {};
-    bool is_known = false;
+    bool is_known = false;  // its template is supported
 };
 
 AxleSteering steering_of(const Cursor& root, const Cursor& axle, DataFolder& data, Draft& draft) {
     AxleSteering steering;
     const auto index = axle.optional("Steering Index");
     if (!index) return steering;
-    const auto all = root.require("Steering Subsystems").items();
+    const auto subsystems = root.require("Steering Subsystems").items();
     const double k = index->number();
-    if (!(k >= 0) || k != std::floor(k) || !(k < static_cast<double>(all.size())))
+    if (!(k >= 0) || k != std::floor(k) || !(k < static_cast<double>(subsystems.size())))
         index->fail(fmt::format("{} is not a steering subsystem; there are {}, counted from 0",
-                                index->found(), all.size()));
-    steering.subsystem = all[static_cast<std::size_t>(k)];
+                                index->found(), subsystems.size()));
+    steering.subsystem = subsystems[static_cast<std::size_t>(k)];
     steering.file = data.read(steering.subsystem->require("Input File"));
     const Cursor named = steering.file->root.require("Template");
     const auto& known = templates_section("steerings");
@@ -141,7 +141,7 @@ bool add_antiroll_bar(const Cursor& axle, const Vector3d& location, DataFolder& 
         draft.notes.miss({named->value->line, named->path, *named->file},
                          "an anti-roll bar on this template of a suspension");
     is_known = is_known && !on.empty() && run_template(s, "antiroll_bars");
-    from_file(draft, file->name);
+    set_file(draft, file->name);
     return is_known;
 }
 
@@ -154,7 +154,7 @@ Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
             fmt::format("{} is not a supported template; known: WheeledVehicle", named.found()));
     Draft draft;
     draft.source = vehicle.name;
-    Suspension whole(root, options, draft);  // for its notes
+    Suspension whole(root, options, draft);  // to note what is left out of the vehicle's file
     const Cursor axles = root.require("Axles");
     const auto entries = axles.items();
     const std::size_t chosen = axle_of(options, axles, vehicle.name);
@@ -169,14 +169,14 @@ Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
     if (suspension_file->root.require("Type").text("a type") != "Suspension")
         suspension_file->root.require("Type").fail("not a suspension");
     const bool mirrors = make(suspension);
-    from_file(draft, suspension_file->name);
+    set_file(draft, suspension_file->name);
     const bool steers = steered.is_known && suspension.is_steered;
     if (steers) {
         Suspension s(steered.file->root, options, draft);
         s.origin = vector(steered.subsystem->require("Location")) - location;
         s.turn = rotation(steered.subsystem->require("Orientation"));
         run_template(s, "steerings");
-        from_file(draft, steered.file->name);
+        set_file(draft, steered.file->name);
         suspension.steering_joint = s.steering_joint;
         suspension.steering_range = s.steering_range;
     }
@@ -202,8 +202,8 @@ Draft import_vehicle(const JsonFile& vehicle, const Options& options) {
     for (std::size_t k = 0; k < entries.size(); ++k)
         if (k != chosen) whole.leave_out(entries[k], "another axle");
     leave_out(root, "unused_of_vehicle");
-    if (const auto all = root.optional("Steering Subsystems"))
-        for (const Cursor& other : all->items())
+    if (const auto subsystems = root.optional("Steering Subsystems"))
+        for (const Cursor& other : subsystems->items())
             if (!steered.subsystem || other.value != steered.subsystem->value || !steers)
                 whole.leave_out(other, "not of this axle");
     whole.report_unread();

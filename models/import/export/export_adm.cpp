@@ -19,18 +19,18 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double min_mass = 1e-9;      // [kg] ADAMS solves no part without mass
-constexpr double at_hardpoint = 1e-9;  // [m]
+constexpr double min_mass = 1e-9;      // of a part, since ADAMS solves none without mass [kg]
+constexpr double at_hardpoint = 1e-9;  // from a hardpoint that names a marker, at most [m]
 
 std::string real(double x) { return fmt::format("{:.17g}", x == 0 ? 0.0 : x); }
 std::string list(const Vector3d& v) {
     return fmt::format("{}, {}, {}", real(v.x()), real(v.y()), real(v.z()));
 }
 
-// Euler angles 3-1-3: body-fixed about z, the new x, the new z [rad].
+// Angles (a, b, c) of A = R_z(a) R_x(b) R_z(c) [rad].
 Vector3d euler_313(const Matrix3d& A) {
     const double b = std::atan2(std::hypot(A(0, 2), A(1, 2)), A(2, 2));
-    if (std::hypot(A(0, 2), A(1, 2)) < 1e-14)  // gimbal lock: a and c rotate about the same axis
+    if (std::hypot(A(0, 2), A(1, 2)) < 1e-14)  // b = 0 or π: a and c are about one axis
         return {std::atan2(A(1, 0), A(0, 0)), A(2, 2) > 0 ? 0 : std::acos(-1.0), 0};
     return {std::atan2(A(0, 2), -A(1, 2)), b, std::atan2(A(2, 0), A(2, 1))};
 }
@@ -56,8 +56,8 @@ const DeadForce* weight_of(const Scene& scene, const std::string& body) {
     return load == scene.static_loads.end() ? nullptr : std::get_if<DeadForce>(&load->kind);
 }
 
-// A scene has weights m g. Of g the file has the size; without one it is the standard's, so that only
-// the masses depend on it.
+// A scene has weights m g only, as loads. The direction of g is that of the weights, its size that in the
+// scene file; without one, standard gravity, which then determines the masses.
 Vector3d gravity_of(const Scene& scene) {
     Vector3d given = Vector3d::Zero(), g = Vector3d::Zero();
     for (const Number& number : scene.numbers)
@@ -74,18 +74,14 @@ class AdmWriter {
     AdmWriter(const Scene& scene, Exported& result)
         : scene_(scene), result_(result), gravity_(gravity_of(scene)) {}
 
-    void whole() {
-        // A fixed form of title, with unprintable characters replaced.
-        std::string title = scene_.name;
-        for (char& c : title)
-            if (c < 0x20 || c > 0x7E) c = '?';
+    void write_dataset() {
         put("Exported model name: {}\n!\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = "
             "METER\n, TIME = SECOND\n!\n",
-            title);
+            printable(scene_.name));
         if (!gravity_.isZero(0))
             put("ACCGRAV/\n, IGRAV = {}\n, JGRAV = {}\n, KGRAV = {}\n!\n", real(gravity_.x()),
                 real(gravity_.y()), real(gravity_.z()));
-        called("ground");
+        put_name("ground");
         put("PART/1\n, GROUND\n!\n");
         for (std::size_t b = 0; b < scene_.bodies.size(); ++b) part(static_cast<BodyId>(b));
         for (const Joint& joint : scene_.joints) write(joint);
@@ -109,7 +105,7 @@ class AdmWriter {
     void put(fmt::format_string<A...> text, A&&... a) {
         result_.text += fmt::format(text, std::forward<A>(a)...);
     }
-    void called(const std::string& name) { put("! adams_view_name='{}'\n", name); }
+    void put_name(const std::string& name) { put("! adams_view_name='{}'\n", name); }
     static int id_of(BodyId body) { return body + 2; }  // ground is 1
     void miss(const std::string& what, const std::string& why) {
         result_.notes.miss({0, what}, why);
@@ -117,7 +113,7 @@ class AdmWriter {
     void leave_out(const char* why, const std::string& what) {
         result_.notes.leave_out(why, {0, what});
     }
-    // Statements of one kind, or of a group, are counted from 1.
+    // Ids count from 1 in each kind, or group of kinds.
     int next_id(const std::string& kind) { return ++ids_[kind]; }
 
     // Weights are written as ACCGRAV and masses of the parts.
@@ -130,13 +126,13 @@ class AdmWriter {
         const DeadForce* weight = weight_of(scene_, name);
         const double mass = weight && !weight->f.isZero(0) ? weight->f.norm() / gravity_.norm() : 0;
         const Vector3d cm = weight ? Vector3d(weight->at.s_local) : Vector3d(Vector3d::Zero());
-        called(name);
+        put_name(name);
         put("PART/{}\n, MASS = {}\n, CM = {}\n, QG = {}\n", id_of(body),
             real(std::max(mass, min_mass)), ids_["MARKER"] + 1, list(pose.r));
         marker(body, cm, Matrix3d::Identity(), name + ".cm");
     }
 
-    // With the name of the hardpoint at its place, else the given one.
+    // Writes a marker named after the hardpoint at its place, else `name`. Returns its id.
     int marker(BodyId body, const Vector3d& s, const Matrix3d& A = Matrix3d::Identity(),
                std::string name = {}) {
         const int id = next_id("MARKER");
@@ -148,7 +144,7 @@ class AdmWriter {
         });
         if (hardpoint != scene_.hardpoints.end() && !name.starts_with("wheel_axis"))
             name = hardpoint->name;
-        if (!name.empty()) called(name);
+        if (!name.empty()) put_name(name);
         put("MARKER/{}\n, PART = {}\n, QP = {}\n", id, id_of(body), list(s));
         if (!A.isIdentity(0)) put(", REULER = {}\n", list(euler_313(A)));
         return id;
@@ -161,7 +157,7 @@ class AdmWriter {
 
     void statement(std::string_view keyword, int id, const std::string& name, std::string_view type,
                    int i, int j) {
-        called(name);
+        put_name(name);
         put("{}/{}\n", keyword, id);
         if (!type.empty()) put(", {}\n", type);
         put(", I = {}\n, J = {}\n", i, j);
@@ -177,7 +173,8 @@ class AdmWriter {
 
     // ---- Joints. Bodies start parallel to ground: a direction has the same components on both.
 
-    // The markers have z along the joint's directions, or x and y; one direction is for both.
+    // A joint of two markers. z of each is along the joint's direction on its body, or, with one direction,
+    // along that; with two directions on each body they are x and y.
     template <class K>
     void write_pair(const Joint& joint, const K& kind) {
         std::vector<Point> points;
@@ -197,15 +194,15 @@ class AdmWriter {
                 A = along(axes[axes.size() == 2 ? end : 0].u_local);
             ids[end] = marker(points[end].body, points[end].s_local, A);
         }
-        using Its = elastocheck::Kind<K>;
-        const auto& known =
-            *std::ranges::find(adm::joints_of_adams, Its::name, &adm::JointOfAdams::type);
-        const int id = next_id(std::string(known.keyword));
-        if (Its::drive != JointDrive::none) joints_[joint.name] = id;
-        statement(known.keyword, id, joint.name, known.flag, ids[0], ids[1]);
+        using KindOf = elastocheck::Kind<K>;
+        const auto& equivalent =
+            *std::ranges::find(adm::joints_of_adams, KindOf::name, &adm::JointOfAdams::type);
+        const int id = next_id(std::string(equivalent.keyword));
+        if (KindOf::drive != JointDrive::none) joints_[joint.name] = id;
+        statement(equivalent.keyword, id, joint.name, equivalent.flag, ids[0], ids[1]);
     }
 
-    // Rate of a joint's drive: the first branch that drives it takes one second; 0 if it is held.
+    // Rate of a joint's drive, such that the first branch that drives it takes one second; 0 if it is held.
     double rate_of(const Joint& joint) const {
         for (const Branch& branch : scene_.branches)
             for (const Driver& driver : branch.drivers)
@@ -223,7 +220,7 @@ class AdmWriter {
         const auto found = joints_.find(driven_by(joint));
         if (found == joints_.end())
             return miss("drive '" + joint.name + "'", "the joint that it drives has no statement");
-        called(joint.name);
+        put_name(joint.name);
         const double rate = rate_of(joint);
         put("MOTION/{}\n, {}\n, JOINT = {}\n, FUNCTION = {}{}\n", next_id("MOTION"), kind,
             found->second, real(offset), rate == 0 ? "" : fmt::format(" + {} * TIME", real(rate)));
@@ -238,7 +235,7 @@ class AdmWriter {
                                   if (joint.active_only_where_driven) return drive(joint, "", 0);
                                   const int I = marker(j.i.body, j.i.s_local),
                                             J = marker(j.j.body, j.j.s_local);
-                                  called(joint.name);
+                                  put_name(joint.name);
                                   put("GCON/{}\n, FUNCTION = DM({}, {}) - {}\n", next_id("GCON"), I,
                                       J, real(j.length));
                               },
@@ -255,13 +252,14 @@ class AdmWriter {
 
     // ---- Elements
 
-    // The table points from which an interpolating curve was made; empty for any other curve.
+    // Knots and forces of a curve, the points of its table.
     static Rows points(const Curve& curve) {
         Rows rows;
         for (std::size_t k = 0; k < curve.knots.size(); ++k)
             rows.emplace_back(curve.knots[k], curve.pieces[k + 1][0]);
         return rows;
     }
+    // Writes a SPLINE and returns its id; warns where ADAMS' interpolant deviates from the scene's.
     int spline(const Rows& rows, const Curve& law, const std::string& name) {
         std::string x, y;
         for (const auto& [a, b] : rows) {
@@ -269,15 +267,16 @@ class AdmWriter {
             y += (y.empty() ? "" : "\n, ") + real(b);
         }
         const bool straight = rows.size() > 2 && is_straight(law);
-        const Apart apart = off_akima(rows, straight ? Between::straight : Between::monotone);
-        if (apart.force > 1e-9 * apart.of)
+        const InterpolantDeviation deviation =
+            deviation_from_akima(rows, straight ? Interpolation::linear : Interpolation::monotone);
+        if (deviation.force > 1e-9 * deviation.largest_force)
             result_.notes.warn(
                 {0, "element '" + name + "'"},
                 fmt::format("ADAMS interpolates its points by Akima's curve, a scene by {}: the "
                             "difference is up to {:.3g} of {:.3g} N or Nm",
-                            straight ? "straight lines" : "the monotone interpolant", apart.force,
-                            apart.of));
-        called(name + ".spline");
+                            straight ? "straight lines" : "the monotone interpolant",
+                            deviation.force, deviation.largest_force));
+        put_name(name + ".spline");
         const int id = next_id("SPLINE");
         put("SPLINE/{}\n{}, X = {}\n, Y = {}\n", id,
             law.known_outside ? ", LINEAR_EXTRAPOLATE\n" : "", x, y);
@@ -296,6 +295,7 @@ class AdmWriter {
     }
     void write(const Elastic& elastic, const AxialSpring& spring) {
         const Curve* curve = curve_of(spring.law);
+        // a stop, or a spring with loose seats, which has no force behind its last knot
         const bool is_contact = curve && (elastic.written_as == WrittenAs::stop ||
                                           curve->pieces.back() == std::array<double, 4>{});
         const int I = marker(spring.i.body, spring.i.s_local),
@@ -318,10 +318,10 @@ class AdmWriter {
                 minus, I, J, real(is_bump ? touches : -touches), real(is_bump ? below : above));
             return;
         }
-        const int points_of = spline(points(*curve), *curve, elastic.name);
+        const int spline_id = spline(points(*curve), *curve, elastic.name);
         force_statement(elastic.name, "TRANSLATIONAL", I, J);
         put(", FUNCTION = -AKISPL(DM({}, {}) - {}, 0, {})\n", I, J, real(spring.free_length),
-            points_of);
+            spline_id);
     }
 
     // Writes a stop with a table over its penetration, DIM(a, b) = max(a - b, 0).
@@ -330,13 +330,13 @@ class AdmWriter {
         const Contact contact = contact_of(law);
         const std::string touches = real(spring.free_length + contact.touches),
                           length = fmt::format("DM({}, {})", I, J);
-        const int points_of = spline(contact.rows, law, name);
+        const int spline_id = spline(contact.rows, law, name);
         force_statement(name, "TRANSLATIONAL", I, J);
         put(", FUNCTION = {}AKISPL(DIM({}, {}), 0, {})\n", contact.is_bump ? "" : "-",
-            contact.is_bump ? touches : length, contact.is_bump ? length : touches, points_of);
+            contact.is_bump ? touches : length, contact.is_bump ? length : touches, spline_id);
     }
 
-    // One axis through one point: the angle is the same in every formulation.
+    // A torsion spring; its angle about its one axis is the same in every formulation.
     void write_torsion(const std::string& name, const Bushing& b, const Matrix6* stiffness, int I,
                        int J) {
         if (stiffness) {
@@ -345,9 +345,9 @@ class AdmWriter {
             return;
         }
         const auto& law = std::get<Curve>(std::get<PerAxis>(b.law).axis[5]);
-        const int points_of = spline(points(law), law, name);
+        const int spline_id = spline(points(law), law, name);
         force_statement(name, "ROTATIONAL", I, J);
-        put(", FUNCTION = {} - AKISPL(AZ({}, {}), 0, {})\n", real(-b.preload[5]), I, J, points_of);
+        put(", FUNCTION = {} - AKISPL(AZ({}, {}), 0, {})\n", real(-b.preload[5]), I, J, spline_id);
     }
 
     // A rate or a curve along each axis.
@@ -374,7 +374,7 @@ class AdmWriter {
             }
             functions += fmt::format(", {} = {} - {}\\\n", components[k], at_zero, law);
         }
-        called(name);
+        put_name(name);
         put("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n{}", next_id("GFORCE"), I, float_j, J,
             functions);
     }
@@ -398,8 +398,8 @@ class AdmWriter {
                  "the change of the outputs");
             if (!b.formulation.offset_moment) return;
         }
-        // δ is measured from J's origin, so that J is placed at the undeformed position. LENGTH
-        // holds the undeformed angles.
+        // ADAMS measures the displacement from J's origin: J is placed at the undeformed position. LENGTH
+        // of a FIELD has the undeformed angles.
         const int J = marker(b.i.body, b.i.s_local + A_i * b.undeformed.head<3>(), A_i),
                   I = marker(b.j.body, b.j.s_local, A_j);
         if (const PerAxis* axes = axes_of(b.law))
@@ -432,7 +432,7 @@ class AdmWriter {
         (is_moment(load.kind) ? moment : force) = load_vector(load.kind);
         const int I = marker(body_of(load.kind), at), J = floating(ground),
                   RM = is_follower(load.kind) ? I : marker(ground, Vector3d::Zero());
-        called(load.name);
+        put_name(load.name);
         put("GFORCE/{}\n, I = {}\n, JFLOAT = {}\n, RM = {}\n", next_id("GFORCE"), I, J, RM);
         put(", FX = {}\\\n, FY = {}\\\n, FZ = {}\\\n", real(force.x()), real(force.y()),
             real(force.z()));
@@ -455,7 +455,7 @@ Contact contact_of(const Curve& law) {
     const double inward = contact.is_bump ? -1 : 1;
     std::vector<double> knots = law.knots;
     if (contact.is_bump) std::ranges::reverse(knots);
-    // the first knot of an open side lies beyond any motion (models/reader/tables/curves.cpp)
+    // with `outside: unknown` the first knot lies beyond any motion (models/reader/tables/curves.cpp)
     if (!law.known_outside) knots.erase(knots.begin());
     contact.touches = knots.front();
     for (const double x : knots)
@@ -481,7 +481,7 @@ void require_whole(const Exported& exported, const Scene& scene, bool allow_miss
 
 Exported export_adm(const Scene& scene, bool allow_missing, Notes notes) {
     Exported result{.text = {}, .notes = std::move(notes)};
-    AdmWriter(scene, result).whole();
+    AdmWriter(scene, result).write_dataset();
     require_whole(result, scene, allow_missing);
     return result;
 }

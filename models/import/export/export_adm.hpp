@@ -20,20 +20,19 @@ inline constexpr Formulation adams_bushing{.frame = Formulation::Frame::on_i,
                                            .angles = Formulation::Angles::projected,
                                            .conjugate = false};
 
-// Law of a stop over its penetration p: its rows, from [0, 0] on, and the elongation x at which it
-// touches. A bump stop is closed below that x, a rebound stop above it. A stop with a constant rate
-// has one row.
+// Law of a stop: force over its penetration. A bump stop is closed below the elongation `touches`, a
+// rebound stop above it.
 struct Contact {
     bool is_bump = false;
-    double touches = 0;  // [m]
-    Rows rows;
+    double touches = 0;  // elongation of the element at which the stop touches [m]
+    Rows rows;           // penetration [m], force [N], from [0, 0] on; one row for a constant rate
 };
 Contact contact_of(const Curve& law);
 
-// Notes the branches, and the dampers, of which no file that is exported has an entry.
+// Notes branches and dampers, for which no exported format has an entry, as left out.
 void leave_out_branches(const Scene& scene, const char* why, Notes& notes);
 
-// Throws SceneError with all that is missing, unless that is allowed.
+// Throws SceneError with all missing parts, unless `allow_missing`.
 void require_whole(const Exported& exported, const Scene& scene, bool allow_missing);
 
 // Exports in SI units and the design position of the scene; joints, springs, bushings, loads and

@@ -40,7 +40,7 @@ class ChronoWriter {
   public:
     ChronoWriter(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
 
-    void whole() {
+    void write_suspension() {
         const auto left =
             std::ranges::find_if(scene_.wheels, [](const Wheel& w) { return w.side > 0; });
         if (left == scene_.wheels.end() || scene_.wheels.size() > 2)
@@ -48,13 +48,13 @@ class ChronoWriter {
                 fmt::format("{}: wheels: a suspension of Chrono has a left wheel, and its mirror "
                             "image or the right one",
                             scene_.source));
-        twice_ = scene_.wheels.size() == 1;
+        mirrored_ = scene_.wheels.size() == 1;
         pair_bodies();
         json root{{"Name", scene_.name},
                   {"Type", "Suspension"},
                   {"Template", "GenericWheeledSuspension"},
                   {"Vehicle-Frame Inertia", false},
-                  {"Independent", twice_},
+                  {"Independent", mirrored_},
                   {"Steerable", false}};
         spindle(root, *left);
         for (const char* section : {"Bodies", "Joints", "Distance Constraints", "TSDAs", "RSDAs"})
@@ -65,7 +65,7 @@ class ChronoWriter {
                 static_cast<BodyId>(b) == other_spindle_ || is_rolling(static_cast<BodyId>(b)))
                 continue;  // written by its mirror image, or a spindle, which Chrono adds itself
             root["Bodies"].push_back({{"Name", name.stem},
-                                      {"Mirrored", twice_ || name.side != 0},
+                                      {"Mirrored", mirrored_ || name.side != 0},
                                       {"Position", coordinates(scene_.bodies[b].design.r)},
                                       {"Rotation", {1, 0, 0, 0}},
                                       {"Mass", 1},
@@ -89,8 +89,8 @@ class ChronoWriter {
 
   private:
     struct Name {
-        std::string stem;
-        int side = 0;  // if one of a pair
+        std::string stem;  // without "_left" or "_right" of a pair
+        int side = 0;      // of one of a pair: +1 left, -1 right
     };
 
     bool is_rolling(BodyId body) const {
@@ -107,7 +107,7 @@ class ChronoWriter {
     void pair_bodies() {
         const auto& bodies = scene_.bodies;
         for (const Body& body : bodies) names_.push_back({body.name});
-        if (twice_) return;
+        if (mirrored_) return;
         for (std::size_t a = 0; a < bodies.size(); ++a)
             for (std::size_t b = 0; b < bodies.size(); ++b) {
                 if (!bodies[a].name.ends_with("_left") || !bodies[b].name.ends_with("_right"))
@@ -129,13 +129,13 @@ class ChronoWriter {
         if (name.side == 0) return name.stem;
         return json::array({name.stem, name.side > 0 ? "Left" : "Right"});
     }
-    Vector3d drawn(BodyId id, const Vector3d& s) const {
+    Vector3d position(BodyId id, const Vector3d& s) const {
         return id == ground ? s
                             : Vector3d(scene_.bodies[static_cast<std::size_t>(id)].design.r + s);
     }
-    Vector3d drawn(const Point& point) const { return drawn(point.body, point.s_local); }
+    Vector3d position(const Point& point) const { return position(point.body, point.s_local); }
 
-    // For a body held only by a fixed joint: the body that it is fixed to.
+    // The body to which a body is fixed, if a fixed joint alone holds it; else ground.
     BodyId held_by(BodyId id) const {
         BodyId carrier = ground;
         int uses = 0;
@@ -155,7 +155,8 @@ class ChronoWriter {
         return uses == 1 ? carrier : ground;
     }
 
-    //  e = side · Rz(-side·toe) Rx(-side·camber) y
+    // Spin axis outboard: e = side · Rz(-side · toe) Rx(-side · camber) y (chrono/suspension.cpp), here of
+    // the left side.
     void spindle(json& root, const Wheel& left) {
         BodyId on = left.body;
         if (const BodyId carrier = held_by(on); carrier != ground) {
@@ -177,7 +178,7 @@ class ChronoWriter {
         json attached = body(on);
         root["Spindle"] = {{"Attachment Body", attached.is_array() ? attached[0] : attached},
                            {"Mass", 1},
-                           {"COM", coordinates(drawn(left.body, left.centre_local))},
+                           {"COM", coordinates(position(left.body, left.centre_local))},
                            {"Inertia", {1, 1, 1}},
                            {"Radius", 0.1},
                            {"Width", 0.1}};
@@ -185,66 +186,70 @@ class ChronoWriter {
 
     json& entry(json& root, const char* section, const std::string& name, BodyId i, BodyId j) {
         root[section].push_back(
-            {{"Name", name}, {"Mirrored", twice_}, {"Body1", body(i)}, {"Body2", body(j)}});
+            {{"Name", name}, {"Mirrored", mirrored_}, {"Body1", body(i)}, {"Body2", body(j)}});
         return root[section].back();
     }
-    // Completes an entry of the joints.
-    json& joint(json& one, const char* type, const Vector3d& at, const Matrix3d& A) {
+    // Completes an entry of "Joints".
+    json& joint(json& entry, const char* type, const Vector3d& at, const Matrix3d& A) {
         const Eigen::Quaterniond q(A);
-        one["Type"] = type;
-        one["Position"] = coordinates(at);
-        one["Rotation"] = json::array({q.w(), q.x(), q.y(), q.z()});
-        return one;
+        entry["Type"] = type;
+        entry["Position"] = coordinates(at);
+        entry["Rotation"] = json::array({q.w(), q.x(), q.y(), q.z()});
+        return entry;
     }
 
-    void write(json& root, const Joint& one) {
-        if (one.active_only_where_driven)
+    void write(json& root, const Joint& scene_joint) {
+        if (scene_joint.active_only_where_driven)
             return result_.notes.leave_out("active only where a branch drives it",
-                                           {0, "drive '" + one.name + "'"});
-        if (is_rolling(ends(one.kind).i))
+                                           {0, "drive '" + scene_joint.name + "'"});
+        if (is_rolling(ends(scene_joint.kind).i))
             return result_.notes.leave_out("of the wheels, which Chrono adds itself",
-                                           {0, "joint '" + one.name + "'"});
-        const auto plain = [&](const char* type, const auto& k,
-                               const Matrix3d& A = Matrix3d::Identity()) {
-            joint(entry(root, "Joints", one.name, k.i.body, k.j.body), type, drawn(k.j), A);
+                                           {0, "joint '" + scene_joint.name + "'"});
+        const auto write_as = [&](const char* type, const auto& k,
+                                  const Matrix3d& A = Matrix3d::Identity()) {
+            joint(entry(root, "Joints", scene_joint.name, k.i.body, k.j.body), type, position(k.j),
+                  A);
         };
-        const auto no_joint = [&](const char* what) { miss("joint '" + one.name + "'", what); };
+        const auto miss_joint = [&](const char* why) {
+            miss("joint '" + scene_joint.name + "'", why);
+        };
         std::visit(
             overloaded{
-                [&](const Spherical& k) { plain("Spherical", k); },
-                [&](const Revolute& k) { plain("Revolute", k, with_z(k.axis_j.u_local)); },
+                [&](const Spherical& k) { write_as("Spherical", k); },
+                [&](const Revolute& k) { write_as("Revolute", k, with_z(k.axis_j.u_local)); },
                 [&](const Universal& k) {
-                    plain("Universal", k,
-                          frame(k.axis_i.u_local, k.axis_i.u_local.cross(k.axis_j.u_local)));
+                    write_as("Universal", k,
+                             frame(k.axis_i.u_local, k.axis_i.u_local.cross(k.axis_j.u_local)));
                 },
                 [&](const Fixed& k) {
                     const auto is_spindle = [&](BodyId id) {
                         return id != ground && (id == spindle_ || id == other_spindle_);
                     };
                     if (!is_spindle(k.i.body) && !is_spindle(k.j.body))
-                        plain("Lock", k);  // else Chrono adds the joint itself
+                        write_as("Lock", k);  // else Chrono adds the joint itself
                 },
-                [&](const InLine& k) { plain("Point Line", k, with_x(k.axis_j.u_local)); },
+                [&](const InLine& k) { write_as("Point Line", k, with_x(k.axis_j.u_local)); },
                 [&](const InPlane& k) {
-                    if (k.offset != 0 || one.name.ends_with(".drive"))
-                        return no_joint(
+                    if (k.offset != 0 || scene_joint.name.ends_with(".drive"))
+                        return miss_joint(
                             "it is driven, which is defined by the vehicle, not by the suspension");
-                    plain("Point Plane", k, with_z(k.normal_j.u_local));
+                    write_as("Point Plane", k, with_z(k.normal_j.u_local));
                 },
                 [&](const Distance& k) {
-                    const Vector3d from = drawn(k.i), to = drawn(k.j);
+                    const Vector3d from = position(k.i), to = position(k.j);
                     if (std::abs((to - from).norm() - k.length) > 1e-12 * k.length)
-                        return no_joint("its length differs from the design position");
-                    json& rod = entry(root, "Distance Constraints", one.name, k.i.body, k.j.body);
+                        return miss_joint("its length differs from the design position");
+                    json& rod =
+                        entry(root, "Distance Constraints", scene_joint.name, k.i.body, k.j.body);
                     rod["Point1"] = coordinates(from);
                     rod["Point2"] = coordinates(to);
                 },
                 [&](const Angle&) {
-                    no_joint(
+                    miss_joint(
                         "it is driven, which is defined by the vehicle, not by the suspension");
                 },
-                [&](const auto&) { no_joint("Chrono's reader treats this kind as a lock"); }},
-            one.kind);
+                [&](const auto&) { miss_joint("Chrono's reader treats this kind as a lock"); }},
+            scene_joint.kind);
     }
 
     void write(json& root, const Elastic& elastic) {
@@ -265,10 +270,10 @@ class ChronoWriter {
             return miss("element '" + elastic.name + "'",
                         "its law is not a table and has no entry");
         json& tsda = entry(root, "TSDAs", elastic.name, spring.i.body, spring.j.body);
-        tsda["Point1"] = coordinates(drawn(spring.i));
-        tsda["Point2"] = coordinates(drawn(spring.j));
+        tsda["Point1"] = coordinates(position(spring.i));
+        tsda["Point2"] = coordinates(position(spring.j));
         tsda["Free Length"] = spring.free_length;
-        stops_of(tsda, spring);
+        add_stops(tsda, spring);
         if (!curve) {
             tsda["Spring Coefficient"] = std::get<LinearRate>(spring.law).k;
             return;
@@ -295,9 +300,9 @@ class ChronoWriter {
         return same(a.i, b.i) && same(a.j, b.j);
     }
 
-    // For a stop with Chrono's curve (its forces at the rows, constant beyond them): whether it is
-    // a bump stop, and the length at which it touches [m]; else none.
-    static std::optional<std::pair<bool, double>> touching(const AxialSpring& stop) {
+    // Whether a stop is a bump stop, and the length at which it touches [m]; none unless its curve is
+    // Chrono's (its forces at the rows, constant beyond them).
+    static std::optional<std::pair<bool, double>> chrono_stop(const AxialSpring& stop) {
         const auto& law = std::get<Curve>(stop.law);
         const Contact contact = contact_of(law);
         const double inward = contact.is_bump ? -1 : 1, largest = chrono::stop_table.back().second;
@@ -310,84 +315,85 @@ class ChronoWriter {
         return std::pair{contact.is_bump, stop.free_length + contact.touches};
     }
 
-    void stops_of(json& one, const AxialSpring& spring) {
-        constexpr double never = 1e3;  // [m]
+    // Adds the stops between the spring's points to its entry.
+    void add_stops(json& entry, const AxialSpring& spring) {
+        constexpr double never = 1e3;  // length that no suspension reaches [m]
         std::optional<double> shortest, longest;
         for (const Elastic& elastic : scene_.elastics) {
             const auto* stop = std::get_if<AxialSpring>(&elastic.kind);
             if (elastic.written_as != WrittenAs::stop || !is_between_same(*stop, spring)) continue;
-            const auto touches = touching(*stop);
+            const auto touches = chrono_stop(*stop);
             auto& length = touches && touches->first ? shortest : longest;
             if (!touches || length) continue;
             length = touches->second;
             written_.insert(elastic.name);
             if (is_straight(std::get<Curve>(stop->law))) continue;
-            const Apart apart = off_straight(chrono::stop_table);
+            const InterpolantDeviation deviation = deviation_from_lines(chrono::stop_table);
             result_.notes.warn({0, "element '" + elastic.name + "'"},
                                fmt::format("Chrono interpolates its stop linearly, a scene "
                                            "smoothly: the difference is up to {:.3g} of {:.3g} N",
-                                           apart.force, apart.of));
+                                           deviation.force, deviation.largest_force));
         }
         if (!shortest && !longest) return;
-        one["Minimum Length"] = shortest.value_or(0);
-        one["Maximum Length"] = longest.value_or(never);
+        entry["Minimum Length"] = shortest.value_or(0);
+        entry["Maximum Length"] = longest.value_or(never);
     }
 
+    // Notes a stop as missing unless it was written with a spring.
     void require_written(const Elastic& elastic, const AxialSpring& stop) {
         if (written_.contains(elastic.name)) return;
         miss("element '" + elastic.name + "'",
-             touching(stop)
+             chrono_stop(stop)
                  ? "Chrono's stops belong to a spring between the same points, one per direction"
                  : "stops in Chrono have one hard-coded curve, and this one differs");
     }
 
-    // Bushings that Chrono can represent: one frame, isotropic in displacement, with one rotational
-    // rate about z and one across.
+    // Writes a torsion spring, or a bushing that Chrono can represent: one frame, isotropic in displacement,
+    // with one rotational rate about z and one across.
     void write(json& root, const Elastic& elastic, const Bushing& b) {
-        const std::string element_words = "element '" + elastic.name + "'";
+        const std::string element = "element '" + elastic.name + "'";
         const Matrix6* stiffness = matrix_of(b.law);
         const Matrix3d A = b.i.A_local.toRotationMatrix();
         if (elastic.written_as == WrittenAs::torsion_spring) {
             if (!stiffness || !b.preload.isZero(0) || !b.undeformed.isZero(0))
-                return miss(element_words,
-                            "a torsion spring with a curve, a preload or a free angle");
-            json& one = entry(root, "RSDAs", elastic.name, b.i.body, b.j.body);
-            one["Position"] = coordinates(drawn(b.i.body, b.i.s_local));
-            one["Axis"] = coordinates(A.col(2));
-            one["Free Angle"] = 0;
-            one["Spring Coefficient"] = (*stiffness)(5, 5);
+                return miss(element, "a torsion spring with a curve, a preload or a free angle");
+            json& rsda = entry(root, "RSDAs", elastic.name, b.i.body, b.j.body);
+            rsda["Position"] = coordinates(position(b.i.body, b.i.s_local));
+            rsda["Axis"] = coordinates(A.col(2));
+            rsda["Free Angle"] = 0;
+            rsda["Spring Coefficient"] = (*stiffness)(5, 5);
             return;
         }
         if (!stiffness || !stiffness->isDiagonal(0) || !b.preload.isZero(0) ||
             !b.undeformed.isZero(0) ||
-            (drawn(b.i.body, b.i.s_local) - drawn(b.j.body, b.j.s_local)).norm() > 1e-12)
-            return miss(element_words,
+            (position(b.i.body, b.i.s_local) - position(b.j.body, b.j.s_local)).norm() > 1e-12)
+            return miss(element,
                         "Chrono's bushing has one frame, rates along its axes and no preload");
         const Vector6 k = stiffness->diagonal();
-        const bool round = k[3] == k[4] && k[4] == k[5];
+        const bool is_isotropic = k[3] == k[4] && k[4] == k[5];
         if (k[0] != k[1] || k[1] != k[2] || k[3] != k[4] ||
-            !(b.formulation == chrono_bushing || (round && b.formulation == Formulation{})))
-            return miss(element_words,
+            !(b.formulation == chrono_bushing || (is_isotropic && b.formulation == Formulation{})))
+            return miss(element,
                         "Chrono's bushing has one rate for all translations and two for rotations, "
                         "about z and across it; this one differs");
-        json& one = joint(entry(root, "Joints", elastic.name, b.j.body, b.i.body), "Revolute",
-                          drawn(b.j.body, b.j.s_local), A);
-        one["Bushing Data"] = {{"Stiffness Linear", k[0]},
-                               {"Damping Linear", 0},
-                               {"Stiffness Rotational", k[3]},
-                               {"Damping Rotational", 0},
-                               {"DOF",
-                                {{"Stiffness Linear", 0},
-                                 {"Damping Linear", 0},
-                                 {"Stiffness Rotational", k[5]},
-                                 {"Damping Rotational", 0}}}};
+        json& bushing = joint(entry(root, "Joints", elastic.name, b.j.body, b.i.body), "Revolute",
+                              position(b.j.body, b.j.s_local), A);
+        bushing["Bushing Data"] = {{"Stiffness Linear", k[0]},
+                                   {"Damping Linear", 0},
+                                   {"Stiffness Rotational", k[3]},
+                                   {"Damping Rotational", 0},
+                                   {"DOF",
+                                    {{"Stiffness Linear", 0},
+                                     {"Damping Linear", 0},
+                                     {"Stiffness Rotational", k[5]},
+                                     {"Damping Rotational", 0}}}};
     }
 
     const Scene& scene_;
     Exported& result_;
     std::vector<Name> names_;
     std::set<std::string> written_;  // stops, with their springs
-    bool twice_ = false;             // the scene is the left side of two
+    bool mirrored_ = false;          // the scene has the left side; Chrono adds its mirror image
     BodyId spindle_ = ground, other_spindle_ = ground;
 };
 
@@ -395,7 +401,7 @@ class ChronoWriter {
 
 Exported export_chrono(const Scene& scene, bool allow_missing, Notes notes) {
     Exported result{.text = {}, .notes = std::move(notes)};
-    ChronoWriter(scene, result).whole();
+    ChronoWriter(scene, result).write_suspension();
     require_whole(result, scene, allow_missing);
     return result;
 }

@@ -1,4 +1,5 @@
-// Makes a mechanism of named points: recognises the role of each by the words of its name.
+// Makes a mechanism of named points: recognises the role of each point by the words of its name
+// (mechanisms.yaml).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <set>
@@ -16,13 +17,8 @@ using reader::Value;
 using Words = std::set<std::string>;
 
 Words words_between_blanks(std::string_view text) {
-    Words words;
-    for (std::string_view rest = reader::trimmed(text); !rest.empty();) {
-        const std::string_view word = rest.substr(0, rest.find(' '));
-        words.emplace(word);
-        rest = reader::trimmed(rest.substr(word.size()));
-    }
-    return words;
+    const auto words = split(text, " ");
+    return {words.begin(), words.end()};
 }
 
 bool lists(const Value& list, std::string_view word) {
@@ -51,12 +47,14 @@ struct PlacedPoint {
     std::string name;  // in the file
     Vector3d at;
     SourceLocation from;
-    Words words = {}, marks = {};
+    Words words = {};  // of its name, as in the phrases of roles
+    Words marks = {};  // of its side and axle
     bool has_role = false;
-    bool is_mirrored = false;  // the other side of a point of a file with one side
+    bool is_mirrored = false;  // the mirror image of a point, of a file with one side
 };
 
-PlacedPoint understood(std::string name, const Vector3d& at, const SourceLocation& from) {
+// The point with the words and marks of its name.
+PlacedPoint parsed_point(std::string name, const Vector3d& at, const SourceLocation& from) {
     PlacedPoint point{std::move(name), at, from};
     std::vector<std::string> words = split_name(point.name);
     if (words.size() > 1 && words[1] == "axle" && (words[0] == "front" || words[0] == "rear")) {
@@ -73,31 +71,31 @@ PlacedPoint understood(std::string name, const Vector3d& at, const SourceLocatio
             }
         if (is_mark) continue;
         const Value& known = mechanism_table("words");
-        const auto same = std::ranges::find_if(
-            known.items, [&](const Value& others) { return lists(others, word); });
-        if (same == known.items.end())
+        const auto synonyms =
+            std::ranges::find_if(known.items, [&](const Value& list) { return lists(list, word); });
+        if (synonyms == known.items.end())
             point.words.insert(word);
         else
             point.words.merge(words_between_blanks(
-                known.keys[static_cast<std::size_t>(same - known.items.begin())]));
+                known.keys[static_cast<std::size_t>(synonyms - known.items.begin())]));
     }
     return point;
 }
 
 struct Role {
     std::string name;
-    std::vector<Words> phrases = {};
+    std::vector<Words> phrases = {};  // a point fits if its name has all words of one
     PlacedPoint* point = nullptr;
-    std::string side = {};  // of its point, where a mechanism has both
+    std::string side = {};  // "left" or "right" of a mechanism with both wheels
 };
 
-// What is written once for both sides, with SIDE for left and right in its names.
+// The sides for which an entry with SIDE in its name is written; an empty one for others.
 std::vector<std::string> sides_of(const std::string& name) {
     return name.find("SIDE") == name.npos ? std::vector<std::string>{""}
                                           : std::vector<std::string>{"left", "right"};
 }
 
-// Size of the longest phrase of the role that the point's name has; 0 if it has none.
+// Number of words of the longest phrase of the role that the point's name has; 0 if it has none.
 std::size_t fit(const Role& role, const PlacedPoint& point) {
     std::size_t most = 0;
     if (role.side.empty() ? point.is_mirrored : !point.marks.contains(role.side)) return 0;
@@ -112,11 +110,11 @@ std::size_t fit(const Role& role, const PlacedPoint& point) {
     return most;
 }
 
-struct Maker {
+struct MechanismMaker {
     const std::string& file;
     const Options& options;
     Draft& draft;
-    const Value& made;  // the template
+    const Value& pattern;  // the template, of mechanisms.yaml
     std::vector<PlacedPoint> points = {};
     std::vector<Role> roles = {};
 
@@ -124,12 +122,13 @@ struct Maker {
         reader::fail(file, 0, option, what);
     }
 
-    // Points of one side of one axle.
+    // Keeps the points of one axle, and of one side or, for a mechanism with both wheels, of both.
     void choose_points() {
         for (std::size_t k = 0; k < draft.points.entries().size(); ++k) {
             const Entry& entry = draft.points.entries()[k];
             if (entry.from.line == 0) continue;  // added by an importer
-            points.push_back(understood(entry.from.what, draft.points.positions()[k], entry.from));
+            points.push_back(
+                parsed_point(entry.from.what, draft.points.positions()[k], entry.from));
         }
         const auto has = [&](const char* mark) {
             return std::ranges::any_of(
@@ -148,14 +147,14 @@ struct Maker {
         } else if (!options.axle.empty()) {
             fail("--axle", "the names of the points are not of two axles");
         }
-        if (entry(made, "wheels")) {
+        if (entry(pattern, "wheels")) {
             if (!has("right")) mirror_points();
         } else if (has("left") && has("right")) {
             drop("right", "of the other side");
         }
     }
 
-    // Of a mechanism with both sides whose file has the left one, and points in the middle plane.
+    // Adds the mirror images of points off the middle plane, for a file with one side.
     void mirror_points() {
         for (std::size_t k = 0, end = points.size(); k < end; ++k) {
             if (points[k].at.y() == 0) continue;
@@ -168,11 +167,11 @@ struct Maker {
         }
     }
 
-    void add_roles(const Value& of) {
-        const Value* list = entry(of, "roles");
+    void add_roles(const Value& group) {
+        const Value* list = entry(group, "roles");
         for (std::size_t k = 0; list && k < list->keys.size(); ++k)
             for (const std::string& side : sides_of(list->keys[k])) {
-                Role role{with(list->keys[k], "SIDE", side)};
+                Role role{replaced(list->keys[k], "SIDE", side)};
                 role.side = side;
                 for (const Value& phrase : list->items[k].items)
                     role.phrases.push_back(words_between_blanks(phrase.text));
@@ -180,15 +179,15 @@ struct Maker {
             }
     }
 
-    bool is_of(const Value& group, const Role& role) const {
+    bool is_role_of(const Value& group, const Role& role) const {
         return std::ranges::any_of(entry(group, "roles")->keys, [&](const std::string& name) {
             return role.side.empty() ? name == role.name
-                                     : with(name, "SIDE", role.side) == role.name;
+                                     : replaced(name, "SIDE", role.side) == role.name;
         });
     }
 
-    // --role ROLE=POINT
-    void give(const std::string& text) {
+    // Assigns a point as --role ROLE=POINT says.
+    void assign(const std::string& text) {
         const auto equals = std::min(text.find('='), text.size());
         const std::string name = text.substr(0, equals),
                           wanted = text.substr(std::min(equals + 1, text.size()));
@@ -216,7 +215,7 @@ struct Maker {
         return found;
     }
 
-    // A role gets a point if no other point fits it; long phrases before short ones.
+    // Assigns points to roles that only one unassigned point fits; long phrases before short ones.
     void find_points() {
         for (std::size_t size = 3; size > 0; --size)
             for (bool again = true; std::exchange(again, false);)
@@ -229,33 +228,31 @@ struct Maker {
                 }
     }
 
-    // An optional group whose points are not all there is left out.
+    // Whether all roles of an optional group have points; else its roles are removed.
     bool is_kept(const Value& group) {
-        const auto lacks = [&](const Role& role) { return is_of(group, role) && !role.point; };
+        const auto lacks = [&](const Role& role) { return is_role_of(group, role) && !role.point; };
         if (std::ranges::none_of(roles, lacks)) return true;
         std::erase_if(roles, [&](const Role& role) {
-            if (is_of(group, role) && role.point) role.point->has_role = false;
-            return is_of(group, role);
+            if (is_role_of(group, role) && role.point) role.point->has_role = false;
+            return is_role_of(group, role);
         });
         return false;
     }
 
-    // A point on the axis of the rocker across its other points, if none is given.
+    // Adds a point on the rocker's axis if none is given: the axis is normal to the plane of its other points.
     void add_rocker_axis() {
-        const auto role = [&](const char* name) {
-            return std::ranges::find(roles, name, &Role::name);
-        };
-        const auto axis = role("rocker_axis"), pivot = role("rocker_pivot"),
-                   rod = role("pushrod_inner"), damper = role("damper_rocker");
-        if (axis->point || !pivot->point || !rod->point || !damper->point) return;
-        const Vector3d o = pivot->point->at, n = (rod->point->at - o).cross(damper->point->at - o);
+        const PlacedPoint *pivot = role_called("rocker_pivot").point,
+                          *rod = role_called("pushrod_inner").point,
+                          *damper = role_called("damper_rocker").point;
+        if (role_called("rocker_axis").point || !pivot || !rod || !damper) return;
+        const Vector3d o = pivot->at, n = (rod->at - o).cross(damper->at - o);
         if (!(n.norm() > 0)) return;
         draft.points.add(o + 50 * n.normalized(), "rocker_axis",
                          {0, "across the plane of the rocker's points"});
         draft.notes.warn({0, "rocker_axis"},
                          "the file has one point of the rocker's axis; the axis is taken to be "
                          "across the plane of its three points");
-        roles.erase(axis);
+        std::erase_if(roles, [](const Role& role) { return role.name == "rocker_axis"; });
     }
 
     void require_points() {
@@ -280,9 +277,9 @@ struct Maker {
                          rest.empty() ? "none" : fmt::format("{}", fmt::join(rest, ", "))));
     }
 
-    // The body on which the damper or the pushrod stands.
-    std::string part(const char* option, const std::string& wanted) const {
-        const Value* list = entry(made, "parts");
+    // The body of the part "upright", "lower" or "upper" on which the damper or the pushrod stands.
+    std::string body_of_part(const char* option, const std::string& wanted) const {
+        const Value* list = entry(pattern, "parts");
         const Value* body = list ? entry(*list, wanted) : nullptr;
         if (!body)
             fail(option,
@@ -292,16 +289,17 @@ struct Maker {
         return body->text;
     }
 
-    void write(const Value& of, const std::string& stands_on) {
+    // Writes the entries of the template or of a group, with PART and SIDE replaced.
+    void write_entries(const Value& group, const std::string& part_body) {
         for (const auto& [section, list] : draft.sections()) {
             const Value* entries =
-                std::string_view(section) == "wheels" ? nullptr : entry(of, section);
+                std::string_view(section) == "wheels" ? nullptr : entry(group, section);
             for (std::size_t k = 0; entries && k < entries->keys.size(); ++k)
                 for (const std::string& side : sides_of(entries->keys[k]))
-                    list->push_back(
-                        {with(entries->keys[k], "SIDE", side),
-                         with(with(entries->items[k].text, "PART", stands_on), "SIDE", side),
-                         {}});
+                    list->push_back({replaced(entries->keys[k], "SIDE", side),
+                                     replaced(replaced(entries->items[k].text, "PART", part_body),
+                                              "SIDE", side),
+                                     {}});
         }
     }
 
@@ -315,7 +313,7 @@ struct Maker {
             if (const Entry& e = draft.points.entries()[k]; e.from.line == 0)
                 written.add(draft.points.positions()[k], e.name, e.from);
         draft.points = std::move(written);
-        // a point that is mirrored has its role on either side
+        // of a mirrored point and its image, one may have the role
         for (const PlacedPoint& point : points)
             if (std::ranges::none_of(roles, [&](const Role& role) {
                     return role.point->from.line == point.from.line;
@@ -324,19 +322,19 @@ struct Maker {
     }
 
     void write_wheel(const std::string& side, const std::string& more) {
-        const std::string of = side.empty() ? "" : side + "_";
-        const PlacedPoint& centre = *role_called(of + "wheel_centre").point;
+        const std::string prefix = side.empty() ? "" : side + "_";
+        const PlacedPoint& centre = *role_called(prefix + "wheel_centre").point;
         const bool left = centre.at.y() >= 0;
         if (centre.marks.contains(left ? "right" : "left"))
             reader::fail(file, centre.from.line, centre.name,
                          fmt::format("lies on the {} in the axes of --axes; choose the axes in "
                                      "which it does not, or rename the point",
                                      left ? "left" : "right"));
-        const Value* fields = side.empty() ? entry(made, "wheel") : entry(made, "wheels");
+        const Value* fields = side.empty() ? entry(pattern, "wheel") : entry(pattern, "wheels");
         draft.wheels.push_back(
             {side.empty() ? "wheel" : side,
-             fmt::format("{{{}{}, spin_axis: {}, side: {}}}", with(fields->text, "SIDE", side),
-                         with(more, "SIDE", side), left ? "y" : "-y", left ? "left" : "right"),
+             fmt::format("{{{}{}, spin_axis: {}, side: {}}}", replaced(fields->text, "SIDE", side),
+                         replaced(more, "SIDE", side), left ? "y" : "-y", left ? "left" : "right"),
              {}});
     }
 
@@ -347,49 +345,52 @@ struct Maker {
     void run() {
         choose_points();
         const Value& groups = mechanism_table("groups");
-        const Value *standard = entry(made, "damper"), *list = entry(made, "optional");
+        const Value *default_part = entry(pattern, "damper"), *list = entry(pattern, "optional");
         std::vector<const Value*> optional;
         if (!list) optional.push_back(entry(groups, "contact"));
         for (std::size_t k = 0; list && k < list->items.size(); ++k)
             optional.push_back(entry(groups, list->items[k].text));
         const bool has_rod = options.rocker || !options.pushrod.empty(),
-                   may_damp = standard || !options.damper.empty();
+                   may_damp = default_part || !options.damper.empty();
         if (has_rod && !options.damper.empty())
             fail("--damper", "with a rocker the damper stands on it");
         const std::string& wanted = has_rod ? options.pushrod : options.damper;
-        const std::string stands_on =
-            has_rod || may_damp ? part(has_rod ? "--pushrod" : "--damper",
-                                       wanted.empty() && standard ? standard->text : wanted)
-                                : "";
+        const std::string part_body =
+            has_rod || may_damp
+                ? body_of_part(has_rod ? "--pushrod" : "--damper",
+                               wanted.empty() && default_part ? default_part->text : wanted)
+                : "";
         if (!has_rod && may_damp) optional.push_back(entry(groups, "damper"));
-        add_roles(made);
+        add_roles(pattern);
         if (has_rod) add_roles(*entry(groups, "pushrod"));
         for (const Value* group : optional) add_roles(*group);
-        for (const std::string& given : options.roles) give(given);
+        for (const std::string& given : options.roles) assign(given);
         find_points();
         if (has_rod) add_rocker_axis();
         std::erase_if(optional, [&](const Value* group) { return !is_kept(*group); });
         require_points();
         write_points();
-        write(made, "");
-        if (has_rod) write(*entry(groups, "pushrod"), stands_on);
-        std::string of_wheel;
+        write_entries(pattern, "");
+        if (has_rod) write_entries(*entry(groups, "pushrod"), part_body);
+        std::string wheel_fields;
         for (const Value* group : optional) {
-            write(*group, stands_on);
-            if (const Value* more = entry(*group, "wheel")) of_wheel += ", " + more->text;
+            write_entries(*group, part_body);
+            if (const Value* more = entry(*group, "wheel")) wheel_fields += ", " + more->text;
         }
         if (!options.rates.empty()) add_rates(options.rates, draft);
-        const bool both = entry(made, "wheels");
-        for (const std::string& side : sides_of(both ? "SIDE" : "")) write_wheel(side, of_wheel);
-        draft.branches.insert(draft.branches.begin(), {"travel", travel(both), {}});
-        draft.title += fmt::format(", {}", reader::small_letters(entry(made, "title")->text));
+        const bool has_both_wheels = entry(pattern, "wheels");
+        for (const std::string& side : sides_of(has_both_wheels ? "SIDE" : ""))
+            write_wheel(side, wheel_fields);
+        draft.branches.insert(draft.branches.begin(), {"travel", travel(has_both_wheels), {}});
+        draft.title += fmt::format(", {}", reader::small_letters(entry(pattern, "title")->text));
         draft.mirror.reset();
-        if (options.both_wheels && both)
+        if (options.both_wheels && has_both_wheels)
             fail("--both-wheels", fmt::format("{} has both", options.as));
         if (options.both_wheels) add_other_wheel();
     }
 
-    // All but the rack and a bar gets the wheel's side before its name, and is mirrored.
+    // Adds the other wheel as a mirror image: all names but those of the rack and an anti-roll bar get the
+    // wheel's side in front.
     void add_other_wheel() {
         Entry& wheel = draft.wheels.front();
         const bool left = wheel.fields.ends_with("side: left}");
@@ -399,8 +400,8 @@ struct Maker {
         for (const auto& [section, list] : draft.sections())
             if (list != &draft.branches && list != &draft.wheels) lists.push_back(list);
         for (const auto* list : lists)
-            for (const Entry& one : *list)
-                if (one.name != "rack" && one.name != "antiroll_bar") names.insert(one.name);
+            for (const Entry& item : *list)
+                if (item.name != "rack" && item.name != "antiroll_bar") names.insert(item.name);
         const auto renamed = [&](std::string_view fields) {
             std::string text;
             for (std::size_t n = 0; !fields.empty(); fields.remove_prefix(n)) {
@@ -411,13 +412,14 @@ struct Maker {
                 text += !is_key && names.contains(word) ? of_side + word : word;
                 if (n == 0) text += fields[n++];
             }
-            return with(text, "at_wheel: true", "at_wheel: " + side);
+            return replaced(text, "at_wheel: true", "at_wheel: " + side);
         };
         for (auto* list : lists)
-            for (Entry& one : *list) {
-                if (one.name == "rack") one.fields = with(one.fields, "tie_rod_inner", "middle");
-                if (names.contains(one.name)) one.name = of_side + one.name;
-                one.fields = renamed(one.fields);
+            for (Entry& item : *list) {
+                if (item.name == "rack")
+                    item.fields = replaced(item.fields, "tie_rod_inner", "middle");
+                if (names.contains(item.name)) item.name = of_side + item.name;
+                item.fields = renamed(item.fields);
             }
         const auto rod = std::ranges::find(roles, "tie_rod_inner", &Role::name);
         if (rod != roles.end() &&
@@ -427,9 +429,9 @@ struct Maker {
         wheel = {side, renamed(wheel.fields), {}};
         draft.mirror = left ? "left -> right" : "right -> left";
         for (Entry& branch : draft.branches)
-            branch.fields =
-                with(with(branch.fields, "drive: travel", "drive: [left.travel, right.travel]"),
-                     "{travel: 0}", "{left.travel: 0, right.travel: 0}");
+            branch.fields = replaced(
+                replaced(branch.fields, "drive: travel", "drive: [left.travel, right.travel]"),
+                "{travel: 0}", "{left.travel: 0, right.travel: 0}");
         draft.branches.push_back(
             {"opposite",
              entry(*entry(*entry(mechanism_table("templates"), "live_axle"), "branches"),
@@ -438,7 +440,8 @@ struct Maker {
              {}});
     }
 
-    // Rigid links that leave an axle one motion couple its wheels: one of them is driven, and there is no roll.
+    // The branch `travel`. Where rigid links leave an axle one degree of freedom, the left wheel is driven and
+    // there is no roll.
     std::string travel(bool both) {
         const char* drive = "travel";
         if (both) {
@@ -478,11 +481,11 @@ std::string mechanism_called(std::string_view words) {
 }
 
 void make_mechanism(const std::string& file, const Options& options, Draft& draft) {
-    const Value* made = entry(mechanism_table("templates"), options.as);
-    if (!made)
+    const Value* pattern = entry(mechanism_table("templates"), options.as);
+    if (!pattern)
         fail(file, 0, "--as", "{} is not a mechanism{}", reader::quote(options.as),
              reader::did_you_mean(options.as, mechanisms(), "allowed"));
-    Maker{file, options, draft, *made}.run();
+    MechanismMaker{file, options, draft, *pattern}.run();
 }
 
 }  // namespace elastocheck::importer

@@ -1,4 +1,4 @@
-// Puts bushings and springs of a table of rates into a mechanism: by the roles of its points.
+// Replaces joints of a mechanism by bushings, and adds springs, with the rates of a table by role.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -24,7 +24,7 @@ struct RateRow {
 };
 using RateTable = std::map<std::string, RateRow>;  // by role
 
-// Of a heading such as "x [N/mm]", "rz [Nm/deg]".
+// The unit in a heading such as "x [N/mm]", "rz [Nm/deg]", in N/mm or N·mm/deg.
 double unit_of_rate(const std::string& heading, bool is_rotational, const std::string& file,
                     int line) {
     std::string unit =
@@ -83,7 +83,7 @@ RateTable read_rate_table(const std::string& file) {
     return table;
 }
 
-struct Softener {
+struct RateInserter {
     RateTable& table;
     Draft& draft;
     std::vector<Entry> joints = {};
@@ -95,14 +95,14 @@ struct Softener {
         return draft.points.positions()[static_cast<std::size_t>(found - entries.begin())];
     }
 
-    // z along the axis from one point to the other; x the radial direction next to the vertical, of an
-    // upright axis next to x.
+    // Frame with z from one point to the other and x the radial direction closest to the vertical, for an
+    // upright axis closest to x.
     std::string frame(const std::string& from, const std::string& to) const {
         const bool is_upright = std::abs((place(to) - place(from)).normalized().z()) > 0.9;
         return fmt::format(", frame: {{z: [{}, {}], x: {}}}", from, to, is_upright ? "x" : "z");
     }
 
-    // At the point of a role: a bushing if it has rates, else a ball.
+    // Adds a bushing at the point of a role with rates, else a spherical joint.
     void put(const std::string& role, const std::string& bodies, const std::string& axes) {
         const auto rates = table.find(role);
         if (rates == table.end()) {
@@ -122,8 +122,8 @@ struct Softener {
                                   {row.line, role}});
     }
 
-    // A damper that ends at a point has its axis.
-    std::string axis_at(const std::string& role) const {
+    // The frame along the damper that ends at a point; empty if there is none.
+    std::string frame_of_damper(const std::string& role) const {
         for (const Entry& damper : draft.dampers) {
             const reader::Value fields = reader::parse_yaml(damper.fields, damper.name);
             const std::string from = entry(fields, "from")->text, to = entry(fields, "to")->text;
@@ -132,7 +132,8 @@ struct Softener {
         return "";
     }
 
-    void soften(const Entry& joint) {
+    // Replaces a joint by bushings or spherical joints at its ends if one of them has rates.
+    void insert(const Entry& joint) {
         const reader::Value fields = reader::parse_yaml(joint.fields, joint.name);
         const auto text = [&](const char* key) { return entry(fields, key)->text; };
         const auto& pair = entry(fields, "bodies")->items;
@@ -149,10 +150,10 @@ struct Softener {
         if (std::ranges::none_of(ends, [&](const auto& role) { return table.contains(role); })) {
             joints.push_back(joint);
         } else if (ends.size() == 1) {
-            put(ends[0], bodies, axis_at(ends[0]));
+            put(ends[0], bodies, frame_of_damper(ends[0]));
         } else if (type == "revolute") {
             for (const std::string& end : ends) put(end, bodies, frame(ends[0], ends[1]));
-        } else {
+        } else {  // a distance becomes a body between its ends
             draft.bodies.push_back({joint.name, fmt::format("{{origin: {}}}", ends[0]), {}});
             put(ends[0], fmt::format("[{}, {}]", joint.name, pair[0].text),
                 frame(ends[1], ends[0]));
@@ -161,7 +162,7 @@ struct Softener {
         }
     }
 
-    // `spring`: beside each damper, its rate along z.
+    // Adds a spring with the rate `spring` beside each damper.
     void add_springs() {
         const auto rates = table.find("spring");
         if (rates == table.end() || draft.dampers.empty()) return;
@@ -179,18 +180,18 @@ struct Softener {
 
 void add_rates(const std::string& file, Draft& draft) {
     RateTable table = read_rate_table(file);
-    Softener softener{table, draft};
-    for (const Entry& joint : draft.joints) softener.soften(joint);
-    softener.add_springs();
+    RateInserter inserter{table, draft};
+    for (const Entry& joint : draft.joints) inserter.insert(joint);
+    inserter.add_springs();
     if (const auto spring = table.find("spring");
         spring != table.end() && !(spring->second.k[2] > 0))
         fail(file, spring->second.line, "spring", "no rate; expected it in the column z");
-    draft.joints = std::move(softener.joints);
-    if (!draft.dampers.empty()) softener.roles.emplace_back("spring");
+    draft.joints = std::move(inserter.joints);
+    if (!draft.dampers.empty()) inserter.roles.emplace_back("spring");
     for (const auto& [role, row] : table)
         if (!row.is_used)
             fail(file, row.line, role, "is not a role here that can have rates{}",
-                 reader::did_you_mean(role, softener.roles, "allowed"));
+                 reader::did_you_mean(role, inserter.roles, "allowed"));
     draft.remarks.push_back(fmt::format(
         "Rates by role of {}: z along the joint's axis, x the radial direction next to the "
         "vertical (of an upright axis next to the vehicle's x); of balls in the vehicle's axes.",

@@ -1,10 +1,12 @@
 // Imports one axle of a car of Assetto Corsa (suspensions.ini): its left wheel, or a live axle, as a rigid
-// mechanism with its springs. Points of the file are in m from the wheel centre: x inboard, y up, z forward. From
-// VERSION 2 on RIM_OFFSET is subtracted from x of all of them. Those of a live axle are from its middle, x to
-// the left.
+// mechanism with its springs. Points of the file are in m from the wheel centre: x inboard, y up, z forward;
+// from VERSION 2 on RIM_OFFSET is subtracted from their x. Those of a live axle are from its middle, x to the
+// left.
 //
-// The force of a spring is (p t + k) t of t = travel + ROD_LENGTH, vertical between wheel centre and body; of a
-// strut along it. On a live axle it stands at ATTACH_REL_POS of the half track, 0.2 m long.
+// The game's spring force is (p t + k) t with t = travel + ROD_LENGTH, k = SPRING_RATE,
+// p = PROGRESSIVE_SPRING_RATE, vertical between wheel centre and body, for a strut along it. Here p is left
+// out and k ROD_LENGTH is the preload. On a live axle the spring stands at ATTACH_REL_POS of the half track
+// and is drawn 0.2 m long.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +21,8 @@ namespace {
 
 using reader::Cursor, reader::Value;
 
-// The value of the key of a map, which it gets.
-Value& added(Value& map, const std::string& key, int line) {
+// The value of a key of a map, added where the map lacks it.
+Value& value_of_key(Value& map, const std::string& key, int line) {
     map.kind = Value::Kind::map;
     const auto found = std::ranges::find(map.keys, key);
     if (found != map.keys.end())
@@ -30,7 +32,7 @@ Value& added(Value& map, const std::string& key, int line) {
     return map.items.back();
 }
 
-// Sections, of keys and values; a value with commas is a list.
+// Sections as maps of keys to values; a value with commas is a list.
 Value read_ini(std::string_view text, const std::string& file) {
     Value sections;
     std::string section;
@@ -47,7 +49,8 @@ Value read_ini(std::string_view text, const std::string& file) {
             fail(file, lines.number(), "", "expected [SECTION] or KEY=VALUE, found {}",
                  reader::quote(line));
         const std::string key = reader::capitals(reader::trimmed(line.substr(0, equals)));
-        Value& value = added(added(sections, section, lines.number()), key, lines.number());
+        Value& value =
+            value_of_key(value_of_key(sections, section, lines.number()), key, lines.number());
         if (value.kind != Value::Kind::empty)
             fail(file, lines.number(), key, "given twice, first in line {}", value.line);
         const auto cells = split(line.substr(equals + 1), ",");
@@ -70,7 +73,7 @@ double number_or(const std::optional<Cursor>& section, const std::string& key, d
 struct AssettoReader {
     const Cursor& ini;
     const std::string& file;
-    const std::string name;  // of the section of the axle
+    const std::string name;  // of the axle's section: "FRONT"
     const Cursor axle;
     Options& options;
     double version = number_or(ini.optional("HEADER"), "VERSION", 1);
@@ -78,23 +81,23 @@ struct AssettoReader {
     Draft draft = {};
 
     void warn(const std::string& section, const std::string& key, const char* what) {
-        const auto of = ini.optional(section);
-        if (const double x = number_or(of, key, 0); x != 0)
-            draft.notes.warn(source_of(*of, key), fmt::format("{:g}{}", x, what));
+        const auto values = ini.optional(section);
+        if (const double x = number_or(values, key, 0); x != 0)
+            draft.notes.warn(source_of(*values, key), fmt::format("{:g}{}", x, what));
     }
     static SourceLocation source_of(const Cursor& section, const std::string& key) {
         return {section.require(key).value->line, key};
     }
 
-    // Line 0: of no role.
+    // Coordinates in the axes of the scene [m]. `line` 0: a point that gets no role.
     void add_point(const std::string& key, int line, double forward, double left, double up) {
         draft.points.add(1000 * Eigen::Vector3d(forward, left, up), key, {line, key});
     }
-    // x, y, z of the file become left, up, forward: x counts in a direction from a middle.
-    void add_point(const Cursor& section, const std::string& key, double middle, double direction) {
+    // (x, y, z) of the file is (z, origin + direction · x, y) in the axes of the scene.
+    void add_point(const Cursor& section, const std::string& key, double origin, double direction) {
         const Cursor field = section.require(key);
         const auto p = field.list(3, "numbers");
-        add_point(key, field.value->line, p[2].number(), middle + direction * p[0].number(),
+        add_point(key, field.value->line, p[2].number(), origin + direction * p[0].number(),
                   p[1].number());
         draft.notes.count("point");
     }
@@ -133,7 +136,7 @@ struct AssettoReader {
         draft.notes.count("spring");
     }
 
-    // The two lowest links are the lower ones; the fifth is a bar across.
+    // Of four links the two with the lowest outer ends are the lower ones; a fifth is a Panhard rod.
     void read_live_axle(const Value& type) {
         const auto links_of_axle = ini.optional("AXLE");
         if (!links_of_axle) fail(file, 0, "[AXLE]", "missing; it has the links of the axle");
@@ -159,8 +162,9 @@ struct AssettoReader {
         }
         std::ranges::stable_sort(links, {}, [](const Link& link) { return link.outer.z(); });
         for (std::size_t k = 0; k < 4; ++k) {
-            const double y = links[k].outer.y(), of_twin = links[k ^ 1].outer.y();
-            const bool is_left = y != of_twin ? y > of_twin : k % 2;
+            // links 0 and 1, 2 and 3 are pairs
+            const double y = links[k].outer.y(), y_of_other = links[k ^ 1].outer.y();
+            const bool is_left = y != y_of_other ? y > y_of_other : k % 2;
             for (const auto& [end, part] : {std::pair{"inner", "CAR"}, {"outer", "AXLE"}})
                 options.roles.push_back(fmt::format("{}_{}_{}={}_{}", is_left ? "left" : "right",
                                                     k < 2 ? "lower" : "upper", end, links[k].key,
@@ -175,7 +179,7 @@ struct AssettoReader {
                       sign * half_track, 0);
             add_point(of_side + "_seat", 0, 0, sign * seat, 0);
             add_point(of_side + "_top", 0, 0, sign * seat, 0.2);
-            add_spring(of_side + "_spring", with(entry(type, "spring")->text, "SIDE", side));
+            add_spring(of_side + "_spring", replaced(entry(type, "spring")->text, "SIDE", side));
             if (leaf != 0)
                 draft.bushings.push_back(
                     {of_side + "_leaf",
@@ -196,7 +200,7 @@ struct AssettoReader {
                  source_of(*bars, name)});
     }
 
-    void warn_of_the_rest() {
+    void warn_of_unused() {
         for (const char* rate : {"PROGRESSIVE_SPRING_RATE", "BUMP_STOP_RATE"})
             warn(name, rate, ", at the wheel, is not in the scene");
         warn("HEAVE_" + name, "SPRING_RATE", " N/m of both wheels is not in the scene");
@@ -235,7 +239,7 @@ Draft import_assetto(std::string_view text, const std::string& file, Options& op
         reading.read_live_axle(*type);
     else
         reading.read_corner(*type);
-    reading.warn_of_the_rest();
+    reading.warn_of_unused();
     if (options.as.empty()) options.as = mechanism;
     options.axle.clear();
     return std::move(reading.draft);

@@ -22,19 +22,19 @@ const std::vector<std::string> keys = {"name",   "x",      "y",       "z",      
 
 bool is_number(std::string_view cell) { return coordinate(cell, true) || coordinate(cell, false); }
 
-// ---- The map of the user.
+// ---- The map of the option --columns: "name=Punkt,x=X_mm,y=4,z=E".
 
-struct Chosen {
+struct Assignment {
     std::string key, column;
 };
-using Map = std::vector<Chosen>;
+using Map = std::vector<Assignment>;
 
 constexpr const char* form_of_map =
     "expected name=COLUMN,x=COLUMN,y=COLUMN,z=COLUMN, each a heading, a number from 1 or letters; "
     "a heading with a comma by its number";
 
 bool has(const Map& map, const std::string& key) {
-    return std::ranges::find(map, key, &Chosen::key) != map.end();
+    return std::ranges::find(map, key, &Assignment::key) != map.end();
 }
 
 Map map_of(const std::string& text, const std::string& file) {
@@ -43,8 +43,8 @@ Map map_of(const std::string& text, const std::string& file) {
         const auto equals = piece.find('=');
         if (equals == piece.npos)
             fail(file, 0, "--columns", "{} has no '='; {}", reader::quote(piece), form_of_map);
-        const Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
-                            std::string(reader::trimmed(piece.substr(equals + 1)))};
+        const Assignment chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
+                                std::string(reader::trimmed(piece.substr(equals + 1)))};
         if (std::ranges::find(keys, chosen.key) == keys.end())
             fail(file, 0, "--columns", "{} is not a property of a point{}",
                  reader::quote(chosen.key), reader::did_you_mean(chosen.key, keys, "allowed"));
@@ -53,7 +53,7 @@ Map map_of(const std::string& text, const std::string& file) {
         map.push_back(chosen);
     }
     const bool sides =
-        std::ranges::any_of(map, [](const Chosen& c) { return c.key.find('.') != c.key.npos; });
+        std::ranges::any_of(map, [](const Assignment& c) { return c.key.find('.') != c.key.npos; });
     std::vector<std::string> needed{"name"};
     for (const char* prefix : {"left.", "right."})
         for (const std::string& axis : axis_names) {
@@ -68,9 +68,9 @@ Map map_of(const std::string& text, const std::string& file) {
     return map;
 }
 
-// Position of a column that is given by its number from 1 or by its letters.
+// Position of a column given by its number from 1 or by its letters, in a table of `width` columns.
 std::optional<std::size_t> position(const std::string& column, std::size_t width) {
-    std::size_t at = 0;
+    std::size_t at = 0;  // from 1
     if (std::ranges::all_of(column, reader::is_digit)) {
         const auto [end, error] = std::from_chars(column.data(), column.data() + column.size(), at);
         if (error != std::errc{}) return std::nullopt;
@@ -81,7 +81,8 @@ std::optional<std::size_t> position(const std::string& column, std::size_t width
     return at - 1;
 }
 
-std::vector<std::size_t> headed(const SheetRow& row, const std::string& heading) {
+// Columns with this heading in a row.
+std::vector<std::size_t> columns_headed(const SheetRow& row, const std::string& heading) {
     const std::string word = reader::small_letters(heading);
     std::vector<std::size_t> at;
     for (std::size_t c = 0; c < row.cells.size(); ++c)
@@ -99,7 +100,7 @@ std::size_t first_numbers(const Sheet& sheet) {
     return static_cast<std::size_t>(first - sheet.rows.begin());
 }
 
-// The row above the numbers with most words: that of the headings, for a message.
+// The row above the numbers with most words, probably that of the headings; null if there is none.
 const SheetRow* likely_head(const Sheet& sheet) {
     const SheetRow* head = nullptr;
     std::ptrdiff_t most = 0;
@@ -115,6 +116,7 @@ const SheetRow* likely_head(const Sheet& sheet) {
     return head;
 }
 
+// "'Name' (A), 'X' (B), none (C)"
 std::string with_letters(const SheetRow& head) {
     std::vector<std::string> words;
     for (std::size_t c = 0; c < head.cells.size(); ++c)
@@ -136,7 +138,7 @@ bool has_word(const std::string& heading, std::string_view word) {
     return false;
 }
 
-// "--columns name=Punkt,x=X-Wert,y=Y-Wert,z=HEADING": what can be seen from the headings.
+// "--columns name=Punkt,x=X-Wert,y=Y-Wert,z=HEADING": the option as far as the headings suggest it.
 std::string proposal(const Sheet& sheet, const SheetRow& head) {
     std::string map;
     const std::size_t data = first_numbers(sheet);
@@ -154,7 +156,7 @@ std::string proposal(const Sheet& sheet, const SheetRow& head) {
             const bool plain = !word.empty() && std::ranges::all_of(word, [](char ch) {
                 return reader::is_word(ch) || ch == '-' || ch == '.';
             });
-            column = plain && headed(head, word).size() == 1 ? word : letters_of(c);
+            column = plain && columns_headed(head, word).size() == 1 ? word : letters_of(c);
         }
         map += fmt::format("{}{}={}", map.empty() ? "" : ",", key, column);
     }
@@ -173,7 +175,7 @@ std::string proposal(const Sheet& sheet, const SheetRow& head) {
          what, with_letters(*head), proposal(sheet, *head));
 }
 
-// name, x, y, z of a row by the first words of its headings: "Point Name", "X [mm]", "y_m".
+// Columns of name, x, y, z by the first words of their headings in a row: "Point Name", "X [mm]", "y_m".
 std::array<std::vector<std::size_t>, 4> recognised(const SheetRow& row) {
     std::array<std::vector<std::size_t>, 4> found;
     for (std::size_t c = 0; c < row.cells.size(); ++c) {
@@ -188,12 +190,12 @@ std::array<std::vector<std::size_t>, 4> recognised(const SheetRow& row) {
 
 constexpr std::size_t no_row = static_cast<std::size_t>(-1);
 
-struct Found {
+struct FoundColumns {
     PointColumns columns;
     std::size_t head = no_row;  // row of the headings; no_row: chosen by position alone
 };
 
-// Columns without a heading in the row, whose cells beside the numbers below it are all words.
+// Columns without a heading in the row `head` that have words in all rows of numbers below it.
 std::vector<std::size_t> unnamed_columns(const Sheet& sheet, std::size_t head) {
     std::vector<std::size_t> words;
     for (std::size_t c = 0; c < SheetRow::max_cells; ++c) {
@@ -221,25 +223,27 @@ std::string prefix_of(const std::string& heading) {
     return fmt::format("{}{}_", left ? 'L' : 'R', has("front") ? 'F' : 'R');
 }
 
-// The coordinates of each of several groups of columns, called as the row above says.
+// The coordinate columns of several groups, whose names are in the row above the headings; empty if the
+// columns do not form such groups.
 std::vector<Triple> grouped(const Sheet& sheet, std::size_t head,
                             const std::array<std::vector<std::size_t>, 4>& places) {
     std::vector<Triple> triples;
     if (head == 0 || places[1].size() != places[2].size() || places[1].size() != places[3].size())
         return {};
     for (std::size_t n = 0; n < places[1].size(); ++n) {
-        const auto x = places[1][n], before = n == 0 ? 0 : places[3][n - 1] + 1;
-        std::size_t at = x + 1;
-        while (at > before && sheet.rows[head - 1].at(at - 1).empty()) --at;
-        if (at == before) return {};
-        const std::string prefix = prefix_of(std::string(sheet.rows[head - 1].at(at - 1)));
+        // the name is in the last filled cell up to x, behind the z of the group before
+        const auto x = places[1][n], begin = n == 0 ? 0 : places[3][n - 1] + 1;
+        std::size_t end = x + 1;
+        while (end > begin && sheet.rows[head - 1].at(end - 1).empty()) --end;
+        if (end == begin) return {};
+        const std::string prefix = prefix_of(std::string(sheet.rows[head - 1].at(end - 1)));
         if (std::ranges::find(triples, prefix, &Triple::prefix) != triples.end()) return {};
         triples.push_back({prefix, {x, places[2][n], places[3][n]}});
     }
     return triples;
 }
 
-Found by_headings(const Sheet& sheet, const std::string& file) {
+FoundColumns by_headings(const Sheet& sheet, const std::string& file) {
     std::vector<std::string> missing{"name", "x", "y", "z"};
     for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
         auto head = recognised(sheet.rows[r]);
@@ -256,7 +260,7 @@ Found by_headings(const Sheet& sheet, const std::string& file) {
             if (lacks.size() < missing.size()) missing = lacks;
             continue;
         }
-        Found result;
+        FoundColumns result;
         if (head[1].size() > 1) result.columns.triples = grouped(sheet, r, head);
         for (std::size_t k = 0; k < 4; ++k)
             if (head[k].size() > 1 && (k == 0 || result.columns.triples.empty()))
@@ -271,16 +275,16 @@ Found by_headings(const Sheet& sheet, const std::string& file) {
     refuse(sheet, file, fmt::format("no column {}", fmt::join(missing, ", ")));
 }
 
-// Position of a column of the map. Headings may stand in several lines: first those in row `head`,
-// which has most, then the others above the numbers.
-std::size_t resolved(const Sheet& sheet, const std::string& file, const Chosen& chosen,
-                     std::size_t head) {
+// Column of an assignment: by a heading in row `head`, else in another row above the numbers, else by number
+// or letters.
+std::size_t resolved_column(const Sheet& sheet, const std::string& file, const Assignment& chosen,
+                            std::size_t head) {
     const auto& [key, column] = chosen;
     std::vector<std::size_t> lines;
     if (head != no_row) lines.push_back(head);
     for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) lines.push_back(r);
     for (const std::size_t r : lines) {
-        const auto at = headed(sheet.rows[r], column);
+        const auto at = columns_headed(sheet.rows[r], column);
         if (at.size() > 1)
             fail(file, sheet.rows[r].line, "--columns",
                  "{}: columns {} and {} have the heading {}; choose one by its letter", key,
@@ -300,32 +304,33 @@ std::size_t resolved(const Sheet& sheet, const std::string& file, const Chosen& 
          reader::quote(column), width, reader::did_you_mean(column, words, "headings"));
 }
 
-Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
-    Found found;
-    std::ptrdiff_t max_of_map = 0;
+FoundColumns by_map(const Sheet& sheet, const std::string& file, const Map& map) {
+    FoundColumns found;
+    std::ptrdiff_t most = 0;
     for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) {
-        const auto of_map = std::ranges::count_if(
-            map, [&](const Chosen& c) { return !headed(sheet.rows[r], c.column).empty(); });
-        if (of_map > max_of_map) {
-            max_of_map = of_map;
+        const auto matches = std::ranges::count_if(map, [&](const Assignment& c) {
+            return !columns_headed(sheet.rows[r], c.column).empty();
+        });
+        if (matches > most) {
+            most = matches;
             found.head = r;
         }
     }
     std::map<std::size_t, std::string> used;
     std::map<std::string, Triple> triples;  // by the prefix of their names
     for (const auto& chosen : map) {
-        const std::size_t first_row = resolved(sheet, file, chosen, found.head);
-        if (const auto [other, is_new] = used.emplace(first_row, chosen.key); !is_new)
+        const std::size_t column = resolved_column(sheet, file, chosen, found.head);
+        if (const auto [other, is_new] = used.emplace(column, chosen.key); !is_new)
             fail(file, 0, "--columns", "{} and {} are the same column {}", other->second,
-                 chosen.key, letters_of(first_row));
+                 chosen.key, letters_of(column));
         const auto dot = chosen.key.find('.');
         const std::string prefix = dot == chosen.key.npos ? "" : chosen.key.substr(0, dot) + "_";
         if (chosen.key == "name")
-            found.columns.name = first_row;
+            found.columns.name = column;
         else if (chosen.key == "side")
-            found.columns.side = first_row;
+            found.columns.side = column;
         else
-            triples[prefix].at[static_cast<std::size_t>(chosen.key.back() - 'x')] = first_row;
+            triples[prefix].at[static_cast<std::size_t>(chosen.key.back() - 'x')] = column;
     }
     for (auto& [prefix, triple] : triples) found.columns.triples.push_back({prefix, triple.at});
     return found;
@@ -333,6 +338,7 @@ Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
 
 // ---- Units.
 
+// "[mm]" and "inches" as "mm" and "in".
 std::string without_brackets(std::string_view text) {
     std::string word = reader::small_letters(reader::trimmed(text));
     std::erase_if(word,
@@ -343,8 +349,8 @@ bool is_unit(const std::string& word) {
     return std::ranges::find(length_units, word) != std::end(length_units);
 }
 
-// The unit in a heading: "X [mm]", "X_mm", "X/mm", "X in mm"; what stands in brackets and is not a unit
-// is returned too.
+// The unit in a heading: "X [mm]", "X_mm", "X/mm", "X in mm". Text in brackets is returned even if it is not
+// a unit.
 std::string unit_in_heading(std::string_view heading) {
     const auto open = heading.find_last_of("[("), end = heading.find_last_of(" _/");
     if (open != heading.npos) return without_brackets(heading.substr(open));
@@ -353,36 +359,36 @@ std::string unit_in_heading(std::string_view heading) {
     return is_unit(word) ? word : "";
 }
 
-struct SaidUnit {
-    std::string unit, from;
+struct DeclaredUnit {
+    std::string unit, from;  // "mm", "by the heading 'X_mm' in line 1"; empty if there is none
     int line = 0;
 };
 
-// What the lines above the first point say last about the unit of a column.
-SaidUnit unit_of(const Sheet& sheet, const std::string& file,
-                 std::pair<std::size_t, std::size_t> rows, std::size_t column,
-                 const std::string& axis, bool may_be_unknown) {
-    SaidUnit said;
+// The last unit of a column in the rows `rows` (first, end) above the points.
+DeclaredUnit unit_of(const Sheet& sheet, const std::string& file,
+                     std::pair<std::size_t, std::size_t> rows, std::size_t column,
+                     const std::string& axis, bool may_be_unknown) {
+    DeclaredUnit declared;
     for (std::size_t r = rows.first; r < rows.second; ++r) {
         const std::string_view cell = sheet.rows[r].at(column);
         std::string word = without_brackets(cell);
         if (!is_unit(word)) word = unit_in_heading(cell);
         if (word.empty()) continue;
-        said.line = sheet.rows[r].line;
+        declared.line = sheet.rows[r].line;
         if (is_unit(word)) {
-            said.unit = word;
-            said.from = fmt::format("by the heading {} in line {}", reader::quote(cell), said.line);
+            declared.unit = word;
+            declared.from =
+                fmt::format("by the heading {} in line {}", reader::quote(cell), declared.line);
         } else if (!may_be_unknown) {
-            fail(file, said.line, axis,
+            fail(file, declared.line, axis,
                  "{} is not a unit of a coordinate; allowed: {}; or say it with --unit",
                  reader::quote(word), fmt::join(length_units, ", "));
         }
     }
-    return said;
+    return declared;
 }
 
-// The lines above the first point say the unit of each column of coordinates, or none does and the
-// option says it.
+// Sets the unit of the coordinates: that of the headings, the same for all columns, or that of the option.
 void find_unit(const Sheet& sheet, const std::string& file, std::size_t head,
                const std::string& option, PointColumns& columns) {
     std::string first_without;  // a column for which no line says a unit
@@ -438,7 +444,8 @@ std::optional<double> coordinate(std::string_view cell, bool decimal_comma) {
 
 PointColumns point_columns(const Sheet& sheet, const std::string& file, const std::string& map,
                            const std::string& unit) {
-    Found found = map.empty() ? by_headings(sheet, file) : by_map(sheet, file, map_of(map, file));
+    FoundColumns found =
+        map.empty() ? by_headings(sheet, file) : by_map(sheet, file, map_of(map, file));
     PointColumns& columns = found.columns;
     // without a line of headings, lines above the points may have numbers too
     const auto has_numbers = [&](const SheetRow& row) {

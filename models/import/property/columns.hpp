@@ -1,4 +1,4 @@
-// Which columns of a table are the name and the coordinates of points, and the unit of these.
+// Finds the columns of a table that are the name and the coordinates of points, and the unit of these.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ using reader::Sheet;
 using reader::SheetRow;
 
 struct Triple {
-    std::string prefix;  // of the names of its points: "left_", "right_", or empty
-    std::array<std::size_t, 3> at{};
+    std::string prefix;               // of the names of its points: "left_", "right_", or empty
+    std::array<std::size_t, 3> at{};  // columns of x, y, z
 };
 
 struct PointColumns {
@@ -30,7 +30,7 @@ struct PointColumns {
 };
 
 inline constexpr const char* length_units[] = {"mm", "cm", "m", "in"};
-double millimetres(const std::string& unit);
+double millimetres(const std::string& unit);  // of one such unit
 
 // `map` is "name=Punkt,x=X_mm,y=3,z=D", each column by its heading, its number from 1 or its
 // letters; instead of x, y, z also left.x, ..., right.z; or with side=COLUMN. Without a map the
@@ -40,7 +40,7 @@ double millimetres(const std::string& unit);
 PointColumns point_columns(const Sheet& sheet, const std::string& file, const std::string& map,
                            const std::string& unit);
 
-// A number in a table of points, also with a sign +, U+2212, or a decimal comma.
+// A number in a table of points; the sign may be + or the minus sign U+2212. None for other text.
 std::optional<double> coordinate(std::string_view cell, bool decimal_comma);
 
 }  // namespace elastocheck::importer

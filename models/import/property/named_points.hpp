@@ -1,4 +1,4 @@
-// Points with names, of the programs whose files have them without a table.
+// Readers of named points from files that are not tables.
 #pragma once
 
 #include <array>
@@ -16,11 +16,12 @@ struct NamedPoint {
     std::array<double, 3> at{};  // as in the file, in mm
 };
 
-// A saved file has the names of its points under TEMP_SETTINGS, each with five lines of words and
-// three numbers, which are not its place; the coordinates stand without names, in the same order, under
-// FRONT SUSPENSION or REAR SUSPENSION. A listing has "x y z POINT:1 name". Points of both ends of a
-// car are called front_axle NAME and rear_axle NAME. Millimetres, unless `unit` or a listing's line "(mm)" says
-// otherwise. Throws SceneError with the line of what is neither.
+// Points of a file of Lotus SHARK (.shk). A saved file has the names of its points under TEMP_SETTINGS, each
+// followed by five lines of words and three numbers that are not its coordinates; the coordinates are
+// without names, in the same order, under FRONT SUSPENSION or REAR SUSPENSION. A listing has lines
+// "x y z POINT:1 name". Points of a file with both ends of a car are called front_axle NAME and
+// rear_axle NAME. The unit is mm, unless `unit` or a line "(mm)" of a listing says otherwise. Throws
+// SceneError with the line of anything else.
 std::vector<NamedPoint> points_of_shark(std::string_view text, const std::string& file,
                                         const std::string& unit, Draft& draft);
 

@@ -16,7 +16,7 @@
 namespace elastocheck::importer {
 namespace {
 
-constexpr std::size_t narrowest = 4;  // columns: the name and three coordinates
+constexpr std::size_t min_columns = 4;  // the name and three coordinates
 
 bool is_one_of(const std::string& word, std::initializer_list<std::string_view> words) {
     return std::ranges::find(words, word) != words.end();
@@ -65,7 +65,7 @@ std::string words_of(const SheetRow& row) {
 
 std::vector<NamedPoint> points_of_table(std::string_view text, const std::string& file,
                                         const Options& options, Draft& draft) {
-    const Sheet sheet = reader::read_sheet(text, file, narrowest);
+    const Sheet sheet = reader::read_sheet(text, file, min_columns);
     const PointColumns columns = point_columns(sheet, file, options.columns, options.unit);
     const bool decimal_comma = has_decimal_commas(sheet, columns, file);
     draft.remarks.push_back(fmt::format("Coordinates of the file in {}, {}{}.", columns.unit,
@@ -107,7 +107,7 @@ std::vector<NamedPoint> points_of_table(std::string_view text, const std::string
     return points;
 }
 
-// A name that occurs twice gets a number; a table of both sides often has them so.
+// Warns of names that occur twice, which a table of both sides often has: Names gives the second a number.
 void warn_of_equal_names(const std::vector<NamedPoint>& points, Notes& notes) {
     std::map<std::string, int> line_of;
     for (const auto& point : points) {
@@ -121,7 +121,7 @@ void warn_of_equal_names(const std::vector<NamedPoint>& points, Notes& notes) {
     }
 }
 
-// Some lists give y of both sides as the distance from the middle.
+// Warns of left and right points on the same side: some tables have y as the distance from the middle.
 void warn_of_equal_sides(const std::vector<NamedPoint>& points, Notes& notes) {
     std::map<std::string, double> left;
     for (const auto& point : points)
@@ -155,7 +155,7 @@ constexpr std::array opposites{
     Opposites{{"left", "right"}, 1}, Opposites{{"lf", "lr"}, 0},     Opposites{{"rf", "rr"}, 0},
     Opposites{{"fl", "rl"}, 0},      Opposites{{"front", "rear"}, 0}};
 
-// The name with each of its words in small letters, one of them replaced.
+// The words of a name in small letters.
 std::vector<std::string> words_in(std::string_view name) {
     std::vector<std::string> words(1);
     for (const char c : reader::small_letters(name))
@@ -166,9 +166,9 @@ std::vector<std::string> words_in(std::string_view name) {
     return words;
 }
 
-// Two points whose names differ in a pair of opposites lie as these words say; else the axes are
-// wrong. With y as the distance from the middle both are on one side, which is a warning. Of "front" and
-// "rear" most pairs do: the outer ends of two links may lie the other way.
+// Rejects axes in which two points whose names differ in a pair of opposites do not lie as the words say.
+// Left and right must not be exchanged (both on one side is a warning only, see above). Of "front" and
+// "rear" the majority of pairs decides, since the outer ends of two links may lie the other way.
 void check_opposites(const std::vector<NamedPoint>& points, const std::array<double, 3>& along,
                      const std::string& file) {
     const auto refuse = [&](const NamedPoint& first, const char* lies, const NamedPoint& second) {
@@ -179,8 +179,8 @@ void check_opposites(const std::vector<NamedPoint>& points, const std::array<dou
     };
     std::map<std::vector<std::string>, const NamedPoint*> by_words;
     for (const auto& point : points) by_words[words_in(point.name)] = &point;
-    const NamedPoint *front = nullptr, *rear = nullptr;  // the first such pair that does not
-    int wrong = 0;                                       // such pairs, less those that do
+    const NamedPoint *front = nullptr, *rear = nullptr;  // the first wrong pair of front and rear
+    int wrong = 0;                                       // number of wrong pairs less right ones
     for (const auto& [words, first] : by_words)
         for (std::size_t k = 0; k < words.size(); ++k)
             for (const auto& [word, axis] : opposites) {
@@ -191,13 +191,13 @@ void check_opposites(const std::vector<NamedPoint>& points, const std::array<dou
                 if (second == by_words.end()) continue;
                 const auto at = static_cast<std::size_t>(axis);
                 const double a = along[at] * first->at[at], b = along[at] * second->second->at[at];
-                const bool of_links = word[0] == "front";
-                if (of_links) wrong += a < b ? 1 : -1;
-                if (of_links && a < b && front == nullptr) {
+                const bool is_front_rear = word[0] == "front";
+                if (is_front_rear) wrong += a < b ? 1 : -1;
+                if (is_front_rear && a < b && front == nullptr) {
                     front = first;
                     rear = second->second;
                 }
-                if (!of_links && (axis == 1 ? a < 0 && b > 0 : a < b))
+                if (!is_front_rear && (axis == 1 ? a < 0 && b > 0 : a < b))
                     refuse(*first, axis == 1 ? "to the right of" : "behind", *second->second);
             }
     if (front != nullptr && wrong >= 0) refuse(*front, "behind", *rear);

@@ -1,3 +1,4 @@
+// Reads points of Lotus SHARK; named_points.hpp describes the file.
 #include "models/import/property/named_points.hpp"
 
 #include <algorithm>
@@ -38,8 +39,8 @@ std::vector<SharkLine> lines_of(std::string_view text) {
     return result;
 }
 
-// "front_axle " or "rear_axle " of a line "FRONT SUSPENSION ..."; none of any other.
-std::optional<std::string> end_in(const SharkLine& line) {
+// The prefix of names "front_axle " or "rear_axle " after a line "FRONT SUSPENSION ..."; none for any other.
+std::optional<std::string> prefix_in(const SharkLine& line) {
     const std::string text = reader::small_letters(line.text);
     for (const std::string end : {"front", "rear"})
         if (text.starts_with(end + " suspension")) return end + "_axle ";
@@ -51,13 +52,13 @@ struct SharkEnd {
     std::vector<NamedPoint> points;
 };
 
-constexpr std::size_t words_of_point = 6;  // lines: its name and five more
+constexpr std::size_t words_of_point = 6;  // lines of words of a point: its name and five more
 
-// The names under TEMP_SETTINGS, from the line behind it to the next end of the car.
+// The names under TEMP_SETTINGS, from line `at` to the next line "... SUSPENSION", where `at` stops.
 std::vector<NamedPoint> names_of(const std::vector<SharkLine>& lines, std::size_t& at) {
     std::vector<NamedPoint> names;
     std::size_t words = 0;
-    for (; at < lines.size() && !end_in(lines[at]); ++at) {
+    for (; at < lines.size() && !prefix_in(lines[at]); ++at) {
         if (lines[at].is_place() && words >= words_of_point) {
             const SharkLine& name = lines[at - words_of_point];
             names.push_back({name.number, std::string(name.text)});
@@ -67,7 +68,7 @@ std::vector<NamedPoint> names_of(const std::vector<SharkLine>& lines, std::size_
     return names;
 }
 
-// A name for each place, of which there are as many.
+// The points under a line "... SUSPENSION": the coordinates in the order of the names, as many of each.
 std::vector<NamedPoint> saved_points(const std::vector<SharkLine>& lines, std::size_t& next,
                                      std::vector<NamedPoint> names, const std::string& file) {
     const SharkLine& head = lines[next++];
@@ -90,21 +91,23 @@ std::vector<NamedPoint> saved_points(const std::vector<SharkLine>& lines, std::s
     return names;
 }
 
-std::vector<SharkEnd> saved(const std::vector<SharkLine>& lines, const std::string& file,
-                            Draft& draft) {
+// Ends of the car in a saved file.
+std::vector<SharkEnd> saved_ends(const std::vector<SharkLine>& lines, const std::string& file,
+                                 Draft& draft) {
     std::vector<SharkEnd> ends;
     std::vector<NamedPoint> names;
     for (std::size_t next = 0; next < lines.size();) {
         if (lines[next].text == "TEMP_SETTINGS") {
             if (const auto type = next + 2; type < lines.size() && lines[type].is_text()) {
-                const std::string made = mechanism_called(lines[type].text);
+                const std::string mechanism = mechanism_called(lines[type].text);
                 draft.remarks.push_back(fmt::format(
                     "Type of suspension in the file: {}{}.", reader::shown(lines[type].text),
-                    made.empty() ? ""
-                                 : fmt::format(" (import --as {} makes its mechanism)", made)));
+                    mechanism.empty()
+                        ? ""
+                        : fmt::format(" (import --as {} makes its mechanism)", mechanism)));
             }
             names = names_of(lines, ++next);
-        } else if (const auto end = end_in(lines[next])) {
+        } else if (const auto end = prefix_in(lines[next])) {
             if (names.empty())
                 fail(file, lines[next].number, "",
                      "points without names: no TEMP_SETTINGS with names before this line");
@@ -116,14 +119,15 @@ std::vector<SharkEnd> saved(const std::vector<SharkLine>& lines, const std::stri
     return ends;
 }
 
-std::vector<SharkEnd> listed(const std::vector<SharkLine>& lines, const std::string& file,
-                             std::string& unit, Draft& draft) {
+// Ends of the car in a listing; sets the unit that it declares.
+std::vector<SharkEnd> listed_ends(const std::vector<SharkLine>& lines, const std::string& file,
+                                  std::string& unit, Draft& draft) {
     std::vector<SharkEnd> ends;
     for (const SharkLine& line : lines) {
         const std::string word = reader::small_letters(line.text);
         for (const char* known : length_units)
             if (word.starts_with(fmt::format("({})", known)) && unit.empty()) unit = known;
-        if (const auto end = end_in(line)) ends.push_back({*end, {}});
+        if (const auto end = prefix_in(line)) ends.push_back({*end, {}});
         constexpr std::string_view mark = "POINT:";
         if (!line.rest.starts_with(mark) || line.is_text()) {
             if (line.numbers.size() >= 3)
@@ -156,7 +160,7 @@ std::vector<NamedPoint> points_of_shark(std::string_view text, const std::string
     const bool is_saved = std::ranges::any_of(
         lines, [](const SharkLine& line) { return line.text == "TEMP_SETTINGS"; });
     std::string unit;
-    auto ends = is_saved ? saved(lines, file, draft) : listed(lines, file, unit, draft);
+    auto ends = is_saved ? saved_ends(lines, file, draft) : listed_ends(lines, file, unit, draft);
     if (!option.empty() && !unit.empty() && option != unit)
         fail(file, 0, "--unit", "{}; the file has its points in {}", option, unit);
     if (unit.empty()) unit = option;

@@ -95,9 +95,9 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             const std::string& side = row[of_side];
             const bool pair = side == "left/right" || side == "left" || side == "right";
             any_pair |= side == "left/right";
-            const std::string called =
+            const std::string point =
                 row[of_name] + (pair ? side == "right" ? "_right" : "_left" : "");
-            draft.points.add(p, called, {line, row[of_name]});
+            draft.points.add(p, point, {line, row[of_name]});
             draft.notes.count("HARDPOINT");
         }
     }

@@ -66,15 +66,16 @@ struct ViewReader {
     std::map<std::string, Eigen::Isometry3d> frames = {};  // of parts and markers
     std::string system = {};                               // the default coordinate system
     std::string unit = {};
-    double angle = std::numbers::pi / 180;
+    double angle = std::numbers::pi / 180;  // [rad] per unit of angles without a suffix
     std::vector<NamedPoint> points = {};
 
-    // Three numbers, an angle with a D behind it in degrees; none for an expression, zeros if they are not given.
-    std::optional<Eigen::Vector3d> three(const ViewCommand& of, const char* key,
-                                         double unit_of_number) const {
+    // The three numbers of a field, those with the suffix D in degrees; zeros without the field, none for an
+    // expression.
+    std::optional<Eigen::Vector3d> three_numbers(const ViewCommand& command, const char* key,
+                                                 double unit_of_number) const {
         Eigen::Vector3d v = Eigen::Vector3d::Zero();
-        const auto found = of.fields.find(key);
-        if (found == of.fields.end()) return v;
+        const auto found = command.fields.find(key);
+        if (found == command.fields.end()) return v;
         const auto cells = split(found->second, ",");
         if (cells.size() != 3) return std::nullopt;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -90,19 +91,21 @@ struct ViewReader {
     }
 
     // The frame that a command creates, with body-fixed angles 3-1-3; none if its place is an expression.
-    std::optional<Eigen::Isometry3d> frame(const ViewCommand& of) const {
-        const auto given = of.fields.find("relative_to");
-        const std::string& in = given == of.fields.end() ? system : given->second;
-        const auto known = frames.find(in);
-        if (known == frames.end() && !in.empty() && !in.ends_with("ground"))
-            fail(file, of.line, "relative_to", "no command before creates {}", reader::quote(in));
+    std::optional<Eigen::Isometry3d> frame(const ViewCommand& command) const {
+        const auto given = command.fields.find("relative_to");
+        const std::string& parent = given == command.fields.end() ? system : given->second;
+        const auto known = frames.find(parent);
+        if (known == frames.end() && !parent.empty() && !parent.ends_with("ground"))
+            fail(file, command.line, "relative_to", "no command before creates {}",
+                 reader::quote(parent));
         Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
         if (known != frames.end()) result = known->second;
-        const auto at = three(of, "location", 1), turn = three(of, "orientation", angle);
-        if (!at || !turn) return std::nullopt;
+        const auto at = three_numbers(command, "location", 1),
+                   angles = three_numbers(command, "orientation", angle);
+        if (!at || !angles) return std::nullopt;
         result.translate(*at);
         for (const auto& [k, axis] : {std::pair{0, 2}, {1, 0}, {2, 2}})
-            result.rotate(Eigen::AngleAxisd((*turn)[k], Eigen::Vector3d::Unit(axis)));
+            result.rotate(Eigen::AngleAxisd((*angles)[k], Eigen::Vector3d::Unit(axis)));
         return result;
     }
 

@@ -1,4 +1,4 @@
-// The cells of a workbook (.xlsx, ISO/IEC 29500) as text of a table.
+// Writes the cells of a sheet of a workbook (.xlsx, ISO/IEC 29500) as CSV.
 #include <minizip/unzip.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ struct Workbook {
     }
 };
 
-// Names without their prefix: "x:row" is a row.
+// Whether an element has the name, in any XML namespace: "x:row" is a row.
 bool is_called(const pugi::xml_node& node, std::string_view name) {
     const std::string_view full = node.name();
     return full.substr(full.find(':') + 1) == name;  // npos + 1 is 0
@@ -68,7 +68,7 @@ pugi::xml_node child(const pugi::xml_node& of, std::string_view name) {
     return found.empty() ? pugi::xml_node() : found.front();
 }
 
-// The text of a string, whose parts may be formatted; without the pronunciation of them.
+// The text of a string: of its runs (r) and texts (t), without phonetic runs (rPh).
 std::string text_in(const pugi::xml_node& string) {
     std::string text;
     for (const pugi::xml_node& node : string) {
@@ -78,7 +78,7 @@ std::string text_in(const pugi::xml_node& string) {
     return text;
 }
 
-// Column of "AB12", from 0.
+// Column of a cell reference such as "AB12", from 0.
 std::size_t column_in(std::string_view place) {
     std::size_t column = 0;
     for (const char c : place)
@@ -103,7 +103,7 @@ std::string quoted(const std::string& cell) {
 
 struct SheetText {
     std::string name, csv;
-    bool has_numbers = false;  // three in a row
+    bool has_numbers = false;  // at least three in one row
 };
 
 SheetText text_of_sheet(const Workbook& book, const std::string& name, const std::string& part,

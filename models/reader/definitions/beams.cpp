@@ -15,11 +15,11 @@ namespace {
 
 using std::pow;
 
-constexpr double parallel = 1e-6;  // sine of the angle below which directions count as parallel
+constexpr double min_sine = 1e-6;  // of the angle between directions; below, they count as parallel
 
 // ---- Path of the beam.
 
-struct Course {
+struct BeamPath {
     std::vector<std::string> hardpoints;  // on the path
     std::vector<Vector3> nodes;           // from end to end [m]
     std::vector<std::size_t> corners;     // positions in `nodes` of the hardpoints
@@ -28,28 +28,29 @@ struct Course {
     std::size_t segments() const { return nodes.size() - 1; }
 };
 
-// Segments of each leg: one each, and further ones where segments are longest. Among equal legs the
-// first is served first, then the last, and so inwards, which keeps a symmetric beam symmetric
-// where possible.
-std::vector<int> shared_out(int segments, const std::vector<double>& lengths) {
-    const std::size_t legs = lengths.size();
-    std::vector<std::size_t> inwards;
-    for (std::size_t k = 0; k < legs; ++k) inwards.push_back(k % 2 == 0 ? k / 2 : legs - 1 - k / 2);
-    std::vector<int> share(legs, 1);
-    for (int left = segments - static_cast<int>(legs); left > 0; --left) {
-        std::size_t longest = inwards.front();
-        for (const std::size_t k : inwards)
+// Number of segments of each straight part: one each, the others one by one to the part whose segments
+// are longest. Among equal parts the order is first, last, second, last but one, ..., which keeps a
+// symmetric beam symmetric where possible.
+std::vector<int> segments_of_parts(int segments, const std::vector<double>& lengths) {
+    const std::size_t parts = lengths.size();
+    std::vector<std::size_t> alternating;
+    for (std::size_t k = 0; k < parts; ++k)
+        alternating.push_back(k % 2 == 0 ? k / 2 : parts - 1 - k / 2);
+    std::vector<int> share(parts, 1);
+    for (int left = segments - static_cast<int>(parts); left > 0; --left) {
+        std::size_t longest = alternating.front();
+        for (const std::size_t k : alternating)
             if (lengths[k] / share[k] > (1 + 1e-9) * lengths[longest] / share[longest]) longest = k;
         ++share[longest];
     }
     return share;
 }
 
-Course read_course(const Cursor& field, const Definitions& defs) {
-    Course course;
+BeamPath read_beam_path(const Cursor& field, const Definitions& defs) {
+    BeamPath path;
     const auto ends = field.require("bodies").list(2, "bodies");
-    course.first = body(ends[0], defs);
-    course.last = body(ends[1], defs);
+    path.first = body(ends[0], defs);
+    path.last = body(ends[1], defs);
 
     const Cursor through = field.require("through");
     const auto points = through.items();
@@ -60,7 +61,7 @@ Course read_course(const Cursor& field, const Definitions& defs) {
     std::vector<double> lengths;
     for (const Cursor& point : points) {
         places.push_back(hardpoint(point, defs));
-        course.hardpoints.push_back(point.value->text);
+        path.hardpoints.push_back(point.value->text);
         if (places.size() == 1) continue;
         lengths.push_back((places.back() - places[places.size() - 2]).norm());
         if (!(lengths.back() > coincident))
@@ -70,31 +71,31 @@ Course read_course(const Cursor& field, const Definitions& defs) {
                             point.found()));
     }
 
-    const int legs = static_cast<int>(lengths.size());
+    const int parts = static_cast<int>(lengths.size());
     const Cursor segments = field.require("segments");
     const int n = segments.whole_number(1, max_segments);
-    if (n < legs)
+    if (n < parts)
         segments.fail(
             fmt::format("{} segments for {} straight parts; allowed: at least one per part",
-                        segments.found(), legs));
-    if (n == 1 && course.first == course.last)
+                        segments.found(), parts));
+    if (n == 1 && path.first == path.last)
         ends[1].fail(
             fmt::format("both ends are on {}; a beam of one segment needs two different bodies",
                         ends[1].found()));
-    const auto share = shared_out(n, lengths);
-    course.nodes.push_back(places[0]);
-    course.corners.push_back(0);
-    for (std::size_t leg = 0; leg < share.size(); ++leg) {
-        for (int k = 1; k < share[leg]; ++k)
-            course.nodes.emplace_back(places[leg] +
-                                      (places[leg + 1] - places[leg]) * (double(k) / share[leg]));
-        course.corners.push_back(course.nodes.size());
-        course.nodes.push_back(places[leg + 1]);
+    const auto share = segments_of_parts(n, lengths);
+    path.nodes.push_back(places[0]);
+    path.corners.push_back(0);
+    for (std::size_t part = 0; part < share.size(); ++part) {
+        for (int k = 1; k < share[part]; ++k)
+            path.nodes.emplace_back(places[part] +
+                                    (places[part + 1] - places[part]) * (double(k) / share[part]));
+        path.corners.push_back(path.nodes.size());
+        path.nodes.push_back(places[part + 1]);
     }
-    return course;
+    return path;
 }
 
-// Whether the points in reverse order are their own mirror image.
+// Whether the mirror image of the points is the points in reverse order.
 bool is_own_image(const std::vector<Vector3>& points) {
     for (std::size_t k = 0; k < points.size(); ++k)
         if (!are_near(reflected(points[k]), points[points.size() - 1 - k], coincident))
@@ -103,14 +104,14 @@ bool is_own_image(const std::vector<Vector3>& points) {
 }
 
 // Whether both sides share the beam and its first half is the mirror image of its second.
-bool is_shared_evenly(const Cursor& field, const Course& course, const Definitions& defs) {
+bool is_shared_evenly(const Cursor& field, const BeamPath& path, const Definitions& defs) {
     const BodyId image =
-        course.first == ground ? ground : defs.twin_of[static_cast<std::size_t>(course.first)];
-    if (image != course.last) return false;
+        path.first == ground ? ground : defs.twin_of[static_cast<std::size_t>(path.first)];
+    if (image != path.last) return false;
     std::vector<Vector3> corners;
-    for (const std::size_t k : course.corners) corners.push_back(course.nodes[k]);
+    for (const std::size_t k : path.corners) corners.push_back(path.nodes[k]);
     if (!is_own_image(corners)) return false;
-    if (!is_own_image(course.nodes)) {
+    if (!is_own_image(path.nodes)) {
         const Cursor segments = field.require("segments");
         segments.fail(fmt::format(
             "{} segments cannot be divided equally between the two sides; one more or one less can",
@@ -125,34 +126,34 @@ std::string numbered(const std::string& name, std::size_t k) {
     return fmt::format("{}.{}", name, k);
 }
 
-// Adds the bodies 1, 2, ... of the beam `name` at its inner nodes, with all their names.
-void add_bodies(const Cursor& field, const std::string& name, const Course& course,
+// Adds bodies at the inner nodes: "NAME.1", ..., at a corner also "NAME.HARDPOINT".
+void add_bodies(const Cursor& field, const std::string& name, const BeamPath& path,
                 Definitions& defs) {
     const auto id = [&](std::size_t node) {
         return static_cast<BodyId>(defs.bodies.size() + node - 1);
     };
-    for (std::size_t k = 1; k < course.segments(); ++k)
+    for (std::size_t k = 1; k < path.segments(); ++k)
         if (!defs.body_ids.emplace(numbered(name, k), id(k)).second)
             field.fail(
                 fmt::format("the body name {} is reserved for a node of this beam, but already in "
                             "use; rename the other body",
                             quote(numbered(name, k))));
-    for (std::size_t corner = 1; corner + 1 < course.corners.size(); ++corner)
-        defs.body_ids.emplace(name + "." + course.hardpoints[corner], id(course.corners[corner]));
-    for (std::size_t k = 1; k < course.segments(); ++k) {
+    for (std::size_t corner = 1; corner + 1 < path.corners.size(); ++corner)
+        defs.body_ids.emplace(name + "." + path.hardpoints[corner], id(path.corners[corner]));
+    for (std::size_t k = 1; k < path.segments(); ++k) {
         defs.twin_of.push_back(static_cast<BodyId>(defs.bodies.size()));
         defs.bodies.push_back(
-            {numbered(name, k), {.r = course.nodes[k], .p = Quaternion::Identity()}});
+            {numbered(name, k), {.r = path.nodes[k], .p = Quaternion::Identity()}});
     }
     if (defs.bodies.size() > max_bodies)
         field.fail(fmt::format("{} bodies including its nodes; allowed: at most {}",
                                defs.bodies.size(), max_bodies));
 }
 
-Course image(Course course, const Mirror& mirror) {
-    for (Vector3& node : course.nodes) node = reflected(node);
-    for (std::string& point : course.hardpoints) point = turned(mirror, point).value_or(point);
-    return course;
+BeamPath image(BeamPath path, const Mirror& mirror) {
+    for (Vector3& node : path.nodes) node = reflected(node);
+    for (std::string& point : path.hardpoints) point = mirrored_name(mirror, point).value_or(point);
+    return path;
 }
 
 // ---- Cross-section, and stiffness of a segment.
@@ -169,11 +170,12 @@ double positive(const Cursor& field, const Unit& unit) {
     return above_zero(field, "too small", unit);
 }
 
-// force/length², length², length⁴
+// Unit of E and G, force/length².
 Unit modulus(const Units& u) {
     const double L = u.length.divide;
     return {u.force.name + "/" + u.length.name + "²", 1, u.force.multiply * L * L};
 }
+// length² or length⁴
 Unit power_of_length(const Units& u, int n) {
     return {u.length.name + (n == 2 ? "²" : "⁴"), pow(u.length.divide, n)};
 }
@@ -221,6 +223,7 @@ CrossSection read_cross_section(const Cursor& beam, const Units& units) {
             .GA_z = shear("shear_z")};
 }
 
+// K of one segment (beams.hpp).
 Matrix6 stiffness(const CrossSection& s, double L) {
     const auto shear = [&](double EI, double GA) {
         const double phi = GA > 0 ? 12 * EI / (GA * L * L) : 0;
@@ -231,7 +234,7 @@ Matrix6 stiffness(const CrossSection& s, double L) {
     return k.asDiagonal();
 }
 
-// Direction closest to z; none for a round section, where any direction will do.
+// The direction to which z of the section is closest; none for a round section, which needs none.
 std::optional<Vector3> read_up(const Cursor& field, const CrossSection& section,
                                const Definitions& defs) {
     if (const auto up = field.optional("up")) return direction(*up, defs);
@@ -241,11 +244,11 @@ std::optional<Vector3> read_up(const Cursor& field, const CrossSection& section,
     return std::nullopt;
 }
 
-// x along the leg, z perpendicular to it towards `up`.
-Quaternion axes(const Cursor& field, const Vector3& leg, const std::optional<Vector3>& up) {
-    const Vector3 x = leg.normalized();
+// x along the segment, z perpendicular to it towards `up`.
+Quaternion axes(const Cursor& field, const Vector3& segment, const std::optional<Vector3>& up) {
+    const Vector3 x = segment.normalized();
     const Vector3 across = up ? Vector3(*up - up->dot(x) * x) : x.unitOrthogonal();
-    if (!(across.norm() > parallel))
+    if (!(across.norm() > min_sine))
         field.require("up").fail(
             "parallel to a straight part of the beam; z must be perpendicular to it");
     Matrix3 A;
@@ -257,16 +260,16 @@ Quaternion axes(const Cursor& field, const Vector3& leg, const std::optional<Vec
 
 std::vector<Elastic> segments(const std::string& name, const Cursor& field,
                               const Definitions& defs) {
-    const Course course = read_course(field, defs);
+    const BeamPath path = read_beam_path(field, defs);
     const CrossSection section = read_cross_section(field, defs.units);
     const auto up = read_up(field, section, defs);
     const auto body_at = [&](std::size_t node) {
-        if (node == 0) return course.first;
-        return node == course.segments() ? course.last : defs.body_ids.at(numbered(name, node));
+        if (node == 0) return path.first;
+        return node == path.segments() ? path.last : defs.body_ids.at(numbered(name, node));
     };
     std::vector<Elastic> list;
-    for (std::size_t k = 1; k <= course.segments(); ++k) {
-        const Vector3 from = course.nodes[k - 1], to = course.nodes[k];
+    for (std::size_t k = 1; k <= path.segments(); ++k) {
+        const Vector3 from = path.nodes[k - 1], to = path.nodes[k];
         const Quaternion A = axes(field, to - from, up);
         const auto marker = [&](BodyId id) {
             return Marker{id, point_of(id, 0.5 * (from + to), defs).s_local, A};
@@ -289,17 +292,20 @@ void add_beam_bodies(const Cursor& scene, Definitions& defs) {
     for (const auto& [name, field] : section->entries()) {
         field.only_keys({"bodies", "through", "segments", "E", "G", "diameter", "wall", "A", "I_y",
                          "I_z", "J", "shear_y", "shear_z", "up"});
-        const Course course = read_course(field, defs);
+        const BeamPath path = read_beam_path(field, defs);
         const BodyId first = static_cast<BodyId>(defs.bodies.size());
-        add_bodies(field, name, course, defs);
+        add_bodies(field, name, path, defs);
         if (!defs.mirror) continue;
         const BodyId end = static_cast<BodyId>(defs.bodies.size());
         const auto other = twin_name(*defs.mirror, name, *section);
-        if (other) add_bodies(field, *other, image(course, *defs.mirror), defs);
-        const bool evenly = !other && is_shared_evenly(field, course, defs);
+        if (other) add_bodies(field, *other, image(path, *defs.mirror), defs);
+        const bool evenly = !other && is_shared_evenly(field, path, defs);
         for (BodyId id = first; id < end; ++id) {
             BodyId& twin = defs.twin_of[static_cast<std::size_t>(id)];
-            if (other) defs.twin_of[static_cast<std::size_t>(twin = id - first + end)] = id;
+            if (other) {
+                twin = end + (id - first);
+                defs.twin_of[static_cast<std::size_t>(twin)] = id;
+            }
             if (evenly) twin = first + (end - 1 - id);
         }
     }
@@ -312,7 +318,7 @@ void read_beams(const Cursor& scene, const Definitions& defs, std::vector<Elasti
         const auto list = segments(name, field, defs);
         elastics.insert(elastics.end(), list.begin(), list.end());
         if (!defs.mirror) continue;
-        const auto other = turned(*defs.mirror, name);
+        const auto other = mirrored_name(*defs.mirror, name);
         if (!other) continue;
         for (std::size_t k = 0; k < list.size(); ++k)
             elastics.push_back(

@@ -67,7 +67,8 @@ void read_bodies(const Cursor& section, Definitions& defs) {
     for (const auto& [name, field] : section.entries()) {
         if (name == "ground")
             field.fail("ground is predefined and cannot be defined again; choose another name");
-        field.only_keys({"origin", "mass", "centre_of_gravity"});  // the last two: gravity.cpp
+        // gravity.cpp reads the last two
+        field.only_keys({"origin", "mass", "centre_of_gravity"});
         const Vector3 origin = hardpoint(field.require("origin"), defs);
         defs.body_ids[name] = static_cast<BodyId>(defs.bodies.size());
         defs.bodies.push_back({name, {.r = origin, .p = Quaternion::Identity()}});
@@ -94,9 +95,8 @@ Vector3 named_axis(const Cursor& field) {
     const std::string& word = field.value->text;
     const double sign = word.starts_with('-') ? -1 : 1;
     const std::string letter = sign < 0 ? word.substr(1) : word;
-    if (letter == "x") return sign * Vector3::UnitX();
-    if (letter == "y") return sign * Vector3::UnitY();
-    if (letter == "z") return sign * Vector3::UnitZ();
+    for (int k = 0; k < 3; ++k)
+        if (letter == std::string(1, "xyz"[k])) return sign * Vector3::Unit(k);
     field.fail(
         fmt::format("{} is not a direction; allowed: x, y, z, -x, -y, -z, [x, y, z] or two "
                     "hardpoints [from, to]",
@@ -136,7 +136,7 @@ double above_zero(const Cursor& field, const char* what, const Unit& unit) {
 Vector3 vector(const Cursor& field, const Unit& unit) {
     const auto items = field.list(3, "numbers");
     const auto si = [&](std::size_t k) { return unit.si(items[k].number(unit.name)); };
-    return {si(0), si(1), si(2)};  // braces: in this order
+    return {si(0), si(1), si(2)};  // braces: numbers are recorded in this order
 }
 
 Vector3 hardpoint(const Cursor& field, const Definitions& defs) {
@@ -188,7 +188,7 @@ Point point_of(BodyId body, const Vector3& p, const Definitions& defs) {
     return {body, p - defs.bodies[static_cast<std::size_t>(body)].design.r};
 }
 
-// Which of several formulas Eigen takes decides on the sign only.
+// Eigen chooses among several formulas by the trace; they differ in the sign of the quaternion at most.
 Quaternion quaternion_of(const Matrix3& axes) { return Quaternion(axes).normalized(); }
 
 Marker marker_of(BodyId body, const Vector3& p, const Matrix3& axes, const Definitions& defs) {

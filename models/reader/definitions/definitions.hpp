@@ -35,13 +35,14 @@ struct Definitions {
     Units units;
     std::optional<Mirror> mirror;
     std::map<std::string, Vector3> points;        // [m], ground axes
-    std::map<std::string, BodyId> body_ids;       // with ground
+    std::map<std::string, BodyId> body_ids;       // ground included
     std::vector<Body> bodies;                     // twins at the end
     std::vector<BodyId> twin_of;                  // of each body; itself if it is shared
     std::optional<std::filesystem::path> folder;  // folder of the files that the scene refers to
 };
 
-// `twins`: of the same scene with other numbers, from which the twins are taken.
+// `twins`: definitions of the same scene with the numbers of the twins' side (one_side.hpp), from which
+// the twins' hardpoints and bodies are taken.
 Definitions read_definitions(const Cursor& scene, const Definitions* twins = nullptr);
 void take_twin_bodies(const Definitions& twins, Definitions& defs);
 
@@ -68,8 +69,8 @@ Point point_of(BodyId body, const Vector3& p, const Definitions& defs);
 Quaternion quaternion_of(const Matrix3& axes);
 Marker marker_of(BodyId body, const Vector3& p, const Matrix3& axes, const Definitions& defs);
 
-// The fields `bodies`, `from` and `to` of what lies between two points; `what` completes "... needs
-// a length".
+// The fields `bodies`, `from` and `to` of a part between two points; `what` names it in the error
+// "... needs a length".
 struct Between {
     Point i, j;
     double length;  // [m]

@@ -14,18 +14,17 @@
 namespace elastocheck::reader {
 namespace {
 
-// Of any language.
+// A letter of any language: ASCII, or any byte of a longer UTF-8 character.
 bool is_any_letter(char c) { return is_letter(c) || static_cast<unsigned char>(c) >= 0x80; }
 
 bool is_all_letters(std::string_view text) {
     return !text.empty() && std::ranges::all_of(text, is_any_letter);
 }
 
-// Whether any name in the sections of the scene contains the mirrored word.
-bool any_name_turns(const Mirror& mirror, const Cursor& scene) {
+bool any_name_is_mirrored(const Mirror& mirror, const Cursor& scene) {
     for (const Value& section : scene.value->items)
         for (const std::string& name : section.keys)
-            if (turned(mirror, name)) return true;
+            if (mirrored_name(mirror, name)) return true;
     return false;
 }
 
@@ -38,16 +37,16 @@ BodyId twin(BodyId body, const Definitions& defs) {
     return body == ground ? ground : defs.twin_of[static_cast<std::size_t>(body)];
 }
 
-// p' = S p:  s' = S (r + s) - r' = S s + (S r - r'). The bracket is exactly 0 unless the body is
-// shared and its origin is off the plane.
+// s_local of the mirrored point: from p' = S p, s' = S (r + s) - r' = S s + (S r - r'). The bracket is
+// exactly 0 unless the body is shared and its origin is off the plane.
 Vector3 twin_place(BodyId body, const Vector3& s_local, const Definitions& defs) {
     if (body == ground) return reflected(s_local);
     const auto origin = [&](BodyId b) { return defs.bodies[static_cast<std::size_t>(b)].design.r; };
     return reflected(s_local) + (reflected(origin(body)) - origin(twin(body, defs)));
 }
 
-// A' = S A S. The vector part of a quaternion is parallel to its rotation axis, an axial vector:
-// v' = -S v.
+// A' = S A S: the vector part v of the quaternion is parallel to the rotation axis, an axial vector, so
+// that v' = -S v.
 Marker twin(const Marker& m, const Definitions& defs) {
     const Vector3 v = -reflected(Vector3(m.A_local.vec()));
     return {twin(m.body, defs), twin_place(m.body, m.s_local, defs),
@@ -67,13 +66,13 @@ Mirror read_mirror(const Cursor& field, const Cursor& scene) {
         field.fail(fmt::format(
             "{} is not a mirror; expected two different words of letters, like left -> right",
             field.found()));
-    if (!any_name_turns(mirror, scene))
+    if (!any_name_is_mirrored(mirror, scene))
         field.fail(
             fmt::format("nothing to mirror: no name contains the word {}", quote(mirror.from)));
     return mirror;
 }
 
-std::optional<std::string> turned(const Mirror& mirror, std::string_view name) {
+std::optional<std::string> mirrored_name(const Mirror& mirror, std::string_view name) {
     std::string result;
     bool found = false;
     while (!name.empty()) {
@@ -88,15 +87,15 @@ std::optional<std::string> turned(const Mirror& mirror, std::string_view name) {
 }
 
 bool is_twin(const Mirror& mirror, std::string_view name) {
-    return turned({mirror.to, mirror.from}, name).has_value();
+    return mirrored_name({mirror.to, mirror.from}, name).has_value();
 }
 
 std::optional<std::string> twin_name(const Mirror& mirror, const std::string& name,
                                      const Cursor& section) {
-    const auto twin = turned(mirror, name);
+    const auto twin = mirrored_name(mirror, name);
     if (twin)
-        if (const auto there = section.optional(*twin))
-            there->fail(
+        if (const auto twin_entry = section.optional(*twin))
+            twin_entry->fail(
                 fmt::format("the mirror generates it from {}; remove one of the two", quote(name)));
     return twin;
 }
@@ -104,11 +103,11 @@ std::optional<std::string> twin_name(const Mirror& mirror, const std::string& na
 void require_both_sides(const Cursor& section, const Definitions& defs) {
     if (!defs.mirror) return;
     for (const auto& [name, field] : section.entries()) {
-        if (turned(*defs.mirror, name)) continue;
+        if (mirrored_name(*defs.mirror, name)) continue;
         std::set<std::string> words;
         collect_words(*field.value, words);
         for (const std::string& word : words) {
-            const auto twin = turned(*defs.mirror, word);
+            const auto twin = mirrored_name(*defs.mirror, word);
             const bool is_reference = defs.points.contains(word) || defs.body_ids.contains(word);
             if (!twin || !is_reference || words.contains(*twin)) continue;
             field.fail(

@@ -1,9 +1,8 @@
 // Mirror symmetry of a scene: entries written for one side are copied to the other side.
 //
-// The mirror plane is y = 0, S = diag(1, -1, 1). Positions, forces and translations are polar
-// vectors, v' = S v; moments and rotations are axial ones, m' = -S m. A right-handed frame A has
-// the right-handed image A' = S A S, in whose axes a deformation (d, θ) becomes P (d, θ) with
-// P = diag(S, -S), so that K' = P K P.
+// The mirror plane is y = 0, S = diag(1, -1, 1). Positions, forces and translations are polar vectors, v' = S
+// v; moments and rotations are axial ones, m' = -S m. A right-handed frame A has the right-handed image A' = S
+// A S, in whose axes a deformation (d, θ) becomes P (d, θ) with P = diag(S, -S), so that K' = P K P.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +15,8 @@
 
 namespace elastocheck::reader {
 
-// An entry with the word `from` in its name has a twin with `to` in its place. All
-// others are shared.
+// An entry with the word `from` in its name has a twin with `to` in its place; all others are shared by
+// both sides.
 struct Mirror {
     std::string from, to;  // "left", "right"
 };
@@ -25,14 +24,14 @@ struct Mirror {
 // Reads `left -> right`; some name of the scene must contain the first word.
 Mirror read_mirror(const Cursor& field, const Cursor& scene);
 
-// The name with every word `from` replaced, or none if it has none. "arm_left" ->
-// "arm_right", not "leftover".
-std::optional<std::string> turned(const Mirror& mirror, std::string_view name);
+// The name with every word `from` replaced by `to`, the name of its twin; none if it lacks the word.
+// "arm_left" becomes "arm_right"; "leftover" has no twin.
+std::optional<std::string> mirrored_name(const Mirror& mirror, std::string_view name);
 
-// Whether the name has the word `to`, so that it is of a twin.
+// Whether the name has the word `to`: that of a twin.
 bool is_twin(const Mirror& mirror, std::string_view name);
 
-// The same for an entry of the section, which must not define the twin's name.
+// mirrored_name() of an entry of the section; an error if the section defines the twin itself.
 std::optional<std::string> twin_name(const Mirror& mirror, const std::string& name,
                                      const Cursor& section);
 
@@ -40,11 +39,10 @@ std::optional<std::string> twin_name(const Mirror& mirror, const std::string& na
 struct Definitions;
 void require_both_sides(const Cursor& section, const Definitions& defs);
 
-// ---- Twins, on the twins of the bodies.
+// ---- Twins of parts, attached to the twins of their bodies.
 //
-// Driven quantities are mirrored: equal values on both sides are a symmetric motion. So the
-// axis of a revolute or cylindrical joint, about which its angle is measured, is mirrored as
-// an axial vector.
+// Equal values of a driven quantity on both sides are a symmetric motion: the axis of a revolute or
+// cylindrical joint, about which its angle is measured, is mirrored as an axial vector.
 Vector3 reflected(const Vector3& v);  // S v
 Vector6 reflected(const Vector6& v);  // P v
 JointKind twin(const JointKind& joint, const Definitions& defs);

@@ -12,15 +12,15 @@ namespace elastocheck::reader {
 
 struct Term {
     std::string name;
-    Cursor at;
-    bool has_number = false;
+    Cursor at;                // the number, or the name itself
+    bool has_number = false;  // else the number is 1
 
     double number(const std::string& unit = "") const { return has_number ? at.number(unit) : 1; }
 };
 
-// A name, a list of names or a map of names to numbers, without repeats. `what` completes "the name
-// of ...".
-std::vector<Term> terms(const Cursor& field, const std::string& what);
+// A name, a list of names or a map of names to numbers, without repeats. `quantity` is what the names
+// denote, "a load", for errors.
+std::vector<Term> terms(const Cursor& field, const std::string& quantity);
 
 // The section `loads`, numbers as written.
 using Loads = std::map<std::string, Load>;

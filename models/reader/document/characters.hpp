@@ -9,7 +9,7 @@ namespace elastocheck::reader {
 // One UTF-8 character, or an invalid byte.
 struct Character {
     std::string_view bytes;
-    char32_t code = 0;  // of an invalid byte its value
+    char32_t code = 0;  // code point; of an invalid byte its value
     bool valid = false;
 
     bool control() const;        // C0, DEL, C1, line and paragraph separator
@@ -27,7 +27,6 @@ bool is_utf8(std::string_view text);
 inline constexpr std::string_view blanks{" \t\r\v\f\0", 6};
 inline bool is_blank(char c) { return blanks.find(c) != blanks.npos; }
 
-// Without the blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
 // ---- ASCII, in any locale.

@@ -15,19 +15,19 @@
 namespace elastocheck::reader {
 namespace {
 
-// Range of non-zero numbers: no conversion, product or quotient then leaves the range of double.
+// Size of non-zero numbers: no conversion, product or quotient of them then leaves the range of double.
 constexpr double min_size = 1e-30, largest_size = 1e30;
 
 // Letters of any language, digits, _ and, not first, - + . and inner spaces: safe in file names,
 // column heads and command lines.
 bool is_name(std::string_view name) {
-    const auto is_first = [](char c) {
+    const auto may_begin = [](char c) {
         return is_word(c) || static_cast<unsigned char>(c) >= 0x80;
     };
     const auto is_allowed = [&](char c) {
-        return is_first(c) || c == '-' || c == '+' || c == '.' || c == ' ';
+        return may_begin(c) || c == '-' || c == '+' || c == '.' || c == ' ';
     };
-    return !name.empty() && name.size() <= longest_name && is_first(name.front()) &&
+    return !name.empty() && name.size() <= longest_name && may_begin(name.front()) &&
            name.back() != ' ' && std::all_of(name.begin(), name.end(), is_allowed);
 }
 
@@ -38,11 +38,11 @@ void Cursor::fail(const std::string& what) const {
 }
 
 Cursor Cursor::at(const Value& other, const std::string& its_path) const {
-    return {&other, its_path, file, numbers, {}, accesses, is_first};
+    return {&other, its_path, file, numbers, {}, accesses, first_reading};
 }
 
 std::string Cursor::path_of(std::string_view key) const {
-    return is_first ? child_path(path, key) : std::string();
+    return first_reading ? child_path(path, key) : std::string();
 }
 
 std::string Cursor::found() const {
@@ -56,19 +56,19 @@ std::string Cursor::found() const {
 }
 
 namespace {
-// What a file is whose first fields are not those of what was asked for.
+// ": the file is a study, ..." if an unknown field at the top is the mark of another kind of file.
 std::string kind_of_file(const std::string& field) {
-    for (const auto& [of, kind] : {std::pair{"elastocheck", "a scene"},
-                                   {"elastocheck_study", "a study, for `elastocheck study`"},
-                                   {"vary", "goals, for `elastocheck optimise`"},
-                                   {"columns", "a map, for --map"}})
-        if (field == of) return fmt::format(": the file is {}", kind);
+    for (const auto& [mark, kind] : {std::pair{"elastocheck", "a scene"},
+                                     {"elastocheck_study", "a study, for `elastocheck study`"},
+                                     {"vary", "goals, for `elastocheck optimise`"},
+                                     {"columns", "a map, for --map"}})
+        if (field == mark) return fmt::format(": the file is {}", kind);
     return {};
 }
 }  // namespace
 
 void Cursor::only_keys(Words allowed) const {
-    if (is_first) only_keys(std::vector<std::string>(allowed.begin(), allowed.end()));
+    if (first_reading) only_keys(std::vector<std::string>(allowed.begin(), allowed.end()));
 }
 
 void Cursor::only_keys(const std::vector<std::string>& allowed) const {
@@ -86,9 +86,8 @@ void Cursor::only_keys(const std::vector<std::string>& allowed) const {
 
 std::optional<Cursor> Cursor::optional(std::string_view key) const {
     if (accesses) accesses->looked_for[value].emplace(key);
-    const auto found = std::find(value->keys.begin(), value->keys.end(), key);
-    if (found == value->keys.end()) return std::nullopt;
-    return at(value->items[static_cast<std::size_t>(found - value->keys.begin())], path_of(key));
+    const Value* field = entry(*value, key);
+    return field == nullptr ? std::nullopt : std::optional(at(*field, path_of(key)));
 }
 
 Cursor Cursor::require(std::string_view key) const {
@@ -104,7 +103,7 @@ std::vector<Cursor::Named> Cursor::entries(Keys keys) const {
     for (std::size_t k = 0; k < value->keys.size(); ++k) {
         const std::string& name = value->keys[k];
         const auto side = keys == Keys::numbers ? name.rfind('@') : name.npos;
-        if (is_first && !is_name(std::string_view(name).substr(0, side)))
+        if (first_reading && !is_name(std::string_view(name).substr(0, side)))
             at(value->items[k], path)
                 .fail(fmt::format("{} cannot be a name; allowed: up to {} letters, digits, _ and, "
                                   "not first, - + . "
@@ -121,7 +120,7 @@ std::vector<Cursor> Cursor::items() const {
     items.reserve(value->items.size());
     for (std::size_t k = 0; k < value->items.size(); ++k) {
         items.push_back(at(value->items[k], path));
-        if (is_first) items.back().item = item + '.' + place_in(*value, k);
+        if (first_reading) items.back().item = item + '.' + place_in(*value, k);
     }
     return items;
 }
@@ -136,7 +135,7 @@ const std::string& Cursor::text(std::string_view what, std::string_view kind) co
     if (accesses) accesses->read.insert(value);
     if (value->kind != Value::Kind::scalar || value->text.empty())
         fail(fmt::format("expected {}{}, found {}", what, kind, found()));
-    if (is_first && std::any_of(value->text.begin(), value->text.end(), is_control))
+    if (first_reading && std::any_of(value->text.begin(), value->text.end(), is_control))
         fail(fmt::format("{} is not one line of plain text", found()));
     return value->text;
 }
@@ -164,7 +163,7 @@ double Cursor::number(const std::string& unit) const {
     if (error != std::errc() || (size != 0 && !(size >= min_size && size <= largest_size)))
         fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(),
                          min_size, largest_size));
-    if (is_first) numbers->push_back({path + item, x, unit});
+    if (first_reading) numbers->push_back({path + item, x, unit});
     return x;
 }
 
@@ -183,7 +182,7 @@ int Cursor::whole_number(int min, int max) const {
     if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < min ||
         n > max)
         fail(fmt::format("expected a whole number from {} to {}, found {}", min, max, found()));
-    if (is_first) numbers->push_back({path + item, static_cast<double>(n), ""});
+    if (first_reading) numbers->push_back({path + item, static_cast<double>(n), ""});
     return n;
 }
 

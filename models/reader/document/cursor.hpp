@@ -30,9 +30,9 @@ struct Cursor {
     std::vector<Number>* numbers;  // records every number that is read
     std::string item{};            // place in a list, ".y" or ".4.2": part of a number's path only
     Accesses* accesses = nullptr;  // if not null, records every access
-    // Else the same file was read before with other numbers: what does not depend on them is not
-    // checked again, numbers are not recorded, errors do not say where.
-    bool is_first = true;
+    // False where the same tree was read before with other numbers: what does not depend on them is not
+    // checked again, numbers are not recorded, and errors lack their paths.
+    bool first_reading = true;
 
     [[noreturn]] void fail(const std::string& what) const;
 
@@ -43,8 +43,8 @@ struct Cursor {
     Cursor require(std::string_view key) const;
     std::optional<Cursor> optional(std::string_view key) const;
 
-    // The entries of a section, each with its user-defined name, or that of a number, which may be of
-    // one side. An empty section has none.
+    // The entries of a section by their keys; an empty section has none. Keys are user-defined names, or
+    // paths of numbers, to which "@left" or "@right" may be appended.
     struct Named;
     enum class Keys { names, numbers };
     std::vector<Named> entries(Keys keys = Keys::names) const;

@@ -15,8 +15,7 @@ namespace {
 constexpr std::size_t longest_shown = 64;
 constexpr std::size_t longest_list = 24;
 
-// Edit distance with insertions, deletions, replacements and transpositions
-// (optimal string alignment).
+// Edit distance with insertions, deletions, replacements and transpositions (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> before_last, last(b.size() + 1), row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -33,8 +32,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row[b.size()];
 }
 
-// A probable misspelling: one letter or up to a third of them wrong. Words below three letters
-// never match.
+// A probable misspelling: one letter or up to a third of them wrong. Words below three letters never match.
 bool is_near(std::size_t distance, std::size_t letters) {
     return letters >= 3 && distance <= std::max<std::size_t>(1, letters / 3);
 }

@@ -18,8 +18,8 @@ enum class Pipes { allowed, refused };
 TextFile read_text(const std::filesystem::path& file, Pipes pipes,
                    std::size_t largest = largest_text);
 
-// Whether a file is outside the folder once symbolic links are resolved. A path that cannot be
-// resolved cannot be read either, and is not.
+// Whether a file is outside the folder once symbolic links are resolved. False for a path that cannot
+// be resolved: it cannot be read either.
 bool leads_out_of(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 }  // namespace elastocheck::reader

@@ -119,7 +119,7 @@ class TreeBuilder final : public YAML::EventHandler {
     }
 
     void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
-        // yaml-cpp's marks for plain and quoted
+        // "?" and "!": yaml-cpp's own tags of plain and quoted scalars
         const bool is_own = tag.empty() || tag == "?" || tag == "!";
         if (!is_own)
             fail_at(mark, fmt::format("tags ({}) are not part of the scene format", quote(tag)));
@@ -177,6 +177,12 @@ void refuse_binary(std::string_view text, const std::string& file) {
 }
 
 }  // namespace
+
+const Value* entry(const Value& map, std::string_view key) {
+    const auto found = std::ranges::find(map.keys, key);
+    return found == map.keys.end() ? nullptr
+                                   : &map.items[static_cast<std::size_t>(found - map.keys.begin())];
+}
 
 std::string place_in(const Value& list, std::size_t k) {
     const bool is_vector = list.items.size() == 3 && list.items[0].kind != Value::Kind::list;

@@ -1,12 +1,13 @@
-// Reads springs given at the wheel: a rate of its vertical travel, and of a bar between two wheels.
+// Reads springs given at the wheel: a rate of the vertical travel of one wheel, or, of an anti-roll bar,
+// of the difference of the travels of two.
 //
-// A bushing from ground (i) to the wheel centre (j), both markers there at the design position, ground
-// axes: d_z is the travel of the wheel centre.
+// The element is a bushing from ground (i) to the wheel centre (j), both markers at that centre in the
+// design position, in ground axes, so that d_z is the travel of the wheel centre:
 //
 //   u(d_z) = ½ k d_z² + P d_z,   P the force that pushes the wheel down at the design position
 //
-// A bar [first, second] has the difference of two travels. A body of its name slides along z at the height
-// of the first wheel's centre, and is i in place of ground, at the second one's centre.
+// A bar [first, second] adds a body that slides along z and follows the height of the first wheel's
+// centre. The bushing from this body to the second wheel's centre has the difference of the travels.
 #include <fmt/format.h>
 
 #include <map>
@@ -67,16 +68,16 @@ std::optional<Elastic> read_at_wheel(const std::string& name, const Cursor& curs
 void add_bodies_of_bars(const Cursor& scene, const std::vector<Wheel>& wheels, Definitions& defs) {
     const auto section = scene.optional("springs");
     if (!section) return;
-    for (const auto& [name, at] : section->entries()) {
-        const auto bar = wheels_of_bar(at);
+    for (const auto& [name, spring] : section->entries()) {
+        const auto bar = wheels_of_bar(spring);
         if (!bar) continue;
-        if (defs.mirror && turned(*defs.mirror, name))
+        if (defs.mirror && mirrored_name(*defs.mirror, name))
             bar->fail(fmt::format("a bar is between both sides, but its name has {}; rename it",
                                   quote(defs.mirror->from)));
         const BodyId body = static_cast<BodyId>(defs.bodies.size());
         if (!defs.body_ids.emplace(name, body).second)
-            at.fail(fmt::format("the bar's body is called {}, as another one; rename the bar",
-                                quote(name)));
+            spring.fail(fmt::format("the bar's body is called {}, as another one; rename the bar",
+                                    quote(name)));
         const Vector3 r = centre_of(*ends_of_bar(*bar, wheels)[0], defs.bodies);
         defs.bodies.push_back({name, {.r = r, .p = Quaternion::Identity()}});
         defs.twin_of.push_back(body);
@@ -86,18 +87,19 @@ void add_bodies_of_bars(const Cursor& scene, const std::vector<Wheel>& wheels, D
 void add_joints_of_bars(const Cursor& scene, const Definitions& defs, Scene& result) {
     const auto section = scene.optional("springs");
     if (!section) return;
-    for (const auto& [name, at] : section->entries()) {
-        const auto bar = wheels_of_bar(at);
+    for (const auto& [name, spring] : section->entries()) {
+        const auto bar = wheels_of_bar(spring);
         if (!bar) continue;
         const Wheel& wheel = *ends_of_bar(*bar, result.wheels)[0];
         const BodyId body = defs.body_ids.at(name);
         const Vector3 r = defs.bodies[static_cast<std::size_t>(body)].design.r;
         const Direction up{body, Vector3::UnitZ()};
         const Point origin{body, Vector3::Zero()};
-        add_joint(at,
+        add_joint(spring,
                   {name + ".slide", Translational{origin, {ground, r}, up, {ground, up.u_local}}},
                   result);
-        add_joint(at, {name + ".height", InPlane{{wheel.body, wheel.centre_local}, origin, up, 0}},
+        add_joint(spring,
+                  {name + ".height", InPlane{{wheel.body, wheel.centre_local}, origin, up, 0}},
                   result);
     }
 }

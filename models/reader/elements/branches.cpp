@@ -1,13 +1,13 @@
 // Reads branches: drivers, range, and values held constant.
 //
-// Each term of a branch is start + rate·a in the declared units, a in the unit of the branch:
+// Each driver is start + rate · a in the declared units, a in the unit of the branch:
 //
 //   load, at least one force   a [force]         force [-], moment [moment/force]
 //   load, moments only         a [moment]        moment [-]
 //   drive                      a [unit of the first quantity driven], rates per unit of a
 //   static_loads, hold         rate 0
 //
-// The same entry of `loads` may be used in all these ways, so its unit depends on the branch.
+// An entry of `loads` may be used in all these ways, so its unit depends on the branch.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,13 +22,11 @@
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/elements/sections.hpp"
-#include "models/reader/elements/vanishing.hpp"
 #include "models/vanishing_length.hpp"
 
 namespace elastocheck::reader {
 namespace {
 
-// Kind and unit of the parameter.
 struct Parameter {
     ParameterUnit kind;
     Unit unit;
@@ -40,8 +38,8 @@ double weight_of(const Term& term, const char* what) {
     return weight;
 }
 
-// Converts the moment to moment per unit of force.
-void in_arms(Load& load, const Unit& arm) {
+// Converts a moment load from the declared unit of moment/force to metres.
+void convert_arm(Load& load, const Unit& arm) {
     if (!is_moment(load.kind)) return;
     Vector3& m = load_vector(load.kind);
     m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
@@ -61,7 +59,7 @@ Parameter read_loads_moved(const Cursor& field, const Units& units, const Loads&
         field.fail("zero in every component; a branch needs a nonzero load");
     const bool only_moments = std::ranges::all_of(chosen, moment);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
-        if (!only_moments) in_arms(chosen[k], units.arm);
+        if (!only_moments) convert_arm(chosen[k], units.arm);
         branch.drivers[k].what = chosen[k];
     }
     return only_moments ? Parameter{ParameterUnit::newton_metre, units.moment}
@@ -77,7 +75,7 @@ Parameter read_driven(const Cursor& field, Drivables& drivables, Scene& scene, B
             weight_of(term, "rate zero drives nothing; a constant value belongs in hold");
         if (term.name == "hand_wheel" && (rate != 1 || !branch.drivers.empty()))
             term.at.fail("the parameter of the branch is its angle; allowed: first, with rate 1");
-        // Rate in quantity units per unit of a; exactly 1 for equal units.
+        // In SI units of the quantity per SI unit of a; without rounding for equal units.
         const double si = quantity.unit.name == parameter->unit.name
                               ? rate
                               : quantity.unit.si(rate) / parameter->unit.si(1);
@@ -119,7 +117,6 @@ void require_different(const Cursor& branch, const std::vector<Driver>& drivers)
         }
 }
 
-// Reads `from` and `to` in SI, and the number of steps.
 void read_range(const Cursor& field, const Parameter& parameter, std::size_t bodies,
                 Branch& branch) {
     const Cursor to = field.require("to");
@@ -166,6 +163,7 @@ Branch read_branch(const std::string& name, const Cursor& field, const Units& un
 
 // ---- Checks that the drivers of a branch survive compilation.
 
+// The reason for which compile() left out a part.
 std::string reason(const Model& model, const std::string& what) {
     for (const Omission& omission : model.omitted)
         if (omission.what == what) return omission.why;
@@ -173,7 +171,7 @@ std::string reason(const Model& model, const std::string& what) {
 }
 
 // "load 'push' acts on body 'arm', which is left out: no output is connected to it"
-std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
+std::string why_removed(const Driver& driver, const Scene& scene, const Model& model) {
     const auto part = [&](const std::string& what) {
         return fmt::format("{} is left out: {}", what, reason(model, what));
     };
@@ -189,30 +187,32 @@ std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
                        reason(model, body));
 }
 
-// Points at a distance cannot come closer than zero, on either side of the branch.
+// Rejects a branch that drives a length to zero. The error is rethrown as LengthVanishes, which a study
+// counts as a result of the variant and not as a mistake in the scene.
 void require_lengths(const Cursor& branch, const Model& model, std::size_t b) {
     for (const Branch& side : branch_sides(model.branches[b])) {
-        const auto gone = vanishing_length(model, side);
-        if (!gone) continue;
-        const Cursor place = gone->at == 0
+        const auto vanishing = vanishing_length(model, side);
+        if (!vanishing) continue;
+        const Cursor place = vanishing->at == 0
                                  ? branch.require("hold")
                                  : branch.require(side.to == model.branches[b].to ? "to" : "from");
-        const std::string& name = model.joints[static_cast<std::size_t>(gone->joint)].name;
+        const std::string& name = model.joints[static_cast<std::size_t>(vanishing->joint)].name;
         try {
             place.fail(
-                gone->at == 0
+                vanishing->at == 0
                     ? fmt::format("leaves joint {} no length", quote(name))
                     : fmt::format("{} would leave joint {} a length of {:.6g} mm; allowed: short "
                                   "of {:.6g}, where its length is zero",
-                                  place.found(), quote(name), 1e3 * gone->to,
-                                  place.number("") * gone->at / side.to));
+                                  place.found(), quote(name), 1e3 * vanishing->to,
+                                  place.number("") * vanishing->at / side.to));
         } catch (const SceneError& error) {
             throw LengthVanishes(error.what());
         }
     }
 }
 
-Model moving_model(const Cursor& section, const Scene& scene) {
+// Compiles the scene and requires that every branch moves something.
+Model compile_moving(const Cursor& section, const Scene& scene) {
     Model model = compile(scene);
     const auto moves = [](const Driver& driver) { return driver.rate != 0; };
     for (std::size_t b = 0; b < scene.branches.size(); ++b) {
@@ -220,7 +220,7 @@ Model moving_model(const Cursor& section, const Scene& scene) {
         if (std::ranges::any_of(model.branches[b].drivers, moves)) continue;
         std::string why;
         for (const Driver& driver : scene.branches[b].drivers)
-            if (moves(driver)) why += (why.empty() ? "" : "; ") + lost(driver, scene, model);
+            if (moves(driver)) why += (why.empty() ? "" : "; ") + why_removed(driver, scene, model);
         section.require(scene.branches[b].name)
             .fail("changes nothing that an output depends on: " + why);
     }
@@ -249,7 +249,7 @@ Model read_branches(const Cursor& file, const Units& units,
     for (const auto& [name, field] : section.entries())
         scene.branches.push_back(read_branch(name, field, units, loads, drivables, scene));
     if (scene.branches.empty()) section.fail("empty; at least one branch is needed");
-    Model model = moving_model(section, scene);
+    Model model = compile_moving(section, scene);
     if (const auto load_section = file.optional("loads"); load_section)
         note_unused_loads(file, *load_section, loads, scene);
     return model;

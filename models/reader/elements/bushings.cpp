@@ -1,3 +1,4 @@
+// Reads bushings: frames, stiffness or curves, preload, formulation.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -16,15 +17,14 @@ namespace elastocheck::reader {
 namespace {
 
 constexpr double round_off = 1e-12;  // relative, of numbers that should be equal
-constexpr double min_sine = 1e-6;    // sine of the angle below which axes count as parallel
+constexpr double min_sine = 1e-6;    // of the angle between axes; below, they count as parallel
 
 Vector3 rates(const Cursor& field, const Unit& unit) {
     const auto items = field.list(3, "rates");
     return {rate(items[0], unit), rate(items[1], unit), rate(items[2], unit)};
 }
 
-// The larger size of the two.
-double larger_of(const double& a, const double& b) { return std::max(std::abs(a), std::abs(b)); }
+double larger_magnitude(double a, double b) { return std::max(std::abs(a), std::abs(b)); }
 
 // ---- The frame of a bushing.
 
@@ -77,15 +77,15 @@ Axes read_frame_j(const Cursor& field, const FrameField& frame, const Definition
 
 // ---- The stiffness of a bushing.
 
-// S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): its eigenvalues have the signs of K's (Sylvester) and do
-// not mix units. Where K_ii = 0, D_ii makes the largest entry of the row 1, so that a non-zero row
-// makes S clearly indefinite.
+// S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): by Sylvester's law of inertia its eigenvalues have the signs of
+// those of K, and they do not mix units. Where K_ii = 0, D_ii scales the largest entry of the row to 1,
+// so that S is clearly indefinite unless the row is zero.
 Matrix6 scaled_to_unit_diagonal(const Matrix6& K) {
     const auto one_if_zero = [](double x) { return x == 0 ? 1 : x; };
     Vector6 d = K.diagonal().cwiseAbs().cwiseSqrt();
-    const Vector6 known = d.unaryExpr(one_if_zero);
+    const Vector6 nonzero = d.unaryExpr(one_if_zero);
     for (int i = 0; i < 6; ++i)
-        if (d[i] == 0) d[i] = one_if_zero((K.col(i).array().abs() / known.array()).maxCoeff());
+        if (d[i] == 0) d[i] = one_if_zero((K.col(i).array().abs() / nonzero.array()).maxCoeff());
     return (K.array() / (d * d.transpose()).array()).matrix();
 }
 
@@ -103,15 +103,15 @@ void require_semidefinite(const Cursor& field, const Matrix6& K) {
 void require_symmetric(const Cursor& field, const Matrix6& K) {
     for (int i = 0; i < 6; ++i)
         for (int j = i + 1; j < 6; ++j)
-            if (!are_near(K(i, j), K(j, i), round_off * larger_of(K(i, j), K(j, i))))
+            if (!are_near(K(i, j), K(j, i), round_off * larger_magnitude(K(i, j), K(j, i))))
                 field.fail(
                     fmt::format("not symmetric: row {}, column {} is {}, row {}, column {} is {}",
                                 i + 1, j + 1, K(i, j), j + 1, i + 1, K(j, i)));
 }
 
-// Units of the four blocks. Both off-diagonal blocks are force/angle, so that the 6×6 is symmetric
-// as written in any units. This scaling is no congruence (√(force/length · moment/angle) differs
-// from force/angle), so definiteness is tested on the matrix in SI units.
+// Units of the four blocks. Both off-diagonal blocks are in force/angle, so that the matrix as written is
+// symmetric in any units. Its definiteness is tested in SI units, since this conversion is not a
+// congruence: √(force/length · moment/angle) differs from force/angle.
 const Unit& unit_of_entry(int i, int j, const Units& units) {
     if ((i < 3) != (j < 3)) return units.coupling;
     return i < 3 ? units.rate : units.rotational_rate;
@@ -193,13 +193,14 @@ SpatialLaw read_spatial_law(const Cursor& bushing, const Definitions& defs) {
     return LinearStiffness{K};
 }
 
-// Three translational and three rotational numbers; zero where not given.
-Vector6 read_pair(const Cursor& bushing, const char* d, const Unit& unit_d, const char* theta,
-                  const Unit& unit_theta) {
-    Vector6 pair = Vector6::Zero();
-    if (const auto given = bushing.optional(d)) pair.head<3>() = vector(*given, unit_d);
-    if (const auto given = bushing.optional(theta)) pair.tail<3>() = vector(*given, unit_theta);
-    return pair;
+// A translational and a rotational vector of the bushing; zero where not given.
+Vector6 read_both(const Cursor& bushing, const char* translation, const Unit& unit,
+                  const char* rotation, const Unit& rotational_unit) {
+    Vector6 both = Vector6::Zero();
+    if (const auto given = bushing.optional(translation)) both.head<3>() = vector(*given, unit);
+    if (const auto given = bushing.optional(rotation))
+        both.tail<3>() = vector(*given, rotational_unit);
+    return both;
 }
 
 // Defaults: the first choice of each field.
@@ -225,10 +226,10 @@ Formulation read_formulation(const Cursor& field) {
     return result;
 }
 
-// ---- Check that one axis defines the frame.
+// ---- One axis defines the frame of an axisymmetric bushing.
 
-// A quarter turn suffices for the test: a second-order tensor or vector that is invariant under it
-// is invariant under any rotation. It only swaps entries, without rounding.
+// Rotation by 90 deg about an axis, of both vectors of a 6-vector. A vector or second-order tensor that
+// it leaves unchanged is unchanged by any rotation about the axis; and it swaps entries without rounding.
 Matrix6 quarter_turn(int axis) {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
     Matrix3 turn = Matrix3::Zero();
@@ -240,9 +241,9 @@ Matrix6 quarter_turn(int axis) {
     return turn_both;
 }
 
-// The rates of the law, or none if an axis across has a curve: a sum of two scalar laws is
-// rotationally symmetric only if both are the same quadratic law.
-std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
+// The rates of the law; none if an axis across has a curve: u(d_x) + u(d_y) is axisymmetric only for the
+// same quadratic u of both.
+std::optional<Matrix6> rates_across(int axis, const SpatialLaw& law) {
     const auto of_axes = [&](const PerAxis& u) -> std::optional<Matrix6> {
         Matrix6 K = Matrix6::Zero();
         for (int k = 0; k < 6; ++k) {
@@ -257,25 +258,25 @@ std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
         law);
 }
 
-// Rejects a frame with only this axis unless the bushing is rotationally symmetric about it.
-void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) {
+// Rejects a frame with only this axis unless the bushing is axisymmetric about it.
+void require_axisymmetric(const Cursor& frame, int axis, const Bushing& bushing) {
     const auto refuse = [&](const char* why) {
         frame.fail(fmt::format("one axis is not enough, because {}; give a second one", why));
     };
     const Matrix6 turn = quarter_turn(axis);
-    const auto is_same = [](const auto& x, const auto& y) {
+    const auto are_equal = [](const auto& x, const auto& y) {
         for (Eigen::Index j = 0; j < x.cols(); ++j)
             for (Eigen::Index i = 0; i < x.rows(); ++i)
-                if (!are_near(x(i, j), y(i, j), round_off * larger_of(x(i, j), y(i, j))))
+                if (!are_near(x(i, j), y(i, j), round_off * larger_magnitude(x(i, j), y(i, j))))
                     return false;
         return true;
     };
-    const auto is_round = [&](const Vector6& v) { return is_same(v, Vector6(turn * v)); };
-    const auto K = rates_round(axis, bushing.law);
+    const auto is_axisymmetric = [&](const Vector6& v) { return are_equal(v, Vector6(turn * v)); };
+    const auto K = rates_across(axis, bushing.law);
     if (!K) refuse("a curve across it is not axisymmetric");
-    if (!is_same(*K, Matrix6(turn * *K * turn.transpose())) || !is_round(bushing.preload))
+    if (!are_equal(*K, Matrix6(turn * *K * turn.transpose())) || !is_axisymmetric(bushing.preload))
         refuse("the rates or the preload across it are not axisymmetric");
-    if (!is_round(bushing.undeformed)) refuse("the undeformed position is not on it");
+    if (!is_axisymmetric(bushing.undeformed)) refuse("the undeformed position is not on it");
     if (bushing.formulation.angles != Formulation::Angles::rotation_vector)
         refuse("cardan and projected angles need all three");
 }
@@ -296,12 +297,12 @@ Elastic read_bushing(const std::string& name, const Cursor& field, const Definit
     Bushing bushing{.i = marker_of(i, p, frame.axes, defs),
                     .j = marker_of(j, p, axes_j, defs),
                     .law = read_spatial_law(field, defs)};
-    bushing.preload = read_pair(field, "preload", units.force, "preload_moment", units.moment);
+    bushing.preload = read_both(field, "preload", units.force, "preload_moment", units.moment);
     bushing.undeformed =
-        read_pair(field, "undeformed", units.length, "undeformed_angles", units.angle);
+        read_both(field, "undeformed", units.length, "undeformed_angles", units.angle);
     if (const auto formulation = field.optional("formulation"))
         bushing.formulation = read_formulation(*formulation);
-    if (frame.only_axis) require_round_about(*frame_field, *frame.only_axis, bushing);
+    if (frame.only_axis) require_axisymmetric(*frame_field, *frame.only_axis, bushing);
     return {name, bushing};
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int no_joint = -1;
 
-// Bodies start parallel to ground: a direction has the same components on both.
+// The angle of i relative to j about the axis, zero at the design position. Bodies start parallel to
+// ground, so that x has the same components on both.
 Angle angle_about(const Direction& axis_i, const Direction& axis_j) {
     const Vector3 x = axis_j.u_local.unitOrthogonal();
     const Vector3 y = axis_j.u_local.cross(x).normalized();
@@ -37,12 +38,12 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
             result.table[name] = {ParameterUnit::metre, units.length, Motion{k}, 1, std::nullopt};
         } else if (auto drive = drive_of(joint)) {
             const bool is_length = !is_angle(drive->kind);
-            const auto stands = drives.find(k);
+            const auto existing = drives.find(k);
             Drivable entry{is_length ? ParameterUnit::metre : ParameterUnit::radian,
                            is_length ? units.length : units.angle, Motion{no_joint}, 1,
                            std::nullopt};
-            if (stands != drives.end()) {
-                entry.what = Motion{stands->second};
+            if (existing != drives.end()) {
+                entry.what = Motion{existing->second};
             } else {
                 entry.joint = *drive;
                 entry.joint->active_only_where_driven = true;
@@ -58,8 +59,7 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
     }
 }
 
-// P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is converted to
-// a free length.
+// The preload of a linear spring is driven by its free length: P = k (ℓ₀ - ℓ) at the design length ℓ.
 void add_spring(int k, const std::string& name, const ScalarLaw& law, const Units& units,
                 Drivables& result) {
     const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
@@ -67,7 +67,7 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
     };
     const double* rate = rate_of(law);
     if (const Curve* curve = curve_of(law); curve != nullptr && curve->knots.size() == 1)
-        rate = &curve->pieces.front()[1];  // of a spring with loose seats while it pushes
+        rate = &curve->pieces.front()[1];  // a linear spring with loose seats, while it pushes
     if (rate != nullptr && *rate == 0) {
         for (const char* field : {".free_length", ".preload"})
             result.not_driven[name + field] = "of a spring of rate zero, on which it has no effect";
@@ -86,14 +86,14 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
 void add_bushing(int k, const NamedElement& element, const Units& units, Drivables& result) {
     const bool is_torsion = element.path.starts_with("torsion_springs."),
                is_at_wheel = element.path.starts_with("springs."),
-               is_one = is_torsion || is_at_wheel;
+               has_one_axis = is_torsion || is_at_wheel;
     const int first = is_torsion ? 5 : is_at_wheel ? 2 : 0;
-    for (int axis = first; axis < (is_one ? first + 1 : 6); ++axis) {
+    for (int axis = first; axis < (has_one_axis ? first + 1 : 6); ++axis) {
         Vector6 direction = Vector6::Unit(axis);
         if (element.is_twin) direction = reflected(direction);
         const bool is_force = axis < 3;
         const std::string field = is_force ? ".preload" : ".preload_moment";
-        const std::string letter = is_one ? "" : fmt::format(".{}", "xyz"[axis % 3]);
+        const std::string letter = has_one_axis ? "" : fmt::format(".{}", "xyz"[axis % 3]);
         result.table[element.path + field + letter] = {
             is_force ? ParameterUnit::newton : ParameterUnit::newton_metre,
             is_force ? units.force : units.moment, Preload{k, direction}, 1, std::nullopt};
@@ -162,9 +162,9 @@ Drivables drivables(const Scene& scene, const Units& units, const std::map<int, 
 
 bool is_same(const Driven& a, const Driven& b) {
     if (a.index() != b.index() || driven_load(a) != nullptr) return false;
-    const Vector6 *along = preload(a), *other = preload(b);
+    const Vector6 *direction_a = preload(a), *direction_b = preload(b);
     return driven_joint(a) == driven_joint(b) && driven_element(a) == driven_element(b) &&
-           (along == nullptr || *along == *other);
+           (direction_a == nullptr || *direction_a == *direction_b);
 }
 
 int add_joint(const Cursor& field, const Joint& joint, Scene& scene) {
@@ -192,7 +192,7 @@ const Drivable& drivable(const Cursor& field, const std::string& name, Drivables
         result.what = Motion{add_joint(field, *result.joint, scene)};
         result.joint.reset();
     }
-    if (!result.as.empty()) result.what = drivable(field, result.as, drivables, scene).what;
+    if (!result.drives.empty()) result.what = drivable(field, result.drives, drivables, scene).what;
     return result;
 }
 

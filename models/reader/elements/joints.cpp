@@ -13,7 +13,7 @@
 namespace elastocheck::reader {
 namespace {
 
-constexpr double square = 1e-9;  // largest cosine between axes that must be perpendicular
+constexpr double max_cosine = 1e-9;  // between axes that must be perpendicular
 
 // Fields of a joint. Its axes are fixed in both bodies, which start parallel to ground.
 struct JointFields {
@@ -32,13 +32,12 @@ struct JointFields {
     }
 };
 
-// `axis_i` and `axis_j`, perpendicular as written within 1e-9; axis_j is then
-// made exactly perpendicular.
+// `axis_i` and `axis_j`, perpendicular as written within 1e-9; axis_j is made exactly perpendicular.
 std::pair<Direction, Direction> perpendicular_axes(const JointFields& f) {
     const Direction i = f.axis_i("axis_i");
     Direction j = f.axis_j("axis_j");
     const double cosine = i.u_local.dot(j.u_local);
-    if (!are_near(cosine, 0, square)) {
+    if (!are_near(cosine, 0, max_cosine)) {
         const double sine = i.u_local.cross(j.u_local).norm();
         const double angle = std::atan2(sine, cosine) * 180 / std::numbers::pi;  // [deg]
         f.joint.require("axis_j").fail(
@@ -113,7 +112,6 @@ const std::vector<JointType>& joint_types() {
     return types;
 }
 
-// The names of all types, and the fields of a joint of any type.
 const std::pair<std::vector<std::string>, std::vector<std::string>>& names_and_fields() {
     static const auto both = [] {
         std::pair<std::vector<std::string>, std::vector<std::string>> lists{{}, {"type", "bodies"}};
@@ -140,7 +138,7 @@ const JointType& joint_type(const Cursor& joint) {
 
 Joint read_joint(const std::string& name, const Cursor& field, const Definitions& defs) {
     const JointType& type = joint_type(field);
-    if (field.is_first) {
+    if (field.first_reading) {
         std::vector<std::string> fields{"type", "bodies"};
         fields.insert(fields.end(), type.fields.begin(), type.fields.end());
         field.only_keys(fields);

@@ -1,6 +1,6 @@
 // Reads loads (forces and moments) of a scene.
-// The unit of a moment depends on the branch that uses it (branches.cpp). Bodies start parallel to
-// ground, so that a follower has the same components in the axes of its body.
+// The unit of a moment in `loads` depends on the branch that uses it (branches.cpp). Bodies start
+// parallel to ground, so that a follower has the same components in the axes of its body.
 //
 // A force at the contact patch of a wheel that rolls acts on the wheel. If it has a component along
 // x, its torque about the spin axis is taken by the brake: on the carrier, or with `torque: ground`

@@ -36,14 +36,15 @@ double share(const Cursor& field) {
     return x;
 }
 
-// Whether the patch is below the centre in the wheel's plane, within 10 deg: then the wheel rolls
-// unless the file says otherwise. The patch keeps what it is drawn off the lowest point.
-bool is_below(const Vector3& arm, const Vector3& spin) {
-    const Vector3 down = spin.z() * spin - Vector3::UnitZ();
+// Whether the patch, at `arm` from the wheel centre, is within 10 deg (cos = 0.985) of the lowest point
+// of the wheel's disc: then the wheel rolls unless the file says otherwise. A rolling wheel keeps the
+// distance between the drawn patch and the lowest point.
+bool is_near_lowest_point(const Vector3& arm, const Vector3& spin) {
+    const Vector3 down = spin.z() * spin - Vector3::UnitZ();  // -z projected onto the disc
     return arm.z() < 0 && arm.dot(down.normalized()) > 0.985 * arm.norm();
 }
 
-// The body of a rolling wheel (scene.hpp), at its centre, and that of its twin.
+// Adds the body of a rolling wheel (scene.hpp), at its centre, and that of its twin.
 BodyId add_rolling_wheel(const std::string& name, const Vector3& centre, Definitions& defs) {
     const std::string of_wheel = name.empty() ? "" : name + ".";
     const auto add = [&](const std::string& of, const Vector3& r) {
@@ -52,8 +53,8 @@ BodyId add_rolling_wheel(const std::string& name, const Vector3& centre, Definit
         return defs.twin_of.back();
     };
     const BodyId wheel = add(of_wheel, centre);
-    if (const auto twin = defs.mirror ? turned(*defs.mirror, of_wheel) : std::nullopt) {
-        // before references: it may move the list
+    if (const auto twin = defs.mirror ? mirrored_name(*defs.mirror, of_wheel) : std::nullopt) {
+        // before taking references to twin_of, which add() may move
         const BodyId other = add(*twin, reflected(centre));
         std::swap(defs.twin_of[static_cast<std::size_t>(wheel)],
                   defs.twin_of[static_cast<std::size_t>(other)]);
@@ -94,7 +95,7 @@ Wheel read_wheel(const std::string& name, const Cursor& entry, Definitions& defs
     const Vector3 arm = wheel.contact.s_local - wheel.centre_local;
     const auto kind = entry.optional("contact");
     const bool rolls = kind ? kind->one_of("a contact", {"carrier", "rolling"}) == 1
-                            : is_below(arm, wheel.spin_axis_local);
+                            : is_near_lowest_point(arm, wheel.spin_axis_local);
     if (rolls && kind && !(arm.z() < 0))
         kind->fail("the contact patch is not below the wheel centre; allowed: carrier");
     if (rolls) wheel.contact = {add_rolling_wheel(name, hardpoint(centre, defs), defs), arm};

@@ -1,3 +1,4 @@
+// Reads springs between two points and their stops.
 #include <fmt/format.h>
 
 #include <array>
@@ -16,12 +17,6 @@ AxialSpring read_ends(const Cursor& field, const Definitions& defs) {
     return {.i = i, .j = j, .law = {}, .free_length = length};
 }
 
-// The deflection x with f(x) = -p: a preload is positive in compression.
-double deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& units) {
-    const double p = units.force.si(preload.number(units.force.name));
-    return deflection_at(preload, law, 0 - p, units.force);  // 0, not -0
-}
-
 // ℓ₀ [m]. At the design length ℓ the deflection is x = ℓ - ℓ₀.
 double free_length(const Cursor& spring, double length, const ScalarLaw& law,
                    const Definitions& defs) {
@@ -35,7 +30,9 @@ double free_length(const Cursor& spring, double length, const ScalarLaw& law,
         const auto of_file = curve ? free_length_of_file(*curve, defs) : std::nullopt;
         return of_file ? *of_file : length;
     }
-    const double l0 = length - deflection_under(*preload, law, units);
+    // a preload p is positive in compression: f(x) = -p; 0 - p is 0, not -0, for 0
+    const double p = units.force.si(preload->number(units.force.name));
+    const double l0 = length - deflection_at(*preload, law, 0 - p, units.force);
     if (!(l0 > 0))
         preload->fail(
             fmt::format("needs a free length of {:g} {}; a free length must be above zero",

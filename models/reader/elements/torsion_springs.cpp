@@ -5,15 +5,16 @@
 namespace elastocheck::reader {
 namespace {
 
+// The law of θ_z alone.
 SpatialLaw about_z(const ScalarLaw& law) {
     if (const double* rate = rate_of(law)) {
-        LinearStiffness all;
-        all.K(5, 5) = *rate;
-        return all;
+        LinearStiffness stiffness;
+        stiffness.K(5, 5) = *rate;
+        return stiffness;
     }
-    PerAxis all;
-    all.axis[5] = law;
-    return all;
+    PerAxis axes;
+    axes.axis[5] = law;
+    return axes;
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ namespace {
 
 // ---- Adjustments.
 
-// Whether it is active only on the branches that drive it: a jack, the drive of a joint not
-// held, a tyre.
-bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
+// Whether the quantity exists only on the branches that drive it: of a jack, of the drive of a joint that
+// is not held, of a tyre.
+bool is_active_only_where_driven(const Drivable& quantity, const Scene& scene) {
     const int element = driven_element(quantity.what);
     return quantity.joint.has_value() ||
            (element >= 0 &&
@@ -28,7 +28,7 @@ Trim::Adjustment read_adjustment(const Term& term, const Loads& loads, Drivables
                         "and offsets, named as in drive",
                         quote(term.name)));
     if (const auto found = drivables.table.find(term.name);
-        found != drivables.table.end() && stands_only_where_driven(found->second, scene))
+        found != drivables.table.end() && is_active_only_where_driven(found->second, scene))
         term.at.fail(
             fmt::format("{} is active only on the branches that drive it; allowed: elements and "
                         "joints that are active on all branches",
@@ -98,27 +98,16 @@ std::vector<Trim::Condition> read_conditions(const Cursor& field, const Scene& s
     return conditions;
 }
 
-std::string counted(std::size_t n, const char* one, const char* many) {
-    return fmt::format("{} {}", n, n == 1 ? one : many);
-}
-
 void require_as_many(const Cursor& field, const Trim& trim) {
     const std::size_t adjusted = trim.adjust.size(), conditions = trim.until.size();
     if (adjusted == conditions) return;
     const bool few = conditions < adjusted;
     const std::size_t missing = few ? adjusted - conditions : conditions - adjusted;
-    field.fail(fmt::format("{} adjusted, {}: {} more {} needed", adjusted,
-                           counted(conditions, "condition", "conditions"),
+    field.fail(fmt::format("{} adjusted, {} {}: {} more {} needed", adjusted, conditions,
+                           conditions == 1 ? "condition" : "conditions",
                            missing == 1 ? "one" : std::to_string(missing),
                            few ? (missing == 1 ? "condition is" : "conditions are")
                                : (missing == 1 ? "adjustment is" : "adjustments are")));
-}
-
-// ---- Loads.
-
-Load scaled(Load load, double value) {
-    load_vector(load.kind) *= value;
-    return load;
 }
 
 }  // namespace
@@ -139,8 +128,8 @@ void read_trim(const Cursor& scene, const Units& units, const Loads& loads, Driv
     require_as_many(*section, trim);
     if (const auto under = section->optional("under"))
         for (const Term& term : terms(*under, "a load")) {
-            const Load& load = look_up_load(term, loads);
-            result.static_loads.push_back(scaled(load, held_value(term, load, units)));
+            Load& load = result.static_loads.emplace_back(look_up_load(term, loads));
+            load_vector(load.kind) *= held_value(term, load, units);
         }
     result.trim = trim;
 }

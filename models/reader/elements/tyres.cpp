@@ -1,10 +1,12 @@
 // Reads tyres: a vertical rate at the contact patch, which only pushes.
 //
-// A bushing from ground (i) to the contact patch (j), both markers there at the design position,
-// ground axes. d_z is the rise of the patch. With the road raised by h the tyre pushes the wheel up
-// by P - k (d_z - h), and not at all where that is negative:
+// The element is a bushing from ground (i) to the contact patch (j), both markers at the patch in the
+// design position, in ground axes; d_z is the rise of the patch. With the road raised by h the tyre
+// pushes the wheel up with P - k (d_z - h), or not at all where that is negative:
 //
-//   u'(x) = k min(x, 0),  x = d_z - e₀,  e₀ = P/k + h:   the road drives the undeformed d_z.
+//   u'(x) = k min(x, 0),  x = d_z - e₀,  e₀ = P/k + h.
+//
+// A branch raises the road by driving e₀, the undeformed d_z.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -72,7 +74,7 @@ void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivabl
         add_tyre(field, name, tyre, defs, drivables, result);
         if (!defs.mirror) continue;
         const auto other = twin_name(*defs.mirror, name, *section);
-        const auto other_wheel = turned(*defs.mirror, result.wheels[tyre.wheel].name);
+        const auto other_wheel = mirrored_name(*defs.mirror, result.wheels[tyre.wheel].name);
         if (other.has_value() != other_wheel.has_value())
             field.fail(
                 fmt::format("the mirror generates a twin of {} but not of {}; both or neither must "

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "models/kinds.hpp"
 #include "models/laws.hpp"
@@ -14,11 +16,13 @@ namespace {
 
 constexpr double round_off = 1e-12;  // relative, of forces that should be equal
 
-// Where there is no force the law is known: its last knot there lies beyond any motion [m].
-constexpr double beyond_all = 1e6;
+// With `outside: unknown` a branch ends at the end knots. The side of a law without force has no end:
+// its end knot lies beyond any motion [m].
+constexpr double beyond_motion = 1e6;
 
 // The points with x ≥ 0, preceded by their mirror images -f(-x).
-std::vector<TablePoint> odd(const Cursor& field, const std::vector<TablePoint>& half) {
+std::vector<TablePoint> with_mirror_image(const Cursor& field,
+                                          const std::vector<TablePoint>& half) {
     if (half.front().x != 0 || half.front().f != 0)
         field.fail(
             "the table of a symmetric curve must begin with [0, 0]; the other half is generated");
@@ -43,7 +47,7 @@ void shift(const Cursor& field, const Unit& unit, std::vector<TablePoint>& point
     }
 }
 
-Curve through(const Cursor& curve, const std::vector<TablePoint>& points) {
+Curve interpolated(const Cursor& curve, const std::vector<TablePoint>& points) {
     const auto between = curve.optional("interpolation");
     const bool is_linear =
         between && between->one_of("a kind of interpolation", {"monotone", "linear"}) == 1;
@@ -55,18 +59,26 @@ bool is_known_outside(const Cursor& curve) {
     return !outside || outside->one_of("a kind of extrapolation", {"linear", "unknown"}) == 0;
 }
 
-// Force over the penetration s: zero up to s = 0.
+// The fields `rate` and `curve`, of which one must be given.
+std::pair<std::optional<Cursor>, std::optional<Cursor>> rate_or_curve(const Cursor& element) {
+    const auto rate = element.optional("rate"), curve = element.optional("curve");
+    if (rate && curve) curve->fail("given together with rate; allowed: one of the two");
+    if (!rate && !curve) element.fail("no law; required: rate or curve");
+    return {rate, curve};
+}
+
+// Force of a stop over the penetration s: zero up to s = 0.
 Curve read_contact(const Cursor& field, const Definitions& defs) {
     field.only_keys({"table", "file", "scale", "interpolation", "outside"});
     auto points = read_table(field, of_lengths(defs.units), defs);
     if (points.front().x != 0 || points.front().f != 0)
         field.fail("the table of a stop must begin with [0, 0], where it closes");
     if (const auto factor = field.optional("scale")) scale(*factor, points);
-    Curve contact = through(field, points);
+    Curve contact = interpolated(field, points);
     contact.pieces.front() = {};
     contact.known_outside = is_known_outside(field);
     if (!contact.known_outside) {
-        contact.knots.insert(contact.knots.begin(), -beyond_all);
+        contact.knots.insert(contact.knots.begin(), -beyond_motion);
         contact.pieces.insert(contact.pieces.begin(), std::array<double, 4>{});
     }
     return contact;
@@ -78,18 +90,16 @@ Curve read_curve(const Cursor& field, const LawUnits& units, const Definitions& 
     field.only_keys({"table", "file", "scale", "offset", "symmetric", "interpolation", "outside"});
     auto points = read_table(field, units, defs);
     if (const auto symmetric = field.optional("symmetric"); symmetric && symmetric->yes_or_no())
-        points = odd(*symmetric, points);
+        points = with_mirror_image(*symmetric, points);
     if (const auto factor = field.optional("scale")) scale(*factor, points);
     if (const auto offset = field.optional("offset")) shift(*offset, units.deflection, points);
-    Curve curve = through(field, points);
+    Curve curve = interpolated(field, points);
     curve.known_outside = is_known_outside(field);
     return curve;
 }
 
 ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitions& defs) {
-    const auto k = element.optional("rate"), curve = element.optional("curve");
-    if (k && curve) curve->fail("given together with rate; allowed: one of the two");
-    if (!k && !curve) element.fail("no law; required: rate or curve");
+    const auto [k, curve] = rate_or_curve(element);
     if (k) return LinearRate{rate(*k, units.rate)};
     return read_curve(*curve, units, defs);
 }
@@ -98,9 +108,7 @@ Curve read_stop(const Cursor& field, Stop stop, const Definitions& defs) {
     field.only_keys({"clearance", "rate", "curve"});
     const Unit& length = defs.units.length;
     const double clearance = length.si(field.require("clearance").number(length.name));
-    const auto k = field.optional("rate"), curve = field.optional("curve");
-    if (k && curve) curve->fail("given together with rate; allowed: one of the two");
-    if (!k && !curve) field.fail("no law; required: rate or curve");
+    const auto [k, curve] = rate_or_curve(field);
     Curve law =
         k ? Curve{{0}, {{}, {0, rate(*k, defs.units.rate), 0, 0}}} : read_contact(*curve, defs);
     for (double& knot : law.knots) knot += clearance;
@@ -114,8 +122,8 @@ Curve read_stop(const Cursor& field, Stop stop, const Definitions& defs) {
 
 namespace {
 
-// f is non-decreasing. Outside the knots it is linear; inside the interval that brackets the force,
-// bisection runs to the last bit.
+// The deflection at which a non-decreasing curve has the force: outside the knots by its linear
+// extrapolation, between them by bisection to the last bit.
 double deflection_at(const Cursor& field, const Curve& curve, double force, const Unit& unit) {
     const auto& x = curve.knots;
     const auto at_knot = [&](std::size_t k) { return curve.pieces[k + 1][0]; };
@@ -125,18 +133,19 @@ double deflection_at(const Cursor& field, const Curve& curve, double force, cons
     const auto is_equal = [&](std::size_t k) {
         return std::abs(at_knot(k) - force) <= round_off * largest;
     };
-    const auto many = [&] {
+    const auto fail_ambiguous = [&] {
         field.fail(fmt::format(
             "the curve has {:g} {} at more than one deflection; give free_length instead",
             unit.written(force), unit.name));
     };
-    const bool goes_on = curve.known_outside;
-    if (goes_on && ((below == 0 && is_equal(0)) || (above == 0 && is_equal(last)))) many();
+    const bool extrapolates = curve.known_outside;
+    if (extrapolates && ((below == 0 && is_equal(0)) || (above == 0 && is_equal(last))))
+        fail_ambiguous();
     for (std::size_t k = 0; k < last; ++k)
-        if (is_equal(k) && is_equal(k + 1)) many();
+        if (is_equal(k) && is_equal(k + 1)) fail_ambiguous();
 
-    const bool is_below = force<at_knot(0), is_above = force> at_knot(last);
-    if ((is_below && (!goes_on || below == 0)) || (is_above && (!goes_on || above == 0)))
+    const bool is_below = at_knot(0) > force, is_above = force > at_knot(last);
+    if ((is_below && (!extrapolates || below == 0)) || (is_above && (!extrapolates || above == 0)))
         field.fail(fmt::format("the curve never has {:g} {}; its table goes from {:g} to {:g}",
                                unit.written(force), unit.name, unit.written(at_knot(0)),
                                unit.written(at_knot(last))));
@@ -171,19 +180,19 @@ ScalarLaw pushing_only(const Cursor& field, const ScalarLaw& law, const Unit& un
     if (is_zero(law)) return law;
     if (const double* k = rate_of(law)) return Curve{{0}, {{0, *k, 0, 0}, {}}};
     Curve curve = *curve_of(law);
-    std::size_t n = 0;  // knots where it pushes
+    std::size_t n = 0;  // number of knots at which it pushes
     while (n < curve.knots.size() && curve.pieces[n + 1][0] < 0) ++n;
-    const bool always = n == curve.knots.size();
-    if (always && (!curve.known_outside || curve.pieces.back()[1] == 0)) return law;
-    const bool at_knot = !always && curve.pieces[n + 1][0] == 0;
-    const double leaves = at_knot ? curve.knots[n] : deflection_at(field, law, 0, unit);
-    if (n == 0) curve.pieces[0][0] = 0;  // about the new first knot, straight
+    const bool always_pushes = n == curve.knots.size();
+    if (always_pushes && (!curve.known_outside || curve.pieces.back()[1] == 0)) return law;
+    const bool zero_at_knot = !always_pushes && curve.pieces[n + 1][0] == 0;
+    const double release = zero_at_knot ? curve.knots[n] : deflection_at(field, law, 0, unit);
+    if (n == 0) curve.pieces[0][0] = 0;  // the linear first piece, now about `release`
     curve.knots.resize(n);
     curve.pieces.resize(n + 1);
-    curve.knots.push_back(leaves);
+    curve.knots.push_back(release);
     curve.pieces.emplace_back();
     if (!curve.known_outside) {
-        curve.knots.push_back(leaves + beyond_all);
+        curve.knots.push_back(release + beyond_motion);
         curve.pieces.emplace_back();
     }
     return curve;

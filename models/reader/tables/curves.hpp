@@ -14,9 +14,8 @@ Curve read_curve(const Cursor& field, const LawUnits& units, const Definitions& 
 // The `rate` of an element or its `curve`.
 ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitions& defs);
 
-// Law of a stop as a force over the deflection x of a spring in its place that is free at the
-// design length, from `clearance` and `rate` or `curve` [N over m of penetration s = -x - clearance
-// (bump), x - clearance (rebound)].
+// Law of a stop as a force over the deflection x from the design length. `rate` or `curve` are over the
+// penetration s = -x - clearance (bump) or x - clearance (rebound) [N, m].
 enum class Stop { bump, rebound };
 Curve read_stop(const Cursor& field, Stop stop, const Definitions& defs);
 
@@ -24,8 +23,8 @@ Curve read_stop(const Cursor& field, Stop stop, const Definitions& defs);
 // none or several.
 double deflection_at(const Cursor& field, const ScalarLaw& law, double force, const Unit& unit);
 
-// The law of a spring with loose seats, which only pushes: without force beyond the deflection at
-// which the law has none.
+// The law of a spring with loose seats, which only pushes: zero beyond the deflection at which the given
+// law is zero. `field` reports an error if there are several such deflections.
 ScalarLaw pushing_only(const Cursor& field, const ScalarLaw& law, const Unit& unit);
 
 }  // namespace elastocheck::reader

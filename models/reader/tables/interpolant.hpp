@@ -12,10 +12,9 @@ struct TablePoint {
     double f = 0;  // [N] or [N·m]
 };
 
-// The piecewise cubic Hermite interpolant with the slopes of Fritsch and Butland (1984), known as
-// PCHIP: through every point, C1, monotone where the points are, and linear where they are. Outside
-// the points it is linear with the end slopes. Pre: at least two points, x ascending, f
-// non-decreasing, all finite.
+// The piecewise cubic Hermite interpolant with the slopes of Fritsch and Butland (1984), known as PCHIP:
+// through every point, C1, monotone where the points are, and linear where they are. Outside the points it is
+// linear with the end slopes. Pre: at least two points, x ascending, f non-decreasing, all finite.
 Curve interpolant(const std::vector<TablePoint>& points);
 
 // The piecewise linear interpolant: through every point, C0; its slope jumps at the points. Outside

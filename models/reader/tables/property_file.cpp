@@ -45,40 +45,40 @@ std::string_view without_comment(std::string_view line) {
     return line;
 }
 
-struct Named {
+struct NamedUnit {
     std::string_view name;
     double si;
 };
 constexpr double inch = 0.0254, pound = 0.45359237 * 9.80665;
-constexpr Named lengths[] = {
+constexpr NamedUnit lengths[] = {
     {"MM", 1e-3},      {"MILLIMETER", 1e-3}, {"METER", 1},          {"METERS", 1},
     {"M", 1},          {"CM", 1e-2},         {"CENTIMETER", 1e-2},  {"INCH", inch},
     {"IN", inch},      {"FOOT", 12 * inch},  {"MILLIMETERS", 1e-3}, {"KM", 1e3},
     {"KILOMETER", 1e3}};
-constexpr Named angles[] = {{"DEGREES", std::numbers::pi / 180},
-                            {"DEGREE", std::numbers::pi / 180},
-                            {"DEG", std::numbers::pi / 180},
-                            {"RADIANS", 1},
-                            {"RADIAN", 1},
-                            {"RAD", 1}};
-constexpr Named forces[] = {{"NEWTON", 1},
-                            {"NEWTONS", 1},
-                            {"N", 1},
-                            {"KNEWTON", 1e3},
-                            {"KN", 1e3},
-                            {"POUND_FORCE", pound},
-                            {"LBF", pound},
-                            {"KPOUND_FORCE", 1e3 * pound},
-                            {"KILOGRAM_FORCE", 9.80665},
-                            {"KGF", 9.80665},
-                            {"DYNE", 1e-5}};
+constexpr NamedUnit angles[] = {{"DEGREES", std::numbers::pi / 180},
+                                {"DEGREE", std::numbers::pi / 180},
+                                {"DEG", std::numbers::pi / 180},
+                                {"RADIANS", 1},
+                                {"RADIAN", 1},
+                                {"RAD", 1}};
+constexpr NamedUnit forces[] = {{"NEWTON", 1},
+                                {"NEWTONS", 1},
+                                {"N", 1},
+                                {"KNEWTON", 1e3},
+                                {"KN", 1e3},
+                                {"POUND_FORCE", pound},
+                                {"LBF", pound},
+                                {"KPOUND_FORCE", 1e3 * pound},
+                                {"KILOGRAM_FORCE", 9.80665},
+                                {"KGF", 9.80665},
+                                {"DYNE", 1e-5}};
 
 template <std::size_t n>
 double unit(const PropertyFile& file, const PropertyBlock& block, std::size_t k,
-            const Named (&table)[n]) {
+            const NamedUnit (&table)[n]) {
     const std::string word = capitals(block.values[k].second);
     std::vector<std::string> names;
-    for (const Named& entry : table) {
+    for (const NamedUnit& entry : table) {
         if (entry.name == word) return entry.si;
         names.emplace_back(entry.name);
     }
@@ -120,33 +120,32 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
     file.file = name;
     std::size_t rows = 0;
     Lines lines(text);
-    const auto wrong = [&](const std::string& what) { fail(name, lines.number(), "", what); };
+    const auto fail_here = [&](const std::string& what) { fail(name, lines.number(), "", what); };
     while (lines.next()) {
         const std::string_view line = trimmed(without_comment(lines.line()));
         if (line.empty()) continue;
-        const auto closed = [&](char closing) {
-            const std::size_t at = line.find(closing);
-            if (at == line.npos) wrong(fmt::format("{} is not closed", quote(line)));
-            return capitals(trimmed(line.substr(1, at - 1)));
+        const auto in_brackets = [&](char closing) {
+            const std::size_t end = line.find(closing);
+            if (end == line.npos) fail_here(fmt::format("{} is not closed", quote(line)));
+            return trimmed(line.substr(1, end - 1));
         };
         if (line.front() == '[') {
-            file.blocks.push_back({.name = closed(']'), .line = lines.number()});
+            file.blocks.push_back({.name = capitals(in_brackets(']')), .line = lines.number()});
             continue;
         }
         if (file.blocks.empty())
-            wrong(fmt::format("expected a block [NAME], found {}", quote(line)));
+            fail_here(fmt::format("expected a block [NAME], found {}", quote(line)));
         if (line.front() == '(') {
-            file.blocks.push_back(
-                {.name = file.blocks.back().name, .subblock = closed(')'), .line = lines.number()});
+            file.blocks.push_back({.name = file.blocks.back().name,
+                                   .subblock = capitals(in_brackets(')')),
+                                   .line = lines.number()});
             continue;
         }
         PropertyBlock& block = file.blocks.back();
         if (line.front() == '{') {
-            const std::size_t at = line.find('}');
-            if (at == line.npos) wrong(fmt::format("{} is not closed", quote(line)));
             block.table = {};
-            block.table.columns = words(line.substr(1, at - 1));
-            if (block.table.columns.empty()) wrong("a table without columns");
+            block.table.columns = words(in_brackets('}'));
+            if (block.table.columns.empty()) fail_here("a table without columns");
             continue;
         }
         // A value, or a row of the table: a row has "=" only in quotes.
@@ -159,12 +158,14 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
             continue;
         }
         if (block.table.columns.empty())
-            wrong(fmt::format("expected NAME = value, or columns {{...}}, found {}", quote(line)));
+            fail_here(
+                fmt::format("expected NAME = value, or columns {{...}}, found {}", quote(line)));
         auto row = words(line);
         if (row.size() != block.table.columns.size())
-            wrong(fmt::format("{} values in a table of {} columns", row.size(),
-                              block.table.columns.size()));
-        if (++rows > max_property_rows) wrong(fmt::format("more than {} rows", max_property_rows));
+            fail_here(fmt::format("{} values in a table of {} columns", row.size(),
+                                  block.table.columns.size()));
+        if (++rows > max_property_rows)
+            fail_here(fmt::format("more than {} rows", max_property_rows));
         block.table.rows.push_back(std::move(row));
         block.table.lines.push_back(lines.number());
     }

@@ -26,7 +26,7 @@ struct PropertyTable {
 };
 
 struct PropertyBlock {
-    std::string name, subblock = {};  // "FX_CURVE"; a subblock has its own name too
+    std::string name, subblock = {};  // "FX_CURVE"; the name in brackets, of a subblock
     int line = 0;
     std::vector<std::pair<std::string, std::string>> values = {};  // in capitals, without quotes
     std::vector<int> lines = {};                                   // of each value
@@ -44,12 +44,11 @@ struct PropertyFile {
 // Throws SceneError "file:line: ..." for text in another format.
 PropertyFile parse_property_file(std::string_view text, const std::string& file);
 
-// A finite number of the file, up to `largest` in size.
+// `text` as a finite number, up to `largest` in size. Throws SceneError with line and block.
 double real(const PropertyFile& file, int line, const std::string& block, std::string_view text,
             double largest = std::numeric_limits<double>::max());
 
-// The rows of a table with two columns of numbers as points of a law: first
-// ascending, second non-decreasing.
+// The rows of a table with two columns of numbers as points of a law: first ascending, second non-decreasing.
 std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block,
                                    double x_unit, double f_unit);
 

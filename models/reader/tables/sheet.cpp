@@ -13,10 +13,10 @@ namespace {
 struct Splitter {
     std::string_view text;
     char separator;
-    std::size_t place = 0;
+    std::size_t place = 0;  // in the text
     int line = 1;
-    int wrong_line = 0;  // of a quote that does not end, or of too many cells
-    const char* wrong = nullptr;
+    int wrong_line = 0;           // line of the error
+    const char* wrong = nullptr;  // a quote that does not end, or too many cells; null: no error
 
     bool ends_line() const { return text[place] == '\n' || text[place] == '\r'; }
     void pass_line_end() {
@@ -76,6 +76,7 @@ struct Splitter {
     }
 };
 
+// A text split by one separator, and the error in it if any.
 struct Trial {
     Sheet sheet;
     int wrong_line = 0;
@@ -100,7 +101,7 @@ Sheet checked(Trial trial, const std::string& file) {
     return std::move(trial.sheet);
 }
 
-// Rows of enough cells; where no separator gives one, any cells.
+// Number of rows with at least `columns` cells; without such rows, the number of cells decides.
 std::pair<std::ptrdiff_t, std::size_t> score(const Trial& trial, std::size_t columns) {
     if (trial.wrong != nullptr) return {-1, 0};
     const auto wide = std::ranges::count_if(
@@ -119,8 +120,8 @@ Sheet read_sheet(std::string_view text, const std::string& file, std::size_t col
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.starts_with("sep=") && text.size() > 5 && (text[5] == '\r' || text[5] == '\n')) {
         const char separator = text[4];
-        const bool two = text[5] == '\r' && text.size() > 6 && text[6] == '\n';
-        return checked(split(text.substr(two ? 7 : 6), separator, 2), file);
+        const bool has_crlf = text[5] == '\r' && text.size() > 6 && text[6] == '\n';
+        return checked(split(text.substr(has_crlf ? 7 : 6), separator, 2), file);
     }
     Trial best = split(text, ';', 1);
     for (const char separator : {'\t', ','})

@@ -23,8 +23,8 @@ struct Sheet {
     std::vector<SheetRow> rows;  // those with content
 };
 
-// Separated by what a line "sep=;" says, otherwise by the one of semicolon, tab and comma that gives
-// most rows of at least `columns` cells, in this order. Quotes count at the beginning of a cell.
+// The separator is that of a first line "sep=;", otherwise that of semicolon, tab and comma which gives most
+// rows of at least `columns` cells, the earlier one of equals. Quotes count at the beginning of a cell.
 // Throws SceneError for a quote that does not end, for UTF-16, and for rows of more than 10 000 cells.
 Sheet read_sheet(std::string_view text, const std::string& file, std::size_t columns);
 

@@ -119,7 +119,7 @@ std::vector<TablePoint> read_file(const Cursor& field, const LawUnits& units,
         const PropertyBlock* curve = file.find("CURVE");
         if (!curve) fail(file_name, 0, "CURVE", "missing: the file has no curve");
         auto rows = curve_rows(file, *curve, file.length, file.force);
-        // F = AKISPL(free length - DM(I, J)), and here f(ℓ - ℓ₀), tension positive.
+        // Adams/Car: pushing force over ℓ₀ - ℓ; here: force over ℓ - ℓ₀, both positive in tension.
         if (units.of_spring && file_name.ends_with(".spr")) {
             for (auto& row : rows) row = {-row.x, -row.f};
             std::ranges::reverse(rows);
@@ -128,8 +128,8 @@ std::vector<TablePoint> read_file(const Cursor& field, const LawUnits& units,
     }
     if (!is_utf8(text)) field.fail(fmt::format("{}: not plain text (UTF-8)", field.found()));
     const Value table = rows_of(text, file_name);
-    std::vector<Number> not_of_the_scene;
-    return read_rows({&table, field.path, &file_name, &not_of_the_scene}, units);
+    std::vector<Number> ignored;  // numbers of a file are not numbers of the scene
+    return read_rows({&table, field.path, &file_name, &ignored}, units);
 }
 
 }  // namespace

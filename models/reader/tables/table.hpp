@@ -14,15 +14,14 @@ namespace elastocheck::reader {
 // Units of a law's deflection, force and rate.
 struct LawUnits {
     Unit deflection, force, rate;
-    // a property file (.spr) then has compression and pushing force as positive
+    // of a spring: its property file (.spr) counts compression and pushing forces as positive
     bool of_spring = false;
 };
-LawUnits of_springs(const Units& units);  // of lengths
+LawUnits of_springs(const Units& units);  // length, force, force/length
 LawUnits of_lengths(const Units& units);  // length, force, force/length
 LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
 
-// Rows of `table` or `file` of a curve [SI]: at least two, deflections
-// ascending, forces non-decreasing.
+// Rows of `table` or `file` of a curve [SI]: at least two, deflections ascending, forces non-decreasing.
 std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
                                    const Definitions& defs);
 

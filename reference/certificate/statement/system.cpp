@@ -135,7 +135,7 @@ void set_separated(const System& system, Eigen::VectorXd& z, double a) {
 }
 
 System make_system(const Model& model, const Branch& branch, Curves curves) {
-    if (!stands_on(model, branch))
+    if (!fits_branch(model, branch))
         throw std::invalid_argument(
             "branch '" + branch.name +
             "' must be a single side from 0, with the model of that side (on_branch)");

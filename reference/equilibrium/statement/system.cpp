@@ -167,7 +167,7 @@ double force_scale(const System& system, double a) {
 }  // namespace
 
 System make_system(const Model& model, const Branch& branch, std::span<const double> points) {
-    if (!stands_on(model, branch))
+    if (!fits_branch(model, branch))
         throw std::invalid_argument(
             "branch '" + branch.name +
             "' must be a single side from 0, with the model of that side (on_branch)");

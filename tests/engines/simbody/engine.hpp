@@ -20,7 +20,7 @@ struct NotRepresented : std::runtime_error {
 // Bushings are Simbody's own, whose law is U = ½ dᵀ K_T d + ½ θᵀ K_R θ as in include/elastocheck/mechanism.hpp, with Cardan angles θ
 // (Formulation::Angles::cardan) also where the model has rotation vectors: the known difference.
 //
-// Pre: the model stands on the branch (on_branch, ways). Throws NotRepresented.
+// Pre: fits_branch(model, branch). Throws NotRepresented.
 EquilibriumPath simbody(const Model& model, const Branch& branch, std::span<const double> values);
 
 }  // namespace elastocheck::engines
