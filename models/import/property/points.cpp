@@ -9,9 +9,9 @@
 #include "models/import/import.hpp"
 #include "models/import/property/columns.hpp"
 #include "models/import/property/named_points.hpp"
-#include "models/reader/tables/sheet.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
+#include "models/reader/tables/sheet.hpp"
 
 namespace elastocheck::importer {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "models/decimal.hpp"
 #include "models/reader/document/characters.hpp"
+#include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
 
@@ -208,7 +209,8 @@ std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock
     }
     if (points.size() < 2)
         fail(file.file, block.line, block.name, "fewer than two rows; a curve has two or more");
-    if (points.size() > 10'000) fail(file.file, block.line, block.name, "more than 10000 rows");
+    if (points.size() > max_rows)
+        fail(file.file, block.line, block.name, fmt::format("more than {} rows", max_rows));
     return points;
 }
 
