@@ -19,6 +19,15 @@ bool begins_formula(char32_t code) {
            code == 0xFF0B || code == 0xFF0D || code == 0xFF20;
 }
 
+// The entity of HTML and XML for a character of markup, else null.
+const char* entity_of(char32_t code) {
+    return code == '&'   ? "&amp;"
+           : code == '<' ? "&lt;"
+           : code == '>' ? "&gt;"
+           : code == '"' ? "&quot;"
+                         : nullptr;
+}
+
 // Replaces every character by the result of `put`.
 template <class Put>
 std::string translated(std::string_view text, Put&& put) {
@@ -68,14 +77,8 @@ std::string for_terminal(std::string_view text) {
 std::string for_html(std::string_view text) {
     return translated(text, [](const Character& c) -> std::string {
         if (!c.plain()) return std::string(c.code == '\n' || c.code == '\t' ? " " : stand_in);
-        switch (c.code) {
-            case '&': return "&amp;";
-            case '<': return "&lt;";
-            case '>': return "&gt;";
-            case '"': return "&quot;";
-            case '\'': return "&apos;";
-            default: return std::string(c.bytes);
-        }
+        if (const char* entity = entity_of(c.code)) return entity;
+        return c.code == '\'' ? "&apos;" : std::string(c.bytes);
     });
 }
 
@@ -90,31 +93,32 @@ std::string for_script(std::string_view json) {
 }
 
 std::string for_markdown(std::string_view text) {
-    const std::string_view whole = text;
     // At the start of a line "- x", "+ x", "1. x" would be lists, "---" and "===" rules.
-    const std::size_t digits = std::min(whole.find_first_not_of("0123456789"), whole.size());
-    const auto ends = [&](std::size_t at) {
-        return at >= whole.size() || whole[at] == ' ' || whole[at] == '\t';
+    const std::size_t leading_digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    const std::size_t first_repeated =
+        std::min(text.find_first_not_of(text.substr(0, 1)), text.size());
+    const auto is_blank = [&](std::size_t at) {
+        return at >= text.size() || text[at] == ' ' || text[at] == '\t';
     };
-    const std::size_t same = std::min(whole.find_first_not_of(whole.substr(0, 1)), whole.size());
     return translated(text, [&](const Character& c) -> std::string {
         if (!c.plain())
             return std::string(c.code == '\n' || c.code == '\r' || c.code == '\t' ? " " : stand_in);
-        const auto at = static_cast<std::size_t>(c.bytes.data() - whole.data());
-        const bool list =
-            (at == 0 && (c.code == '-' || c.code == '+' || c.code == '=') && ends(same) &&
-             whole.size() > 1) ||
-            (at == digits && at > 0 && (c.code == '.' || c.code == ')') && ends(at + 1));
-        const bool link = (c.code == ':' && whole.substr(at).starts_with("://")) ||
-                          (c.code == '.' && at >= 3 && whole.substr(at - 3, 3) == "www");
+        const auto at = static_cast<std::size_t>(c.bytes.data() - text.data());
+        const bool bullet_or_rule = at == 0 && (c.code == '-' || c.code == '+' || c.code == '=') &&
+                                    is_blank(first_repeated) && text.size() > 1;
+        const bool numbered =
+            at == leading_digits && at > 0 && (c.code == '.' || c.code == ')') && is_blank(at + 1);
+        const bool link = (c.code == ':' && text.substr(at).starts_with("://")) ||
+                          (c.code == '.' && at >= 3 && text.substr(at - 3, 3) == "www");
         const bool markup =
             std::string_view("\\`*_[]<>#|~&$").find(c.bytes) != std::string_view::npos;
-        return fmt::format("{}{}", markup || list || link ? "\\" : "", c.bytes);
+        return fmt::format("{}{}", markup || bullet_or_rule || numbered || link ? "\\" : "",
+                           c.bytes);
     });
 }
 
 std::string for_csv(std::string_view text) {
-    // `begins`: start of a cell, also after a semicolon, which some programs use as separator
+    // `begins`: start of a cell, also after a comma or a semicolon, the separator of some programs
     bool quoted = false, begins = !is_number(text);
     std::string field = translated(text, [&](const Character& c) -> std::string {
         if (!c.plain()) return " ";
@@ -128,13 +132,8 @@ std::string for_csv(std::string_view text) {
 
 std::string for_xml(std::string_view text) {
     return translated(text, [](const Character& c) -> std::string {
-        switch (c.code) {
-            case '&': return "&amp;";
-            case '<': return "&lt;";
-            case '>': return "&gt;";
-            case '"': return "&quot;";
-            default: return c.plain() || c.code == '\n' ? std::string(c.bytes) : "?";
-        }
+        if (const char* entity = entity_of(c.code)) return entity;
+        return c.plain() || c.code == '\n' ? std::string(c.bytes) : "?";
     });
 }
 

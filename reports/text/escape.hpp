@@ -22,8 +22,7 @@ std::string for_html(std::string_view text);
 // JSON as the content of a script element in HTML: it cannot end the element.
 std::string for_script(std::string_view json);
 
-// Markdown, also in a table cell or as a paragraph: without markup, link, formula, list
-// or line break.
+// Markdown, also in a table cell or as a paragraph: without markup, links, formulas, line breaks.
 std::string for_markdown(std::string_view text);
 
 // A field of a CSV file (RFC 4180), quoted where necessary; on one line. A text that a spreadsheet

@@ -9,10 +9,11 @@
 namespace elastocheck::reports {
 namespace {
 
-// All lengths in px: the gap between boxes; the distance of points that compete for places; the
-// distance of a label from its point up to which no leader is drawn; the longer distance that is
-// preferred to covering a line.
-constexpr double gap = 2, crowd = 60, without_leader = 15, cost_of_crossing = 22;
+// Lengths [px].
+constexpr double gap = 2;                // between boxes
+constexpr double crowd = 60;             // points within it compete for places
+constexpr double without_leader = 15;    // a label farther from its point has a leader
+constexpr double cost_of_crossing = 22;  // farther by up to this to cover no line
 
 // Whether the segment a b intersects the box (Liang & Barsky 1984): the part of 0 ... 1 within each
 // pair of sides in turn.
@@ -32,8 +33,8 @@ bool crosses(const PaperPoint& a, const PaperPoint& b, const Box& box) {
     return clip(a.x, b.x - a.x, box.left, box.right) && clip(a.y, b.y - a.y, box.bottom, box.top);
 }
 
-Box wider(const Box& box, double by) {
-    return {box.left - by, box.bottom - by, box.right + by, box.top + by};
+Box wider(const Box& box, double margin) {
+    return {box.left - margin, box.bottom - margin, box.right + margin, box.top + margin};
 }
 
 }  // namespace
@@ -103,8 +104,7 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
         for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0, 125.0, 160.0})
             for (int direction = 0; direction < 16; ++direction) {
                 const double angle = 2 * std::numbers::pi * direction / 16;
-                // The side or corner of the box that faces the point touches the circle
-                // of this radius.
+                // The side or corner of the box that faces the point touches this circle.
                 const double x = label.at.x + reach * std::cos(angle),
                              y = label.at.y + reach * std::sin(angle);
                 const double across = 0.5 * (std::cos(angle) - 1), up = 0.5 * (std::sin(angle) - 1);
@@ -119,7 +119,7 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
                     continue;
                 const PaperPoint nearest{std::clamp(label.at.x, box.left, box.right),
                                          std::clamp(label.at.y, box.bottom, box.top)};
-                // Leaders must not cross words, nor words cover leaders.
+                // A leader crosses no words but those about its point; words cover no leader.
                 if (reach > without_leader && std::ranges::any_of(taken, [&](const Box& other) {
                         return crosses(label.at, nearest, other) &&
                                !crosses(label.at, label.at, wider(other, gap));

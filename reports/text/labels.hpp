@@ -17,10 +17,10 @@ struct Box {
 };
 bool overlap(const Box& a, const Box& b);
 
-// Convex hull: positions in the list, counter-clockwise, without points on its edges.
+// Convex hull: indices of its corners, counter-clockwise, without points on its edges.
 std::vector<std::size_t> convex_hull(const std::vector<PaperPoint>& points);
 
-// Estimated width of a line of text, at least that of the widest usual font.
+// Upper estimate of the width [px] of a line of text in usual fonts of this size [px].
 double text_width(std::string_view text, double size);
 
 struct Label {

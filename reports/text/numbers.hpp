@@ -6,8 +6,8 @@
 
 namespace elastocheck::reports {
 
-// Three to four significant digits, a true minus sign, powers of ten: "2.91", "−0.0018",
-// "2.6 × 10⁻¹³". A dash for a value that is not finite.
+// `digits` significant digits, and all before the decimal point; a true minus sign; powers of ten:
+// "2.91", "−0.0018", "2.6 × 10⁻¹³". A dash for a value that is not finite.
 std::string number(double value, int digits = 3);
 std::string signed_number(double value, int digits = 3);  // with a plus
 
@@ -17,10 +17,10 @@ double parsed_number(std::string_view text);
 // Up to four significant digits, as few as needed: "−80", "21.33".
 std::string short_number(double value);
 
-// 0 for values below 1e-9 of a mm, deg, N or N·m, which are rounding.
+// With its sign; 0 for values below 1e-9 of a mm, deg, N or N·m, which are rounding.
 std::string deviation_number(double value);
 
-// "2.9 %"; two significant digits, "< 0.001 %" for less.
+// "2.9 %" of 0.029; two significant digits, "< 0.001 %" for less.
 std::string percent(double share);
 
 std::string whole_number(long value);  // "12 345", with narrow spaces

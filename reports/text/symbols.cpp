@@ -72,10 +72,10 @@ Strokes damper(PaperPoint a, PaperPoint b) {
 
 Strokes barrel(PaperPoint centre, PaperPoint along, double half_length) {
     constexpr double half = 4;
-    const double seen = std::hypot(along.x, along.y);  // of a unit length
-    if (seen * half_length < half) return {ring(centre, half + 1), ring(centre, 1)};
+    const double projected = std::hypot(along.x, along.y);  // of a unit length
+    if (projected * half_length < half) return {ring(centre, half + 1), ring(centre, 1)};
     const LineFrame line(centre, {centre.x + along.x, centre.y + along.y});
-    const double l = seen * half_length;
+    const double l = projected * half_length;
     return {{line.at(-l, -half), line.at(l, -half), line.at(l, half), line.at(-l, half),
              line.at(-l, -half)},
             {line.at(-l - 4, 0), line.at(l + 4, 0)}};

@@ -21,4 +21,17 @@ std::string as_words(std::string name) {
     return name;
 }
 
+std::vector<std::string> lower_words(std::string_view text) {
+    std::vector<std::string> words;
+    bool open = false;
+    for (const char c : text) {
+        const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        const bool letter = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9');
+        if (letter && !open) words.emplace_back();
+        if (letter) words.back() += lower;
+        open = letter;
+    }
+    return words;
+}
+
 }  // namespace elastocheck::reports

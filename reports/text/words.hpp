@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace elastocheck::reports {
@@ -14,5 +15,8 @@ std::string counted(std::size_t count, const std::string& noun);
 
 // A name as words: "wheel centre" of "wheel_centre".
 std::string as_words(std::string name);
+
+// Words in lower case, separated by all characters but Latin letters and digits.
+std::vector<std::string> lower_words(std::string_view text);
 
 }  // namespace elastocheck::reports
