@@ -1,7 +1,6 @@
 // The elastocheck command.
 //
-// Exit codes: 0 fine · 1 a gate's limit is broken · 2 bad input · 3 could not judge ·
-// 4 internal error.
+// Exit codes: 0 fine, 1 a limit is broken, 2 bad input, 3 could not judge, 4 internal error.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -13,10 +12,10 @@
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/program/exit_code.hpp"
 #include "reports/command/program/parse.hpp"
+#include "reports/files/csv_table.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/subprocess.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/given/measurement.hpp"
 #include "reports/json/json_cursor.hpp"
 
 int main(int argc, char** argv) {
@@ -49,10 +48,9 @@ int main(int argc, char** argv) {
         return fail(bad_input, error.what());
     } catch (const ResultError& error) {
         return fail(bad_input, error.what());
-    } catch (const MeasurementError& error) {
+    } catch (const SheetError& error) {
         return fail(bad_input, error.what());
-        // loops of links, inaccessible folders
-    } catch (const std::filesystem::filesystem_error& error) {
+    } catch (const std::filesystem::filesystem_error& error) {  // loops of links, no access
         return fail(bad_input,
                     fmt::format("{}: {}", error.path1().string(), error.code().message()));
     } catch (const std::invalid_argument& error) {

@@ -33,7 +33,7 @@ struct OutputTable {
     std::set<std::string, std::less<>> legs;
 };
 
-// The columns named in the first line. An unknown one is an error unless it may be left out.
+// The columns named in the first line. An unknown one is an error for a candidate without a map.
 void read_headings(const Cells& cells, int line, const std::string& file, const Names& names,
                    const std::vector<compare::Channel>* also_known, OutputTable& table) {
     for (const std::string& name : cells) {
@@ -86,12 +86,13 @@ OutputTable read_table(std::string_view csv, const std::string& file, const Name
         }
     });
     if (table.legs.size() > 1)
-        fail_at(file, 1, fmt::format("leg: {} of them; a candidate is one", table.legs.size()));
+        fail_at(file, 1,
+                fmt::format("leg: {} names; allowed: one, since a candidate is one solver",
+                            table.legs.size()));
     return table;
 }
 
-// Adds the parameters of one column where it is in the unit of the point's branch, converted
-// to that unit.
+// Adds the parameters of a column to the points whose branch has its quantity, in the branch's unit.
 void add_parameters(const OutputTable& table, std::size_t c, const std::string& file,
                     const Names& names, std::vector<double>& a) {
     const Meaning& meaning = table.columns[c];

@@ -13,6 +13,7 @@
 #include "reports/files/csv_table.hpp"
 #include "reports/given/wheels.hpp"
 #include "reports/text/escape.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -21,35 +22,35 @@ using compare::Unit;
 
 // ---- Units.
 
-struct Written {
+struct UnitSymbol {
     const char* symbol;
     Unit unit;      // base unit
     double factor;  // to the base unit
 };
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
-constexpr std::array written{Written{"mm", Unit::mm, 1},
-                             Written{"cm", Unit::mm, 10},
-                             Written{"m", Unit::mm, 1e3},
-                             Written{"in", Unit::mm, 25.4},
-                             Written{"deg", Unit::deg, 1},
-                             Written{"rad", Unit::deg, degrees_per_radian},
-                             Written{"mrad", Unit::deg, 1e-3 * degrees_per_radian},
-                             Written{"arcmin", Unit::deg, 1.0 / 60},
-                             Written{"'", Unit::deg, 1.0 / 60},
-                             Written{"′", Unit::deg, 1.0 / 60},
-                             Written{"N", Unit::newton, 1},
-                             Written{"kN", Unit::newton, 1e3},
-                             Written{"N·m", Unit::newton_metre, 1},
-                             Written{"Nm", Unit::newton_metre, 1},
-                             Written{"Nmm", Unit::newton_metre, 1e-3},
-                             Written{"kNm", Unit::newton_metre, 1e3},
-                             Written{"percent", Unit::percent, 1}};
+constexpr std::array unit_symbols{UnitSymbol{"mm", Unit::mm, 1},
+                                  UnitSymbol{"cm", Unit::mm, 10},
+                                  UnitSymbol{"m", Unit::mm, 1e3},
+                                  UnitSymbol{"in", Unit::mm, 25.4},
+                                  UnitSymbol{"deg", Unit::deg, 1},
+                                  UnitSymbol{"rad", Unit::deg, degrees_per_radian},
+                                  UnitSymbol{"mrad", Unit::deg, 1e-3 * degrees_per_radian},
+                                  UnitSymbol{"arcmin", Unit::deg, 1.0 / 60},
+                                  UnitSymbol{"'", Unit::deg, 1.0 / 60},
+                                  UnitSymbol{"′", Unit::deg, 1.0 / 60},
+                                  UnitSymbol{"N", Unit::newton, 1},
+                                  UnitSymbol{"kN", Unit::newton, 1e3},
+                                  UnitSymbol{"N·m", Unit::newton_metre, 1},
+                                  UnitSymbol{"Nm", Unit::newton_metre, 1},
+                                  UnitSymbol{"Nmm", Unit::newton_metre, 1e-3},
+                                  UnitSymbol{"kNm", Unit::newton_metre, 1e3},
+                                  UnitSymbol{"percent", Unit::percent, 1}};
 
-bool is_written(std::string_view unit) {
-    return std::ranges::find(written, unit, &Written::symbol) != written.end();
+bool is_unit_symbol(std::string_view unit) {
+    return std::ranges::find(unit_symbols, unit, &UnitSymbol::symbol) != unit_symbols.end();
 }
 
-// As rigs write it, in the word of this program.
+// The symbol of this program for a unit as rigs write it.
 std::string_view plain_unit(std::string_view unit) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 8> aliases{
         {{"degrees", "deg"},
@@ -65,28 +66,10 @@ std::string_view plain_unit(std::string_view unit) {
     return unit;
 }
 
-// ---- The words of rigs.
+// ---- Headings of K&C rigs.
 
-// Words in lower case; everything else than letters and digits separates them.
-std::vector<std::string> words_of(std::string_view text) {
-    std::vector<std::string> words;
-    bool open = false;
-    for (const char c : text) {
-        const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        const bool letter = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9');
-        if (letter && !open) words.emplace_back();
-        if (letter) words.back() += lower;
-        open = letter;
-    }
-    return words;
-}
-
-bool has(const std::vector<std::string>& words, std::string_view word) {
-    return std::ranges::find(words, word) != words.end();
-}
-
-// Whether "toe|toe angle" has it.
-bool lists(std::string_view list, std::string_view words) {
+// Whether a list such as "toe|toe angle" has these words as an entry.
+bool has_entry(std::string_view list, std::string_view words) {
     return fmt::format("|{}|", list).find(fmt::format("|{}|", words)) != std::string::npos;
 }
 
@@ -102,11 +85,11 @@ constexpr std::array rig_tests{
     RigTest{"braking|brake|traction|driving", {"longitudinal force", ""}},
     RigTest{"lateral", {"lateral force", ""}}};
 
-// Words of a heading that means a column other than an output, and which; the side is taken out
-// before. Those of outputs are in the catalogue.
+// Headings of columns that are not outputs, without the side of the wheel. The headings of outputs
+// are in the catalogue.
 struct RigHeading {
     std::string_view column, words;
-    std::string_view moves = {};  // of a parameter
+    std::string_view moves = {};  // load case of a parameter
 };
 constexpr std::array rig_headings{
     RigHeading{"parameter", "lateral force", "lateral force"},
@@ -116,8 +99,6 @@ constexpr std::array rig_headings{
     RigHeading{"parameter", "aligning torque|aligning moment", "moment"},
     RigHeading{"parameter", "rack travel|rack displacement|steering wheel angle", "steering"},
     RigHeading{"branch", "test|test name|load case"}};
-
-// ---- Headings.
 
 }  // namespace
 
@@ -132,22 +113,22 @@ Heading split_heading(std::string_view text) {
     const auto last = text.rfind('_');
     if (last == text.npos) return {std::string(text), ""};
     const std::string_view unit = text.substr(last + 1);
-    if (!is_written(unit) && !compare::find_unit(unit)) return {std::string(text), ""};
+    if (!is_unit_symbol(unit) && !compare::find_unit(unit)) return {std::string(text), ""};
     return {std::string(text.substr(0, last)), std::string(unit)};
 }
 
 namespace {
 
-// Whether it is a parameter or an output, in the words of this program.
-bool is_parameter(const Heading& heading, Meaning& meaning) {
+// Whether the heading is a parameter, or an output, in the names of this program; fills `meaning`.
+bool read_parameter(const Heading& heading, Meaning& meaning) {
     if (heading.name != "parameter" && heading.name != "load") return false;
-    if (!heading.unit.empty() && !is_written(heading.unit)) return false;
+    if (!heading.unit.empty() && !is_unit_symbol(heading.unit)) return false;
     meaning.kind = Meaning::Kind::parameter;
     meaning.unit = heading.unit;
     return true;
 }
-bool is_output(const Heading& heading, const std::vector<compare::Channel>& channels,
-               Meaning& meaning) {
+bool read_output(const Heading& heading, const std::vector<compare::Channel>& channels,
+                 Meaning& meaning) {
     constexpr std::string_view change = "_change";
     std::string_view name = heading.name;
     int channel = compare::find_channel(channels, name);
@@ -165,11 +146,11 @@ bool is_output(const Heading& heading, const std::vector<compare::Channel>& chan
     return true;
 }
 
-// The heading of a rig in the words of this program, and what a parameter moves; empty where it is not
-// known, or of another wheel than the only one.
+// The heading of a rig in the names of this program, and the load case of a parameter; empty where
+// the heading is not known, or of a wheel that the scene does not have.
 std::optional<std::pair<Heading, std::string>> heading_of_rig(const Heading& heading,
                                                               const Names& names) {
-    auto words = words_of(heading.name);
+    auto words = lower_words(heading.name);
     std::string side;
     std::erase_if(words, [&](const std::string& word) {
         const bool left = word == "left" || word == "lh" || word == "l",
@@ -179,7 +160,7 @@ std::optional<std::pair<Heading, std::string>> heading_of_rig(const Heading& hea
     });
     const std::string joined = fmt::format("{}", fmt::join(words, " "));
     const auto known = std::ranges::find_if(
-        rig_headings, [&](const RigHeading& rig) { return lists(rig.words, joined); });
+        rig_headings, [&](const RigHeading& rig) { return has_entry(rig.words, joined); });
     const compare::Entry* entry = compare::find_by_heading(joined);
     if (known == rig_headings.end() && entry == nullptr) return std::nullopt;
     std::string name(entry != nullptr ? std::string_view(entry->name) : known->column);
@@ -191,19 +172,19 @@ std::optional<std::pair<Heading, std::string>> heading_of_rig(const Heading& hea
         moves = "";
     }
     if (name != "branch" && name != "parameter" && !side.empty()) {
-        const auto is = [&](const std::string& output) {
+        const auto exists = [&](const std::string& output) {
             return compare::find_channel(names.channels, output) >= 0;
         };
-        if (is(side + "." + name))
+        if (exists(side + "." + name))
             name = side + "." + name;
-        else if (!is(name) || side == "right")
+        else if (!exists(name) || side == "right")
             return std::nullopt;  // this scene has no such wheel; its only wheel is drawn left
     }
     return std::pair{Heading{name, heading.unit}, std::string(moves)};
 }
 
-Meaning mapped(const ColumnMap::Entry& entry, const Names& names) {
-    const auto wrong = [&](const char* field, const std::string& what) {
+Meaning meaning_by_map(const ColumnMap::Entry& entry, const Names& names) {
+    const auto fail = [&](const char* field, const std::string& what) {
         reader::fail(names.map.file, entry.line, fmt::format("columns.{}.{}", entry.theirs, field),
                      what);
     };
@@ -212,20 +193,20 @@ Meaning mapped(const ColumnMap::Entry& entry, const Names& names) {
     const int channel = compare::find_channel(names.channels, entry.output);
     if (entry.output == "branch") {
         meaning.kind = Meaning::Kind::branch;
-    } else if (!is_parameter(ours, meaning) && !is_output(ours, names.channels, meaning)) {
+    } else if (!read_parameter(ours, meaning) && !read_output(ours, names.channels, meaning)) {
         const std::string unit = reader::quote(entry.unit);
         if (entry.output == "parameter" || entry.output == "load")
-            wrong("unit",
-                  fmt::format("{} is not a unit; allowed: mm, m, deg, rad, N, kN, Nm, ...", unit));
+            fail("unit",
+                 fmt::format("{} is not a unit; allowed: mm, m, deg, rad, N, kN, Nm, ...", unit));
         if (channel >= 0)
-            wrong(
+            fail(
                 "unit",
                 fmt::format("{} is not a unit of {}; allowed: {}", unit, entry.output,
                             allowed_units(names.channels[static_cast<std::size_t>(channel)].unit)));
         std::vector<std::string> outputs{"parameter", "branch"};
         for (const auto& c : names.channels) outputs.push_back(c.name);
-        wrong("output", fmt::format("there is no output {}{}", reader::quote(entry.output),
-                                    reader::did_you_mean(entry.output, outputs, "outputs")));
+        fail("output", fmt::format("there is no output {}{}", reader::quote(entry.output),
+                                   reader::did_you_mean(entry.output, outputs, "outputs")));
     }
     meaning.factor *= entry.sign;
     meaning.offset = entry.offset;
@@ -237,14 +218,14 @@ Meaning mapped(const ColumnMap::Entry& entry, const Names& names) {
 
 std::optional<double> factor_of(std::string_view symbol, Unit unit) {
     if (symbol.empty() || symbol == compare::symbol(unit)) return 1;
-    for (const auto& w : written)
+    for (const auto& w : unit_symbols)
         if (w.unit == unit && symbol == w.symbol) return w.factor;
     return std::nullopt;
 }
 
 std::string allowed_units(Unit unit) {
     std::vector<std::string> list;
-    for (const auto& w : written)
+    for (const auto& w : unit_symbols)
         if (w.unit == unit) list.emplace_back(w.symbol);
     if (list.empty()) list.emplace_back(compare::symbol(unit));
     return reader::listed(list);
@@ -269,22 +250,22 @@ std::vector<std::string> Names::branches() const {
 Meaning meaning_of(const std::string& heading, const Names& names) {
     using Kind = Meaning::Kind;
     const auto entry = std::ranges::find(names.map.columns, heading, &ColumnMap::Entry::theirs);
-    if (entry != names.map.columns.end()) return mapped(*entry, names);
+    if (entry != names.map.columns.end()) return meaning_by_map(*entry, names);
     for (const auto& [word, kind] :
          {std::pair{"branch", Kind::branch}, {"leg", Kind::leg}, {"unit", Kind::parameter_unit}})
         if (heading == word) return {.kind = kind, .name = heading};
     Meaning meaning{.name = heading};
     Heading ours = split_heading(heading);
-    if (is_parameter(ours, meaning) || is_output(ours, names.channels, meaning)) return meaning;
-    // the wheel of a scene with one is the left one
+    if (read_parameter(ours, meaning) || read_output(ours, names.channels, meaning)) return meaning;
+    // The only wheel of a scene may be called the left one.
     if (ours.name.starts_with("left.") &&
-        is_output({ours.name.substr(5), ours.unit}, names.channels, meaning))
+        read_output({ours.name.substr(5), ours.unit}, names.channels, meaning))
         return meaning;
     if (const auto rig = heading_of_rig(ours, names)) {
         if (rig->first.name == "branch")
             meaning.kind = Kind::branch;
-        else if (is_parameter(rig->first, meaning) ||
-                 is_output(rig->first, names.channels, meaning))
+        else if (read_parameter(rig->first, meaning) ||
+                 read_output(rig->first, names.channels, meaning))
             meaning.moves = rig->second;
     }
     return meaning;
@@ -303,6 +284,7 @@ std::string left_out_heading(const std::string& heading, const Names& names) {
         const std::string unit = compare::symbol(channel.unit);
         list.push_back(channel.name + (heading.ends_with("]") ? " [" + unit + "]" : "_" + unit));
     }
+    // ", did you mean 'X'? allowed: ..." where a name is near, else "; allowed: ..."
     const std::string help = reader::did_you_mean(heading, list, "allowed");
     return for_terminal(heading) +
            (help.starts_with(", ") ? " (" + help.substr(2, help.find('?') - 1) + ")" : "");
@@ -310,10 +292,10 @@ std::string left_out_heading(const std::string& heading, const Names& names) {
 
 std::vector<std::string> branches_of_test(std::string_view test,
                                           const std::vector<TestBranch>& branches) {
-    const auto words = words_of(test);
-    const auto known = std::ranges::find_if(rig_tests, [&](const RigTest& test_of_rig) {
+    const auto words = lower_words(test);
+    const auto known = std::ranges::find_if(rig_tests, [&](const RigTest& rig_test) {
         return std::ranges::any_of(
-            words, [&](const std::string& word) { return lists(test_of_rig.words, word); });
+            words, [&](const std::string& word) { return has_entry(rig_test.words, word); });
     });
     if (known == rig_tests.end()) return {};
     std::vector<std::string> names;
@@ -322,18 +304,17 @@ std::vector<std::string> branches_of_test(std::string_view test,
             for (const auto& branch : branches)
                 if (branch.moves == moves) names.push_back(branch.branch);
     if (names.size() < 2) return names;
-    // the one that is called so: by all of the words that some of them have
     for (const auto& word : words) {
-        std::vector<std::string> called;
+        std::vector<std::string> with_word;
         for (const auto& name : names)
-            if (has(words_of(name), word)) called.push_back(name);
-        if (!called.empty()) names = std::move(called);
+            if (std::ranges::count(lower_words(name), word) > 0) with_word.push_back(name);
+        if (!with_word.empty()) names = std::move(with_word);
     }
     if (names.size() > 1) {
         std::vector<std::string> by_travel;
-        for (const auto& one : branches)
-            if (one.by_travel && std::ranges::find(names, one.branch) != names.end())
-                by_travel.push_back(one.branch);
+        for (const auto& branch : branches)
+            if (branch.by_travel && std::ranges::find(names, branch.branch) != names.end())
+                by_travel.push_back(branch.branch);
         if (by_travel.size() == 1) names = std::move(by_travel);
     }
     return names;
@@ -346,9 +327,10 @@ std::string no_branch(const std::string& name, const std::vector<std::string>& b
 
 std::string branch_of_cell(std::string_view cell, const Names& names, const std::string& file,
                            int line, const std::string& column) {
-    const auto own =
+    const auto renamed =
         std::ranges::find(names.map.branches, cell, &std::pair<std::string, std::string>::first);
-    const std::string name = own == names.map.branches.end() ? std::string(cell) : own->second;
+    const std::string name =
+        renamed == names.map.branches.end() ? std::string(cell) : renamed->second;
     if (std::ranges::find(names.tests, name, &TestBranch::branch) != names.tests.end()) return name;
     const auto meant = branches_of_test(name, names.tests);
     if (meant.size() == 1) return meant.front();
@@ -368,7 +350,7 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
     std::vector<Number> numbers;
     const reader::Cursor top{&tree, "", &file, &numbers};
     top.only_keys({"columns", "branches"});
-    // Names of another tool may contain brackets.
+    // Not by Cursor's own entries, since names of another tool may contain brackets.
     const auto entries = [](const reader::Cursor& section) {
         if (section.value->kind != reader::Value::Kind::map)
             section.fail("expected a map of their names, found " + section.found());
@@ -382,22 +364,23 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
     };
     const auto columns = top.optional("columns");
     if (!columns && !top.optional("branches")) top.fail("no names; required: columns or branches");
-    for (const auto& [name, at] : columns ? entries(*columns) : decltype(entries(*columns)){}) {
-        at.only_keys({"output", "unit", "sign", "offset", "change"});
-        ColumnMap::Entry entry{.theirs = name, .line = at.value->line};
-        entry.output = at.require("output").text("an output of the scene, 'parameter' or 'branch'");
-        if (const auto unit = at.optional("unit")) entry.unit = unit->text("a unit");
-        if (const auto sign = at.optional("sign")) {
+    for (const auto& [name, field] : columns ? entries(*columns) : decltype(entries(*columns)){}) {
+        field.only_keys({"output", "unit", "sign", "offset", "change"});
+        ColumnMap::Entry entry{.theirs = name, .line = field.value->line};
+        entry.output =
+            field.require("output").text("an output of the scene, 'parameter' or 'branch'");
+        if (const auto unit = field.optional("unit")) entry.unit = unit->text("a unit");
+        if (const auto sign = field.optional("sign")) {
             entry.sign = sign->number();
             if (entry.sign != 1 && entry.sign != -1) sign->fail("expected 1 or -1");
         }
-        if (const auto offset = at.optional("offset")) entry.offset = offset->number();
-        if (const auto change = at.optional("change")) entry.change = change->yes_or_no();
+        if (const auto offset = field.optional("offset")) entry.offset = offset->number();
+        if (const auto change = field.optional("change")) entry.change = change->yes_or_no();
         map.columns.push_back(std::move(entry));
     }
     if (const auto branches = top.optional("branches"))
-        for (const auto& [name, at] : entries(*branches))
-            map.branches.emplace_back(name, at.text("a branch of the scene"));
+        for (const auto& [name, field] : entries(*branches))
+            map.branches.emplace_back(name, field.text("a branch of the scene"));
     return map;
 }
 

@@ -16,13 +16,13 @@ namespace elastocheck::reports {
 // Mapping from the file's column and branch names to those of the scene.
 struct ColumnMap {
     struct Entry {
-        std::string theirs{};
+        std::string theirs{};  // name of the column in the file
         std::string output{};  // an output of the scene, "parameter" or "branch"
         std::string unit{};    // empty: the output's own
         // output = sign · number · unit + offset, the offset in the output's own unit
         double sign = 1, offset = 0;
         bool change = false;  // relative to the design position
-        int line = 0;
+        int line = 0;         // in the map
     };
     std::vector<Entry> columns;
     // names in the file and in the scene
@@ -56,6 +56,7 @@ struct Names {
 Names names_of(const Model& model, const std::vector<compare::Channel>& channels,
                const ColumnMap& map);
 
+// What a column of the file gives: value = number · factor + offset.
 struct Meaning {
     enum class Kind {
         output,
@@ -67,7 +68,7 @@ struct Meaning {
     } kind = Kind::nothing;
     std::string name{};  // in the file
     std::size_t channel = 0;
-    bool change = false;
+    bool change = false;  // relative to the design position
     double factor = 1, offset = 0;
     // unit of a parameter, as written; empty: that of the branch, or given by a column
     std::string unit{};

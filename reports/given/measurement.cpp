@@ -15,7 +15,7 @@ namespace {
 
 using compare::Leg;
 
-// Whether a point has a value of an output; a travel that places it is none.
+// Removes the travel that gives the places of the points, and changes of travel: nothing to compare.
 void drop_travel(PointTable& table, const std::vector<compare::Channel>& channels) {
     std::erase_if(table.points.columns, [&](const compare::PointColumn& column) {
         return is_travel(channels[column.channel]) &&
@@ -23,7 +23,8 @@ void drop_travel(PointTable& table, const std::vector<compare::Channel>& channel
     });
 }
 
-// Changes of outputs that are no function of the position alone have no start.
+// Leaves out changes of outputs other than positions and angles, whose value at the design position
+// is not defined.
 void drop_changes(PointTable& table, const std::vector<compare::Channel>& channels) {
     std::erase_if(table.points.columns, [&](const compare::PointColumn& column) {
         if (!column.change || channels[column.channel].kinematic()) return false;
@@ -33,7 +34,7 @@ void drop_changes(PointTable& table, const std::vector<compare::Channel>& channe
     });
 }
 
-// The points with the channels of another list; columns that it lacks are left out.
+// Refers the columns to another list of channels; columns without a channel there are left out.
 void renumber(Measurement& measurement, const std::vector<compare::Channel>& channels) {
     auto& [points, parameters, left_out, lines] = measurement.table;
     const auto& own = measurement.channels;
@@ -49,8 +50,8 @@ void renumber(Measurement& measurement, const std::vector<compare::Channel>& cha
     measurement.channels = channels;
 }
 
-std::string word_of(const Measured& measured, const compare::MeasuredReading& reading,
-                    const compare::Comparison& all) {
+std::string reading_name(const Measured& measured, const compare::MeasuredReading& reading,
+                         const compare::Comparison& all) {
     const PointTable& table = measured.measurement.table;
     if (!reading.by_parameter) return "at equal " + all.channels[*table.points.abscissa].name;
     const auto is_load = [](const std::string& name) { return name.starts_with("load"); };
@@ -77,8 +78,8 @@ std::pair<std::string, double> gradient_unit(const Measured& measured,
 }
 
 // Reason why a point is not compared; empty if it is.
-std::string why_not(const compare::Place& place, const compare::Points& measured, std::size_t k,
-                    const compare::Comparison& all) {
+std::string reason_left_out(const compare::Place& place, const compare::Points& measured,
+                            std::size_t k, const compare::Comparison& all) {
     if (!std::isfinite(place.x)) return "without a parameter or travel";
     if (std::ranges::none_of(measured.columns,
                              [&](const auto& column) { return std::isfinite(column.values[k]); }))
@@ -125,19 +126,21 @@ Measurement read_measurement(std::string_view csv, const std::string& file, cons
 Measured compare_measurement(const Model& model, const compare::Comparison& comparison,
                              const compare::DefinedCurves& defined, Measurement measurement) {
     renumber(measurement, comparison.channels);
-    Measured made{std::move(measurement), {}, {}};
-    PointTable points = made.measurement.table;
+    Measured result{std::move(measurement), {}, {}};
+    PointTable points = result.measurement.table;
     try {
-        made.found = compare::compare_measured(model, comparison, points.points, defined);
+        result.found = compare::compare_measured(model, comparison, points.points, defined);
     } catch (const std::invalid_argument& error) {
-        fail_at(made.measurement.file, 1, error.what());
+        fail_at(result.measurement.file, 1, error.what());
     }
-    const compare::Points measured = points.points;
+    const compare::Points measured = points.points;  // keep_rows changes them
     keep_rows(points, [&](std::size_t k) {
-        return made.found.used[k] ? "" : why_not(made.found.places[k], measured, k, comparison);
+        return result.found.used[k]
+                   ? ""
+                   : reason_left_out(result.found.places[k], measured, k, comparison);
     });
-    made.left_out = std::move(points.left_out);
-    return made;
+    result.left_out = std::move(points.left_out);
+    return result;
 }
 
 compare::Table deviation_table(const Measured& measured, const compare::MeasuredReading& reading,
@@ -146,7 +149,8 @@ compare::Table deviation_table(const Measured& measured, const compare::Measured
     using Row = compare::MeasuredRow;
     const auto per = [&](const Row& r) { return gradient_unit(measured, reading, r, comparison); };
     std::vector<compare::ColumnOf<Row>> columns{
-        {"reading", hidden, [&](const Row&) { return word_of(measured, reading, comparison); }},
+        {"reading", hidden,
+         [&](const Row&) { return reading_name(measured, reading, comparison); }},
         {"test", words, [](const Row& r) { return r.branch; }},
         {"output", words, [&](const Row& r) { return comparison.channels[r.channel].name; }},
         {"unit", words, [&](const Row& r) { return symbol(comparison.channels[r.channel].unit); }},
@@ -158,17 +162,21 @@ compare::Table deviation_table(const Measured& measured, const compare::Measured
          "likewise, of the equilibrium leg", "", "of the model"},
         {"gradient unit", words, [=](const Row& r) { return per(r).first; }, "", "", "its unit"}};
     for (const Leg leg : compare::legs) {
-        const auto off = [=](const Row& r) { return r.off[static_cast<std::size_t>(leg)]; };
+        const auto deviation_of = [=](const Row& r) {
+            return r.off[static_cast<std::size_t>(leg)];
+        };
         const bool shown = leg != Leg::energy;
-        const std::string who = leg == Leg::equilibrium ? "full solution" : "published recursion";
+        const std::string solution =
+            leg == Leg::equilibrium ? "full solution" : "published recursion";
         columns.push_back({fmt::format("{} max", name(leg)), shown ? deviation : hidden,
-                           [=](const Row& r) { return off(r).signed_max; },
-                           "deviation where it is largest", "", who + ", max"});
+                           [=](const Row& r) { return deviation_of(r).signed_max; },
+                           "deviation where it is largest", "", solution + ", max"});
         columns.push_back({fmt::format("{} rms", name(leg)), shown ? rounded : hidden,
-                           [=](const Row& r) { return off(r).rms; }, "", "", "rms"});
+                           [=](const Row& r) { return deviation_of(r).rms; }, "", "", "rms"});
     }
     compare::Table table = compare::table("measured", columns, reading.rows);
-    table.caption = "Deviation from the measurement, " + word_of(measured, reading, comparison);
+    table.caption =
+        "Deviation from the measurement, " + reading_name(measured, reading, comparison);
     return table;
 }
 

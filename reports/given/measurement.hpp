@@ -14,11 +14,9 @@
 
 namespace elastocheck::reports {
 
-using MeasurementError = SheetError;
-
 struct Measurement {
-    std::string file, hash;  // of its text
-    PointTable table;        // its channels are positions in `channels`
+    std::string file, hash;  // name, and hash of the text
+    PointTable table;        // its columns refer to `channels`
     std::vector<compare::Channel> channels;
 };
 
@@ -32,7 +30,7 @@ struct Measurement {
 //   OUTPUT_change_UNIT             ...: relative to the design position
 //   branch                         its branch; needed only where several branches have the same parameter
 // or as a rig names them (headings.hpp), or as the map says. Unknown columns, and the points of branches
-// that are not among `only` (empty: all), are left out and listed. Throws MeasurementError.
+// that are not among `only` (empty: all), are left out and listed. Throws SheetError.
 Measurement read_measurement(std::string_view csv, const std::string& file, const Model& model,
                              const ColumnMap& map = {}, const std::vector<std::string>& only = {});
 
@@ -44,17 +42,17 @@ struct Measured {
 };
 
 // A point is compared only with the branch on which it was measured. Columns that deviate are tried by
-// the other definitions `defined` too. Throws MeasurementError.
+// the other definitions `defined` too. Throws SheetError.
 Measured compare_measurement(const Model& model, const compare::Comparison& comparison,
                              const compare::DefinedCurves& defined, Measurement measurement);
 
 // Its tables: deviations, loops, and the points; notes: what makes a column right that deviates.
 compare::Result result_of(const Measured& measured, const compare::Comparison& comparison);
 
-// Deviation of every leg from the points, a test and output a row; a part for each reading.
+// Deviation of every leg from the points at equal parameter or travel; a row per test and output.
 compare::Table deviation_table(const Measured& measured, const compare::MeasuredReading& reading,
                                const compare::Comparison& comparison);
-// Ways out and back that differ.
+// Hysteresis: outputs whose ways out and back differ, a branch and output a row.
 compare::Table loop_table(const Measured& measured, const compare::Comparison& comparison);
 
 }  // namespace elastocheck::reports

@@ -23,7 +23,7 @@ namespace {
 using compare::CandidateState;
 using json = nlohmann::ordered_json;
 
-constexpr double unit_length = 1e-6;  // allowed deviation of a quaternion's length from one
+constexpr double length_tolerance = 1e-6;  // allowed deviation of a quaternion's length from one
 
 // Nodes within a beam: bodies connected only to beam segments. Their poses may be omitted.
 std::vector<bool> nodes_of(const Model& model) {
@@ -60,11 +60,11 @@ struct States {
             fail_at(
                 file, line,
                 fmt::format("more states than {}, the most that are read", max_measured_points));
-        Pose nowhere;
-        nowhere.r.setConstant(compare::nan);
-        nowhere.p.coeffs().setConstant(compare::nan);
+        Pose missing;
+        missing.r.setConstant(compare::nan);
+        missing.p.coeffs().setConstant(compare::nan);
         list.push_back({branch_of_cell(branch, names, file, line, "branch"), load,
-                        std::vector<Pose>(model.bodies.size(), nowhere)});
+                        std::vector<Pose>(model.bodies.size(), missing)});
         lines.push_back(line);
     }
 
@@ -76,7 +76,8 @@ struct States {
         if (!std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) {
             pose.r.setConstant(INFINITY);
             pose.p = Eigen::Quaterniond::Identity();
-        } else if (const double length = pose.p.norm(); !(std::abs(length - 1) <= unit_length)) {
+        } else if (const double length = pose.p.norm();
+                   !(std::abs(length - 1) <= length_tolerance)) {
             fail_at(file, line,
                     fmt::format("{}: its length is {:.9g}; allowed: a unit quaternion w, x, y, z, "
                                 "to 1e-6",
@@ -114,7 +115,7 @@ struct States {
 void read_state(const JsonCursor& object, int line, States& states) {
     object.only_keys({"branch", "load", "bodies"});
     const std::string branch = object["branch"].text();
-    const double load = object["load"].number();  // null is JSON's word for what is not finite
+    const double load = object["load"].number();  // NaN for null
     states.begin(branch, std::isfinite(load) ? load : INFINITY, line);
     for (const auto& [name, pose] : object["bodies"].entries()) {
         std::array<double, 7> values{};
@@ -135,11 +136,11 @@ void read_lines(std::string_view text, States& states) {
     while (!text.empty()) {
         ++line;
         const auto end = text.find('\n');
-        const std::string_view one = text.substr(0, end);
+        const std::string_view content = text.substr(0, end);
         text = end == text.npos ? std::string_view{} : text.substr(end + 1);
-        if (one.find_first_not_of(" \t\r") == one.npos) continue;
+        if (content.find_first_not_of(" \t\r") == content.npos) continue;
         try {
-            const json object = parse_json(one);
+            const json object = parse_json(content);
             const std::string place = fmt::format("{}:{}", states.file, line);
             read_state({&object, "", &place}, line, states);
         } catch (const JsonError& error) {
@@ -155,8 +156,8 @@ void read_rows(std::string_view csv, States& states) {
     static const std::vector<std::string> headings{"branch", "load", "body", "x",  "y",
                                                    "z",      "qw",   "qx",   "qy", "qz"};
     const std::string& file = states.file;
-    std::vector<std::size_t> place;
-    std::map<std::pair<std::string, double>, std::size_t> known;
+    std::vector<std::size_t> place;                                     // column of each heading
+    std::map<std::pair<std::string, double>, std::size_t> state_index;  // by branch and load
     const auto head = [&](const Cells& cells, int line) {
         for (const auto& name : headings) {
             const auto found = std::ranges::find(cells, name);
@@ -176,12 +177,12 @@ void read_rows(std::string_view csv, States& states) {
             return value;
         };
         const double load = number(1);
-        const auto [at, is_new] =
-            known.try_emplace({std::string(cells[place[0]]), load}, states.list.size());
+        const auto [entry, is_new] =
+            state_index.try_emplace({std::string(cells[place[0]]), load}, states.list.size());
         if (is_new) states.begin(cells[place[0]], load, line);
         std::array<double, 7> values{};
         for (std::size_t k = 0; k < values.size(); ++k) values[k] = number(3 + k);
-        states.add(states.list[at->second], std::string(cells[place[2]]), values, "orientation",
+        states.add(states.list[entry->second], std::string(cells[place[2]]), values, "orientation",
                    line);
     });
 }

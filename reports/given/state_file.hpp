@@ -12,15 +12,16 @@
 
 namespace elastocheck::reports {
 
-// By a JSON object, or a column `body`.
+// Whether the content is states: a JSON object, or a table with the columns `body` and `qw`.
 bool holds_states(std::string_view content);
 
-// `passed_over`: bodies of the scene that are not modelled. Throws SheetError "file:line: ...".
+// `passed_over` receives the names of bodies of the scene that are not modelled. Throws SheetError
+// "file:line: ...".
 std::vector<compare::CandidateState> read_states(std::string_view content, const std::string& file,
                                                  const Scene& scene, const Model& model,
                                                  const Names& names, std::string& passed_over);
 
-// The states of a path as JSON lines, one per state; `load` in SI.
+// A state as a JSON line; `load` and positions in SI units.
 std::string state_line(const Model& model, const std::string& branch, const Equilibrium& state);
 
 }  // namespace elastocheck::reports

@@ -15,13 +15,14 @@ bool is_effort_of(const compare::Channel& channel, int joint) {
     return effort != nullptr && effort->joint == joint;
 }
 
-// What the parameter does to the wheels.
+// What the parameter of a branch moves.
 struct WheelEffects {
     std::vector<double> lift;  // per wheel, vertical motion or force per unit of the parameter
-    // likewise, force in the road plane or moment, as the figures of a K&C test count it
-    std::vector<double> push;
-    bool steers = false, across = false, turns = false, other = false;
-    bool along_centre = false, along_patch = false;
+    std::vector<double> push;  // likewise, force or moment as in Pushes
+    bool steers = false;       // a joint that holds no wheel
+    bool across = false, along_centre = false, along_patch = false;  // forces on wheels
+    bool turns = false;                                              // moments
+    bool other = false;
 };
 
 void add(WheelEffects& effects, const Model& model, const LoadKind& load, double rate) {
@@ -44,10 +45,10 @@ void add(WheelEffects& effects, const Model& model, const LoadKind& load, double
             effects.across = true;
             effects.push[*wheel] -= rate * model.wheels[*wheel].side * v.y();
         } else {
-            const Wheel& on = model.wheels[*wheel];
-            const Point& at = *member<Point>(load);
+            const Wheel& loaded = model.wheels[*wheel];
+            const Point& point = *member<Point>(load);
             const bool at_centre =
-                at.body == on.body && (on.centre_local - at.s_local).norm() < 1e-6;
+                point.body == loaded.body && (loaded.centre_local - point.s_local).norm() < 1e-6;
             (at_centre ? effects.along_centre : effects.along_patch) = true;
             effects.push[*wheel] += (at_centre ? rate : -rate) * v.x();
         }
@@ -128,7 +129,8 @@ std::vector<std::string> efforts_of(const Branch& branch,
 std::size_t settled_on(const Model& model) {
     const auto free = std::ranges::find_if_not(
         model.branches, [&](const Branch& branch) { return holds_a_wheel(model, branch); });
-    return static_cast<std::size_t>(free - model.branches.begin()) % model.branches.size();
+    return free == model.branches.end() ? 0
+                                        : static_cast<std::size_t>(free - model.branches.begin());
 }
 
 std::vector<compare::StaticRow> static_rows(const Model& model,
@@ -142,8 +144,8 @@ std::vector<compare::StaticRow> static_rows(const Model& model,
         const std::string& wheel = model.wheels[w].name;
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const auto& channel = comparison.channels[c];
-            const auto* of = std::get_if<compare::Catalogued>(&channel.reads);
-            if (of != nullptr && of->of == w && of->entry->is.at_rest &&
+            const auto* output = std::get_if<compare::Catalogued>(&channel.reads);
+            if (output != nullptr && output->of == w && output->entry->is.at_rest &&
                 channel.name.starts_with(wheel))  // not of the axle
                 rows.push_back({wheel, channel.name.substr(wheel.empty() ? 0 : wheel.size() + 1),
                                 symbol(channel.unit), compare::finite_or_nan(drawn[c]),

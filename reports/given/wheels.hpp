@@ -29,8 +29,9 @@ std::optional<Pushes> pushes_of(const Model& model, const Branch& branch);
 std::vector<std::string> efforts_of(const Branch& branch,
                                     const std::vector<compare::Channel>& channels);
 
-// The branch on which the wheels settle: the first that holds no wheel, else the first.
+// The branch that starts at the settled position: the first that holds no wheel, else the first.
 std::size_t settled_on(const Model& model);
+// Angles and loads of each wheel as drawn, and settled by the equilibrium leg.
 std::vector<compare::StaticRow> static_rows(const Model& model,
                                             const compare::Comparison& comparison);
 

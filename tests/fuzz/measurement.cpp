@@ -51,7 +51,7 @@ void measurement(std::string_view input) {
                          reports::json_of(result_of(*scene.measured, scene.comparison)).dump());
             if (scene.measured->found.compared < 0) throw Fault("fewer than none compared");
             (void)reports::measured_section(scene);
-        } catch (const reports::MeasurementError& error) {
+        } catch (const reports::SheetError& error) {
             const std::string_view what = error.what();
             if (!what.starts_with("fuzz.csv:"))
                 throw Fault("a refusal without a place: " + std::string(what));

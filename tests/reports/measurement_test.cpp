@@ -310,7 +310,7 @@ TEST(Measurement, RowsOfUnrequestedBranchesAreCountedByName) {
                                    "1 row beyond the range of branch 'parallel' (line 5)",
                                    "1 row without a measured value (line 6)"}));
     EXPECT_EQ(m["readings"].back()[0]["points"], 2);
-    EXPECT_THROW((void)axle().measured(csv, {}, {"steering"}), MeasurementError);
+    EXPECT_THROW((void)axle().measured(csv, {}, {"steering"}), SheetError);
 }
 
 TEST(Measurement, EveryOutputOfTheStateCanBeMeasured) {
