@@ -16,7 +16,7 @@ using By = compare::Variant::Construction;
 struct Extreme {
     const char *scene, *label;
     std::string_view settings;  // PATH=VALUE, in the units of the file: mm
-    By known = By::unknown;     // by construction of the scene
+    By known = By::unknown;     // what the construction of the scene implies of its equilibria
 };
 constexpr Extreme table[]{
     {"two_hinges", "axes at 1e-1 rad", "points.skew.x=100", By::nothing_moves},
@@ -81,15 +81,15 @@ std::vector<Setting> settings_of(std::string_view text) {
 
 std::vector<compare::Trial> extremes() {
     std::vector<compare::Trial> trials;
-    for (const Extreme& one : table) {
+    for (const Extreme& row : table) {
         const auto* file =
-            std::ranges::find(embedded_extremes, one.scene, &Embedded_extremes::name);
+            std::ranges::find(embedded_extremes, row.scene, &Embedded_extremes::name);
         if (file == std::end(embedded_extremes)) throw std::logic_error("no scene of this name");
-        trials.push_back({one.scene,
+        trials.push_back({row.scene,
                           std::string(compare::extreme),
-                          {.label = one.label,
-                           .scene = parse_scene(file->text, one.scene, settings_of(one.settings)),
-                           .known = one.known}});
+                          {.label = row.label,
+                           .scene = parse_scene(file->text, row.scene, settings_of(row.settings)),
+                           .known = row.known}});
     }
     return trials;
 }

@@ -1,5 +1,6 @@
-# Run at every build: writes OUTPUT from what git says now, and leaves it alone when nothing changed. In an archive that
-# git made (.gitattributes), the commit stands here; a checkout around the sources that is not theirs says nothing.
+# Run at every build: writes the version, commit, compiler and libraries to OUTPUT, if they changed. In an archive by
+# `git archive` (.gitattributes) git has written the commit below; a checkout that has the sources in a subfolder is
+# another project's and is ignored.
 find_package(Git QUIET)
 set(commit "$Format:%H$")
 if(commit MATCHES "Format")
@@ -11,7 +12,8 @@ if(GIT_FOUND)
   set(git ${GIT_EXECUTABLE} -c safe.directory=* -C ${SOURCE})
   execute_process(COMMAND ${git} rev-parse --show-prefix HEAD
                   OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
-  string(STRIP "${head}" head)  # after the line with the folder within the checkout, empty at its top
+  # The first line is the folder within the checkout, empty at its top: only then the commit alone is left.
+  string(STRIP "${head}" head)
   if(NOT failed AND head MATCHES "^[0-9a-f]+$")
     set(commit ${head})
     execute_process(COMMAND ${git} status --porcelain --untracked-files=no
@@ -32,7 +34,7 @@ inline constexpr const char* flags = "@FLAGS@";
 struct NameVersion { const char *name, *version; };
 inline constexpr NameVersion libraries[] = {
     {"Eigen", "@EIGEN@"}, {"Ceres", "@CERES@"}, {"NLopt", "@NLOPT@"}, {"yaml-cpp", "@YAML@"}, {"fmt", "@FMT@"}};
-inline constexpr NameVersion round_nothing[] = {
+inline constexpr NameVersion without_arithmetic[] = {
     {"CLI11", "@CLI11@"}, {"nlohmann-json", "@JSON@"}};
 }
 ]])

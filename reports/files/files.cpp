@@ -89,7 +89,7 @@ bool write_and_close(int out, std::string_view content) {
 void check_may_write(const fs::path& file, const FileKind& kind) {
     struct stat entry {};
     if (::lstat(file.c_str(), &entry) != 0) {
-        // A missing folder will be created; an inaccessible one is an error now.
+        // A missing file or folder will be created; an inaccessible folder is an error now.
         if (errno != ENOENT) fail_access(file, "written");
         return;
     }
@@ -181,7 +181,7 @@ void append(const fs::path& file, std::string_view content) {
     if (!write_and_close(out, content)) fail_access(file, "appended to");
 }
 
-void fill(const fs::path& file, std::string_view content) {
+void write_staged(const fs::path& file, std::string_view content) {
     make_folder_of(file);
     const int out =
         ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);

@@ -1,5 +1,4 @@
-// Atomic writing of files, with protection of files not made by this program, and reading with a
-// size limit.
+// Atomic writing of files, which protects files of other programs, and reading with a size limit.
 #pragma once
 
 #include <filesystem>
@@ -31,8 +30,8 @@ inline constexpr FileKind junit_file{
     "JUnit report", R"(<?xml version="1.0" encoding="UTF-8"?><testsuites name="elastocheck gate")"};
 inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
 
-// Throws FileError unless `file` does not exist or is a regular file that begins as its kind does:
-// no device, no link, no folder, no file of another program.
+// Throws FileError unless `file` does not exist or is a regular file that begins as its kind does,
+// so that no device, link, folder or file of another program is replaced.
 void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 
 // Temporary name ".NAME.elastocheck-PROCESS" beside a file or folder that is being written. Removes
@@ -70,10 +69,10 @@ void write_whole(const std::filesystem::path& file, std::string_view content, co
 void append(const std::filesystem::path& file, std::string_view content);
 
 // Writes a file in a staging folder (folder.hpp). Throws FileError.
-void fill(const std::filesystem::path& file, std::string_view content);
+void write_staged(const std::filesystem::path& file, std::string_view content);
 
-// A file of an installed program or of its build tree: the first of these that exists below a folder above
-// the running program, the nearest one; empty if none does.
+// A file of the installed program or of its build tree: the first of the relative paths `places` that
+// exists below the nearest folder above the running program that has one; empty if none has.
 std::filesystem::path beside_program(std::initializer_list<std::string> places);
 
 // Reads a file or a pipe; throws FileError, for a larger one as soon as it exceeds the limit.

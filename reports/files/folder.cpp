@@ -97,7 +97,7 @@ Staging::~Staging() {
 void Staging::publish() {
     std::string list = fmt::format("{}\n", manifest_head);
     for (const auto& file : files_in(staging_)) list += file + "\n";
-    fill(staging_ / manifest, list);
+    write_staged(staging_ / manifest, list);
     if (::rename(staging_.c_str(), target_.c_str()) == 0) return;
     // The target is not empty: the two are exchanged, and the destructor removes the older one.
     if ((errno != ENOTEMPTY && errno != EEXIST) ||
@@ -107,7 +107,7 @@ void Staging::publish() {
 
 void write_folder(const fs::path& folder, const std::vector<NamedContent>& files) {
     Staging staging(folder);
-    for (const auto& [name, content] : files) fill(staging.path() / name, content);
+    for (const auto& [name, content] : files) write_staged(staging.path() / name, content);
     staging.publish();
 }
 

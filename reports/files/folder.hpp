@@ -16,9 +16,8 @@ inline constexpr const char* manifest = "files.txt";
 // its first line; then a path on each line
 inline constexpr const char* manifest_head = "elastocheck files 1";
 
-// Staging folder: the new folder while it is written, beside the one that it replaces. It is
-// removed unless published; if a signal or a crash ended the program, by the next run that writes
-// this folder.
+// Staging folder: the new folder while it is written, beside the one that it replaces. It is removed
+// unless published; after a signal or a crash, by the next run that writes this folder.
 class Staging {
   public:
     // Throws FileError when `folder` is a file, or holds a file that is not on its manifest.
@@ -30,8 +29,7 @@ class Staging {
 
     const std::filesystem::path& path() const { return staging_; }
 
-    // Writes the manifest and replaces the old folder. Throws FileError; the old folder
-    // is then untouched.
+    // Writes the manifest and replaces the old folder, which is untouched on a FileError.
     void publish();
 
   private:

@@ -36,7 +36,7 @@ std::string version_text(const Provenance& p) {
         libraries += fmt::format("{}{} {}", libraries.empty() ? "" : ", ", name, version);
     };
     for (const auto& library : p.libraries) add(library.name, library.version);
-    for (const auto& [name, version] : build_info::round_nothing) add(name, version);
+    for (const auto& [name, version] : build_info::without_arithmetic) add(name, version);
     return fmt::format("elastocheck {}\ncommit {}{}\ncompiler {}, {}\nlibraries {}", p.version,
                        p.commit, p.dirty ? ", with uncommitted changes" : "", p.compiler, p.flags,
                        libraries);

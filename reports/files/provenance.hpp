@@ -24,8 +24,7 @@ struct Provenance {
 
 Provenance provenance();
 
-// Output of --version: version, commit, compiler, and all libraries, also those without
-// floating-point arithmetic.
+// Output of --version: version, commit, compiler, and all libraries, also those without arithmetic.
 std::string version_text(const Provenance& provenance);
 
 // The same in a result or a baseline.

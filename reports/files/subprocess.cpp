@@ -37,17 +37,17 @@ bool keep_output(int pipe, std::string& output_text) {
 }
 
 // Runs in the child between fork and exec: only async-signal-safe functions are allowed.
-[[noreturn]] void execute_child(char* const* arguments, int output_text, int failed) {
+[[noreturn]] void execute_child(char* const* arguments, int output_pipe, int error_pipe) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const int nothing = ::open("/dev/null", O_RDONLY);
-    ::dup2(nothing, STDIN_FILENO);
-    ::dup2(output_text, STDOUT_FILENO);
-    ::dup2(output_text, STDERR_FILENO);
+    const int empty_input = ::open("/dev/null", O_RDONLY);
+    ::dup2(empty_input, STDIN_FILENO);
+    ::dup2(output_pipe, STDOUT_FILENO);
+    ::dup2(output_pipe, STDERR_FILENO);
     std::signal(SIGXFSZ, SIG_DFL);
     ::execvp(arguments[0], arguments);
     const int why = errno;
-    [[maybe_unused]] const auto ignored = ::write(failed, &why, sizeof why);
+    [[maybe_unused]] const auto ignored = ::write(error_pipe, &why, sizeof why);
     ::_exit(127);
 }
 
@@ -119,43 +119,43 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
     std::vector<char*> arguments;
     for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
-    int output_text[2], failed[2];
-    for (int* pipe : {output_text, failed})
+    int output_pipe[2], error_pipe[2];  // the second has errno where the program cannot be run
+    for (int* pipe : {output_pipe, error_pipe})
         if (::pipe2(pipe, O_CLOEXEC) != 0)
             throw FileError(fmt::format("pipe: {}", std::strerror(errno)));
     const auto start = clock::now();
     const pid_t child = ::fork();
     if (child < 0) throw FileError(fmt::format("fork: {}", std::strerror(errno)));
-    if (child == 0) execute_child(arguments.data(), output_text[1], failed[1]);
+    if (child == 0) execute_child(arguments.data(), output_pipe[1], error_pipe[1]);
     ::setpgid(child, child);  // here and in the child, as either may run first
     running_group = child;
-    ::close(output_text[1]);
-    ::close(failed[1]);
+    ::close(output_pipe[1]);
+    ::close(error_pipe[1]);
 
     ProcessResult result;
-    pollfd output{output_text[0], POLLIN, 0};
-    bool over = false;
+    pollfd output{output_pipe[0], POLLIN, 0};
+    bool exited = false;
     do {
-        // Without an output this waits alone.
+        // After the end of the output (fd < 0) poll() only waits.
         if (::poll(&output, 1, output.fd < 0 ? 1 : 20) > 0 &&
             !keep_output(output.fd, result.output_text))
             output.fd = -1;
-        over = has_exited(child);
-    } while (!over && std::chrono::duration<double>(clock::now() - start).count() <= limit);
+        exited = has_exited(child);
+    } while (!exited && std::chrono::duration<double>(clock::now() - start).count() <= limit);
     ::kill(-child, SIGKILL);  // the rest of the process group
     running_group = 0;        // before the process id can be reused
     int status = 0, why = 0;
     ::waitpid(child, &status, 0);
-    ::fcntl(output_text[0], F_SETFL, O_NONBLOCK);
-    while (keep_output(output_text[0], result.output_text)) continue;
-    const bool started = ::read(failed[0], &why, sizeof why) != sizeof why;
-    ::close(output_text[0]);
-    ::close(failed[0]);
+    ::fcntl(output_pipe[0], F_SETFL, O_NONBLOCK);
+    while (keep_output(output_pipe[0], result.output_text)) continue;
+    const bool started = ::read(error_pipe[0], &why, sizeof why) != sizeof why;
+    ::close(output_pipe[0]);
+    ::close(error_pipe[0]);
     if (result.output_text.size() > largest_output)
         result.output_text.erase(0, result.output_text.size() - largest_output);
     using enum ProcessResult::How;
     result.how = !started              ? not_started
-                 : !over               ? too_long
+                 : !exited             ? too_long
                  : WIFSIGNALED(status) ? by_signal
                                        : by_itself;
     result.code = !started                  ? why

@@ -1,5 +1,4 @@
-// Mustache templates with all markup of a report, from reports/page/templates/, compiled
-// into the program.
+// Mustache templates of reports/page/templates/, all markup of a report, compiled into the program.
 #pragma once
 
 #include <nlohmann/json.hpp>

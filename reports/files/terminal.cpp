@@ -56,13 +56,13 @@ bool is_terminal(int file) {
 
 // The displayed progress. A thread repeats it while the work reports nothing new.
 struct Display {
-    std::mutex lock;  // of all below, and of both streams
+    std::mutex lock;  // of the members below, and of both streams
     const bool terminal = is_terminal(STDERR_FILENO);
-    bool hidden = false, works = false, begun = false, on_screen = false;
+    bool hidden = false, working = false, begun = false, on_screen = false;
     std::string task;
     double done = 0;
     Clock::time_point began;
-    std::condition_variable_any changed;  // work has begun
+    std::condition_variable_any changed;  // `begun` has been set
     std::jthread repeats;                 // ended before all above are destroyed
 
     void clear() {
@@ -87,11 +87,11 @@ struct Display {
         while (!end.stop_requested()) {
             const bool begins = changed.wait_for(guard, end, pause, [&] { return begun; });
             begun = false;
-            if (!begins && works && !end.stop_requested()) show();
+            if (!begins && working && !end.stop_requested()) show();
         }
     }
     void begin() {
-        works = begun = true;
+        working = begun = true;
         began = Clock::now();
         if (!repeats.joinable())
             repeats = std::jthread([this](const std::stop_token& end) { repeat(end); });
@@ -142,7 +142,7 @@ void print_error(std::string_view lines) {
 
 std::string progress_line(std::string_view task, double done, double seconds, int width) {
     constexpr int bar = 20;
-    // Before that little is known of the time.
+    // The remaining time is estimated from this share and these seconds on.
     constexpr double min_done = 0.02, min_seconds = 1;
     std::string line;
     if (std::isfinite(done)) {
@@ -170,10 +170,10 @@ void progress(std::string_view task, double done) {
     if (shown.hidden) return;
     if (task.empty()) {
         shown.clear();
-        shown.works = false;
+        shown.working = false;
         return;
     }
-    if (!shown.works) shown.begin();
+    if (!shown.working) shown.begin();
     shown.task = task;
     shown.done = done;
     if (shown.terminal) shown.show();

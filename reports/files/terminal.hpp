@@ -14,7 +14,7 @@ namespace elastocheck::reports {
 struct OutputClosed {};
 
 // Writes lines of text, each through for_terminal(). Throws FileError where they cannot
-// be written, OutputClosed.
+// be written, OutputClosed where the reader has gone.
 void print(std::string_view lines);
 void print_error(std::string_view lines);  // to standard error; ignored where that is closed
 
@@ -55,7 +55,7 @@ void print_beside_document(std::string_view text);
 // to the width of the terminal; without a bar for a width of zero.
 std::string progress_line(std::string_view what, double done, double seconds, int width);
 
-// Flushes all output, or throws one of these: a full disk is detected only here.
+// Flushes all output. Throws FileError, OutputClosed: a full disk is detected only here.
 void finish_printing();
 
 }  // namespace elastocheck::reports

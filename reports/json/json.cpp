@@ -7,9 +7,9 @@ namespace elastocheck::reports {
 nlohmann::ordered_json parse_json(std::string_view text) {
     // A value takes 16 bytes, in an object 48 with its name; a list or an object also has a heap
     // vector with doubling growth.
-    constexpr double of_value = 2 * 48, of_list = 48;
+    constexpr double value_bytes = 2 * 48, list_bytes = 48;
     int depth = 0;
-    double size = static_cast<double>(text.size());
+    double bytes = static_cast<double>(text.size());
     bool in_string = false;
     for (std::size_t k = 0; k < text.size(); ++k) {
         const char c = text[k];
@@ -20,14 +20,14 @@ nlohmann::ordered_json parse_json(std::string_view text) {
         } else if (!in_string) {
             const bool opens = c == '[' || c == '{';
             depth += opens - (c == ']' || c == '}');
-            size += opens ? of_value + of_list : c == ',' ? of_value : 0;
+            bytes += opens ? value_bytes + list_bytes : c == ',' ? value_bytes : 0;
             if (depth > deepest_json)
                 throw JsonError(fmt::format("nested more than {} levels deep", deepest_json));
         }
     }
-    if (size > largest_json)
+    if (bytes > largest_json)
         throw JsonError(fmt::format("would take about {:.1f} GB of memory; allowed: {:.0f} GB",
-                                    1e-9 * size, 1e-9 * largest_json));
+                                    1e-9 * bytes, 1e-9 * largest_json));
     try {
         return nlohmann::ordered_json::parse(text);
     } catch (const nlohmann::json::exception& error) {

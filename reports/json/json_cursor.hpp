@@ -16,7 +16,7 @@ struct ResultError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// The document and the file's name outlive the field.
+// A value of a document; the document and the file's name have to outlive it.
 struct JsonCursor {
     const nlohmann::ordered_json* value;
     std::string path;  // empty for the whole document

@@ -64,19 +64,19 @@ struct Range {
     }
 };
 
-// The axis from `data` (coordinates) with round ticks, at most `most` intervals; automatic ends lie
-// on ticks. NaN: automatic end.
-Axis ticked(bool logarithmic, Range data, double low, double high, double most) {
+// The axis from `data` (coordinates) with round ticks, at most `max_intervals` intervals; automatic
+// ends lie on ticks. NaN: automatic end.
+Axis ticked(bool logarithmic, Range data, double low, double high, double max_intervals) {
     if (std::isfinite(low)) data.low = low;
     if (std::isfinite(high)) data.high = high;
     if (!(data.low <= data.high)) data = {0, 1};
     if (data.high - data.low <= 1e-9 * std::max(std::abs(data.low), std::abs(data.high))) {
-        const double beside = data.low == 0 || logarithmic ? 1 : 0.1 * std::abs(data.low);
-        data.low -= beside;
-        data.high += beside;
+        const double margin = data.low == 0 || logarithmic ? 1 : 0.1 * std::abs(data.low);
+        data.low -= margin;
+        data.high += margin;
     }
-    double step = round_step((data.high - data.low) / most);
-    if (logarithmic) step = std::max(1.0, std::ceil((data.high - data.low) / most));
+    double step = round_step((data.high - data.low) / max_intervals);
+    if (logarithmic) step = std::max(1.0, std::ceil((data.high - data.low) / max_intervals));
     constexpr double slack = 1e-6;  // of a step
     Axis axis{.logarithmic = logarithmic};
     axis.low = std::isfinite(low) ? low : step * std::floor(data.low / step + slack);
@@ -108,9 +108,8 @@ Range coordinates(const Figure& figure, std::size_t column, bool logarithmic) {
     return range;
 }
 
-// The range of y without what would flatten the rest: of a line whose range is several times that
-// of its middle half, as beside a pole or a steep stop, only what is near that half. Every line
-// keeps its own part.
+// The range of y without outliers that would flatten the curves, as beside a pole or a steep stop: of a
+// curve whose range is several times that of its middle half of values, only the values near that half.
 Range bulk_of(const Figure& figure, const Range& all) {
     constexpr double fence = 2, flat = 0.05;  // of the middle half; of the median
     Range bulk;
@@ -414,7 +413,7 @@ Svg draw_plot(const Figure& figure) {
             {left + 6, top + 12},
             fmt::format("axis cut: values from {} to {}", number(whole.low), number(whole.high)),
             slate, "start");
-    // for the script of the page: pixels and coordinates of the ends of the axes, and their names
+    // For the script of the page: pixels and coordinates of the ends of the axes, and their names.
     const auto add_axis = [&](char name, const Axis& axis, const std::string& words) {
         svg.of_image += fmt::format(" data-{0}=\"{1} {2} {3:.8g} {4:.8g} {5:d}\" data-{0}n=\"{6}\"",
                                     name, px(axis.start), px(axis.stop), axis.low, axis.high,
@@ -469,8 +468,8 @@ std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& f
     for (const auto& plot : plots) {
         pictures.push_back(illustrate(draw(*plot.figure), fmt::format("f{}", pictures.size() + 1),
                                       plot.figure->title, plot.figure->description));
-        fill(folder / "figures" / (plot.name + ".svg"), pictures.back().alone);
-        fill(folder / "figures" / (plot.name + ".csv"), figure_data(*plot.figure));
+        write_staged(folder / "figures" / (plot.name + ".svg"), pictures.back().alone);
+        write_staged(folder / "figures" / (plot.name + ".csv"), figure_data(*plot.figure));
     }
     return pictures;
 }

@@ -40,7 +40,7 @@ json paragraphs(const Section& section) {
     return list;
 }
 
-// A scene with its sections and its prefix for files and ids.
+// A scene with its sections and figures; `id` begins the names of its files and HTML ids.
 struct ScenePart {
     const SceneAnalyses& scene;
     std::string id;
@@ -285,7 +285,7 @@ std::string title_of(const std::vector<SceneAnalyses>& scenes) {
     if (scenes.size() == 1) return first;
     if (!scenes[0].against) return fmt::format("{} scenes", scenes.size());
     const std::string& variant = scenes[1].scene.name;
-    // variants often share their name, and differ by their file
+    // Variants of the same name are told apart by their files.
     const auto file = [](const SceneAnalyses& scene) {
         return fs::path(scene.scene.source).filename().string();
     };
@@ -328,7 +328,7 @@ std::vector<Answer> write_report(const Report& report, const fs::path& folder,
     if (options.progress) options.progress(fmt::format("{} figures", drafted.plots.size()));
     drafted.page.pictures = draw(drafted.plots, staging.path());
     for (const auto& [name, content] : texts(std::move(drafted), report, options.live))
-        fill(staging.path() / name, content);
+        write_staged(staging.path() / name, content);
     staging.publish();
     std::vector<Answer> answers;
     for (const auto& scene : report.scenes) answers.push_back(answer(scene));
