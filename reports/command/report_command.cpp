@@ -48,14 +48,14 @@
 namespace elastocheck::reports {
 namespace {
 
-std::string variable(const char* name) {
+std::string environment(const char* name) {
     const char* value = std::getenv(name);
     return value == nullptr ? "" : value;
 }
 
 bool succeeds(const std::string& line) { return std::system(line.c_str()) == 0; }
 
-bool is_there(const std::string& command) {
+bool exists(const std::string& command) {
     const std::string program = command.substr(0, command.find(' '));
     return !program.empty() && succeeds("command -v " + for_shell(program) + " >/dev/null 2>&1");
 }
@@ -63,19 +63,19 @@ bool is_there(const std::string& command) {
 // Command of a browser: the first of the colon-separated list $BROWSER whose program exists, else
 // xdg-open. Throws std::invalid_argument without a browser, and where CI is set.
 std::string browser() {
-    if (const std::string ci = variable("CI"); !ci.empty() && ci != "false" && ci != "0")
+    if (const std::string ci = environment("CI"); !ci.empty() && ci != "false" && ci != "0")
         throw std::invalid_argument("--open: not in CI (variable CI is set)");
-    std::istringstream list(variable("BROWSER"));
+    std::istringstream list(environment("BROWSER"));
     for (std::string command; std::getline(list, command, ':');)
-        if (is_there(command)) return command;
-    if (is_there("xdg-open")) return "xdg-open";
+        if (exists(command)) return command;
+    if (exists("xdg-open")) return "xdg-open";
     throw std::invalid_argument(
         "--open: there is nothing to open a page with: $BROWSER names no program, and xdg-open (of "
         "xdg-utils) is not there");
 }
 
-// Runs it in a shell with the page in place of %s, or after it, and waits for it. Throws
-// std::invalid_argument where it fails.
+// Runs the browser's command in a shell with the page in place of %s, or at the end, and waits for it.
+// Throws std::invalid_argument where it fails.
 void open_in(const std::string& browser, const std::string& page) {
     const std::string address = for_shell(std::filesystem::absolute(page).string());
     std::string line = browser;
@@ -113,8 +113,7 @@ struct ReportRequest {
     bool has_tolerance() const { return tolerance != ReportRequest{}.tolerance; }
 };
 
-// Error of the recommended configuration over the whole branch, for the figure
-// with the tolerance.
+// Error of the recommended configuration over each branch; empty without a recommendation.
 std::optional<Recommended> recommended(compare::Solves& solves, const compare::Trade& trade) {
     if (!trade.recommendation) return std::nullopt;
     Recommended result{trade.points[trade.recommendation->point], {}};
@@ -147,16 +146,16 @@ void select_branches(Scene& scene, Model& model, const std::vector<std::string>&
     std::erase_if(model.branches, left_out);
 }
 
-// Every so many points of a branch show the spread over formulations.
-int points_of_spread(const Model& model) {
-    constexpr int points = 10;  // of a branch, at least
+// Stride of the points at which the spread over formulations is computed.
+int stride_of_spread(const Model& model) {
+    constexpr int min_points = 10;  // of a branch
     int every = std::numeric_limits<int>::max();
-    for (const auto& branch : model.branches) every = std::min(every, branch.steps / points);
+    for (const auto& branch : model.branches) every = std::min(every, branch.steps / min_points);
     return std::max(1, every);
 }
 
-// What the studies find of the recursion's error, and what it costs. All of
-// them read the same solves; the numbers of steps are such that they can.
+// Adds the studies of the recursion's error and cost. They share their solves: the numbers of steps are
+// base · 2^k, k up to 6.
 void add_studies(SceneAnalyses& scene, const compare::Tolerance& tolerance, int threads,
                  const compare::Progress& progress_of_scene) {
     constexpr int base = 10, finest = 4;
@@ -171,8 +170,7 @@ void add_studies(SceneAnalyses& scene, const compare::Tolerance& tolerance, int 
     for (const auto& method : recursive::methods)
         if (recursive::has_steps(method)) study_options.methods.push_back(method);
     scene.study = compare::study(solves, study_options);
-    // The price is counted, so that the report is the same in every run; `trade`
-    // measures times.
+    // The cost is counted, so that the report is the same in every run; `trade` also measures times.
     scene.trade = compare::trade(solves, {.tolerance = tolerance,
                                           .points = base,
                                           .rounds = 0,
@@ -181,9 +179,8 @@ void add_studies(SceneAnalyses& scene, const compare::Tolerance& tolerance, int 
     scene.recommended = recommended(solves, *scene.trade);
 }
 
-// Figures of which the effects are shown: rates of the first wheel at the
-// design position, its toe and camber at the ends of the leading branch;
-// without a wheel the first main outputs there.
+// Figures of which the effects are shown: rates of the first wheel at the design position, its toe and
+// camber at the ends of the leading branch; without a wheel the first main outputs there.
 struct KeyOutputs {
     std::vector<compare::Channel> at_design, at_ends;
 };
@@ -219,12 +216,12 @@ void add_effects(SceneAnalyses& scene, const LoadedScene& loaded, const std::str
     std::vector<std::string> branches;
     for (const auto& branch : sweep->branches) branches.push_back(branch.name());
     const KeyOutputs key = key_outputs(scene.model);
-    // numbers of the suspension, not of what acts on it
+    // Numbers of the suspension alone, without those of loads, branches, trim and vehicle.
     const auto varying = compare::varying(file, settings, [](const std::string& path) {
         return std::ranges::none_of(std::array{"loads.", "branches.", "trim.", "vehicle."},
                                     [&](const char* group) { return path.starts_with(group); });
     });
-    // a characteristic costs several times an angle, and is shown at one station
+    // A characteristic costs several times as much as an angle, and is shown at one station.
     std::vector<compare::GradientGroup> groups;
     const compare::GradientOptions options{.points = 1, .branches = branches, .threads = threads};
     if (!key.at_design.empty()) {
@@ -242,7 +239,7 @@ void add_effects(SceneAnalyses& scene, const LoadedScene& loaded, const std::str
         for (auto& row : compare::effect_rows(group))
             if ((row.at == 0) == of_design) effects.rows.push_back(std::move(row));
         for (const auto& side : group.sides) {
-            effects.apart = std::max(effects.apart, side.worst.whole);
+            effects.difference = std::max(effects.difference, side.worst.whole);
             effects.compared += side.worst.compared;
             std::ranges::move(side.not_confirmed(), std::back_inserter(effects.reasons));
         }
@@ -304,7 +301,7 @@ SceneAnalyses solve_scene(const std::string& file, const ReportRequest& request,
     if (studies) {
         if (std::ranges::any_of(scene.scene.elastics, compare::is_reformulated))
             scene.formulations =
-                compare::formulation_study(scene.scene, 0, points_of_spread(model), threads,
+                compare::formulation_study(scene.scene, 0, stride_of_spread(model), threads,
                                            compare::part(progress_of_scene, after_legs, 0.35));
         add_studies(scene, tolerance, threads, compare::part(progress_of_scene, 0.35, 1));
     }
@@ -393,7 +390,7 @@ int write(const ReportRequest& request, const std::string& reproduce) {
     if (request.against) {
         report.scenes[0].against = differences(report.scenes[0], report.scenes[1]);
         difference = against_sentence(report.scenes[0].scene.source, *report.scenes[0].against);
-        // a variant has no verdict on the fast method unless a tolerance is given
+        // Variants have no verdict on the fast method unless a tolerance is given.
         if (!request.has_tolerance())
             for (auto& scene : report.scenes) scene.judgement.reset();
     }
@@ -402,7 +399,7 @@ int write(const ReportRequest& request, const std::string& reproduce) {
         {.progress = [](std::string_view what) { progress(what, 0.95); }, .live = live});
     progress("");
     int code = fine;
-    // the verdict of a candidate counts for the page, as in `judge`
+    // The exit code follows the verdicts of candidates, as in `judge`, and of load cases.
     for (const auto& scene : report.scenes)
         for (const auto& [judgement, sentence] : scene.candidates) {
             print_error("{}\n", sentence);
@@ -410,7 +407,6 @@ int write(const ReportRequest& request, const std::string& reproduce) {
             if (judgement.verdict == compare::Grade::not_judged && code == fine)
                 code = could_not_judge;
         }
-    // so does that of load cases
     for (const auto& scene : report.scenes)
         if (scene.loads && scene.loads->verdict.grade != compare::Grade::pass) {
             if (code == fine) code = could_not_judge;

@@ -22,7 +22,7 @@ using compare::Digits;
 using compare::nan;
 using Line = Against::Line;
 
-// Pre: the scene has the channel.
+// The curve of a channel, which the scene has to have.
 Line line_of(const SceneAnalyses& scene, const BranchComparison& branch, const Channel& channel) {
     const auto c =
         static_cast<std::size_t>(compare::find_channel(scene.comparison.channels, channel.name));
@@ -33,7 +33,7 @@ Line line_of(const SceneAnalyses& scene, const BranchComparison& branch, const C
 }
 
 // The branch of this name and unit, or null.
-const BranchComparison* find(const SceneAnalyses& scene, const BranchComparison& like) {
+const BranchComparison* branch_like(const SceneAnalyses& scene, const BranchComparison& like) {
     for (const auto& branch : scene.comparison.branches)
         if (branch.branch == like.branch && branch.unit == like.unit) return &branch;
     return nullptr;
@@ -55,7 +55,7 @@ bool differs(double was, double is) {
            std::abs(is - was) > 1e-9 + 1e-9 * std::max(std::abs(was), std::abs(is));
 }
 
-// Ratio of a difference to what an engineer notices.
+// Ratio of a difference to what an engineer notices (tolerance class `physical`).
 double noticed(const Channel& channel, double was, double is) {
     static const auto physical = compare::default_tolerances(compare::ToleranceClass::physical);
     const auto own = physical.find(symbol(channel.unit));
@@ -64,22 +64,22 @@ double noticed(const Channel& channel, double was, double is) {
 }
 
 Line thinned(const Line& line) {
-    constexpr std::size_t most = 41;
-    Line few;
-    const std::size_t count = std::min(line.a.size(), most);
+    constexpr std::size_t max_points = 41;
+    Line sample;
+    const std::size_t count = std::min(line.a.size(), max_points);
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t from = count == 1 ? 0 : k * (line.a.size() - 1) / (count - 1);
-        few.a.push_back(line.a[from]);
-        few.y.push_back(line.y[from]);
+        sample.a.push_back(line.a[from]);
+        sample.y.push_back(line.y[from]);
     }
-    return few;
+    return sample;
 }
 
-// Adds a figure that differs, of the first branch that has it.
+// Adds a figure, at the design position of the first branch that has it, if it differs.
 void add_figure(std::vector<Against::Figure>& figures, const SceneAnalyses& base,
                 const SceneAnalyses& variant, const Channel& channel) {
     for (const auto& branch : variant.comparison.branches) {
-        const BranchComparison* same = find(base, branch);
+        const BranchComparison* same = branch_like(base, branch);
         if (same == nullptr) continue;
         const double a = at_design(line_of(base, *same, channel)),
                      b = at_design(line_of(variant, branch, channel));
@@ -98,7 +98,7 @@ void add_figure(std::vector<Against::Figure>& figures, const SceneAnalyses& base
     }
 }
 
-// Adds a curve that differs, at the variant's parameters.
+// Adds a curve if it differs at the variant's parameters.
 void add_curve(std::vector<Against::Curve>& curves, const Channel& channel, const Line& was,
                const Line& is) {
     double largest = 0, place = nan;
@@ -131,10 +131,10 @@ Against differences(const SceneAnalyses& base, const SceneAnalyses& variant) {
     for (const auto& channel : common)
         if (channel.kinematic() || channel.kind() == compare::ChannelKind::characteristic)
             add_figure(against.figures, base, variant, channel);
-    // what an engineer notices first; what is undefined on one side before all
+    // The most noticed first; before all those that are undefined in one of the two.
     std::ranges::stable_sort(against.figures, std::greater{}, &Against::Figure::noticed);
     for (const auto& branch : variant.comparison.branches) {
-        const BranchComparison* same = find(base, branch);
+        const BranchComparison* same = branch_like(base, branch);
         if (same == nullptr) {
             against.only_variant.push_back("branch " + branch.branch);
             continue;
@@ -147,15 +147,15 @@ Against differences(const SceneAnalyses& base, const SceneAnalyses& variant) {
                           line_of(variant, branch, channel));
     }
     for (const auto& branch : base.comparison.branches)
-        if (find(variant, branch) == nullptr)
+        if (branch_like(variant, branch) == nullptr)
             against.only_base.push_back("branch " + branch.branch);
     return against;
 }
 
 namespace {
 
-// A curve of the base and the variant, and a point of one of them.
-struct OfCurve {
+// Row of a table: a curve of base and variant, and a point of one of them.
+struct CurveRow {
     const Against::Branch* branch;
     const Against::Curve* curve;
     const Line* line = nullptr;
@@ -177,7 +177,7 @@ compare::Table numbers_of(const Against& against) {
     return table;
 }
 
-// Those that an engineer notices, or the others.
+// The figures whose difference an engineer notices, or the others.
 compare::Table figures_of(const Against& against, bool noticed) {
     using F = Against::Figure;
     std::vector<F> rows = against.figures;
@@ -201,32 +201,34 @@ compare::Table figures_of(const Against& against, bool noticed) {
     return table;
 }
 
-std::vector<compare::ColumnOf<OfCurve>> curve_columns() {
-    return {{"branch", Digits::words, [](const OfCurve& o) { return o.branch->name; }},
-            {"output", Digits::words, [](const OfCurve& o) { return as_words(o.curve->output); }},
-            {"unit", Digits::words, [](const OfCurve& o) { return o.curve->unit; }}};
+std::vector<compare::ColumnOf<CurveRow>> curve_columns() {
+    return {
+        {"branch", Digits::words, [](const CurveRow& row) { return row.branch->name; }},
+        {"output", Digits::words, [](const CurveRow& row) { return as_words(row.curve->output); }},
+        {"unit", Digits::words, [](const CurveRow& row) { return row.curve->unit; }}};
 }
 
 compare::Table largest_of(const Against& against) {
-    std::vector<OfCurve> rows;
+    std::vector<CurveRow> rows;
     for (const auto& branch : against.branches)
         for (const auto& curve : branch.curves) rows.push_back({&branch, &curve});
     auto columns = curve_columns();
     columns.insert(
         columns.end(),
         {{"largest difference", Digits::deviation,
-          [](const OfCurve& o) { return o.curve->largest; }},
-         {"at", Digits::place, [](const OfCurve& o) { return o.curve->at; }, "parameter there"},
-         {"parameter unit", Digits::words, [](const OfCurve& o) { return o.branch->unit; }, "", "",
-          "its unit"},
-         {"noticed", Digits::hidden, [](const OfCurve& o) { return o.curve->noticed; }}});
+          [](const CurveRow& row) { return row.curve->largest; }},
+         {"at", Digits::place, [](const CurveRow& row) { return row.curve->at; },
+          "parameter there"},
+         {"parameter unit", Digits::words, [](const CurveRow& row) { return row.branch->unit; }, "",
+          "", "its unit"},
+         {"noticed", Digits::hidden, [](const CurveRow& row) { return row.curve->noticed; }}});
     compare::Table table = compare::table("differences", columns, rows);
     table.caption = "Largest difference over each branch, at equal load or drive";
     return table;
 }
 
 compare::Table lines_of(const Against& against) {
-    std::vector<OfCurve> rows;
+    std::vector<CurveRow> rows;
     for (const auto& branch : against.branches)
         for (const auto& curve : branch.curves)
             for (const Line* line : {&curve.base, &curve.variant})
@@ -236,9 +238,9 @@ compare::Table lines_of(const Against& against) {
     columns.insert(
         columns.end(),
         {{"of", Digits::words,
-          [](const OfCurve& o) { return o.line == &o.curve->base ? "base" : "variant"; }},
-         {"parameter", Digits::place, [](const OfCurve& o) { return o.line->a[o.k]; }},
-         {"value", Digits::four, [](const OfCurve& o) { return o.line->y[o.k]; }}});
+          [](const CurveRow& row) { return row.line == &row.curve->base ? "base" : "variant"; }},
+         {"parameter", Digits::place, [](const CurveRow& row) { return row.line->a[row.k]; }},
+         {"value", Digits::four, [](const CurveRow& row) { return row.line->y[row.k]; }}});
     compare::Table table = compare::table("lines", columns, rows);
     table.detail = true;
     return table;
@@ -271,7 +273,7 @@ std::string against_sentence(const std::string& base_source, const Against& agai
         fmt::format("{} against {}: {} of the scene and {} at the design position differ",
                     against.source, base_source, counted(against.numbers.size(), "number"),
                     counted(against.figures.size(), "figure"));
-    // noticed most, of those that both have
+    // The most noticed of the figures that both have.
     const auto most = std::ranges::find_if(against.figures, [](const Against::Figure& figure) {
         return std::isfinite(figure.base) && std::isfinite(figure.variant);
     });

@@ -1,4 +1,4 @@
-// Two variants of a scene: what differs between them.
+// Comparison of two variants of a scene: numbers, figures and curves that differ.
 #pragma once
 
 #include <string>
@@ -11,23 +11,22 @@ namespace elastocheck::reports {
 
 struct SceneAnalyses;
 
-// All by the equilibrium leg; the base is the first of both.
+// What differs between a scene (the base) and a variant, by the equilibrium leg.
 struct Against {
-    // An output or K&C figure at the design position; NaN where it is undefined. A swing arm is
-    // compared by its reciprocal.
+    // Output or K&C figure at the design position; NaN: undefined. Swing arms differ by reciprocals.
     struct Figure {
         std::string output, unit;
         double base, variant, difference;
         std::string unit_of_difference;
-        double
-            noticed;  // ratio of the difference to what an engineer notices; infinite: one has none
+        // ratio of the difference to what an engineer notices; infinite where one is undefined
+        double noticed;
     };
     struct Line {
-        std::vector<double> a{}, y{};
+        std::vector<double> a{}, y{};  // parameters and values, each in the unit that is shown
     };
     struct Curve {  // a main output over a branch, at equal load or drive
         std::string output, unit;
-        double largest, at, noticed;  // largest difference
+        double largest, at, noticed;  // largest difference, its parameter, as in Figure
         Line base, variant;
     };
     struct Branch {

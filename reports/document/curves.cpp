@@ -16,17 +16,17 @@ std::string curves_csv(
         for (const auto& branch : comparison->branches)
             for (const auto& run : branch.runs) {
                 const std::string unit = for_csv(symbol(branch.unit));
-                const std::string whose =
+                const std::string run_cells =
                     for_csv(scene) + "," + for_csv(branch.branch) + "," + for_csv(name(run.leg));
                 for (std::size_t c = 0; c < comparison->channels.size(); ++c) {
                     const auto& channel = comparison->channels[c];
-                    const std::string what =
+                    const std::string output_cells =
                         for_csv(channel.name) + "," + for_csv(symbol(channel.unit));
                     for (std::size_t k = 0; k < run.curve.a.size(); ++k) {
                         const double value = run.curve.values[k][c];
-                        csv +=
-                            fmt::format("{},{},{},{},{}\n", whose, run.curve.a[k], unit, what,
-                                        std::isfinite(value) ? fmt::format("{:.17g}", value) : "");
+                        csv += fmt::format(
+                            "{},{},{},{},{}\n", run_cells, run.curve.a[k], unit, output_cells,
+                            std::isfinite(value) ? fmt::format("{:.17g}", value) : "");
                     }
                 }
             }

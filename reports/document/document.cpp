@@ -168,17 +168,19 @@ json wheels_json(const Model& model) {
 }  // namespace
 
 std::string driven_name(const Model& model, const Driven& driven) {
-    const auto element = [&](int k) { return model.elastics[static_cast<std::size_t>(k)].name; };
+    const auto element = [&](int k) -> const Elastic& {
+        return model.elastics[static_cast<std::size_t>(k)];
+    };
     return std::visit(
         overloaded{
             [](const Load& load) { return load.name; },
             [&](const Motion& m) { return model.joints[static_cast<std::size_t>(m.joint)].name; },
             [&](const FreeLength& f) {
-                const Elastic& of = model.elastics[static_cast<std::size_t>(f.elastic)];
-                return (of.written_as == WrittenAs::tyre ? "road under " : "free length of ") +
-                       of.name;
+                const Elastic& spring = element(f.elastic);
+                return (spring.written_as == WrittenAs::tyre ? "road under " : "free length of ") +
+                       spring.name;
             },
-            [&](const Preload& p) { return "preload of " + element(p.elastic); }},
+            [&](const Preload& p) { return "preload of " + element(p.elastic).name; }},
         driven);
 }
 
@@ -280,7 +282,7 @@ compare::Table recommended_table(const Recommended& recommended) {
     struct Point {
         std::string branch;
         double a;
-        compare::Accuracy apart;
+        compare::Accuracy error;
     };
     std::vector<Point> points;
     for (const auto& [branch, profile] : recommended.branches)
@@ -291,8 +293,8 @@ compare::Table recommended_table(const Recommended& recommended) {
         "recommended",
         {{"branch", words, [](const Point& p) { return p.branch; }},
          {"parameter", place, [](const Point& p) { return p.a; }},
-         {"error", size, [](const Point& p) { return p.apart.mm; }, "", "mm"},
-         {"angle error", size, [](const Point& p) { return p.apart.deg; }, "", "deg"}},
+         {"error", size, [](const Point& p) { return p.error.mm; }, "", "mm"},
+         {"angle error", size, [](const Point& p) { return p.error.deg; }, "", "deg"}},
         points);
 }
 

@@ -1,4 +1,4 @@
-// result.json: all results of a comparison, for programs and for later reports.
+// result.json: all results of a comparison, for other programs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace elastocheck::reports {
 inline constexpr const char* result_schema = "elastocheck/result/6";
 
 // "vertical", "left.jack", "free length of coil"
-std::string driven_name(const Model& model, const Driven& what);
+std::string driven_name(const Model& model, const Driven& driven);
 
 // {schema, reproduce, provenance, scenes: [...]}. Lengths in mm, angles in deg, forces in N,
 // moments in N·m, as given by every key or neighbouring "unit". A number that is not finite is

@@ -20,14 +20,15 @@ namespace {
 using Eigen::Vector3d;
 using json = nlohmann::ordered_json;
 
-constexpr double same = 1e-9;  // [m]
+constexpr double same_place = 1e-9;  // [m]
 
+// Points and lines of the drawing while they are collected.
 struct Sketch {
     const Scene* scene;
     const Model* model;
     std::vector<Point> points;
     std::vector<std::string> names;
-    std::vector<bool> hard;  // whether the scene has a hardpoint there
+    std::vector<bool> is_hardpoint;
     std::vector<Drawing::Link> links = {};
 
     Vector3d at(const Point& point, const std::vector<Pose>& poses) const {
@@ -41,23 +42,23 @@ struct Sketch {
         return poses;
     }
 
-    // Index of a point in the list, new or existing; named by its hardpoint, else by the attached
-    // joint or element.
-    std::size_t add(const Point& point, const std::string& otherwise) {
+    // Index of a point in the list, new or existing; its name: of its hardpoint, else default_name.
+    std::size_t add(const Point& point, const std::string& default_name) {
         for (std::size_t k = 0; k < points.size(); ++k)
-            if (points[k].body == point.body && (points[k].s_local - point.s_local).norm() < same)
+            if (points[k].body == point.body &&
+                (points[k].s_local - point.s_local).norm() < same_place)
                 return k;
-        std::string name = otherwise;
+        std::string name = default_name;
         bool known = false;
         const Vector3d position = at(point, design());
         for (const auto& hardpoint : scene->hardpoints)
-            if ((hardpoint.position - position).norm() < same) {
+            if ((hardpoint.position - position).norm() < same_place) {
                 name = hardpoint.name;
                 known = true;
             }
         points.push_back(point);
         names.push_back(name);
-        hard.push_back(known);
+        is_hardpoint.push_back(known);
         return points.size() - 1;
     }
     void link(const char* kind, const std::string& name, std::size_t i, std::size_t j) {
@@ -69,8 +70,7 @@ struct Sketch {
 // arm are drawn as their outline, all other bodies as the shortest tree of lines, which starts at
 // the wheel's centre if the body carries a wheel.
 
-// Points in order along the outline if they are coplanar enough to be drawn as a plate; empty if
-// not, or if nearly collinear.
+// Points in order along the outline of a plate; empty if they are not coplanar, or nearly collinear.
 std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
     if (points.size() < 3) return {};
     Vector3d middle = Vector3d::Zero();
@@ -87,14 +87,14 @@ std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
 }
 
 // Minimum spanning tree (Prim 1957): joins each point to the nearest joined one.
-void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine,
+void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> attached,
           std::size_t root) {
     std::vector<std::size_t> joined{root};
-    std::erase(mine, root);
-    while (!mine.empty()) {
-        std::pair<std::size_t, std::size_t> nearest{mine.front(), root};
+    std::erase(attached, root);
+    while (!attached.empty()) {
+        std::pair<std::size_t, std::size_t> nearest{attached.front(), root};
         double least = std::numeric_limits<double>::infinity();
-        for (const auto k : mine)
+        for (const auto k : attached)
             for (const auto l : joined)
                 if (const double d = (sketch.points[k].s_local - sketch.points[l].s_local).norm();
                     d < least) {
@@ -103,29 +103,27 @@ void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine
                 }
         sketch.link("body", name, nearest.second, nearest.first);
         joined.push_back(nearest.first);
-        std::erase(mine, nearest.first);
+        std::erase(attached, nearest.first);
     }
 }
 
 void draw_body(Sketch& sketch, BodyId body, const std::vector<std::size_t>& hubs,
                const std::set<std::size_t>& patches, std::vector<Drawing::Face>& faces) {
-    std::vector<std::size_t> mine;
+    std::vector<std::size_t> attached;
     for (std::size_t k = 0; k < sketch.points.size(); ++k)
-        if (sketch.points[k].body == body && !patches.contains(k)) mine.push_back(k);
+        if (sketch.points[k].body == body && !patches.contains(k)) attached.push_back(k);
     const std::string& name = sketch.model->bodies[static_cast<std::size_t>(body)].name;
-    if (mine.size() < 2) return;
+    if (attached.size() < 2) return;
     if (hubs.size() < 2) {
-        // a carrier without the spindle, which lies outside its plane
-        std::vector<std::size_t> plate = mine;
+        // The wheel centre of a carrier lies outside the plane of its other points.
+        std::vector<std::size_t> plate = attached;
         if (!hubs.empty()) std::erase(plate, hubs.front());
         std::vector<Vector3d> places;
         for (const auto k : plate) places.push_back(sketch.points[k].s_local);
-        if (const auto round = outline(places); round.size() >= 3) {
-            std::vector<std::size_t> corners;
-            for (std::size_t k = 0; k < round.size(); ++k) {
-                corners.push_back(plate[round[k]]);
-                sketch.link("body", name, plate[round[k]], plate[round[(k + 1) % round.size()]]);
-            }
+        if (std::vector<std::size_t> corners = outline(places); corners.size() >= 3) {
+            for (auto& corner : corners) corner = plate[corner];
+            for (std::size_t k = 0; k < corners.size(); ++k)
+                sketch.link("body", name, corners[k], corners[(k + 1) % corners.size()]);
             faces.push_back({name, corners});
             if (hubs.empty()) return;
             const auto distance = [&](std::size_t k) {
@@ -135,7 +133,7 @@ void draw_body(Sketch& sketch, BodyId body, const std::vector<std::size_t>& hubs
             return;
         }
     }
-    tree(sketch, name, mine, hubs.empty() ? mine.front() : hubs.front());
+    tree(sketch, name, attached, hubs.empty() ? attached.front() : hubs.front());
 }
 
 // ---- Joints and bushings, where the scene has them, for their symbols.
@@ -169,7 +167,7 @@ std::vector<Drawing::Symbol> symbols_of(const Sketch& sketch) {
     const auto pose = [&](BodyId body) {
         return body == ground ? Pose{} : scene.bodies[static_cast<std::size_t>(body)].design;
     };
-    const auto put = [&](const char* kind, const std::string& name, const Vector3d& at,
+    const auto add = [&](const char* kind, const std::string& name, const Vector3d& at,
                          const std::optional<Vector3d>& axis) {
         std::optional<std::size_t> point;
         for (std::size_t k = sketch.points.size(); k-- > 0;)
@@ -188,23 +186,22 @@ std::vector<Drawing::Symbol> symbols_of(const Sketch& sketch) {
                 return driver.rate != 0 && driven_joint(driver.what) == static_cast<int>(k);
             });
         });
-        // The driver of a joint is a plane constraint on one of its points; under a wheel it
-        // is a jack.
+        // The driver of a joint is a plane constraint on one of its points; under a wheel a jack.
         if (const auto* plane = std::get_if<InPlane>(&joint.kind)) {
             const bool jack = std::ranges::any_of(
                 scene.wheels, [&](const Wheel& wheel) { return wheel.body == plane->i.body; });
-            if (moved && !jack) put("drive", joint.name, place(plane->i), turned(plane->normal_j));
+            if (moved && !jack) add("drive", joint.name, place(plane->i), turned(plane->normal_j));
             if (moved || joint.active_only_where_driven) continue;
         }
         if (joint.active_only_where_driven) continue;
         for (const auto& symbol : symbols_of(joint.kind))
-            put(symbol.kind, joint.name, place(symbol.at),
+            add(symbol.kind, joint.name, place(symbol.at),
                 symbol.axis ? std::optional(turned(*symbol.axis)) : std::nullopt);
     }
     for (const auto& elastic : scene.elastics) {
-        const auto* at = member<Marker>(elastic.kind);
-        if (at == nullptr || elastic.active_only_where_driven || is_segment(elastic)) continue;
-        put("bushing", elastic.name, place({at->body, at->s_local}), std::nullopt);
+        const auto* marker = member<Marker>(elastic.kind);
+        if (marker == nullptr || elastic.active_only_where_driven || is_segment(elastic)) continue;
+        add("bushing", elastic.name, place({marker->body, marker->s_local}), std::nullopt);
     }
     return list;
 }
@@ -250,7 +247,7 @@ std::vector<Position> rim(const Model& model, const Wheel& wheel, const std::vec
     const Pose& pose = poses[body];
     const Vector3d arm = model.bodies[body].design.p.conjugate() * compare::drawn_arm(model, wheel);
     const Vector3d radius = arm - wheel.spin_axis_local * wheel.spin_axis_local.dot(arm);
-    if (radius.norm() < same) return list;
+    if (radius.norm() < same_place) return list;
     constexpr int corners = 48;
     for (int k = 0; k <= corners; ++k) {
         const Eigen::AngleAxisd turn(2 * std::numbers::pi * k / corners, wheel.spin_axis_local);
@@ -262,16 +259,19 @@ std::vector<Position> rim(const Model& model, const Wheel& wheel, const std::vec
 // Stations of a branch, to move the drawing along it.
 Drawing::Motion motion(const Sketch& sketch, const compare::BranchComparison& branch) {
     Drawing::Motion motion{branch.branch, symbol(branch.unit)};
-    const auto put = [](std::vector<double>& list, const Vector3d& v, double per_unit) {
-        for (const double x : v) list.push_back(std::round(x * per_unit) / per_unit + 0.0);
+    const auto append = [](std::vector<double>& list, const Vector3d& v, double per_unit) {
+        for (const double x : v)
+            list.push_back(std::round(x * per_unit) / per_unit + 0.0);  // + 0.0: no negative zero
     };
     for (const auto& state : branch.run(compare::Leg::equilibrium).stations) {
-        auto& at = motion.points.emplace_back();
-        auto& spin = motion.axes.emplace_back();
-        for (const auto& point : sketch.points) put(at, 1e3 * sketch.at(point, state.poses), 1e3);
+        auto& points = motion.points.emplace_back();
+        auto& axes = motion.axes.emplace_back();
+        for (const auto& point : sketch.points)
+            append(points, 1e3 * sketch.at(point, state.poses), 1e3);
         for (const auto& wheel : sketch.model->wheels)
-            put(spin, state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local,
-                1e6);
+            append(axes,
+                   state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local,
+                   1e6);
         motion.a.push_back(parameter_in(branch.unit, state.load));
     }
     return motion;
@@ -334,17 +334,17 @@ Beams draw_connections(Sketch& sketch) {
 void add_stations(Drawing& drawing, const Sketch& sketch, const compare::Comparison& comparison) {
     for (const auto& branch : comparison.branches) {
         const auto& [front, start, middle, back] = branch.run(compare::Leg::equilibrium).landmarks;
-        const auto put = [&](const std::string& side, bool end, const Equilibrium& state) {
+        const auto add = [&](const std::string& side, bool end, const Equilibrium& state) {
             drawing.stations.push_back({placed(sketch, state.poses), side, branch.branch,
                                         symbol(branch.unit), end,
                                         parameter_in(branch.unit, state.load)});
         };
-        if (middle) put(branch.branch, false, *middle);
+        if (middle) add(branch.branch, false, *middle);
         if (front && back && front->load * back->load < 0)  // a two-sided branch
-            put(fmt::format("{} to {:.4g} {}", branch.branch, in_unit(branch.unit) * front->load,
+            add(fmt::format("{} to {:.4g} {}", branch.branch, in_unit(branch.unit) * front->load,
                             symbol(branch.unit)),
                 true, *front);
-        if (back) put(branch.branch, true, *back);
+        if (back) add(branch.branch, true, *back);
         drawing.motion.push_back(motion(sketch, branch));
     }
 }
@@ -364,21 +364,21 @@ Drawing drawing_of(const Scene& scene, const Model& model, const compare::Compar
     std::vector<std::vector<std::size_t>> hubs(model.bodies.size());
     std::set<std::size_t> patches;
     for (const auto& wheel : model.wheels) {
-        const std::string whose = wheel.name.empty() ? "" : wheel.name + " ";
-        const auto centre = sketch.add({wheel.body, wheel.centre_local}, whose + "wheel centre"),
-                   patch = sketch.add(wheel.contact, whose + "contact patch");
+        const std::string prefix = wheel.name.empty() ? "" : wheel.name + " ";
+        const auto centre = sketch.add({wheel.body, wheel.centre_local}, prefix + "wheel centre"),
+                   patch = sketch.add(wheel.contact, prefix + "contact patch");
         hubs[static_cast<std::size_t>(wheel.body)].push_back(centre);
         if (patch != centre) patches.insert(patch);
         const Pose& pose = model.bodies[static_cast<std::size_t>(wheel.body)].design;
         drawing.wheels.push_back(
             {wheel.name, centre, patch, position(pose.p * wheel.spin_axis_local)});
     }
-    std::set<std::string> of_beams;
+    std::set<std::string> beam_nodes;
     for (const auto& [name, segments] : beams)
         for (std::size_t k = 0; k + 1 < segments.size(); ++k)
-            of_beams.insert(model.bodies[static_cast<std::size_t>(segments[k].j.body)].name);
+            beam_nodes.insert(model.bodies[static_cast<std::size_t>(segments[k].j.body)].name);
     for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body)
-        if (!of_beams.contains(model.bodies[static_cast<std::size_t>(body)].name))
+        if (!beam_nodes.contains(model.bodies[static_cast<std::size_t>(body)].name))
             draw_body(sketch, body, hubs[static_cast<std::size_t>(body)], patches, drawing.faces);
     drawing.design = placed(sketch, sketch.design());
     for (std::size_t k = 0; k < sketch.points.size(); ++k) {
@@ -386,7 +386,7 @@ Drawing drawing_of(const Scene& scene, const Model& model, const compare::Compar
         drawing.points.push_back(
             {sketch.names[k],
              body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name,
-             sketch.hard[k], drawing.design.points[k]});
+             sketch.is_hardpoint[k], drawing.design.points[k]});
     }
     drawing.links = std::move(sketch.links);
     drawing.symbols = symbols_of(sketch);

@@ -15,7 +15,7 @@
 
 namespace elastocheck::reports {
 
-using Position = std::array<double, 3>;  // x forward, y left, z up [mm]
+using Position = std::array<double, 3>;  // x forward, y left, z up: a point [mm], or a unit vector
 
 struct Drawing {
     struct Point {  // an attachment of a joint, element, wheel or probe
@@ -26,7 +26,7 @@ struct Drawing {
     struct Link {
         std::string kind;  // body, rod, spring, stop, beam, damper
         std::string name;
-        std::size_t i = 0, j = 0;
+        std::size_t i = 0, j = 0;  // indices of points
     };
     struct Face {  // a body's coplanar points, in order along their outline: an arm
         std::string body;
@@ -35,14 +35,14 @@ struct Drawing {
     struct Symbol {
         std::string kind;  // spherical, revolute, universal, sliding, plane, fixed, bushing, drive
         std::string name;
-        std::optional<std::size_t> point;  // empty: none there
+        std::optional<std::size_t> point;  // its index; empty: no point there
         Position at{};
         std::optional<Position> axis{};
     };
     struct Wheel {
         std::string name;
-        std::size_t centre = 0, patch = 0;
-        Position spin_axis{};
+        std::size_t centre = 0, patch = 0;  // indices of points
+        Position spin_axis{};               // unit vector
     };
     struct Placed {
         std::vector<Position> points{};
@@ -53,12 +53,12 @@ struct Drawing {
         std::string side, branch;  // "travel to -80 mm", of the branch "travel"
         std::string unit;
         bool end = false;
-        double a = 0;
+        double a = 0;  // parameter, in `unit`
     };
     // At up to 17 stations of the equilibrium leg; rounded, since they are only drawn.
     struct Motion {
         std::string branch, unit;
-        std::vector<double> a{};
+        std::vector<double> a{};  // parameters, in `unit`
         // per station: coordinates of all points one after the other [mm], spin axes of the wheels
         std::vector<std::vector<double>> points{}, axes{};
     };

@@ -27,7 +27,7 @@ Column number(const char* name, const char* unit = "", Digits digits = Digits::w
     return {.name = name, .unit = unit, .digits = digits};
 }
 
-// Adds a table; one without rows says `none`, and is left out where that is empty.
+// Adds a table; one without rows gets the note `none`, or is left out if that is empty.
 void add(Result& result, Table table, const std::string& none = {}) {
     if (table.rows.empty() && none.empty()) return;
     if (table.rows.empty()) table.notes.push_back(none);
@@ -67,7 +67,7 @@ void add_size(Result& result, const Model& model, const recursive::Diagnosis& d)
          .id = "size"});
 }
 
-// Cost of a step: the matrix with the border of idle modes and redundant rows, and its factors.
+// The matrix of a step, bordered by the idle modes and redundant rows, and its factors.
 void add_cost(Result& result, const Model& model) {
     const recursive::SaddlePoint<double> system = recursive::analyse(model).system;
     const recursive::Elimination& order = *system.lu.order;
@@ -145,33 +145,34 @@ void add_trim(Result& result, const compare::TrimRecord& trim) {
 void add_branches(Result& result, const Model& model,
                   const std::vector<compare::Channel>& channels) {
     Rows branches;
-    Table begins{.columns = {words("output"), words("unit")},
-                 .id = "settled",
-                 .caption = "displacements where the branches begin, from the drawn position"};
-    std::vector<compare::Settled> of_branches;
+    Table settled_table{
+        .columns = {words("output"), words("unit")},
+        .id = "settled",
+        .caption = "displacements where the branches begin, from the drawn position"};
+    std::vector<compare::Settled> settled_branches;
     for (const auto& branch : model.branches) {
         std::string moved, held;
         for (const auto& driver : branch.drivers)
             append(driver.rate != 0 ? moved : held, driven_name(model, driver.what), " + ");
         const compare::Unit unit = compare::unit_of(branch.unit);
         const compare::Settled& settled =
-            of_branches.emplace_back(compare::settled(model, channels, branch));
+            settled_branches.emplace_back(compare::settled(model, channels, branch));
         branches.push_back({branch.name, moved, compare::in_unit(unit) * branch.from,
                             compare::in_unit(unit) * branch.to, symbol(unit), 1.0 * branch.steps,
                             held, name(settled.outcome)});
-        begins.columns.push_back(number(branch.name.c_str(), "", Digits::deviation));
+        settled_table.columns.push_back(number(branch.name.c_str(), "", Digits::deviation));
         if (settled.outcome != Outcome::converged)
             result.notes.push_back(fmt::format("branch '{}' does not settle: {}: {}", branch.name,
                                                name(settled.outcome), settled.detail));
     }
     for (std::size_t c = 0; c < channels.size(); ++c) {
         std::vector<compare::Cell> row{channels[c].name, symbol(channels[c].unit)};
-        for (const auto& settled : of_branches)
+        for (const auto& settled : settled_branches)
             row.emplace_back(settled.outcome == Outcome::converged ? settled.displacement[c] : NAN);
         const bool moves = std::any_of(row.begin() + 2, row.end(), [](const compare::Cell& cell) {
             return std::abs(std::get<double>(cell)) >= 1e-6;
         });
-        if (channels[c].main && channels[c].kinematic() && moves) begins.rows.push_back(row);
+        if (channels[c].main && channels[c].kinematic() && moves) settled_table.rows.push_back(row);
     }
     add(result, {.columns = {words("branch"), words("moves"), number("from", "", Digits::given),
                              number("to", "", Digits::given), words("unit"), number("steps"),
@@ -179,7 +180,7 @@ void add_branches(Result& result, const Model& model,
                  .rows = branches,
                  .id = "branches",
                  .caption = "branches"});
-    add(result, std::move(begins));
+    add(result, std::move(settled_table));
 }
 
 // Reactions are the same for every joint and axis: one row of each unit.
@@ -187,14 +188,14 @@ void add_outputs(Result& result, const std::vector<compare::Channel>& channels) 
     Rows rows;
     bool force = false, moment = false;
     for (const auto& channel : channels) {
-        std::string name = channel.name, such;
+        std::string name = channel.name, prefix;
         if (std::holds_alternative<compare::Reaction>(channel.reads)) {
             const bool is_force = channel.unit == compare::Unit::newton;
             if (std::exchange(is_force ? force : moment, true)) continue;
             name = is_force ? "JOINT.force_x, _y, _z" : "JOINT.moment_x, _y, _z";
-            such = "such as: ";
+            prefix = "such as: ";
         }
-        rows.push_back({name, symbol(channel.unit), such + channel.definition});
+        rows.push_back({name, symbol(channel.unit), prefix + channel.definition});
     }
     add(result, {.columns = {words("output"), words("unit"), words("definition")},
                  .rows = rows,
@@ -222,11 +223,10 @@ void add_redundant(Result& result, const Model& model, const recursive::Diagnosi
     add(result, std::move(redundant), "none");
 }
 
-// A table of one column of sentences.
-Table list(const char* id, const char* of, const char* caption,
-           const std::vector<std::string>& all) {
-    Table table{.columns = {words(of)}, .id = id, .caption = caption};
-    for (const auto& one : all) table.rows.push_back({one});
+Table one_column(const char* id, const char* heading, const char* caption,
+                 const std::vector<std::string>& texts) {
+    Table table{.columns = {words(heading)}, .id = id, .caption = caption};
+    for (const auto& text : texts) table.rows.push_back({text});
     return table;
 }
 
@@ -262,13 +262,13 @@ Result inspection(const Inspected& inspected) {
     add_outputs(result, channels);
     add_redundant(result, model, d);
     add(result,
-        list("idle", "motion",
-             "idle modes (as drawn no joint and no rate resists them; they are held, and reported "
-             "here)",
-             recursive::describe_idle_modes(d)),
+        one_column("idle", "motion",
+                   "idle modes (as drawn no joint and no rate resists them; they are held, and "
+                   "reported here)",
+                   recursive::describe_idle_modes(d)),
         "none");
-    add(result, list("misplaced", "point", "points that may belong to another body",
-                     compare::misplaced_points(scene)));
+    add(result, one_column("misplaced", "point", "points that may belong to another body",
+                           compare::misplaced_points(scene)));
     Table omitted{.columns = {words("part"), words("reason")},
                   .id = "left_out",
                   .caption = "left out or condensed, because no output depends on it"};

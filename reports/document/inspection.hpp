@@ -15,12 +15,12 @@ struct Inspected {
     const std::optional<compare::TrimRecord>& trim;
 };
 
-// A table for each kind of part, of the trim, the outputs, what is redundant, idle, left out, and of
-// where the branches settle; of the numbers of the file and the matrix of a step as details.
+// Tables of size, parts, trim, branches (with the displacements where they settle), outputs, redundant
+// constraints, idle modes and omitted parts; as details the matrix of a step and the numbers of the file.
 compare::Result inspection(const Inspected& inspected);
-// The beginning of every list, for a terminal: a generated scene has thousands of parts.
+// The first 40 rows of every table but the outputs: a generated scene has thousands of parts.
 compare::Result shortened(compare::Result result);
-// With the details.
+// Shows the tables of details as well.
 compare::Result verbose(compare::Result result);
 
 }  // namespace elastocheck::reports

@@ -7,10 +7,10 @@
 namespace elastocheck::reports {
 
 SceneAnalyses compiled(Scene scene, Model model) {
-    SceneAnalyses made{.scene = std::move(scene), .model = std::move(model)};
-    made.diagnosis = recursive::diagnose(made.model);
-    made.conditioning = recursive::conditioning(made.model, made.diagnosis);
-    return made;
+    SceneAnalyses analyses{.scene = std::move(scene), .model = std::move(model)};
+    analyses.diagnosis = recursive::diagnose(analyses.model);
+    analyses.conditioning = recursive::conditioning(analyses.model, analyses.diagnosis);
+    return analyses;
 }
 
 void add_comparison(SceneAnalyses& scene, compare::Comparison comparison) {
@@ -34,7 +34,7 @@ compare::Result result_of(const Effects& effects) {
     result.verdict = {
         .grade = effects.reasons.empty() ? compare::Grade::pass : compare::Grade::not_judged,
         .sentence = fmt::format("The solvers differ by {:.1e} of the largest of a figure at most.",
-                                effects.apart),
+                                effects.difference),
         .reasons = effects.reasons,
         .compared = static_cast<int>(effects.compared)};
     return result;

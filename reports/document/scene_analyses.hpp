@@ -27,7 +27,7 @@ struct Effects {
     std::vector<compare::EffectRow> rows{};
     std::vector<std::string> reasons{};  // why they are not confirmed; empty: they are
     long compared = 0;                   // derivatives that two solvers gave
-    double apart = 0;                    // largest difference, of the largest of their figure
+    double difference = 0;               // of two solvers at most, of the largest of a figure
 };
 
 compare::Result result_of(const Effects& effects);  // a table of them
@@ -73,8 +73,9 @@ struct SceneAnalyses {
     bool conclusive() const { return reasons.empty(); }
 };
 
-// The model alone, and what is read from a comparison of its legs.
+// The scene, its model and their diagnosis, without analyses.
 SceneAnalyses compiled(Scene scene, Model model);
+// Adds a comparison, the reasons why it is not conclusive, lift-offs and the drawing.
 void add_comparison(SceneAnalyses& scene, compare::Comparison comparison);
 
 }  // namespace elastocheck::reports

@@ -133,8 +133,8 @@ double shown(double value, const std::string& unit) {
     return parsed_number(text) + 0.0;  // + 0.0: no negative zero
 }
 
-// Figures that say the same of several wheels or springs, on one line:
-// "left, right: toe [deg]". A name of a scene has neither comma nor colon.
+// Figures with equal values of several wheels or springs, on one line: "left, right: toe [deg]". A
+// name of a scene has neither comma nor colon.
 struct FigureLine {
     std::vector<std::string> channels;
     std::string unit;
@@ -174,8 +174,8 @@ json figures_json(const compare::Measurement& measurement) {
             const auto [owner, output] = owner_and_output(s.channel);
             const auto same = std::ranges::find_if(
                 lines, [&, &owner = owner, &output = output](const FigureLine& line) {
-                    const auto [other, of_other] = owner_and_output(line.channels.front());
-                    return !owner.empty() && !other.empty() && output == of_other &&
+                    const auto [line_owner, line_output] = owner_and_output(line.channels.front());
+                    return !owner.empty() && !line_owner.empty() && output == line_output &&
                            s.unit == line.unit && values == line.values;
                 });
             if (same == lines.end())
@@ -195,20 +195,20 @@ json figures_json(const compare::Measurement& measurement) {
 // ---- Text.
 
 // "KEY": [\n  one,\n  two\n ]
-std::string one_a_line(const char* key, const std::vector<json>& entries) {
+std::string list_text(const char* key, const std::vector<json>& entries) {
     std::string lines;
     for (const auto& entry : entries) lines += (lines.empty() ? "\n  " : ",\n  ") + entry.dump();
     return fmt::format(" \"{}\": [{}{}]", key, lines, entries.empty() ? "" : "\n ");
 }
 
-// The entries of objects within objects, those of the innermost one a line.
-std::string nested(const json& object, int depth, int indent = 1) {
+// An object as text; its entries, and those of objects within it down to `depth`, a line each.
+std::string object_text(const json& object, int depth, int indent = 1) {
     if (depth == 0 || object.empty()) return object.dump();
     std::string lines;
     for (const auto& [key, value] : object.items())
         lines += fmt::format(
             "{}\n{:{}}{}: {}", lines.empty() ? "" : ",", "", indent + 1, json(key).dump(),
-            value.is_object() ? nested(value, depth - 1, indent + 1) : value.dump());
+            value.is_object() ? object_text(value, depth - 1, indent + 1) : value.dump());
     return fmt::format("{{{}\n{:{}}}}", lines, "", indent);
 }
 
@@ -227,7 +227,8 @@ std::string curves_text(const BaselineFile& file) {
     std::vector<json> numbers;
     for (const auto& n : file.numbers) numbers.push_back(json::array({n.path, n.value, n.unit}));
     return fmt::format("{{\n \"schema\": \"{}\",\n{},\n \"branches\": {}\n}}\n",
-                       baseline_curves_schema, one_a_line("numbers", numbers), nested(branches, 3));
+                       baseline_curves_schema, list_text("numbers", numbers),
+                       object_text(branches, 3));
 }
 
 void check_schema(const JsonCursor& top, const char* wanted) {
@@ -283,7 +284,8 @@ BaselineFile parse_review(const JsonCursor& top, const JsonCursor& curves) {
     return file;
 }
 
-// That no limit has min above max. Limits have no objects in them: the k-th brace begins the k-th.
+// Throws LimitError for a limit with min above max. Limits contain no objects: the k-th brace after
+// "limits" begins the k-th limit.
 void check_limits(const std::vector<compare::Limit>& limits, std::string_view review,
                   const std::string& file) {
     std::size_t at = review.find("\"limits\"");
@@ -296,20 +298,20 @@ void check_limits(const std::vector<compare::Limit>& limits, std::string_view re
     }
 }
 
-// Both files as JSON, handed to `use`.
+// Parses both files and returns the result of `use`. Throws BaselineError.
 template <class Use>
 auto with_json(const BaselineText& text, const std::string& file_name, Use use) {
     const std::string curves_name = curves_of(file_name).string();
-    const auto whole = [](const std::string& part, const std::string& of) {
-        if (part.empty()) throw BaselineError(of + ": the file is empty");
+    const auto parse = [](const std::string& content, const std::string& name) {
+        if (content.empty()) throw BaselineError(name + ": the file is empty");
         try {
-            return parse_json(part);
+            return parse_json(content);
         } catch (const JsonError& error) {
             throw BaselineError(
-                fmt::format("{}: is not the JSON of a baseline: {}", of, error.what()));
+                fmt::format("{}: is not the JSON of a baseline: {}", name, error.what()));
         }
     };
-    const json review = whole(text.review, file_name), curves = whole(text.curves, curves_name);
+    const json review = parse(text.review, file_name), curves = parse(text.curves, curves_name);
     try {
         return use(JsonCursor{&review, "", &file_name}, JsonCursor{&curves, "", &curves_name});
     } catch (const ResultError& error) {
@@ -317,8 +319,8 @@ auto with_json(const BaselineText& text, const std::string& file_name, Use use) 
     }
 }
 
-// First line of the output of git in a folder, "" when it fails. A container's checkout often
-// belongs to another user, which git rejects; only blobs are compared.
+// First line of the output of git in a folder, "" when it fails. Git rejects the checkout of another
+// user, which is usual in a container, unless it is declared safe; only hashes of files are read.
 std::string git(const std::string& folder, std::vector<std::string> words) {
     words.insert(words.begin(), {"git", "-c", "safe.directory=*", "-C", folder});
     constexpr double limit = 60;  // [s]
@@ -341,9 +343,9 @@ BaselineText baseline_text(const BaselineFile& file) {
     };
     std::string text = "{\n" + line("schema", baseline_schema);
     text += line("accepted", {{"reason", b.reason}});
-    text += fmt::format(" \"figures\": {},\n", nested(figures_json(b.accepted), 3));
-    text += one_a_line("limits", limits) + ",\n";
-    text += fmt::format(" \"tolerances\": {},\n", nested(tolerances, 1));
+    text += fmt::format(" \"figures\": {},\n", object_text(figures_json(b.accepted), 3));
+    text += list_text("limits", limits) + ",\n";
+    text += fmt::format(" \"tolerances\": {},\n", object_text(tolerances, 1));
     text += line(
         "scene",
         {{"file", file.scene_file}, {"name", b.accepted.scene}, {"input_hash", file.input_hash}});
@@ -365,14 +367,14 @@ BaselineFile read_baseline(const fs::path& file) {
     const BaselineText text{read_whole(file, largest_baseline),
                             read_whole(curves_of(file), largest_baseline)};
     return with_json(text, file.string(), [&](const JsonCursor& top, const JsonCursor& curves) {
-        BaselineFile read = parse_review(top, curves);
-        check_limits(read.baseline.limits, text.review, file.string());
+        BaselineFile parsed = parse_review(top, curves);
+        check_limits(parsed.baseline.limits, text.review, file.string());
         if (top["curves"]["hash"].text() != input_hash(text.curves))
             top["curves"]["hash"].fail(
                 fmt::format("{} is of another acceptance", curves_of(file).string()));
-        if (top["figures"].value->dump() != figures_json(read.baseline.accepted).dump())
+        if (top["figures"].value->dump() != figures_json(parsed.baseline.accepted).dump())
             top["figures"].fail("are not those of the accepted curves; figures are not edited");
-        return read;
+        return parsed;
     });
 }
 
@@ -385,20 +387,20 @@ void write_baseline(const fs::path& file, const BaselineFile& baseline) {
 
 BuildDistance distance(const Provenance& was, const Provenance& is) {
     std::string differs;
-    const auto look_at = [&](const std::string& what, const std::string& a, const std::string& b) {
+    const auto check = [&](const std::string& what, const std::string& a, const std::string& b) {
         if (a != b)
             differs += fmt::format("{}{}: {}, now {}", differs.empty() ? "" : "; ", what, a, b);
     };
-    look_at("compiler", was.compiler, is.compiler);
-    look_at("flags", was.flags, is.flags);
-    look_at("CPU", was.cpu, is.cpu);
+    check("compiler", was.compiler, is.compiler);
+    check("flags", was.flags, is.flags);
+    check("CPU", was.cpu, is.cpu);
     const auto listed = [](const Provenance& p) {
         std::string list;
         for (const auto& library : p.libraries)
             list += (list.empty() ? "" : " ") + library.name + " " + library.version;
         return list;
     };
-    look_at("libraries", listed(was), listed(is));
+    check("libraries", listed(was), listed(is));
     return {differs.empty() ? ToleranceClass::same_build : ToleranceClass::cross_build, differs};
 }
 

@@ -61,10 +61,10 @@ BaselineFile read_baseline(const std::filesystem::path& file);
 // The curves first: a pair of which only one was written is not read.
 void write_baseline(const std::filesystem::path& file, const BaselineFile& baseline);
 
-// Closest tolerance class for the two builds, and the differences as text ("" for the same build).
+// Closest tolerance class for two builds, and their differences.
 struct BuildDistance {
     compare::ToleranceClass kind = compare::ToleranceClass::same_build;
-    std::string differs;  // "compiler: GNU 12.2.0, now Clang 14.0.6"
+    std::string differs;  // "compiler: GNU 12.2.0, now Clang 14.0.6"; empty for the same build
 };
 BuildDistance distance(const Provenance& was, const Provenance& is);
 

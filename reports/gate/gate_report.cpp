@@ -68,7 +68,7 @@ std::vector<std::string> described(const std::vector<compare::Change>& changes) 
     return list;
 }
 
-std::string what(const Offence& o) {
+std::string quantity_name(const Offence& o) {
     return o.of_limit ? fmt::format("limit on {}", name(o.quantity)) : name(o.quantity);
 }
 
@@ -78,7 +78,7 @@ compare::Table offences_table(const std::vector<WorstOffence>& worst, bool with_
     using compare::nan;
     std::vector<compare::ColumnOf<WorstOffence>> columns{
         {"branch", words, [](const WorstOffence& w) { return w.offence->branch; }},
-        {"what", words, [](const WorstOffence& w) { return what(*w.offence); }},
+        {"what", words, [](const WorstOffence& w) { return quantity_name(*w.offence); }},
         {"channel", words, [](const WorstOffence& w) { return w.offence->channel; }},
         {"unit", words, [](const WorstOffence& w) { return w.offence->unit; }},
         {"at", given, [](const WorstOffence& w) { return w.offence->a.value_or(nan); }},
@@ -101,13 +101,13 @@ compare::Table offences_table(const std::vector<WorstOffence>& worst, bool with_
     return compare::table("offences", columns, worst);
 }
 
-// Keeps `most` of them. "\n... and 3 more channels", or nothing.
+// Truncates a list to `most` entries; returns "... and 3 more channels", or nothing.
 template <class List>
-std::string cut(List& list, std::size_t most, const char* of) {
+std::string cut(List& list, std::size_t most, const char* noun) {
     if (list.size() <= most) return "";
-    const std::size_t left = list.size() - most;
+    const std::size_t omitted = list.size() - most;
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(most), list.end());
-    return fmt::format("... and {} more{}", left, of);
+    return fmt::format("... and {} more{}", omitted, noun);
 }
 
 std::string verdict_of(const std::vector<GatedScene>& scenes) {
@@ -209,8 +209,8 @@ std::string testcase(const Test& test, std::size_t max_lines) {
                        messages);
 }
 
-// The tests with up to `max_lines` numbers each; the others are counted.
-std::string junit_of(std::span<const Test> tests, std::span<const Test> left,
+// The tests with up to `max_lines` numbers each; those left out are counted.
+std::string junit_of(std::span<const Test> tests, std::span<const Test> omitted,
                      std::size_t max_lines) {
     struct Suite {
         int tests = 0, failures = 0, errors = 0;
@@ -231,14 +231,13 @@ std::string junit_of(std::span<const Test> tests, std::span<const Test> left,
         xml += fmt::format(
             " <testsuite{} tests=\"{}\" failures=\"{}\" errors=\"{}\">\n{} </testsuite>\n",
             attribute("name", scene->file), suite.tests, suite.failures, suite.errors, suite.cases);
-    if (!left.empty())
+    if (!omitted.empty())
         xml += fmt::format(
             " <testsuite name=\"left out\" tests=\"0\">\n  <system-out>{} more tests, {} of them "
             "failed, are left out to keep this file small; elastocheck gate --json has them "
             "all</system-out>\n </testsuite>\n",
-            left.size(),
-            left.size() - static_cast<std::size_t>(std::ranges::count_if(
-                              left, [](const Test& t) { return t.passed(); })));
+            omitted.size(),
+            std::ranges::count_if(omitted, [](const Test& t) { return !t.passed(); }));
     return xml + "</testsuites>\n";
 }
 
@@ -285,9 +284,9 @@ std::string describe(const compare::Change& change) {
 
 std::string gate_table(const GatedScene& scene) {
     std::string out = headline(scene) + "\n";
-    const auto list = [&](const char* title, std::vector<std::string> all, const char* of) {
-        const std::string more = cut(all, rows_in_table, of);
-        for (const auto& one : all) out += fmt::format("  {}: {}\n", title, one);
+    const auto list = [&](const char* title, std::vector<std::string> texts, const char* noun) {
+        const std::string more = cut(texts, rows_in_table, noun);
+        for (const auto& text : texts) out += fmt::format("  {}: {}\n", title, text);
         if (!more.empty()) out += "  " + more + "\n";
     };
     list("changed", described(scene.changed), " numbers of the scene");
@@ -362,14 +361,14 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
     auto worst = worst_of_each_channel(scenes);
     const std::string more_worst = cut(worst, rows_in_summary, " channels");
     add(worst.empty() ? "" : markdown(offences_table(worst, true), cell_length), more_worst);
-    const auto list = [&](const char* title, const auto& of_scene, const char* of) {
-        std::vector<std::string> all;
+    const auto list = [&](const char* title, const auto& texts_of, const char* noun) {
+        std::vector<std::string> items;
         for (const auto& scene : scenes)
-            for (const auto& one : of_scene(scene))
-                all.push_back(fmt::format("- {}: {}\n", markdown(scene.file, cell_length),
-                                          markdown(one, cell_length)));
-        const std::string more = cut(all, rows_in_summary, of);
-        add(all.empty() ? "" : fmt::format("{}:\n\n{}", title, fmt::join(all, "")), more);
+            for (const auto& text : texts_of(scene))
+                items.push_back(fmt::format("- {}: {}\n", markdown(scene.file, cell_length),
+                                            markdown(text, cell_length)));
+        const std::string more = cut(items, rows_in_summary, noun);
+        add(items.empty() ? "" : fmt::format("{}:\n\n{}", title, fmt::join(items, "")), more);
     };
     list(
         "Changed in the scene", [](const GatedScene& s) { return described(s.changed); },

@@ -14,8 +14,8 @@
 namespace elastocheck::reports {
 
 struct GatedScene {
-    std::string file;                      // of the scene, as given by the user
-    std::string baseline_file;             //
+    std::string file;  // of the scene, as given by the user
+    std::string baseline_file;
     compare::Measurement accepted;         // content of the baseline; empty without one
     std::string reason;                    // of the last acceptance
     std::string differs;                   // build differences that exclude the class same-build
