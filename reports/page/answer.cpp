@@ -25,7 +25,7 @@ std::string errors(double mm, double deg) {
 // or, as the study has them, fewer. A side of a two-sided branch takes half of them.
 void add_across(MethodRow& row, const SceneAnalyses& scene,
                 const std::vector<compare::StepRow>& steps, double count) {
-    std::map<std::string, double> taken;  // of each side, the most that are not more
+    std::map<std::string, double> taken;  // per side, its largest allowed number of steps
     const auto allowed = [&](const std::string& side) {
         const auto& branches = scene.comparison.branches;
         return std::ranges::find(branches, side, &compare::BranchComparison::branch) !=
@@ -99,16 +99,17 @@ namespace {
 
 using compare::TradeRow;
 
-// Of every method in the study of their cost.
+// A row for every method of the work-precision study.
 std::vector<MethodRow> studied(const SceneAnalyses& scene, const compare::Trade& trade) {
     std::vector<MethodRow> rows;
     const auto points = trade_rows(trade);
     const auto steps = scene.study ? step_rows(*scene.study) : std::vector<compare::StepRow>{};
     const auto equilibrium = std::ranges::find(points, "equilibrium", &TradeRow::leg);
     const double full = equilibrium == points.end() ? NAN : equilibrium->price;
-    const auto share = [&](const TradeRow& r) {  // no looser than required
-        return r.tolerance > trade.tolerance.mm ? INFINITY : r.share;
-    };
+    const auto share =
+        [&](const TradeRow& r) {  // infinite for a solver tolerance above the required
+            return r.tolerance > trade.tolerance.mm ? INFINITY : r.share;
+        };
     for (const auto& method : distinct(points, &TradeRow::method)) {
         auto wanted = where(where(points, &TradeRow::method, method), &TradeRow::leg, "recursive");
         std::erase_if(wanted, [&](const TradeRow& r) { return !std::isfinite(share(r)); });

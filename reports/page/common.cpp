@@ -1,6 +1,7 @@
 #include "reports/page/common.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -200,17 +201,8 @@ std::string configuration(const compare::TradePoint& chosen) {
 }
 
 std::string slug(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        const bool plain = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9');
-        if (plain)
-            result.push_back(lower);
-        else if (!result.empty() && result.back() != '-')
-            result.push_back('-');
-    }
-    if (result.size() > 40) result.resize(40);
-    while (!result.empty() && result.back() == '-') result.pop_back();
+    std::string result = fmt::format("{}", fmt::join(lower_words(text), "-")).substr(0, 40);
+    if (result.ends_with('-')) result.pop_back();
     return result.empty() ? "x" : result;
 }
 

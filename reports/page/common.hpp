@@ -41,7 +41,7 @@ struct Sweep {
     std::string parameter;  // "load [N]", "rack [mm]"
     std::string abscissa;   // other abscissa, "travel [mm]"; empty if unusable
     std::vector<ComparedBranch> branches;
-    std::string kind = "other";  // what it moves: "heave", "roll", "steering", ... (README.md)
+    std::string kind = "other";  // what it moves: load_case() in wheels.hpp
 
     bool has(std::string_view branch) const;  // by its name
     bool lifts() const { return kind == "heave" || kind == "roll" || kind == "travel"; }
@@ -49,14 +49,14 @@ struct Sweep {
     std::string at_equal_abscissa() const;   // "at equal travel"
 };
 std::vector<Sweep> sweeps_of(const SceneAnalyses& scene);
-// of one branch; includes its abscissa even if that is not monotonic
+// The sweep of one branch; has its abscissa even if that is not monotonic.
 Sweep sweep_of(const SceneAnalyses& scene, const ComparedBranch& branch);
 
 // Leading sweep of the page: heave of all wheels, else the first travel, else the first.
 std::optional<Sweep> leading_sweep(const SceneAnalyses& scene);
 
-// Whether a side of a branch ("travel to 80 mm", or the branch itself) is of the leading sweep: the
-// studies have a figure of these alone.
+// Whether a side of a branch ("travel to 80 mm"), or a branch, is of the leading sweep, the only one of
+// which the studies of methods have figures.
 bool leads(const SceneAnalyses& scene, const std::string& side);
 
 // Curves of the full solution over a sweep: both sides of the design position as one, in ascending

@@ -41,7 +41,7 @@ struct Series {
     // is a gap
     std::vector<std::vector<double>> rows{};
     double opacity = 0.18;  // of a face
-    // entries of the figure's legend that switch it; without a legend of the figure, its own title
+    // entries of the figure's legend that show and hide it; unused without a legend of the figure
     std::vector<std::size_t> keys{};
 };
 

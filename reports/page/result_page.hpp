@@ -10,8 +10,9 @@
 
 namespace elastocheck::reports {
 
-// HTML (templates/html/study.mustache): its tables that readers see, long ones folded, and its charts, of which those of
-// one `only` are a section with these words. `made`: what made it, which version.
+// HTML (templates/html/study.mustache): the tables, long ones folded, and the charts; the charts with one
+// name in Chart::only are a section, headed by the text of that name in `words`. `made`: programs that
+// made it, and their versions.
 std::string result_page(const compare::Result& result, const std::string& title,
                         const std::map<std::string, std::string>& words,
                         const std::string& reproduce,

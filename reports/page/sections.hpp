@@ -10,7 +10,7 @@
 
 namespace elastocheck::reports {
 
-// Each makes its section of the results of one scene, or none if the scene has no data for it.
+// Each makes a section from the results of a scene; empty if these have no data for it.
 std::optional<Section> against_section(const SceneAnalyses& scene);
 std::optional<Section> candidate_section(const SceneAnalyses& scene);
 std::optional<Section> first_section(const SceneAnalyses& scene);

@@ -34,15 +34,15 @@ std::vector<ShownColumn> shown_columns(const compare::Table& table,
 std::vector<ShownColumn> shown_columns(const compare::Table& table);  // as on a terminal
 std::vector<ShownColumn> page_columns(const compare::Table& table);   // as on a page
 
-// For the templates of pages: {"caption", "columns", "rows", "folded"}.
+// For the templates of pages: {"caption", "columns", "rows", "remarks", "folded"}.
 nlohmann::ordered_json page_table(const compare::Table& table);
 
 // Markdown; a text or cell of more than `longest` bytes is cut.
 std::string markdown(std::string_view text, std::size_t longest);
 std::string markdown(const compare::Table& table, std::size_t longest);
 
-// For a terminal: what to know before, each table with its caption and its notes, notes, the verdict's
-// sentence. A part without content leaves no line.
+// For a terminal: the paragraphs `about`, each table with its caption and its notes, the notes, the
+// reasons and the sentence of the verdict. A part without content leaves no line.
 std::string text(const compare::Result& result);
 
 // {"analysis", "verdict": {"grade", "sentence", "reasons", "compared"}, "about", "tables": {id: table},

@@ -27,7 +27,7 @@ const char* si_symbol(Unit unit) {
         default: return compare::symbol(unit);
     }
 }
-// Also in degrees, for blocks that take those: the factor from the unit of the output.
+// Unit of a compliance in degrees, and the factor to it from the unit of the output.
 struct InDegrees {
     double factor;
     const char* symbol;
@@ -65,7 +65,7 @@ std::string in_quotes(std::string_view text) {
     return cell + "\"";
 }
 
-// The variable as the file has it: travel along its z axis.
+// The variable in the axes of the file: travel counts along its z axis.
 Breakpoints turned(Breakpoints points, BlockAxes axes) {
     if (points.is_travel && axes == BlockAxes::sae)
         for (double& value : points.values) value = 0.0 - value;

@@ -28,8 +28,7 @@ struct WheelOutput {
     std::string wheel;   // its name, "left" or "right" where it has none
     int side = +1;       // of the wheel: +1 left
 };
-// Outputs that become blocks, and coefficients of compliance at the design position: those of these
-// that the model has.
+// The outputs of the model that become blocks, and its compliance at the design position.
 std::vector<WheelOutput> block_outputs(const Model& model);
 std::vector<WheelOutput> compliance_outputs(const Model& model);
 
@@ -46,7 +45,8 @@ inline constexpr const char* blocks_head = "# K&C blocks of elastocheck";
 
 // A block for each output: lines "block", "quantity", "wheel", "unit", "definition", "rows",
 // "columns", then the line "data" with the breakpoints of the columns, and a line for each breakpoint
-// of the rows. Rows are travel where a variable is. Then the coefficients, a line each.
+// of the rows. The rows are the travel where one of the variables is. Then the coefficients of
+// compliance, a line each.
 std::string blocks_csv(const KCBlocks& blocks, BlockAxes axes);
 
 }  // namespace elastocheck::reports

@@ -82,29 +82,32 @@ std::vector<Row> rows_of(const CandidateBranch& branch, const CandidateJudgement
     return rows;
 }
 
-// Columns of one reading; `at` is the unit of its places.
+// Adds the columns of one reading, at equal parameter or abscissa; `place_unit` is the unit of the
+// latter.
 void add_reading(std::vector<ColumnOf<Row>>& columns, const std::string& kind,
-                 const std::string& reading, const std::string& at, Deviation Row::*of) {
+                 const std::string& reading, const std::string& place_unit,
+                 Deviation Row::*member) {
     const auto add = [&](const char* name, Digits digits, double Deviation::*field,
                          const char* description, const std::string& heading) {
-        columns.push_back({fmt::format("{} {}", name, kind), digits,
-                           [=](const Row& r) { return (r.*of).compared > 0 ? r.*of.*field : nan; },
-                           description, "", heading});
+        columns.push_back(
+            {fmt::format("{} {}", name, kind), digits,
+             [=](const Row& r) { return (r.*member).compared > 0 ? r.*member.*field : nan; },
+             description, "", heading});
     };
     add("deviation", Digits::three, &Deviation::signed_max,
         "candidate less reference where it is largest, in the unit of the output", reading);
     add("place", Digits::given, &Deviation::at, "where it is largest: parameter or abscissa",
-        fmt::format("at {}", at));
+        fmt::format("at {}", place_unit));
     add("rms", Digits::hidden, &Deviation::rms, "root mean square over the points", "");
     add("end", Digits::hidden, &Deviation::end, "at the last point", "");
     columns.push_back({fmt::format("share {}", kind), Digits::percent,
                        [=](const Row& r) {
-                           const Deviation& d = r.*of;
+                           const Deviation& d = r.*member;
                            return d.compared > 0 && d.range > 0 ? d.max / d.range : nan;
                        },
                        "of the range of the output on the branch", "", "share"});
     columns.push_back({fmt::format("numbers {}", kind), Digits::hidden,
-                       [=](const Row& r) { return (r.*of).compared; }, "compared"});
+                       [=](const Row& r) { return (r.*member).compared; }, "compared"});
 }
 
 compare::Table deviations(const CandidateBranch& branch, const CandidateJudgement& j,
@@ -144,39 +147,39 @@ compare::Table deviations(const CandidateBranch& branch, const CandidateJudgemen
 }
 
 // Residuals of a state of the candidate in the equations of one leg.
-struct Left {
-    const compare::StateResiduals* of = nullptr;
+struct StateRow {
+    const compare::StateResiduals* source = nullptr;
     const char* leg = "";
     double a = 0;
     Residuals residuals;
 };
 
-std::vector<ColumnOf<Left>> columns_of_states(bool of_all) {
+std::vector<ColumnOf<StateRow>> columns_of_states(bool of_all) {
     const Digits digits = of_all ? Digits::hidden : Digits::size;
-    return {
-        {"branch", Digits::hidden, [](const Left& l) { return l.of->branch; }},
-        {"equations of", of_all ? Digits::hidden : Digits::words,
-         [](const Left& l) { return l.leg; }},
-        {"parameter", of_all ? Digits::hidden : Digits::given, [](const Left& l) { return l.a; },
-         "of the state; of the largest force", "", "at"},
-        {"force", digits, [](const Left& l) { return l.residuals.force; }, "", "N"},
-        {"moment", digits, [](const Left& l) { return l.residuals.moment; }, "", "N·m"},
-        {"constraint", digits, [](const Left& l) { return 1e3 * l.residuals.length; }, "", "mm"},
-        {"direction", digits, [](const Left& l) { return l.residuals.direction; }}};
+    return {{"branch", Digits::hidden, [](const StateRow& s) { return s.source->branch; }},
+            {"equations of", of_all ? Digits::hidden : Digits::words,
+             [](const StateRow& s) { return s.leg; }},
+            {"parameter", of_all ? Digits::hidden : Digits::given,
+             [](const StateRow& s) { return s.a; }, "of the state; of the largest force", "", "at"},
+            {"force", digits, [](const StateRow& s) { return s.residuals.force; }, "", "N"},
+            {"moment", digits, [](const StateRow& s) { return s.residuals.moment; }, "", "N·m"},
+            {"constraint", digits, [](const StateRow& s) { return 1e3 * s.residuals.length; }, "",
+             "mm"},
+            {"direction", digits, [](const StateRow& s) { return s.residuals.direction; }}};
 }
 
 // The largest residuals of the states on a branch, and those of every state.
-void add_states(const compare::StateResiduals& left, compare::Result& result) {
-    std::vector<Left> states, largest;
-    for (const auto& [leg, list] :
-         {std::pair{"equilibrium", &left.truth}, {compare::name(left.second), &left.by_second}}) {
-        Left worst{&left, leg, nan, {}};
+void add_states(const compare::StateResiduals& source, compare::Result& result) {
+    std::vector<StateRow> states, largest;
+    for (const auto& [leg, list] : {std::pair{"equilibrium", &source.truth},
+                                    {compare::name(source.second), &source.by_second}}) {
+        StateRow worst{&source, leg, nan, {}};
         for (std::size_t k = 0; k < list->size(); ++k) {
             const Residuals& r = (*list)[k];
-            states.push_back({&left, leg, left.a[k], r});
+            states.push_back({&source, leg, source.a[k], r});
             if (std::isnan(worst.a) ||
                 compare::worse(r.force, worst.residuals.force) != worst.residuals.force)
-                worst.a = left.a[k];
+                worst.a = source.a[k];
             for (double Residuals::*field :
                  {&Residuals::force, &Residuals::moment, &Residuals::length, &Residuals::direction})
                 worst.residuals.*field = compare::worse(r.*field, worst.residuals.*field);
@@ -185,10 +188,10 @@ void add_states(const compare::StateResiduals& left, compare::Result& result) {
     }
     compare::Table table = compare::table("states", columns_of_states(false), largest);
     table.caption = fmt::format("branch '{}': its {} states in the equations of the legs",
-                                left.branch, left.a.size());
-    if (!left.why_not.empty())
+                                source.branch, source.a.size());
+    if (!source.why_not.empty())
         table.notes.push_back(fmt::format("{} of its states are not judged: {}",
-                                          left.truth.empty() ? "all" : "some", left.why_not));
+                                          source.truth.empty() ? "all" : "some", source.why_not));
     result.tables.push_back(std::move(table));
     result.tables.push_back(compare::table("residuals", columns_of_states(true), states));
 }
@@ -197,10 +200,10 @@ void add_states(const compare::StateResiduals& left, compare::Result& result) {
 // NaN is ignored.
 std::pair<double, double> imbalance(const CandidateJudgement& j) {
     double force = 0, moment = 0;
-    for (const auto& left : j.state_residuals)
-        for (const auto& of : left.truth) {
-            force = std::max(force, of.force);
-            moment = std::max(moment, of.moment);
+    for (const auto& branch : j.state_residuals)
+        for (const auto& residuals : branch.truth) {
+            force = std::max(force, residuals.force);
+            moment = std::max(moment, residuals.moment);
         }
     return {force, moment};
 }
@@ -208,21 +211,21 @@ std::pair<double, double> imbalance(const CandidateJudgement& j) {
 }  // namespace
 
 std::string sentence(const CandidateJudgement& j, const compare::Comparison& comparison) {
-    const std::string who = fmt::format("the candidate ‘{}’", j.name);
-    std::string partly =
+    const std::string subject = fmt::format("the candidate ‘{}’", j.name);
+    std::string remarks =
         j.not_given.empty() ? "" : fmt::format(" It does not give {}.", joined(j.not_given, 3));
     if (j.outside > 0)
-        partly += fmt::format(" {} of its points {} outside the range of the full solution.",
-                              j.outside, j.outside == 1 ? "lies" : "lie");
+        remarks += fmt::format(" {} of its points {} outside the range of the full solution.",
+                               j.outside, j.outside == 1 ? "lies" : "lie");
     // Forces are judged where they have a tolerance; a state out of balance is reported
     // in any case.
     constexpr double balanced = 1e-2;  // [N], [N·m]: imbalance of poses accurate to the last digit
     const auto [force, moment] = imbalance(j);
     const bool in_balance = !(force > balanced) && !(moment > balanced);
     if (!in_balance)
-        partly += fmt::format(" Its states are out of balance by up to {:.2g} N and {:.2g} N·m.",
-                              force, moment);
-    if (j.others == 0 && j.has_forces) partly += " No force or moment was compared.";
+        remarks += fmt::format(" Its states are out of balance by up to {:.2g} N and {:.2g} N·m.",
+                               force, moment);
+    if (j.others == 0 && j.has_forces) remarks += " No force or moment was compared.";
     const std::string hints = j.hints.empty() ? "" : fmt::format(" {}.", joined(j.hints, 4));
     const bool incomplete = std::ranges::all_of(j.reasons, [](const std::string& reason) {
         return reason.starts_with("it does not give ");
@@ -242,21 +245,21 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                 return fmt::format(
                     "Pass: {} equals the full solution{} to round-off; the tolerance is "
                     "{}.{}",
-                    who, j.not_given.empty() ? "" : " where it has values", tolerance_of(j),
-                    partly);
+                    subject, j.not_given.empty() ? "" : " where it has values", tolerance_of(j),
+                    remarks);
             return fmt::format("Pass: {} is within {} of the full solution{}, off by at most {}.{}",
-                               who, tolerance_of(j),
+                               subject, tolerance_of(j),
                                j.not_given.empty() ? " everywhere" : " where it has values",
-                               worst_of(j, comparison), partly);
+                               worst_of(j, comparison), remarks);
         case Grade::fail:
             if (!j.hints.empty() && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
                     return w.max <= w.limit;
                 }))
-                return fmt::format("Fail: {} is not a solution: {}. The tolerance is {}.{}", who,
-                                   joined(j.hints, 4), tolerance_of(j), partly);
+                return fmt::format("Fail: {} is not a solution: {}. The tolerance is {}.{}",
+                                   subject, joined(j.hints, 4), tolerance_of(j), remarks);
             return fmt::format(
-                "Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}", who,
-                worst_of(j, comparison), tolerance_of(j), hints, partly);
+                "Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}",
+                subject, worst_of(j, comparison), tolerance_of(j), hints, remarks);
     }
     return {};
 }
@@ -271,8 +274,8 @@ compare::Result result_of(const CandidateJudgement& j, const compare::Comparison
                     j.name)};
     for (const auto& branch : j.branches) {
         result.tables.push_back(deviations(branch, j, comparison));
-        for (const auto& left : j.state_residuals)
-            if (left.branch == branch.branch) add_states(left, result);
+        for (const auto& states : j.state_residuals)
+            if (states.branch == branch.branch) add_states(states, result);
     }
     for (const auto& missing : j.not_given) result.notes.push_back("not given: " + missing);
     for (const auto& note : j.notes) result.notes.push_back("note: " + note);

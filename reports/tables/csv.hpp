@@ -1,5 +1,4 @@
-// Curves of one leg as CSV for `elastocheck solve`, row by row, one column per channel; 17
-// significant digits.
+// Curves of one leg as CSV, row by row, one column per channel, with 17 significant digits.
 #pragma once
 
 #include <string>

@@ -140,9 +140,9 @@ std::string formulation_words(const Formulation& f) {
 }
 
 // Formulations of bushings as in the scene, before compile() exchanged markers.
-using Written = std::unordered_map<std::string, Formulation>;
-Written written_formulations(const Scene& scene) {
-    Written written;
+using Formulations = std::unordered_map<std::string, Formulation>;
+Formulations written_formulations(const Scene& scene) {
+    Formulations written;
     for (const auto& elastic : scene.elastics)
         if (const auto* formulation = member<Formulation>(elastic.kind))
             written.emplace(elastic.name, *formulation);
@@ -155,7 +155,8 @@ bool is_beam(const Elastic& elastic) {
            matrix_of(*member<SpatialLaw>(elastic.kind)) != nullptr;
 }
 
-std::string bushing_words(const Written& written, const Elastic& elastic, const SpatialLaw& law) {
+std::string bushing_words(const Formulations& written, const Elastic& elastic,
+                          const SpatialLaw& law) {
     const Resisted axes = resisted(law);
     if (elastic.written_as == WrittenAs::tyre) {
         PerAxis pushed = std::get<PerAxis>(law);
@@ -174,10 +175,10 @@ std::string bushing_words(const Written& written, const Elastic& elastic, const 
     for (const std::size_t k : axes.curves)
         text +=
             fmt::format(", {}: {}", components[k], law_words(law, k, k < 3 ? lengths : angular));
-    bool elsewhere = false;
+    bool is_offset = false;
     each_member(elastic.kind,
-                [&](Deformation<const Vector6> e) { elsewhere = !e.value.isZero(0); });
-    if (elsewhere) text += ", with an undeformed position other than the design position";
+                [&](Deformation<const Vector6> e) { is_offset = !e.value.isZero(0); });
+    if (is_offset) text += ", with an undeformed position other than the design position";
     return text;
 }
 
@@ -203,7 +204,7 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
     const auto body = [&](BodyId b) {
         return b == ground ? std::string("ground") : model.bodies[static_cast<std::size_t>(b)].name;
     };
-    const Written written = written_formulations(scene);
+    const Formulations written = written_formulations(scene);
     std::vector<ElementLine> lines;
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& elastic = model.elastics[k];

@@ -34,34 +34,36 @@ std::string tolerance_of(const Assessment& j) {
 
 // "6.9 N, 7 % of its extent (rod.drive force, branch len)"
 std::string other_of(const Assessment& j) {
-    const auto taken = [](const std::optional<Worst>& worst) {
+    const auto share_of_limit = [](const std::optional<Worst>& worst) {
         return worst ? worst->max / (std::isfinite(worst->limit) ? worst->limit : worst->extent)
                      : -1;
     };
-    const bool crosswise =
-        !std::isnan(taken(j.other)) && !(taken(j.other_across) <= (1 + 1e-6) * taken(j.other));
-    const auto& worst = crosswise ? j.other_across : j.other;
+    const bool at_equal_position =
+        !std::isnan(share_of_limit(j.other)) &&
+        !(share_of_limit(j.other_across) <= (1 + 1e-6) * share_of_limit(j.other));
+    const auto& worst = at_equal_position ? j.other_across : j.other;
     if (!worst || !(worst->max >= zero_share * worst->extent || std::isnan(worst->max))) return "";
     return fmt::format("{}, {} of its extent ({}, branch {}{})", size(*worst, worst->limit),
                        percent(worst->max / worst->extent), as_words(worst->channel), worst->branch,
-                       crosswise ? ", at equal position" : "");
+                       at_equal_position ? ", at equal position" : "");
 }
 
 // "5.1 mm (wheel centre z, branch vertical) and 0.11 deg (camber, branch vertical)", by the worse
 // reading; empty where all is rounding.
 std::string worst_of(const Assessment& j) {
     std::vector<std::string> parts;
-    for (const auto& [at, across, limit] :
+    for (const auto& [at_parameter, at_position, limit] :
          {std::tuple(&j.position, &j.position_across, j.tolerance.mm),
           std::tuple(&j.angle, &j.angle_across, j.tolerance.deg)}) {
-        const bool crosswise =
-            *across &&
-            (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (1 + 1e-6) * (*at)->max)));
-        const auto& worst = crosswise ? *across : *at;
+        const bool at_equal_position =
+            *at_position &&
+            (!*at_parameter || (!std::isnan((*at_parameter)->max) &&
+                                !((*at_position)->max <= (1 + 1e-6) * (*at_parameter)->max)));
+        const auto& worst = at_equal_position ? *at_position : *at_parameter;
         if (!worst || (worst->max < zero_deviation && worst->max <= limit)) continue;
         parts.push_back(fmt::format("{} ({}, branch {}{})", size(*worst, limit),
                                     as_words(worst->channel), worst->branch,
-                                    crosswise ? ", at equal position" : ""));
+                                    at_equal_position ? ", at equal position" : ""));
     }
     if (auto other = other_of(j); !other.empty()) parts.push_back(std::move(other));
     return enumerated(parts);
@@ -74,7 +76,7 @@ std::string rate_of(const Assessment& j) {
                        off < 0 ? "soft" : "stiff");
 }
 
-// "; 84 outputs compared, 60 of them forces, moments and rates"
+// "84 outputs compared, 60 of them forces, moments and rates"
 std::string compared(const Assessment& j) {
     const std::string others =
         j.others == 0 ? ", no force, moment or rate among them"

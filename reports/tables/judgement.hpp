@@ -14,8 +14,7 @@ std::string sentence(const compare::Assessment& judgement);
 // angles, are judged; the default unless the user gave it.
 std::string tolerance_text(const compare::Tolerance& tolerance, bool others, bool given);
 
-// A deviation as text: with enough digits where it exceeds its limit by little;
-// "nothing" for rounding.
+// A deviation as text, with enough digits to differ from its limit; "nothing" for rounding.
 std::string deviation_text(double value, double limit, const char* unit);
 
 // "Not judged: the references disagree (and 2 reasons more)."

@@ -16,8 +16,8 @@ std::string picture(const Drawing& drawing, const std::string& view) {
     const bool right = is_right(suspension);
     const View chosen = [&] {
         if (view == "axonometric") return axonometric_view(right);
-        for (const View& one : {front_view, side_view, top_view})
-            if (one.id == "view-" + view) return one;
+        for (const View& fixed : {front_view, side_view, top_view})
+            if (fixed.id == "view-" + view) return fixed;
         throw std::invalid_argument(
             fmt::format("view '{}'; allowed: axonometric, front, side, top", view));
     }();

@@ -7,7 +7,8 @@
 
 namespace elastocheck::reports {
 
-// A stand-alone SVG file: "axonometric", "front", "side" or "top" view. Throws std::invalid_argument for another view, and for a scene without a point.
+// A stand-alone SVG file: "axonometric", "front", "side" or "top" view. Throws std::invalid_argument for
+// another view, and for a scene without a point.
 std::string picture(const Drawing& drawing, const std::string& view);
 
 }  // namespace elastocheck::reports

@@ -30,13 +30,13 @@ struct ReportOptions {
 // Answer of the report for a scene in one sentence, with its source.
 struct Answer {
     std::string name, source;
-    std::string
-        sentence;  // how far the numbers can be trusted, and which fast method is good enough
+    // how far the numbers can be trusted, and which fast method is good enough
+    std::string sentence;
     // "pass", "fail", "not judged" of the candidates where there are any; else "judged"
     // or "not judged"
     std::string mark;
     bool conclusive = false;           // it could be judged
-    std::vector<std::string> reasons;  // reasons if not
+    std::vector<std::string> reasons;  // why not
 };
 
 // Replaces `folder` by report.html, report.md, result.json, curves.csv and figures/, in one step,

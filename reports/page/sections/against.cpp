@@ -15,7 +15,7 @@
 namespace elastocheck::reports {
 namespace {
 
-// Of the base and the variant: the scenes' names, or where these are the same, their files'.
+// Names of the base and the variant: of the scenes, or of their files where those are the same.
 std::pair<std::string, std::string> names_of(const SceneAnalyses& scene, const Against& against) {
     const auto file = [](const std::string& source) {
         return std::filesystem::path(source).filename().string();
@@ -43,7 +43,7 @@ bool is_visible(const Against::Curve& curve) {
     return low != curve.base.y.end() && std::abs(curve.largest) >= 0.01 * (*high - *low);
 }
 
-// What an engineer notices: on the first branch every output, on the others the angles.
+// Curves whose difference an engineer notices: of the first branch every output, of others the angles.
 FigureGroup figures(const SceneAnalyses& scene, const Against& against) {
     constexpr std::size_t most = 12;
     const auto [base, variant] = names_of(scene, against);

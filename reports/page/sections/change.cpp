@@ -49,12 +49,12 @@ Table heat_map(const std::vector<KeyFigure>& figures, const std::vector<EffectRo
     const auto points = gradients_of(figures.front(), rows);
     std::vector<std::size_t> moving;
     for (const KeyFigure& figure : figures) {
-        auto& of = sizes.emplace_back();
+        auto& of_figure = sizes.emplace_back();
         for (const auto& gradient : gradients_of(figure, rows))
-            of.push_back(figure.counts(size_of(gradient)) ? size_of(gradient) : 0);
+            of_figure.push_back(figure.counts(size_of(gradient)) ? size_of(gradient) : 0);
     }
     for (std::size_t k = 0; k < points.size(); ++k)
-        if (std::ranges::any_of(sizes, [&](const auto& of) { return of[k] > 0; }))
+        if (std::ranges::any_of(sizes, [&](const auto& of_figure) { return of_figure[k] > 0; }))
             moving.push_back(k);
     using K = std::size_t;
     std::vector<compare::ColumnOf<K>> columns{

@@ -31,7 +31,7 @@ std::vector<double> errors_of(const compare::Profile& profile, Unit unit) {
     return values;
 }
 
-// In ascending order of the parameter, up to 60 a branch.
+// Deviations at up to 60 points a branch, in ascending order of the parameter.
 std::vector<DeviationAt> deviations_over(const SceneAnalyses& scene, const Sweep& sweep,
                                          Unit unit) {
     const auto& channels = scene.comparison.channels;
@@ -43,7 +43,8 @@ std::vector<DeviationAt> deviations_over(const SceneAnalyses& scene, const Sweep
         const auto by = compare::abscissa(channels, branch.result->abscissa, truth, other);
         const auto load = errors_of(profile_at_equal_parameter(channels, truth, other), unit),
                    travel = errors_of(profile_at_equal_abscissa(channels, truth, other, by), unit),
-                   doubt = errors_of(profile_at_equal_parameter(channels, truth, second), unit);
+                   uncertainty =
+                       errors_of(profile_at_equal_parameter(channels, truth, second), unit);
         compare::Profile chosen;
         if (scene.recommended)
             for (const auto& [name, profile] : scene.recommended->branches)
@@ -60,13 +61,13 @@ std::vector<DeviationAt> deviations_over(const SceneAnalyses& scene, const Sweep
         for (const auto k : thinned(load.size(), 60))
             if (truth.a[k] != 0 || stations.empty())
                 stations.push_back({truth.a[k], load[k], value(travel, k), recommended(truth.a[k]),
-                                    value(doubt, k)});
+                                    value(uncertainty, k)});
     }
     std::ranges::stable_sort(stations, {}, &DeviationAt::a);
     return stations;
 }
 
-// The parameter, then a column a comparison.
+// A column for the parameter and one for each comparison.
 Table table_of(const std::vector<DeviationAt>& stations, const SceneAnalyses& scene,
                const Sweep& sweep, Unit of_unit) {
     using enum Digits;
@@ -87,7 +88,7 @@ Table table_of(const std::vector<DeviationAt>& stations, const SceneAnalyses& sc
                              stations);
 }
 
-// Of the compared points; a point out of reach of the other leg is NaN.
+// Largest value; a point that the other leg does not reach is NaN, and ignored.
 double peak_of(const std::vector<DeviationAt>& stations, double DeviationAt::*value) {
     double peak = 0;
     for (const auto& station : stations)

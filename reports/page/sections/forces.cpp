@@ -45,7 +45,7 @@ struct Largest {
     const LargestForceRow *force = nullptr, *moment = nullptr;
 };
 
-// Of every element, the largest force first; a beam is one.
+// A row for every element, in descending order of the force; the segments of a beam are one element.
 std::vector<Largest> largest_of(const std::vector<LargestForceRow>& forces,
                                 const Elements& elements) {
     std::vector<Largest> largest;
@@ -71,7 +71,7 @@ std::string place_of(const LargestForceRow* r) {
                        r->branch, short_number(r->at), r->parameter_unit);
 }
 
-// The deformation there; of a stop its penetration.
+// The deformation at the largest force; of a stop its penetration.
 std::string deformation_of(const LargestForceRow* r, const Elements& elements) {
     if (r == nullptr || !std::isfinite(r->deformation)) return "";
     double value = r->deformation;

@@ -27,7 +27,7 @@ std::optional<Section> formulations_section(const SceneAnalyses& scene) {
         section.words["most"] = {{"value", quantity(r.spread, r.unit)}, {"channel", r.output}};
     }
     std::vector<std::string> names;
-    for (const auto& one : compare::formulations) names.emplace_back(one.name);
+    for (const auto& formulation : compare::formulations) names.emplace_back(formulation.name);
     section.words["formulations"] = enumerated(names);
     section.words["bushings"] = enumerated(study->bushings);
     auto& reasons = section.words["reasons"] = study->inconclusive;

@@ -37,7 +37,8 @@ std::optional<Table> matrix_table(const std::vector<ComplianceRow>& compliance,
     return table;
 }
 
-// Errors of the recursion in the rates. No share of a value that its error exceeds: it is zero.
+// Errors of the recursion in the rates; without a percentage where the error exceeds the value, which
+// is zero but for rounding.
 Table errors_table(std::vector<CharacteristicRow> design) {
     for (auto& r : design) {
         r.output = as_words(r.output);

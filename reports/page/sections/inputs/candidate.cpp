@@ -12,6 +12,7 @@ namespace elastocheck::reports {
 namespace {
 
 using compare::CandidateBranch;
+
 // Deviations of every output that the candidate gives on a branch, beside those of the recursion.
 void add_recursion(Table& table, const SceneAnalyses& scene, const std::string& name) {
     const compare::BranchComparison& solved = scene.comparison.branch(name);
@@ -67,7 +68,7 @@ std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sw
     for (const auto& [candidate, sentence] : scene.candidates) {
         Series series{
             .title = candidate.name, .style = Series::Style::rings, .colour = green, .mark = 4};
-        // its main outputs, and what places its points
+        // The candidate's values of a main output or of the abscissa of the branch; null without.
         const auto column = [&](const compare::CandidateReading& reading,
                                 const CandidateBranch& branch,
                                 const std::string& name) -> const std::vector<double>* {

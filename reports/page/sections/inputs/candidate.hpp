@@ -9,9 +9,9 @@
 
 namespace elastocheck::reports {
 
-// Points of every candidate on these branches for one output, over another one or, if `by` is
+// Points of every candidate on these branches for one output, over another one or, if `abscissa` is
 // empty, over the parameter.
 std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sweep,
-                                     const std::string& by, const std::string& channel);
+                                     const std::string& abscissa, const std::string& channel);
 
 }  // namespace elastocheck::reports

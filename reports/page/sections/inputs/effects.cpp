@@ -43,7 +43,7 @@ std::string number_label(const EffectRow& row) {
 
 namespace {
 
-// The coordinate of a hardpoint that a path is: its name and axis (0, 1, 2).
+// Hardpoint and axis (0, 1, 2) of a path such as points.tie_rod_inner.z.
 struct Coordinate {
     std::string point;
     std::size_t axis = 0;
@@ -58,7 +58,7 @@ std::optional<Coordinate> coordinate(const std::string& path) {
                       static_cast<std::size_t>(axis - 'x')};
 }
 
-// Zero where there is none.
+// Gradient of a figure by the position of a hardpoint; zero along an axis without an effect.
 Position gradient_by(const std::string& point, const KeyFigure& figure) {
     Position gradient{};
     for (const EffectRow& row : figure.effects)

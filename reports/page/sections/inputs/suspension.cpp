@@ -14,14 +14,15 @@ Suspension suspension_of(const SceneAnalyses& scene) {
     const auto sweep = leading_sweep(scene);
     if (!sweep) return s;
     std::vector<double> order;
-    for (const auto& at : scene.drawing.stations) {
-        if (!at.end || !sweep->has(at.branch)) continue;
-        const bool travel = at.unit == "mm" && sweep->lifts();
-        Suspension::Moved moved{at, fmt::format("{}{} {}", travel ? "travel" : at.branch,
-                                                travel ? " at" : "", quantity(at.a, at.unit))};
-        // in ascending order of the parameter, over any number of branches
-        const auto before = std::ranges::upper_bound(order, at.a) - order.begin();
-        order.insert(order.begin() + before, at.a);
+    for (const auto& station : scene.drawing.stations) {
+        if (!station.end || !sweep->has(station.branch)) continue;
+        const bool travel = station.unit == "mm" && sweep->lifts();
+        Suspension::Moved moved{
+            station, fmt::format("{}{} {}", travel ? "travel" : station.branch, travel ? " at" : "",
+                                 quantity(station.a, station.unit))};
+        // In ascending order of the parameter, over any number of branches.
+        const auto before = std::ranges::upper_bound(order, station.a) - order.begin();
+        order.insert(order.begin() + before, station.a);
         s.moved.insert(s.moved.begin() + before, std::move(moved));
     }
     return s;

@@ -8,7 +8,7 @@ namespace elastocheck::reports {
 
 Suspension suspension_of(const SceneAnalyses& scene);
 
-// Names and coordinates of points, on demand.
+// Names, bodies and coordinates of points, as a table of details.
 Table points_table(const std::vector<Suspension::Point>& points);
 
 // "suspension", or "mechanism" for a scene without a wheel.

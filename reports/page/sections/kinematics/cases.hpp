@@ -19,7 +19,7 @@ struct Case {
     SweepCurve curve;
     std::string legend() const { return as_words(sweep.name); }
 };
-// With two points or more.
+// The sweeps for which `in` holds, with two points or more.
 std::vector<Case> cases_of(const SceneAnalyses& scene, const std::function<bool(const Sweep&)>& in);
 bool pushes(const Sweep& sweep);  // forces in the plane of the road, and moments
 
@@ -41,7 +41,7 @@ struct FoundOutput {
     std::string channel, unit;
     Wheel wheel;
     std::string element{};  // "coil", without the name of the wheel
-    bool of_all = false;    // of no wheel alone
+    bool of_all = false;    // an output of the whole scene
 };
 std::vector<FoundOutput> outputs_of(const SceneAnalyses& scene, const std::string& quantity);
 
@@ -58,7 +58,7 @@ struct Scale {
 Scale scale_of(const Quantity& quantity, int side, const std::vector<double>& values,
                std::size_t start);
 std::string label_of(const Quantity& quantity);  // "camber", "steer angle"
-double at_rest(double value);                    // rounding is 0
+double at_rest(double value);                    // 0 for a value that is rounding
 
 // Abscissa of a wheel in a case, the parameter times `push_of` where it is a push.
 std::vector<double> abscissa_of(const SceneAnalyses& scene, const Family& family, const Case& c,
@@ -73,7 +73,7 @@ Push push_of(const SceneAnalyses& scene, const Case& c, const Wheel& wheel);
 // ", inwards"; empty where the abscissa is no push.
 std::string direction_of(const SceneAnalyses& scene, const Family& family, const Case& c);
 
-// What was measured, and what candidates have.
+// Points of an output that were measured or that candidates give, scaled as its curve is.
 std::vector<Series> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
                              const FoundOutput& of, Scale scale);
 

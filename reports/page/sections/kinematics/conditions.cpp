@@ -28,7 +28,7 @@ std::string supports_of(const Model& model, const Branch& branch) {
     return enumerated({kinds.begin(), kinds.end()});
 }
 
-// "lateral left, lateral right (−1)" of what moves, with what a unit of the parameter moves.
+// Drivers that move with the parameter: "lateral left and lateral right (opposed)".
 std::string moved_in(const Model& model, const Branch& branch) {
     std::vector<std::string> names;
     for (const auto& driver : branch.drivers)

@@ -13,8 +13,8 @@ namespace {
 
 using Rows = std::vector<std::vector<double>>;
 
-// In the same order, or in the opposite one, as of two wheels in roll.
-bool in_order(const Rows& a, const Rows& b) {
+// Whether two curves coincide point by point.
+bool coincide(const Rows& a, const Rows& b) {
     double size = 0;
     for (const auto& row : a)
         for (const double v : row) size = std::max(size, std::abs(v));
@@ -26,7 +26,7 @@ bool in_order(const Rows& a, const Rows& b) {
 
 constexpr Colour case_colours[] = {vermilion, blue, green, purple, ochre, pink, slate, sky};
 
-// Of every curve some points.
+// Up to seven points of every curve.
 Table numbers_of(const Figure& figure) {
     constexpr std::size_t most = 7;
     Table table{.rows = std::vector<std::vector<compare::Cell>>(most),
@@ -52,9 +52,9 @@ Table numbers_of(const Figure& figure) {
 }  // namespace
 
 void Bundle::add(const std::string& whose, Rows rows) {
-    const Rows turned(rows.rbegin(), rows.rend());
+    const Rows reversed(rows.rbegin(), rows.rend());  // as of two wheels in roll
     if (!rows.empty() && std::ranges::none_of(lines, [&](const Line& line) {
-            return in_order(line.rows, rows) || in_order(line.rows, turned);
+            return coincide(line.rows, rows) || coincide(line.rows, reversed);
         }))
         lines.push_back({whose, std::move(rows)});
 }
@@ -69,7 +69,7 @@ FigureGroup drawn(Figure figure, std::vector<Bundle> bundles, const std::vector<
     const auto entry = [&](const std::string& title, Series::Style style, Colour colour) {
         figure.legend.push_back({.title = title, .style = style, .colour = colour});
     };
-    // one entry a bundle and one a wheel, instead of one a curve
+    // An entry for each bundle and each wheel instead of one for each curve.
     for (std::size_t k = 0; several && k < bundles.size(); ++k)
         entry(bundles[k].title, k == 0 ? heavy : line, case_colours[k % std::size(case_colours)]);
     const std::size_t sides = figure.legend.size();
@@ -99,9 +99,9 @@ FigureGroup drawn(Figure figure, std::vector<Bundle> bundles, const std::vector<
         }
     for (auto& bundle : bundles)
         for (auto& series : bundle.others) {
-            const auto of = std::ranges::find(figure.legend, series.title, &Series::title);
-            series.keys = {static_cast<std::size_t>(of - figure.legend.begin())};
-            if (of == figure.legend.end() && !figure.legend.empty()) {
+            const auto known = std::ranges::find(figure.legend, series.title, &Series::title);
+            series.keys = {static_cast<std::size_t>(known - figure.legend.begin())};
+            if (known == figure.legend.end() && !figure.legend.empty()) {
                 entry(series.title, series.style, series.colour);
                 figure.legend.back().mark = series.mark;
             }

@@ -14,7 +14,7 @@ namespace {
 using Rows = std::vector<std::vector<double>>;
 using compare::Shown;
 
-// Range of the curves of a figure, and the largest of one curve.
+// Range of all curves of a figure, and the largest extent of one of them.
 struct CurveRange {
     double low = INFINITY, high = -INFINITY, moved = 0;
 };
@@ -45,7 +45,7 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
     return rows;
 }
 
-// A bundle a load case; with one case a bundle a spring.
+// A bundle for each load case; of outputs of springs and dampers one for each element.
 std::vector<Bundle> bundles_of(const SceneAnalyses& scene, const Family& family,
                                const Quantity& quantity, CurveRange& extent) {
     std::vector<Bundle> bundles;
@@ -84,7 +84,7 @@ void add_figures(Section& section, const SceneAnalyses& scene, const Family& fam
             std::ranges::any_of(bundles, [](const Bundle& b) { return !b.others.empty(); });
         const bool empty =
             std::ranges::all_of(bundles, [](const Bundle& b) { return b.lines.empty(); });
-        // a quantity that does not move is left out, unless it was measured
+        // A quantity that does not move is left out, unless there are measured or candidate values.
         const double size = std::max(1e-3, std::max(std::abs(extent.low), extent.high));
         if (empty || (!given && (if_given || !(extent.moved > 1e-6 * size)))) continue;
         const std::string unit = outputs_of(scene, quantity.name).front().unit;

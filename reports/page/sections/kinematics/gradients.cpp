@@ -33,7 +33,7 @@ Fitted fitted_over(const Sweep& sweep) {
 struct FittedLine {
     double slope = compare::nan, from = 0, to = 0;
 };
-// Within the range, through three points at least.
+// The line through the points within the range about 0, or through the three nearest ones.
 FittedLine line_of(const std::vector<double>& x, const std::vector<double>& y, double range) {
     std::vector<std::pair<double, double>> points;
     for (std::size_t k = 0; k < x.size(); ++k) points.emplace_back(x[k], y[k]);

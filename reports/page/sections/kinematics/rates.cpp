@@ -17,8 +17,8 @@ namespace {
 using compare::CharacteristicRow;
 using Design = std::vector<CharacteristicRow>;
 
-// A rate of each wheel; of a spring or damper of each wheel, which has the wheel's name in its own;
-// or one, which all columns share.
+// A rate of each wheel, or of its spring or damper, which has the wheel's name in its own; or a rate
+// of the axle, the same for all wheels.
 struct Rate {
     std::string name, unit, definition{};
     compare::Properties is{};
@@ -30,12 +30,12 @@ std::vector<Rate> rates_of(const Design& design, const std::vector<Wheel>& wheel
     for (const auto& r : design) {
         const auto dot = r.output.rfind('.');
         const std::string owner = dot == r.output.npos ? "" : r.output.substr(0, dot);
-        const auto mine =
+        const auto wheel =
             owner.empty() && wheels.size() > 1 ? std::nullopt : wheel_of(owner, wheels);
-        const std::string stem = mine ? mine->first : owner,
+        const std::string stem = wheel ? wheel->first : owner,
                           name = (stem.empty() ? "" : stem + " ") +
                                  as_words(owner.empty() ? r.output : r.output.substr(dot + 1));
-        auto known = mine ? std::ranges::find(rates, name, &Rate::name) : rates.end();
+        auto known = wheel ? std::ranges::find(rates, name, &Rate::name) : rates.end();
         if (known == rates.end()) {
             const compare::Entry* entry = compare::find_entry(r.output);
             rates.push_back({name, r.unit, r.definition});
@@ -43,15 +43,14 @@ std::vector<Rate> rates_of(const Design& design, const std::vector<Wheel>& wheel
             if (entry != nullptr) known->is = entry->is;
             known->rows.resize(std::max<std::size_t>(1, wheels.size()));
         }
-        if (mine)
-            known->rows[mine->second] = r;
+        if (wheel)
+            known->rows[wheel->second] = r;
         else
             std::ranges::fill(known->rows, r);
     }
     return rates;
 }
 
-// The rates of one cause, or all.
 Table rates_table(const std::vector<Rate>& rates, const std::vector<Wheel>& wheels,
                   std::string caption) {
     std::vector<compare::ColumnOf<Rate>> columns{
@@ -100,9 +99,10 @@ std::optional<Section> rates_section(const SceneAnalyses& scene) {
     std::vector<std::pair<std::string, std::vector<Rate>>> groups;
     for (const auto& rate : rates) {
         const std::string cause = rate.is.compliance ? "compliance" : rate.is.cause;
-        auto of = std::ranges::find(groups, cause, [](const auto& group) { return group.first; });
-        if (of == groups.end()) of = groups.emplace(of, cause, std::vector<Rate>{});
-        of->second.push_back(rate);
+        auto known =
+            std::ranges::find(groups, cause, [](const auto& group) { return group.first; });
+        if (known == groups.end()) known = groups.emplace(known, cause, std::vector<Rate>{});
+        known->second.push_back(rate);
     }
     for (const auto& [cause, of_group] : groups)
         section.tables.push_back(

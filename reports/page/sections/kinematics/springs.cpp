@@ -47,8 +47,8 @@ std::vector<SpringForce> spring_forces(const SceneAnalyses& scene, const Sweep& 
     return forces;
 }
 
-// The curve, with a point where a stop touches: there its deformation is the clearance, between a
-// station without and one with force.
+// The curve with an additional point where a stop touches, also added to `touches`: where the
+// deformation equals the clearance, between a station without force and one with force.
 std::vector<std::vector<double>> curve_of(const SpringForce& force, std::vector<double>& touches) {
     std::vector<std::vector<double>> rows;
     for (std::size_t k = 0; k < force.stations.size(); ++k) {
@@ -87,7 +87,7 @@ std::optional<Section> springs_section(const SceneAnalyses& scene) {
         if (bundle == bundles.end()) bundle = bundles.insert(bundle, Bundle{force.element});
         const auto before = bundle->lines.size();
         bundle->add(wheels[force.wheel].name, std::move(rows));
-        if (bundle->lines.size() == before) continue;  // as of the other wheel
+        if (bundle->lines.size() == before) continue;  // coincides with that of the other wheel
         for (const double at : touches) {
             marks.rows.push_back({at, 0});
             contacts.push_back(fmt::format("{} at {}\u00a0mm", force.element, number(at)));

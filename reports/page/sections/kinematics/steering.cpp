@@ -1,5 +1,4 @@
-// Sections: figures over the steering; under forces and moments in the plane of the road; over what else
-// branches move.
+// Sections: figures over the steering, over forces and moments in the road plane, over other drives.
 #include <fmt/format.h>
 
 #include <algorithm>
