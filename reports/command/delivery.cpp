@@ -21,11 +21,6 @@ void add_scene_and_run(CLI::App& command, SceneRequest& request) {
 
 void print_document(const nlohmann::ordered_json& document) { print(document.dump(1) + "\n"); }
 
-nlohmann::ordered_json document_head(const char* schema, const std::string& command) {
-    return {
-        {"schema", schema}, {"reproduce", command}, {"provenance", provenance_json(provenance())}};
-}
-
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files) {
     write_folder(delivery.folder, files);
     std::string written;

@@ -1,5 +1,4 @@
-// Output of a command: text on the terminal, one JSON document on standard output, or files
-// in a folder.
+// Output of a command: text on the terminal, a JSON document on standard output, files in a folder.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,7 +23,7 @@ struct Delivery {
     }
 };
 
-// What commands on scenes are asked for.
+// Options that the commands on scenes share.
 struct Request {
     std::string folder;  // -o
     Settings settings;
@@ -44,20 +43,16 @@ void add_scene_and_run(CLI::App& command, SceneRequest& request);  // and --jobs
 // Writes one document, and nothing else, to standard output.
 void print_document(const nlohmann::ordered_json& document);
 
-// {schema, reproduce, provenance}: the head of a document other than result.json.
-nlohmann::ordered_json document_head(const char* schema, const std::string& command);
-
 // Writes the files to the folder in one step, and names them on the terminal.
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files);
 
-// Prints a result or writes it: to the terminal as text; as result.json and a CSV file for each of its
-// tables to the folder, in one step, with `files`; with --json as the document. `scene` is document_of() of its scene.
-// Returns the exit code of its verdict.
+// Prints a result as text, with --json as the document; with a folder writes there result.json, a CSV file
+// for each of its tables, and `files`, in one step. `scene` is document_of() of its scene. Returns the exit
+// code of its verdict.
 int deliver_result(const Delivery& delivery, nlohmann::ordered_json scene,
                    const compare::Result& result, std::vector<NamedContent> files = {});
 
-// Writes the result document of one scene: to the folder, with `tables` beside it, in one step; to
-// standard output; or both.
+// Writes the result document of one scene to the folder, with `tables`, to standard output, or both.
 void deliver(const Delivery& delivery, nlohmann::ordered_json scene,
              std::vector<NamedContent> tables);
 

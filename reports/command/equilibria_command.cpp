@@ -1,5 +1,4 @@
-// `elastocheck equilibria`: multiple equilibria at one load, each proved, and their relation
-// to the branch.
+// `elastocheck equilibria`: the equilibria at one load, each proved, and their relation to a branch.
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -27,12 +26,12 @@ int equilibria(const EquilibriaRequest& request, const Delivery& delivery) {
     const Branch& branch = request.branch.empty() ? loaded.model.branches.front()
                                                   : branch_named(loaded.model, request.branch);
     const double a = request.at / compare::in_unit(compare::unit_of(branch.unit));
-    const auto all = compare::find_equilibria(
+    const auto found = compare::find_equilibria(
         loaded.model, branch, a,
         {.turn = request.turned / 57.29577951308232, .progress = progress});
     progress("");
     return deliver_result(delivery, document_of(loaded, request.scene),
-                          result_of(loaded.model, all));
+                          result_of(loaded.model, found));
 }
 
 }  // namespace

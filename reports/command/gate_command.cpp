@@ -1,5 +1,4 @@
-// `elastocheck gate`: judges scenes by their baselines, or accepts the measurements
-// as new baselines.
+// `elastocheck gate`: judges scenes by baselines, or accepts measurements as new baselines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +38,7 @@ struct GateOptions {
     compare::Progress progress;  // of the scene that is measured
 };
 
-bool says_yes(const char* variable) {
+bool is_set(const char* variable) {
     const char* value = std::getenv(variable);
     const std::string_view word = value == nullptr ? "" : value;
     return !word.empty() && word != "false" && word != "0";
@@ -93,8 +92,7 @@ std::vector<Task> tasks(const GateOptions& options) {
     return tasks;
 }
 
-// Relative path from the baseline to the scene. It may contain folder names that are
-// not valid text.
+// Relative path from the baseline to the scene, maybe with folder names that are not valid text.
 std::string name_beside(const Task& task) {
     // Absolute, since relative() fails for a folder that does not exist yet.
     const fs::path folder = fs::absolute(task.baseline).parent_path();
@@ -109,15 +107,15 @@ BaselineFile measured(const Task& task, const GateOptions& options) {
     const LoadedScene loaded = load_scene(task.scene, options.settings);
     const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
-    compare::Options how;
-    how.times = false;
-    how.threads = threads_of(options.running);
-    how.progress = [&](std::string_view what, double done) {
+    compare::Options compare_options;
+    compare_options.times = false;
+    compare_options.threads = threads_of(options.running);
+    compare_options.progress = [&](std::string_view what, double done) {
         options.progress(fmt::format("{}: {}", task.scene.filename().string(), what), done);
     };
     BaselineFile file;
     file.scene_file = name_beside(task);
-    file.baseline.accepted = compare::measure(model, compare::compare(model, how));
+    file.baseline.accepted = compare::measure(model, compare::compare(model, compare_options));
     file.input_hash = input_hash(read_whole(task.scene));
     file.numbers = loaded.scene.numbers;
     file.provenance = provenance();
@@ -133,15 +131,15 @@ GatedScene unjudged(const Task& task) {
     return scene;
 }
 
-// Whether the name exists, also as a dangling link.
-bool is_there(const fs::path& file) {
+// Whether its folder has an entry of this name, also a dangling link.
+bool has_entry(const fs::path& file) {
     std::error_code failed;
     return fs::symlink_status(file, failed).type() != fs::file_type::not_found;
 }
 
 // The accepted baseline; without one the verdict of the scene gives the reason.
 std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
-    if (!is_there(task.baseline)) {
+    if (!has_entry(task.baseline)) {
         scene.verdict.reasons.push_back(fmt::format(
             "there is no baseline {}; 'elastocheck gate {} --accept --reason ...' makes one",
             task.baseline.string(), task.scene.string()));
@@ -156,8 +154,7 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
         scene.bad_input = true;
         scene.verdict.reasons.emplace_back(error.what());
         return std::nullopt;
-        // BaselineError, FileError: fails this scene, not the whole run
-    } catch (const std::runtime_error& error) {
+    } catch (const std::runtime_error& error) {  // BaselineError, FileError: only of this scene
         scene.verdict.reasons.emplace_back(error.what());
         return std::nullopt;
     }
@@ -165,9 +162,9 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
 
 void judge(const BaselineFile& was, const BaselineFile& is, const std::string& forced,
            GatedScene& scene) {
-    const BuildDistance apart = distance(was.provenance, is.provenance);
-    ToleranceClass kind = apart.kind;
-    scene.differs = apart.differs;
+    const BuildDistance builds = distance(was.provenance, is.provenance);
+    ToleranceClass kind = builds.kind;
+    scene.differs = builds.differs;
     for (const auto wanted : compare::tolerance_classes)
         if (forced == name(wanted)) {
             kind = wanted;
@@ -199,15 +196,14 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
     try {
         if (const auto was = accepted(task, scene)) {
             judge(*was, measured(task, options), options.kind, scene);
-            // A baseline made in the same run would always agree.
+            // In CI only a committed baseline counts: one made in the same run would always agree.
             for (const auto& part : {task.baseline, curves_of(task.baseline)})
-                if (const std::string why = says_yes("CI") ? not_committed(part) : ""; !why.empty())
+                if (const std::string why = is_set("CI") ? not_committed(part) : ""; !why.empty())
                     scene.verdict.reasons.push_back(
                         fmt::format("the baseline {} is unreviewed: {}", part.string(), why));
         } else {
-            compile(read_scene(task.scene,
-                               // distinguishes a bad scene from a missing baseline
-                               options.settings));
+            // A scene that cannot be read is reported, too.
+            compile(read_scene(task.scene, options.settings));
         }
     } catch (const NotTrimmed& error) {
         scene.verdict.reasons.emplace_back(error.what());
@@ -229,7 +225,7 @@ int accept_scene(const Task& task, const GateOptions& options) {
         return could_not_judge;
     }
     GatedScene scene = unjudged(task);
-    const bool there = is_there(task.baseline);
+    const bool there = has_entry(task.baseline);
     const auto was = accepted(task, scene);
     if (there && !was) {
         print_error(
@@ -240,21 +236,21 @@ int accept_scene(const Task& task, const GateOptions& options) {
     }
     BaselineFile is = measured(task, options);
     const auto& now = is.baseline.accepted;
-    std::vector<std::string> worthless = now.inconclusive;
+    std::vector<std::string> defects = now.inconclusive;
     for (const auto& s : now.series)
         if (!std::ranges::all_of(s.values, [](double v) { return std::isfinite(v); }))
-            worthless.push_back(fmt::format("branch '{}', {}: {} is not finite", s.branch,
-                                            name(s.quantity), s.channel));
-    if (now.series.empty()) worthless.emplace_back("nothing was measured");
-    if (!worthless.empty()) {
-        print_error("elastocheck: {}: not accepted: {}\n", scene.file, fmt::join(worthless, "; "));
+            defects.push_back(fmt::format("branch '{}', {}: {} is not finite", s.branch,
+                                          name(s.quantity), s.channel));
+    if (now.series.empty()) defects.emplace_back("nothing was measured");
+    if (!defects.empty()) {
+        print_error("elastocheck: {}: not accepted: {}\n", scene.file, fmt::join(defects, "; "));
         return could_not_judge;
     }
     is.baseline.reason = options.reason;
     if (!was) {
         print("{}: new baseline, {} curves and counters\n", scene.file, now.series.size());
     } else {
-        // default tolerances for classes that the old baseline does not define
+        // The tolerances of the old baseline, and default ones for what it does not define.
         auto& tolerances = is.baseline.tolerances;
         for (auto& [kind, usual] : tolerances)
             if (const auto own = was->baseline.tolerances.find(kind);
@@ -291,7 +287,7 @@ int accept_scene(const Task& task, const GateOptions& options) {
 }
 
 int accept(const GateOptions& options) {
-    if (says_yes("CI"))
+    if (is_set("CI"))
         throw std::invalid_argument(
             "--accept: not in CI (variable CI is set): a person accepts a baseline");
     if (blank(options.reason))
@@ -325,7 +321,7 @@ int gate(const GateOptions& options) {
     delivery.print_text(gate_conclusion(scenes) + "\n");
     if (options.as_json) print_document(gate_document(scenes, provenance()));
     // GitHub reads them from either stream.
-    if (says_yes("GITHUB_ACTIONS"))
+    if (is_set("GITHUB_ACTIONS"))
         options.as_json ? print_error(annotations(scenes)) : print(annotations(scenes));
     if (!options.junit.empty()) write_whole(options.junit, junit(scenes), junit_file);
     if (to_append)

@@ -1,5 +1,4 @@
-// `elastocheck import`: converts a model of another program to a scene. `elastocheck
-// export`: the reverse.
+// `elastocheck import` converts a model of another program to a scene; `export` is the reverse.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,9 +60,9 @@ constexpr FileKind suspension_file{"suspension made by export", "// Exported by 
 constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
 constexpr double min_difference = 1e-9;  // [mm], [deg]: smaller differences are rounding
 
-// Largest distance of the outputs of two scenes, of each unit: "0.0123 mm ('wheel_y' on branch
-// 'jounce' at 3000 N) and 0.004 deg (...)".
-std::string apart(const compare::FormulationStudy& study) {
+// Largest change of the outputs, for each unit: "0.0123 mm (wheel_y on branch 'jounce' at 3000 N) and
+// 0.004 deg (...)".
+std::string largest_changes(const compare::FormulationStudy& study) {
     struct Worst {
         compare::Unit unit;
         double by;
@@ -101,7 +100,7 @@ bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
                                              steps_of_conversion, 1, 1, progress);
     progress("");
     scene = conversion.scene;
-    std::string effect = apart(study);
+    std::string effect = largest_changes(study);
     if (!effect.empty())
         effect = "the outputs change by up to " + effect + ", by the equilibrium leg";
     for (const auto& why : study.inconclusive)
@@ -112,10 +111,10 @@ bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
     return study.conclusive();
 }
 
-constexpr std::size_t max_bodies_settled = 200;
+constexpr std::size_t max_bodies_settled = 200;  // a larger scene is not settled after its import
 
-// Message whether the first branch can begin: whether an equilibrium is found at a = 0, and its
-// distance from the design position. Empty for a scene without a branch or with too many bodies.
+// Message whether an equilibrium at the start of the first branch is found, and how far the bodies move
+// to it from the design position. Empty for a scene without a branch or with too many bodies.
 std::string settling(const std::string& yaml) {
     try {
         const Model model = compile(parse_scene(yaml, "scene"));
@@ -183,10 +182,10 @@ int import(const ImportRequest& request) {
 
 // ---- Maps.
 
-// The values of --rows, in the unit of the scene, and what they are values of.
+// The second variable of a map (--rows).
 struct Rows {
     std::vector<std::string> held;  // "joints.rack"; several have the same value
-    std::vector<double> values;
+    std::vector<double> values;     // in the unit of the scene
 };
 Rows rows_of(const std::string& text) {
     const auto sides = importer::split(text, "=");
@@ -219,7 +218,7 @@ const char* si_of(const Scene& scene, const Driver& driver) {
     return is_length ? "m" : "1";
 }
 
-// Values of what the rows hold, of the scenes with the first value and with the last one.
+// The second variable in SI units; `first` and `last` are the branch with its first and its last value.
 Breakpoints held_breakpoints(const Rows& rows, const Scene& scene, const Branch& first,
                              const Branch& last) {
     Breakpoints points{fmt::format("{}", fmt::join(rows.held, " ")), "", rows.values};
@@ -230,8 +229,8 @@ Breakpoints held_breakpoints(const Rows& rows, const Scene& scene, const Branch&
         const double change = last.drivers[k].start - first.drivers[k].start;
         if (change == 0) continue;
         points.unit = si_of(scene, first.drivers[k]);
-        // from the scene's unit
-        const double factor = std::abs(change) / (rows.values.back() - rows.values.front());
+        const double factor =  // from the scene's unit
+            std::abs(change) / (rows.values.back() - rows.values.front());
         for (double& value : points.values) value *= factor;
         return points;
     }
@@ -260,8 +259,7 @@ Breakpoints branch_breakpoints(const Scene& scene, const Branch& branch,
     return points;
 }
 
-// Coefficients of compliance at the design position, at the start of the branch as it stands
-// in the scene.
+// Compliance at the design position, where the branch of the unchanged scene starts.
 int add_compliance(const ExportRequest& request, KCBlocks& blocks) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Branch& branch = branch_named(loaded.model, request.over, "--over");
@@ -280,14 +278,11 @@ int add_compliance(const ExportRequest& request, KCBlocks& blocks) {
     return fine;
 }
 
-const FileKind& kind_of(const std::string& format) {
-    return format == "blocks" ? blocks_file : lookup_file;
-}
-
-// Solves the branch once for each row. NaN beyond the end of a branch.
+// Solves the branch once for each row; an output that is not defined at a point is NaN.
 int export_map(const ExportRequest& request) {
     const bool blocks = request.format == "blocks";
-    if (!request.output.empty()) check_may_write(request.output, kind_of(request.format));
+    const FileKind& kind = blocks ? blocks_file : lookup_file;
+    if (!request.output.empty()) check_may_write(request.output, kind);
     if (request.over.empty())
         throw std::invalid_argument(
             fmt::format("--format {} needs --over BRANCH, the branch whose parameter is the first "
@@ -300,9 +295,9 @@ int export_map(const ExportRequest& request) {
     MapTable table;
     table.y = rows.values;
     MapAxes axes;
-    KCBlocks made;
+    KCBlocks kc;
     std::optional<Scene> first;
-    const auto written = [&](const Scene& scene) -> const Branch& {
+    const auto branch_in = [&](const Scene& scene) -> const Branch& {
         return *std::ranges::find(scene.branches, request.over, &Branch::name);
     };
     int missing = 0;
@@ -316,13 +311,13 @@ int export_map(const ExportRequest& request) {
         if (blocks && !first)
             first = loaded.scene;
         else if (blocks)
-            made.y = held_breakpoints(rows, *first, written(*first), written(loaded.scene));
+            kc.y = held_breakpoints(rows, *first, branch_in(*first), branch_in(loaded.scene));
         if (table.channels.empty()) {
             table.channels = requested_channels(loaded, request.channels);
             if (blocks) {
                 table.channels.clear();
-                made.outputs = block_outputs(loaded.model);
-                for (const auto& output : made.outputs) table.channels.push_back(output.channel);
+                kc.outputs = block_outputs(loaded.model);
+                for (const auto& output : kc.outputs) table.channels.push_back(output.channel);
                 if (table.channels.empty())
                     throw std::invalid_argument("--format blocks: the scene has no wheel");
             } else if (request.channels.empty())
@@ -364,18 +359,18 @@ int export_map(const ExportRequest& request) {
     }
     std::string text;
     if (blocks) {
-        if (const int failed = add_compliance(request, made); failed != fine) return failed;
-        made.values = table.values;
-        made.scene = axes.scene;
-        made.x = branch_breakpoints(*first, written(*first), table.x);
-        text = blocks_csv(made, request.axes == "sae" ? BlockAxes::sae : BlockAxes::iso);
+        if (const int failed = add_compliance(request, kc); failed != fine) return failed;
+        kc.values = table.values;
+        kc.scene = axes.scene;
+        kc.x = branch_breakpoints(*first, branch_in(*first), table.x);
+        text = blocks_csv(kc, request.axes == "sae" ? BlockAxes::sae : BlockAxes::iso);
     } else {
         text = lookup_csv(table, axes);
     }
     if (request.output.empty())
         print("{}", text);
     else
-        write_whole(request.output, text, kind_of(request.format));
+        write_whole(request.output, text, kind);
     return fine;
 }
 
@@ -397,8 +392,8 @@ int export_scene(const ExportRequest& request) {
         throw std::invalid_argument(fmt::format("--formulation {}: not of --format {}; allowed: {}",
                                                 request.formulation, request.format,
                                                 chrono ? "chrono" : "adams"));
-    if (!request.output.empty())
-        check_may_write(request.output, chrono ? suspension_file : dataset_file);
+    const FileKind& kind = chrono ? suspension_file : dataset_file;
+    if (!request.output.empty()) check_may_write(request.output, kind);
     Scene scene = compare::trim(read_scene(request.scene, request.settings)).scene;
     importer::Notes notes;
     const bool is_known = request.formulation.empty() || convert(scene, request.formulation, notes);
@@ -408,7 +403,7 @@ int export_scene(const ExportRequest& request) {
     if (request.output.empty())
         print("{}", result.text);
     else
-        write_whole(request.output, result.text, chrono ? suspension_file : dataset_file);
+        write_whole(request.output, result.text, kind);
     for (const auto& line : importer::described(result.notes))
         if (line.starts_with("Warning") || line.starts_with("MISSING"))
             print_error("elastocheck: {}\n", line);

@@ -23,11 +23,8 @@ int loads(const LoadsRequest& request, const Delivery& delivery) {
     const auto cases = read_load_cases(read_whole(request.cases), request.cases, loaded.scene);
     const Model model = compile(compare::with_cases(loaded.scene, cases), Detail::everything);
     const compare::Result result = result_of(compare::pickup_loads(model));
-    if (!request.folder.empty()) {
-        AtomicFile file(request.folder, loads_file);
-        file.add(csv(whole_table(result, "loads")));
-        file.finish();
-    }
+    if (!request.folder.empty())
+        write_whole(request.folder, csv(whole_table(result, "loads")), loads_file);
     return deliver_result({.as_json = delivery.as_json, .command = delivery.command},
                           document_of(loaded, request.scene), result);
 }

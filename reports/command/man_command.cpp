@@ -30,7 +30,7 @@ std::string entry(const CLI::Option& option) {
            roff(option.get_description()) + "\n";
 }
 
-// Those of a command or of the program, positionals first.
+// Options of a command or of the program, positionals first.
 std::string entries(const CLI::App& app) {
     std::string text;
     for (const bool positional : {true, false})

@@ -6,7 +6,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"
@@ -73,14 +72,13 @@ void write_rates(const Model& model, const std::vector<Channel>& requested,
     csv.finish();
 }
 
-// Writes each row when its point is found, except for the branch side that is solved in reverse.
-// Invalid requests are rejected before the work. Returns the exit code; for a branch that does not
-// converge, the rows reach to its last point. The CSV goes to the file of `delivery` or to standard
-// output; the document contains every point, so all are stored for it.
+// Writes each row when its point is found; the points of a branch side that is solved in reverse are
+// stored first. The CSV goes to the file of `delivery` or to standard output; for the document all points
+// are stored. Of a branch that does not converge, the rows reach to its last point. Returns the exit code.
 int solve(const SolveRequest& request, const Delivery& delivery) {
     const compare::SolverSettings solver = checked_solver_of(request);
     const auto leg = solver.leg;
-    const recursive::Options& how = solver.recursion;
+    const recursive::Options& recursion_options = solver.recursion;
     if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
     if (!request.states.empty()) check_may_write(request.states, states_file);
@@ -88,11 +86,14 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
                                           request.keep_all ? Detail::everything : Detail::required);
     const Model& model = loaded.model;
     const auto channels = requested_channels(loaded, request.channels);
-    check_every(model, how.steps, request.solver.every);
+    check_every(model, recursion_options.steps, request.solver.every);
     if (delivery.as_json)
-        check_memory(model, {.steps = how.steps, .every = request.solver.every, .written = true});
+        check_memory(
+            model,
+            {.steps = recursion_options.steps, .every = request.solver.every, .written = true});
     else
-        check_memory_of_rows(model, {.steps = how.steps, .every = request.solver.every},
+        check_memory_of_rows(model,
+                             {.steps = recursion_options.steps, .every = request.solver.every},
                              channels.size());
     if (!request.rates.empty()) write_rates(model, channels, request, solver);
 
@@ -109,15 +110,15 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
                            .verdict = {.grade = compare::Grade::pass, .requested = false}};
     write(curves_header(channels));
     std::vector<bool> is_undefined(channels.size(), false);
-    compare::LegRun whole;
-    whole.leg = leg;
-    if (leg == compare::Leg::recursive) whole.method = how.method.name;
-    const std::string who = whole.method.empty() ? name(leg) : whole.method;
+    compare::LegRun run;
+    run.leg = leg;
+    if (leg == compare::Leg::recursive) run.method = recursion_options.method.name;
+    const std::string solver_name = run.method.empty() ? name(leg) : run.method;
     for (const auto& branch : model.branches) {
         if (csv) progress(branch.name);
-        whole.curve = {};
-        whole.constraint_error = {};
-        whole.curve.unit = compare::unit_of(branch.unit);
+        run.curve = {};
+        run.constraint_error = {};
+        run.curve.unit = compare::unit_of(branch.unit);
         const SolvedBranch solved = solve_branch(
             model, branch, channels, solver,
             [&](const Equilibrium& state, const compare::Row&) {
@@ -130,32 +131,32 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
                 for (std::size_t c = 0; c < channels.size(); ++c)
                     is_undefined[c] = is_undefined[c] || row.values[c] == compare::undefined;
                 if (delivery.as_json) {
-                    append(whole.curve, row.load, row.values);
-                    whole.constraint_error.push_back(row.constraint_error);
+                    append(run.curve, row.load, row.values);
+                    run.constraint_error.push_back(row.constraint_error);
                 }
                 write(curves_row(branch.name, leg, compare::unit_of(branch.unit), row));
             });
         const EquilibriumPath& path = solved.path;
         if (csv) progress("");
         if (delivery.as_json) {
-            whole.outcome = path.outcome;
-            whole.detail = path.detail;
-            whole.counts = path.counts;
+            run.outcome = path.outcome;
+            run.detail = path.detail;
+            run.counts = path.counts;
             compare::BranchComparison& alone = kept.emplace_back();
             alone.branch = branch.name;
-            alone.runs = {whole};
+            alone.runs = {run};
         }
         for (const auto& event : compare::lift_offs(
                  model, branch, leg == compare::Leg::recursive ? compare::Leg::series : leg))
             print_error("{}: {}\n", branch.name, event.text());
         for (const auto& [side, state] : solved.ends)
-            print_error("{}: {}: {}\n", who, branch.name, error_at_end(model, side, state));
+            print_error("{}: {}: {}\n", solver_name, branch.name, error_at_end(model, side, state));
         if (path.outcome == Outcome::converged) continue;
         result.verdict.grade = compare::Grade::not_judged;
         result.verdict.reasons.push_back(
             fmt::format("{}: {}: {}", branch.name, name(path.outcome), path.detail));
         const std::string& motion = solved.softest_motion;
-        print_error("{}: {}: {}{}\n", who, name(path.outcome), path.detail,
+        print_error("{}: {}: {}{}\n", solver_name, name(path.outcome), path.detail,
                     motion.empty() ? "" : "; the softest motion before it is " + motion);
     }
     if (const auto why =

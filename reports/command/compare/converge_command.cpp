@@ -27,8 +27,7 @@ struct ConvergeRequest : SceneRequest {
     }
 };
 
-// Levels of a candidate: files with their numbers of steps, or a run of its command
-// for each number.
+// Levels of a candidate: files with numbers of steps, or a run of its command for each number.
 compare::Study study_of(const CandidateRequest& request, const std::string& file,
                         const LoadedScene& loaded, const std::vector<int>& steps) {
     for (const auto& text : request.files)

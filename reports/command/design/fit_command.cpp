@@ -60,7 +60,7 @@ struct MeasuredFigures {
     std::vector<compare::Channel> columns;  // their outputs
     std::vector<std::string> left_out;      // columns and rows of the file that are not used
 };
-// As --measured of `report` reads it; a point is at its parameter, without one at its travel.
+// Reads the measurement as `report --measured` does. A point is placed by its parameter, else travel.
 MeasuredFigures read_measured(const FitRequest& request, const Model& model) {
     const ColumnMap map =
         request.map.empty() ? ColumnMap{} : read_column_map(read_whole(request.map), request.map);
@@ -96,11 +96,11 @@ MeasuredFigures read_measured(const FitRequest& request, const Model& model) {
         for (std::size_t k = 0; k < kept.size(); ++k) {
             if (!std::isfinite(column.values[k])) continue;
             const auto& [b, by_parameter, x] = kept[k];
-            const Branch& of = model.branches[static_cast<std::size_t>(b)];
+            const Branch& branch = model.branches[static_cast<std::size_t>(b)];
             measured.figures.push_back(
                 {.name = channel.name,
-                 .branch = of.name,
-                 .at = by_parameter ? x / compare::in_unit(compare::unit_of(of.unit)) : x,
+                 .branch = branch.name,
+                 .at = by_parameter ? x / compare::in_unit(compare::unit_of(branch.unit)) : x,
                  .over = by_parameter ? "" : data.channels[*points.abscissa].name,
                  .change = column.change});
             measured.column.push_back(static_cast<int>(measured.columns.size()));
@@ -117,8 +117,7 @@ MeasuredFigures read_measured(const FitRequest& request, const Model& model) {
 
 // ---- What to measure.
 
-// Outputs at the ends of the branches, without those that were measured on the branch: positions
-// and angles, or all others.
+// Outputs at the ends of the branches that were not measured there: positions and angles, or others.
 std::vector<Figure> unmeasured(const Model& model, const MeasuredFigures& data, bool kinematic) {
     std::vector<Figure> figures;
     for (const Branch& branch : model.branches)
@@ -165,27 +164,29 @@ constexpr double min_share = 1e-9;  // of an extent: what moves by less moves by
 // What to measure so that each undetermined combination is determined.
 void propose(compare::FittedScene& fit, const Model& model, const MeasuredFigures& data,
              int threads) {
-    const auto& open = fit.fitted.undetermined;
-    fit.proposed.resize(static_cast<std::size_t>(open.cols()));
+    const auto& undetermined = fit.fitted.undetermined;  // combinations of numbers, a column each
+    fit.proposed.resize(static_cast<std::size_t>(undetermined.cols()));
     for (const bool kinematic : {true, false}) {
-        if (std::ranges::none_of(fit.proposed, [](const auto& of) { return of.by.figure < 0; }))
+        if (std::ranges::none_of(fit.proposed,
+                                 [](const auto& proposed) { return proposed.by.figure < 0; }))
             break;
         const auto figures = unmeasured(model, data, kinematic);
-        const auto of = compare::solved_figures(fit.varied, figures, threads);
+        const auto solved = compare::solved_figures(fit.varied, figures, threads);
         const VectorXd extents =
-            extents_of(fit.varied.scene(fit.fitted.p), figures, of.value(fit.fitted.p));
-        const Eigen::MatrixXd by_steps = of.gradient(fit.fitted.p) * fit.measured.step.asDiagonal();
+            extents_of(fit.varied.scene(fit.fitted.p), figures, solved.value(fit.fitted.p));
+        const Eigen::MatrixXd by_steps =
+            solved.gradient(fit.fitted.p) * fit.measured.step.asDiagonal();
         for (std::size_t k = 0; k < fit.proposed.size(); ++k)
             if (fit.proposed[k].by.figure < 0)
-                if (const auto by =
-                        compare::proposal(by_steps, extents, open.col(static_cast<Index>(k)));
+                if (const auto by = compare::proposal(by_steps, extents,
+                                                      undetermined.col(static_cast<Index>(k)));
                     by.share > min_share)
                     fit.proposed[k] = {figures[static_cast<std::size_t>(by.figure)], by};
     }
 }
 
-// Where there is no fit, the reason is in Fitted::why_not. Throws SheetError, SceneError, FileError, and
-// std::invalid_argument as parse_varied().
+// The fitted scene; without a fit the reason is in Fitted::why_not. Throws SheetError, SceneError,
+// FileError, and std::invalid_argument as parse_varied().
 compare::FittedScene fitted(const FitRequest& request, const LoadedScene& loaded) {
     compare::Varied varied = parse_varied(request.vary, loaded.scene);
     set_scene(varied, request.scene, request.settings);
@@ -213,10 +214,10 @@ compare::FittedScene fitted(const FitRequest& request, const LoadedScene& loaded
 int fit(const FitRequest& request, const Delivery& delivery) {
     check_may_write_scene(request.scene, request.output, request.settings);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
-    const compare::FittedScene all = fitted(request, loaded);
-    const int code = deliver_result(delivery, document_of(loaded, request.scene), result_of(all));
-    if (all.fitted.why_not.empty())
-        request.write("fit: to " + request.measured, all.varied, all.fitted.p);
+    const compare::FittedScene fit = fitted(request, loaded);
+    const int code = deliver_result(delivery, document_of(loaded, request.scene), result_of(fit));
+    if (fit.fitted.why_not.empty())
+        request.write("fit: to " + request.measured, fit.varied, fit.fitted.p);
     return code;
 }
 

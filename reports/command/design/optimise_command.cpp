@@ -25,10 +25,10 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using reader::Cursor;
 
-// Points that are added where a curve leaves its band between its points, and the search repeated.
+// Repeated searches, with points added where a curve leaves its band between its points.
 constexpr int max_rounds = 3;
-constexpr double between_within = 1e-6;  // outside of a band, as a share of the movement
-constexpr int between_points = 3;        // at which a curve is looked at in each gap
+constexpr double between_tolerance = 1e-6;  // outside of a band, as a share of the movement
+constexpr int between_points = 3;           // checked in each gap of a curve
 constexpr int default_points = 33;
 
 struct OptimiseRequest : DesignRequest {
@@ -45,7 +45,7 @@ struct GoalsFile {
     int minimised_line = 0;
 };
 
-// Reads a word; a mistake has its place in the file.
+// The result of `read`; std::invalid_argument becomes an error at the place of the entry in the file.
 template <class Read>
 auto at_place(const Cursor& entry, const Read& read) {
     try {
@@ -83,7 +83,7 @@ Figure moved_to(const Goal& goal, Figure point, double place) {
     return point;
 }
 
-// Puts points of a curve over an output on the first branches where they have values. Returns these.
+// Puts each point of a curve over an output on the first branch where it has a value. Returns the values.
 VectorXd put_on_branches(const Scene& scene, const Model& model, std::vector<Figure>& points) {
     VectorXd values = VectorXd::Constant(std::ssize(points), compare::nan);
     for (const Branch& branch : model.branches) {
@@ -132,7 +132,7 @@ void add_curve(const Cursor& entry, const LoadedScene& loaded, const std::string
                              over && branch ? " on " + on : "");
     goal.points.clear();
     for (int k = 0; k < points; ++k)
-        // from a share on either side, so that ±80 has exactly 0 in its middle
+        // A weighted sum of both ends, so that -80 to 80 has exactly 0 in its middle.
         goal.points.push_back(moved_to(
             goal, point, (from * (points - 1 - k) + to * k) / (points - 1) / goal.along_factor));
     if (!goal.any_branch) return;
@@ -240,15 +240,14 @@ GoalFigures figures_of(const std::vector<Goal>& goals, const std::optional<Figur
     return result;
 }
 
-// Adds the points of the curves between theirs at which they are outside of their bands.
-// Returns the furthest.
+// Adds points to the curves where they leave their bands between points; returns the farthest outside.
 std::optional<compare::Between> add_points_outside(const compare::OptimisedScene& optimised,
                                                    const Model& model, std::vector<Goal>& goals) {
     const Scene scene = optimised.varied.scene(optimised.optimum.p);
     std::optional<compare::Between> worst;
     Index first = 0;
     for (Goal& goal : goals) {
-        const double within = between_within * optimised.optimum.scale[first];
+        const double within = between_tolerance * optimised.optimum.scale[first];
         first += std::ssize(goal.points);
         std::vector<Figure> between;
         for (std::size_t k = 0; k + 1 < goal.points.size(); ++k)
@@ -310,9 +309,9 @@ struct Searching {
     }
 };
 
-// A goal that does not move is refused unless it is met, which is noted.
-void judge_still(const GoalsFile& file, const std::string& name, const GoalFigures& goal_figures,
-                 compare::OptimisedScene& optimised) {
+// A goal that no number moves is an error unless it is met; then the reason is noted.
+void check_unmoved_goals(const GoalsFile& file, const std::string& name,
+                         const GoalFigures& goal_figures, compare::OptimisedScene& optimised) {
     for (std::size_t g = 0; g < optimised.optimum.still.size(); ++g) {
         if (!optimised.optimum.still[g]) continue;
         const bool is_goal = g < optimised.goals.size();
@@ -370,7 +369,7 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
                     why_not_solved(optimised.varied, optimised.figures, optimised.varied.start));
         return could_not_judge;
     }
-    judge_still(file, request.file, goal_figures, optimised);
+    check_unmoved_goals(file, request.file, goal_figures, optimised);
     optimised.searches = optimised.optimum.searches;
     searching.add_points(starts);
     const Scene changed = optimised.varied.scene(optimised.optimum.p);

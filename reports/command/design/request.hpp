@@ -14,7 +14,7 @@ struct DesignRequest : SceneRequest {
     std::string output;  // file of the changed scene; empty: none
     std::vector<std::string> vary;
 
-    // `line` becomes a comment at its head. The last of several writings is reported.
+    // Writes the changed scene, `line` as its first comment; reports it if `last` of several.
     void write(const std::string& line, const compare::Varied& varied, const Eigen::VectorXd& p,
                bool last = true) const {
         if (output.empty()) return;

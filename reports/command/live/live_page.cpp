@@ -39,7 +39,7 @@ std::string built_page() {
         "the source tree builds it");
 }
 
-// The tables that a valid scene refers to, by their names in it: what stands at a key `file`.
+// Adds the tables that a valid scene refers to by a key `file`, by their names there.
 void add_files(const reader::Value& value, const fs::path& folder, nlohmann::ordered_json& files) {
     for (std::size_t k = 0; k < value.items.size(); ++k) {
         const reader::Value& item = value.items[k];
@@ -68,9 +68,9 @@ std::string packed(const std::string& text) {
     return coded;
 }
 
-// The scene and its first branch as the page gets them from its solver, for the picture before that
-// has started: all numbers of the start, and at the other points what is drawn over the branch; the
-// rest is NaN. Null where there are none.
+// Answers of the page's solver to the opened scene and its first branch, packed, so that the page has a
+// picture before its solver has started: all numbers at the start of the branch, and at the other points
+// those that are drawn; the rest is NaN. Null where there is no branch or no solution.
 nlohmann::ordered_json first_answer(const std::string& text, const std::string& name,
                                     const fs::path& folder) {
     live::Session session;
@@ -83,8 +83,8 @@ nlohmann::ordered_json first_answer(const std::string& text, const std::string& 
     const auto& branch = answer.head["branches"][0];
     const auto& usual = open["branches"][0]["usual"];
     const std::size_t points = branch["points"], start = branch["start"];
-    const std::size_t wide = points == 0 ? 0 : answer.numbers.size() / points;
-    for (std::size_t c = 1; c < wide; ++c) {
+    const std::size_t columns = points == 0 ? 0 : answer.numbers.size() / points;
+    for (std::size_t c = 1; c < columns; ++c) {
         if (c <= open["channels"].size()) {
             const auto& channel = open["channels"][c - 1];
             if (channel["main"] == true || std::ranges::count(usual, channel["figure"]) > 0 ||
@@ -92,7 +92,7 @@ nlohmann::ordered_json first_answer(const std::string& text, const std::string& 
                 continue;
         }
         for (std::size_t k = 0; k < points; ++k)
-            if (k != start) answer.numbers[k * wide + c] = NAN;
+            if (k != start) answer.numbers[k * columns + c] = NAN;
     }
     const nlohmann::ordered_json first = {
         {"open", open}, {"head", answer.head}, {"numbers", answer.numbers}};
@@ -111,7 +111,8 @@ std::string live_page(const std::string& scene, const Settings& settings) {
     const std::string text =
         settings.empty() ? read.text : rewrite_scene(read.text, scene, settings);
     const fs::path folder = fs::path(scene).parent_path();
-    (void)reader::ParsedScene(text, scene, folder).read({});
+    (void)reader::ParsedScene(text, scene, folder)
+        .read({});  // throws for a scene that is not valid
     const std::string name = fs::path(scene).filename().string();
     nlohmann::ordered_json data = {{"name", name},
                                    {"text", text},

@@ -7,9 +7,9 @@
 
 namespace elastocheck::reports {
 
-// The page that `./dev live` builds, with the scene of a file, settings and the tables that it refers
-// to in it. Throws std::invalid_argument where the page is not built, SceneError for a scene that is
-// not valid.
+// The page that `./dev live` builds, with a scene file embedded: its text with the settings, and the
+// tables that it refers to. Throws std::invalid_argument where the page is not built, SceneError for a
+// scene that is not valid.
 std::string live_page(const std::string& scene, const Settings& settings);
 
 }  // namespace elastocheck::reports

@@ -28,9 +28,9 @@ std::pair<int, std::string> steps_and_file(const std::string& text) {
     return {0, text};
 }
 
-std::string replaced(std::string text, std::string_view what, const std::string& by) {
-    for (auto at = text.find(what); at != text.npos; at = text.find(what, at + by.size()))
-        text.replace(at, what.size(), by);
+std::string replaced(std::string text, std::string_view old, const std::string& replacement) {
+    for (auto at = text.find(old); at != text.npos; at = text.find(old, at + replacement.size()))
+        text.replace(at, old.size(), replacement);
     return text;
 }
 
@@ -76,7 +76,7 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
     std::vector<CandidateOutput> list;
     for (const auto& text : request.files) {
         const auto [n, file] = steps_and_file(text);
-        // One without a writer would be waited for; those of a shell, in /dev, have one.
+        // Reading a pipe without a writer would block; the pipes of a shell, in /dev, have one.
         std::error_code ignored;
         if (std::filesystem::is_fifo(file, ignored) && !file.starts_with("/dev/"))
             throw FileError(file + ": is a pipe; a candidate is a regular file");
@@ -96,33 +96,34 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
             word =
                 replaced(replaced(replaced(word, "{steps}", std::to_string(n)), "{output}", output),
                          "{scene}", scene);
-        CandidateOutput& run_of = list.emplace_back();
-        run_of.name = std::filesystem::path(words.front()).filename().string();
-        run_of.file = fmt::format("{} with {} steps", run_of.name, n);
-        run_of.steps = n;
-        run_of.of_command = true;
-        progress(run_of.file);
+        CandidateOutput& run_output = list.emplace_back();
+        run_output.name = std::filesystem::path(words.front()).filename().string();
+        run_output.file = fmt::format("{} with {} steps", run_output.name, n);
+        run_output.steps = n;
+        run_output.of_command = true;
+        progress(run_output.file);
         const ProcessResult result = run(given, request.timeout);
         if (!result.succeeded()) {
-            run_of.failed =
+            run_output.failed =
                 fmt::format("'{}' {}", words.front(), describe(result, request.timeout));
             if (!result.output_text.empty())
-                print_error("{}: output of the command:\n{}\n", run_of.file, result.output_text);
+                print_error("{}: output of the command:\n{}\n", run_output.file,
+                            result.output_text);
             continue;
         }
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(output, ignored))
-            run_of.failed = fmt::format("'{}' wrote no output file", words.front());
+            run_output.failed = fmt::format("'{}' wrote no output file", words.front());
         else
             try {
-                run_of.content = read_whole(output, largest_measurement);
-                if (run_of.content.find_first_not_of(" \t\r\n") == std::string::npos)
-                    run_of.failed = fmt::format("'{}' wrote nothing", words.front());
+                run_output.content = read_whole(output, largest_measurement);
+                if (run_output.content.find_first_not_of(" \t\r\n") == std::string::npos)
+                    run_output.failed = fmt::format("'{}' wrote nothing", words.front());
             } catch (const FileError& error) {
-                run_of.failed = error.what();
+                run_output.failed = error.what();
             }
-        if (!run_of.failed.empty() && !result.output_text.empty())
-            print_error("{}: output of the command:\n{}\n", run_of.file, result.output_text);
+        if (!run_output.failed.empty() && !result.output_text.empty())
+            print_error("{}: output of the command:\n{}\n", run_output.file, result.output_text);
     }
     progress("");
     return list;
@@ -141,13 +142,13 @@ void check_tables(const std::vector<CandidateOutput>& outputs, const CandidateRe
 compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
                                    const LoadedScene& loaded, const compare::Comparison& comparison,
                                    const compare::Tolerance& tolerance, bool given) {
-    compare::CandidateJudgement none;
-    none.name = output.name;
-    none.tolerance = tolerance;
-    none.tolerance_given = given;
+    compare::CandidateJudgement unjudged;
+    unjudged.name = output.name;
+    unjudged.tolerance = tolerance;
+    unjudged.tolerance_given = given;
     if (!output.failed.empty()) {
-        none.reasons.push_back(output.failed);
-        return none;
+        unjudged.reasons.push_back(output.failed);
+        return unjudged;
     }
     const ColumnMap map = map_of(request);
     try {
@@ -157,12 +158,12 @@ compare::CandidateJudgement judged(const CandidateOutput& output, const Candidat
         return compare::judge_candidate(loaded.model, comparison, candidate, tolerance, given);
     } catch (const SheetError& error) {
         if (!output.of_command) throw;
-        none.reasons.emplace_back(error.what());
+        unjudged.reasons.emplace_back(error.what());
     } catch (const std::invalid_argument& error) {  // points that cannot be placed
         if (!output.of_command) throw SheetError(fmt::format("{}: {}", output.file, error.what()));
-        none.reasons.emplace_back(error.what());
+        unjudged.reasons.emplace_back(error.what());
     }
-    return none;
+    return unjudged;
 }
 
 int steps_of(const Model& model) {

@@ -34,12 +34,10 @@ struct CandidateOutput {
     std::string failed;
 };
 
-// Throws std::invalid_argument for a request that is invalid for any candidate; called
-// before the work.
+// Before the work: throws std::invalid_argument for a request that is invalid for any candidate.
 void check(const CandidateRequest& request, const Settings& settings);
 
-// Reads the files, and runs the command once per number of steps. A failure of the command is not
-// an exception.
+// Reads the files; runs the command once per number of steps, whose failure is not an exception.
 std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const std::string& scene,
                                         const std::vector<int>& steps);
 
@@ -47,13 +45,13 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
 void check_tables(const std::vector<CandidateOutput>& outputs, const CandidateRequest& request,
                   const LoadedScene& loaded);
 
-// A failed command or an unreadable output of it gives a judgement `could not judge`; an unreadable
-// file is bad input and throws SheetError.
+// Judges an output. A failed command or an unreadable output of it is not judged; an unreadable file is
+// bad input and throws SheetError. `given`: the user gave the tolerance.
 compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
                                    const LoadedScene& loaded, const compare::Comparison& comparison,
                                    const compare::Tolerance& tolerance, bool given);
 
-// Default number of steps for a command: those of the recursion on the longest branch.
+// Default number of steps for a command: the largest of the branches.
 int steps_of(const Model& model);
 
 }  // namespace elastocheck::reports

@@ -31,24 +31,24 @@ void add(Settings& settings, const Number& number, double value) {
 Settings without(Settings settings, const std::vector<Number>& numbers) {
     for (const Number& number : numbers)
         for (const std::string& path : compare::paths_in(number.path))
-            std::erase_if(settings, [&](const Setting& one) { return one.path == path; });
+            std::erase_if(settings, [&](const Setting& set) { return set.path == path; });
     return settings;
 }
 
-// The number of a name; of several joined by commas, which have the same value.
+// The number of a name, or of several joined by commas, which must have the same value.
 Number number_of_path(const std::string& joined, const Scene& scene) {
     Number number;
     for (const std::string& path : compare::paths_in(joined)) {
-        const auto one = find_number(scene, path);
-        if (!one) {
+        const auto found = find_number(scene, path);
+        if (!found) {
             std::vector<std::string> names;
             for (const Number& other : scene.numbers) names.push_back(other.path);
             throw std::invalid_argument(fmt::format("the scene has no number {}{}",
                                                     reader::quote(path),
                                                     reader::did_you_mean(path, names, "numbers")));
         }
-        if (number.path.empty()) number = *one;
-        if (one->value != number.value || one->unit != number.unit)
+        if (number.path.empty()) number = *found;
+        if (found->value != number.value || found->unit != number.unit)
             throw std::invalid_argument(
                 fmt::format("{} and {} are not the same, so that they cannot change together",
                             number.path, path));
@@ -64,9 +64,10 @@ void add_numbers(Varied& varied, const Scene& scene, const std::string& name, do
     if (!(low < high)) throw std::invalid_argument("the lower limit is not below the upper one");
     std::vector<Number> matching;
     if (name.find('*') != name.npos)
-        std::ranges::copy_if(scene.numbers, std::back_inserter(matching), [&](const Number& one) {
-            return ::fnmatch(name.c_str(), one.path.c_str(), 0) == 0;
-        });
+        std::ranges::copy_if(scene.numbers, std::back_inserter(matching),
+                             [&](const Number& number) {
+                                 return ::fnmatch(name.c_str(), number.path.c_str(), 0) == 0;
+                             });
     if (matching.empty()) matching.push_back(number_of_path(name, scene));
     for (const Number& number : matching) {
         if (std::ranges::find(varied.numbers, number.path, &Number::path) != varied.numbers.end())

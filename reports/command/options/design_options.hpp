@@ -1,5 +1,4 @@
-// Numbers to vary and figures of a scene as words of a command line, and the scene file with the
-// changed numbers.
+// Numbers to vary and figures of a scene, from a command line; the scene file with changed numbers.
 #pragma once
 
 #include <string>
@@ -15,10 +14,9 @@ namespace elastocheck::reports {
 // unknown name with the nearest.
 void add_numbers(compare::Varied& varied, const Scene& scene, const std::string& name, double low,
                  double high);
-// The numbers of "points.tie_rod_inner.z=260:340"; without "=LOW:HIGH" a number has no
-// limits. Throws likewise.
+// Numbers with limits, "points.tie_rod_inner.z=260:340", or without, by name. Throws likewise.
 compare::Varied parse_varied(const std::vector<std::string>& words, const Scene& scene);
-// Varied::scene: of the file with these values of the numbers; `settings` apply to all others.
+// Sets Varied::scene to a reader of the file with values of the numbers; `settings` are of the others.
 void set_scene(compare::Varied& varied, const std::string& file, const Settings& settings);
 
 double parse_number(std::string_view word);  // throws likewise
@@ -26,12 +24,11 @@ double parse_number(std::string_view word);  // throws likewise
 // parameter, in N, N·m, mm or deg. Throws likewise.
 compare::Figure parse_figure(const std::string& word, const Model& model);
 
-// Throws FileError if the output may not be written, and SceneError for a scene that cannot be read in
-// its folder, as where the tables are not beside it; nothing of an empty name.
+// Throws FileError if the output may not be written, and SceneError if the scene could not be read from
+// the folder of the output, where its tables may be missing. Does nothing for an empty `output`.
 void check_may_write_scene(const std::string& scene, const std::string& output,
                            const Settings& settings);
-// Writes the text of `scene` with the changed numbers, and reads it. `first_line` becomes a comment
-// at its head.
+// Writes the text of `scene` with the changed numbers, below `first_line`, and reads it as a check.
 void write_changed_scene(const std::string& scene, const std::string& output,
                          const std::string& first_line, const Settings& settings,
                          const compare::Varied& varied, const Eigen::VectorXd& p);

@@ -17,8 +17,8 @@
 namespace elastocheck::reports {
 namespace {
 
-// The positions of the names that match one of the patterns, in the order of the names. Throws
-// std::invalid_argument for a pattern without a match, with the nearest name.
+// Indices of the names that match one of the patterns, in the order of the names; of all without a
+// pattern. Throws std::invalid_argument for a pattern without a match, with the nearest name.
 std::vector<std::size_t> matching(const char* option, const char* label, const char* labels,
                                   const std::vector<std::string>& names,
                                   const std::vector<std::string>& patterns) {
@@ -39,9 +39,9 @@ std::vector<std::size_t> matching(const char* option, const char* label, const c
     return places;
 }
 template <class Item, class Name>
-std::vector<Item> of_names(const char* option, const char* label, const char* labels,
-                           const std::vector<Item>& all, const std::vector<std::string>& patterns,
-                           const Name& name) {
+std::vector<Item> items_matching(const char* option, const char* label, const char* labels,
+                                 const std::vector<Item>& all,
+                                 const std::vector<std::string>& patterns, const Name& name) {
     std::vector<std::string> names;
     for (const Item& item : all) names.push_back(name(item));
     std::vector<Item> list;
@@ -87,12 +87,12 @@ compare::Gradients gradients_of(const std::string& file, const Settings& setting
     auto outputs = compare::figure_outputs(model);
     if (request.of.empty())
         std::erase_if(outputs, [](const compare::Channel& c) { return !c.main; });
-    outputs = of_names("--of", "output", "outputs", outputs, request.of,
-                       [](const compare::Channel& c) { return c.name; });
+    outputs = items_matching("--of", "output", "outputs", outputs, request.of,
+                             [](const compare::Channel& c) { return c.name; });
     std::vector<std::string> names;
     for (const Number& number : loaded.scene.numbers) {
         names.push_back(number.path);
-        for (const auto& [side, value] : number.sides)  // of one side alone, where it is asked for
+        for (const auto& [side, value] : number.sides)  // of one side alone, where it is requested
             if (const std::string path = number.path + "@" + side;
                 std::ranges::any_of(request.to, [&](const std::string& word) {
                     return word.find('@') != word.npos &&
@@ -103,18 +103,18 @@ compare::Gradients gradients_of(const std::string& file, const Settings& setting
     std::set<std::string> wanted;
     for (const std::size_t k : matching("--to", "number", "numbers", names, request.to))
         wanted.insert(names[k]);
-    std::function<bool(const std::string&)> is_wanted;  // none: all
+    std::function<bool(const std::string&)> is_wanted;  // empty: all numbers
     if (!request.to.empty())
         is_wanted = [&](const std::string& path) { return wanted.contains(path); };
     const auto varying = compare::varying(file, settings, is_wanted);
-    const auto branches = of_names("--branch", "branch", "branches", model.branches,
-                                   request.branches, [](const Branch& b) { return b.name; });
-    std::vector<std::string> of_branches;
-    for (const Branch& branch : branches) of_branches.push_back(branch.name);
+    const auto branches = items_matching("--branch", "branch", "branches", model.branches,
+                                         request.branches, [](const Branch& b) { return b.name; });
+    std::vector<std::string> branch_names;
+    for (const Branch& branch : branches) branch_names.push_back(branch.name);
     const compare::GradientGroup group{std::move(outputs),
                                        {.points = request.points,
                                         .stations = stations(request.at, model),
-                                        .branches = of_branches,
+                                        .branches = branch_names,
                                         .threads = request.threads,
                                         .progress = progress}};
     return std::move(gradients_of(file, settings, loaded, varying, std::span(&group, 1)).front());

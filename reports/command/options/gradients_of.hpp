@@ -11,14 +11,13 @@
 
 namespace elastocheck::reports {
 
-// Derivatives of groups of outputs by numbers of the file with these settings; the trim of a trimmed
-// scene is part of the function.
+// Derivatives of groups of outputs by numbers of the file with these settings, through its trim.
 std::vector<compare::Gradients> gradients_of(const std::string& file, const Settings& settings,
                                              const LoadedScene& loaded,
                                              const compare::VaryingScene& varying,
                                              std::span<const compare::GradientGroup> groups);
 
-// What `sensitivity` is asked for, as on its command line.
+// Options of `sensitivity`, as on its command line.
 struct GradientsRequest {
     std::vector<std::string> of, to, branches;  // names or patterns with *; none: the defaults
     std::vector<std::string> at;                // BRANCH:VALUE

@@ -13,8 +13,7 @@
 namespace elastocheck::reports {
 namespace {
 
-// Memory of one point: parameter, |Φ| and the outputs in a separate block, and the reserve of
-// doubling growth.
+// Memory of one point: parameter, |Φ|, the outputs in a separate block, the reserve of growth.
 double bytes_per_row(std::size_t channels, bool written) {
     // Measured on the McPherson strut: a written number takes 270 bytes more, for JSON, its text,
     // and a line of curves.csv.
@@ -28,12 +27,12 @@ double points_of(const Branch& branch, const RunSize& run) {
     return 1.0 + (run.steps > 0 ? run.steps : branch.steps) / run.every;
 }
 
-void check(double points, double bytes, double steps_per_branch,
-           const std::string& points_of_what) {
+// `bytes`: of one point; `subject`: the points, for the message.
+void check(double points, double bytes, double steps_per_branch, const std::string& subject) {
     if (points * bytes <= max_memory) return;
     throw std::invalid_argument(fmt::format(
         "{} would take about {:.1f} GB; allowed: {:.0f} GB, which is {:.0f} steps a branch",
-        points_of_what, 1e-9 * points * bytes, 1e-9 * max_memory,
+        subject, 1e-9 * points * bytes, 1e-9 * max_memory,
         std::floor(steps_per_branch * max_memory / (points * bytes)) - 1));
 }
 
@@ -63,10 +62,10 @@ void check_memory_of_rows(const Model& model, const RunSize& run, std::size_t ch
 
 void check_every(const Model& model, int steps, int every) {
     for (const auto& branch : model.branches)
-        if (const int has = steps > 0 ? steps : branch.steps; every > has)
+        if (const int count = steps > 0 ? steps : branch.steps; every > count)
             throw std::invalid_argument(
                 fmt::format("--every {}: branch '{}' has {} steps; allowed: 1 to as many", every,
-                            branch.name, has));
+                            branch.name, count));
 }
 
 }  // namespace elastocheck::reports

@@ -19,25 +19,25 @@ using Kind = CaseInput::Kind;
 constexpr std::size_t max_cases = 10000;
 
 // A column that a scene may have.
-struct Known {
+struct KnownColumn {
     std::string name;
     CaseInput input;
-    Unit unit;  // base unit, of which `si` makes SI
-    double si = 1;
+    Unit unit;      // base unit
+    double si = 1;  // factor from it to SI
 };
 
-std::vector<Known> known_columns(const Scene& scene) {
-    std::vector<Known> list;
-    const auto along_axes = [&](const std::string& stem, Kind kind, std::size_t of, Unit unit) {
+std::vector<KnownColumn> known_columns(const Scene& scene) {
+    std::vector<KnownColumn> list;
+    const auto along_axes = [&](const std::string& stem, Kind kind, std::size_t index, Unit unit) {
         for (int axis = 0; axis < 3; ++axis)
-            list.push_back({fmt::format("{}_{}", stem, "xyz"[axis]), {kind, of, axis}, unit});
+            list.push_back({fmt::format("{}_{}", stem, "xyz"[axis]), {kind, index, axis}, unit});
     };
     for (std::size_t w = 0; w < scene.wheels.size(); ++w) {
-        const std::string of = scene.wheels[w].name.empty() ? "" : scene.wheels[w].name + ".";
-        along_axes(of + "patch_force", Kind::patch_force, w, Unit::newton);
-        along_axes(of + "centre_force", Kind::centre_force, w, Unit::newton);
-        along_axes(of + "moment", Kind::wheel_moment, w, Unit::newton_metre);
-        list.push_back({of + "travel", {Kind::travel, w, 2}, Unit::mm, 1e-3});
+        const std::string prefix = scene.wheels[w].name.empty() ? "" : scene.wheels[w].name + ".";
+        along_axes(prefix + "patch_force", Kind::patch_force, w, Unit::newton);
+        along_axes(prefix + "centre_force", Kind::centre_force, w, Unit::newton);
+        along_axes(prefix + "moment", Kind::wheel_moment, w, Unit::newton_metre);
+        list.push_back({prefix + "travel", {Kind::travel, w, 2}, Unit::mm, 1e-3});
     }
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
         along_axes(scene.bodies[b].name + ".force", Kind::body_force, b, Unit::newton);
@@ -52,14 +52,14 @@ struct CaseColumn {
     std::string heading{};
 };
 
-CaseColumn column_of(std::string_view heading, const std::vector<Known>& known,
+CaseColumn column_of(std::string_view heading, const std::vector<KnownColumn>& known,
                      const std::string& file, int line) {
     const auto [name, unit] = split_heading(heading);
     if (name == "case") return {.is_name = true, .heading = name};
-    const auto input = std::ranges::find(known, name, &Known::name);
+    const auto input = std::ranges::find(known, name, &KnownColumn::name);
     if (input == known.end()) {
         std::vector<std::string> names{"case"};
-        for (const auto& one : known) names.push_back(one.name);
+        for (const auto& column : known) names.push_back(column.name);
         fail_at(file, line,
                 fmt::format("there is no input {}{}", reader::quote(name),
                             reader::did_you_mean(name, names, "allowed")));
@@ -111,7 +111,7 @@ std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::
         if (load_case.name.empty()) fail_at(file, line, "case: empty; allowed: a name");
         if (std::ranges::find(cases, load_case.name, &compare::LoadCase::name) != cases.end())
             fail_at(file, line,
-                    fmt::format("case: {} stands there twice", reader::quote(load_case.name)));
+                    fmt::format("case: {} is given twice", reader::quote(load_case.name)));
         cases.push_back(std::move(load_case));
     };
     read_sheet(csv, file, max_cases, head, row);

@@ -23,15 +23,15 @@ namespace elastocheck::reports {
 
 namespace {
 
-// The outputs that a scene asks for. A figure or definition that does not exist, and one that this
-// scene does not have, are errors; of a set, what the scene does not have is left out.
+// The outputs by the definitions that a scene requests. A figure or definition that does not exist, or
+// that this scene does not have, is an error; of a set, only the figures that the scene has are taken.
 std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefinition>& list,
                                         const Model& model, const std::string& file) {
     std::vector<compare::Channel> outputs;
     if (list.empty()) return outputs;
     const auto all = compare::definition_channels(model), own = compare::characteristics(model);
     const auto definitions = compare::definitions();
-    // Adds those of every wheel; returns whether there is one.
+    // Adds the outputs of a figure by a definition, of every wheel; returns whether there is one.
     const auto add = [&](const std::string& figure, const std::string& name) {
         bool any = false;
         for (const compare::Channel& channel : all) {
@@ -44,24 +44,24 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
         }
         return any;
     };
-    for (const auto& warning : list) {
-        const auto wrong = [&](const std::string& what) {
-            reader::fail(file, warning.line, warning.path, what);
+    for (const auto& request : list) {
+        const auto fail = [&](const std::string& what) {
+            reader::fail(file, request.line, request.path, what);
         };
         std::vector<std::string> names;
-        if (warning.figure.empty()) {
+        if (request.figure.empty()) {
             const auto sets = compare::definition_sets();
-            const auto set = std::ranges::find(sets, warning.name, &compare::DefinitionSet::name);
+            const auto set = std::ranges::find(sets, request.name, &compare::DefinitionSet::name);
             for (const auto& known : sets) names.push_back(known.name);
             if (set == sets.end())
-                wrong(fmt::format("there is no set {}{}", reader::quote(warning.name),
-                                  reader::did_you_mean(warning.name, names, "allowed")));
+                fail(fmt::format("there is no set {}{}", reader::quote(request.name),
+                                 reader::did_you_mean(request.name, names, "allowed")));
             bool any = false;
             for (const std::string& member : set->members) {
                 const auto at = member.find('@');
                 any = add(member.substr(0, at), member.substr(at + 1)) || any;
             }
-            if (!any) wrong(fmt::format("the scene has none of its figures"));
+            if (!any) fail("the scene has none of its figures");
             continue;
         }
         std::vector<std::string> figures;
@@ -71,24 +71,25 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
         for (const compare::Entry* known : definitions) {
             const auto at = known->name.find('@');
             add_once(figures, known->name.substr(0, at));
-            if (known->name.substr(0, at) == warning.figure)
+            if (known->name.substr(0, at) == request.figure)
                 add_once(names, known->name.substr(at + 1));
         }
         if (names.empty())
-            wrong(fmt::format("no figure with other definitions{}",
-                              reader::did_you_mean(warning.figure, figures, "allowed")));
-        if (std::ranges::find(names, warning.name) == names.end())
-            wrong(fmt::format("there is no definition {}{}", reader::quote(warning.name),
-                              reader::did_you_mean(warning.name, names, "allowed")));
-        if (!add(warning.figure, warning.name))
-            wrong(fmt::format("the scene has no {} by the definition {}", warning.figure,
-                              reader::quote(warning.name)));
+            fail(fmt::format("no figure with other definitions{}",
+                             reader::did_you_mean(request.figure, figures, "allowed")));
+        if (std::ranges::find(names, request.name) == names.end())
+            fail(fmt::format("there is no definition {}{}", reader::quote(request.name),
+                             reader::did_you_mean(request.name, names, "allowed")));
+        if (!add(request.figure, request.name))
+            fail(fmt::format("the scene has no {} by the definition {}", request.figure,
+                             reader::quote(request.name)));
     }
     for (auto& output : outputs) output.main = output.kinematic();
     return outputs;
 }
 
-// The requested channels, in that order, each once; the first `own` are no other definitions.
+// The requested channels, in that order, each once; those after the first `own` are figures by other
+// definitions.
 // Throws std::invalid_argument for a pattern without a match, with the nearest name.
 std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all, std::size_t own,
                                      const std::vector<std::string>& patterns) {
@@ -120,9 +121,9 @@ std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all, s
     return list;
 }
 
-// "FILE:LINE: place: what"; of an entry that a mirror made the line of its section.
-std::vector<std::string> placed(const std::vector<compare::Implausible>& list,
-                                const std::string& file) {
+// "FILE:LINE: place: what"; an entry that was made by mirroring has the line of its section.
+std::vector<std::string> located(const std::vector<compare::Implausible>& list,
+                                 const std::string& file) {
     std::vector<std::string> lines;
     if (list.empty()) return lines;
     const reader::TextFile read = reader::read_text(file, reader::Pipes::refused);
@@ -143,8 +144,8 @@ std::vector<std::string> placed(const std::vector<compare::Implausible>& list,
     return lines;
 }
 
-// The reason why a scene is not trimmed, after what leaves it free or locks it as drawn; where nothing
-// does, with the softest motion, which may be the cause.
+// The reason why the trim fails, after the free motions or locked bodies of the drawn scene, which cause
+// it; without any, followed by the softest motion, which may be the cause.
 std::string cause(const Scene& scene, const std::string& reason) {
     const Model drawn = on_branch(compile(scene), {});
     std::string text;
@@ -173,7 +174,7 @@ LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::strin
     if (trimmed.record && !trimmed.record->reached())
         throw NotTrimmed(fmt::format("{}: {}", where(), cause(scene, trimmed.record->detail)));
     Model model = compile(trimmed.scene, detail);
-    std::ranges::move(placed(compare::implausible(model), file), std::back_inserter(warnings));
+    std::ranges::move(located(compare::implausible(model), file), std::back_inserter(warnings));
     auto outputs = requested(definitions, model, file);
     return {std::move(trimmed.scene), std::move(model), std::move(trimmed.record),
             std::move(warnings), std::move(outputs)};

@@ -38,17 +38,16 @@ struct LoadedScene {
     std::vector<compare::Channel> definitions = {};
 };
 
-// Trims and compiles what was read from a file. Throws SceneError for an ill-posed
-// trim, and NotTrimmed.
+// Trims and compiles a scene read from `file`. Throws SceneError for an ill-posed trim, NotTrimmed.
 LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::string& file,
                                  Detail detail = Detail::required);
-// Reads the file too, and prints the warnings to standard error. Throws SceneError. With a place for
-// it, the exception of a trim is kept there, and the scene is that without the trim.
+// Reads the file too, and prints the warnings to standard error. Throws SceneError and NotTrimmed. With
+// `not_trimmed`, the exception of a failed trim is stored there, and the scene is loaded without a trim.
 LoadedScene load_scene(const std::string& file, const Settings& settings,
                        Detail detail = Detail::required, std::exception_ptr* not_trimmed = nullptr);
 
-// What is found on a scene, before anything is solved: the compiled model, the trim, the reader's
-// warnings; and this in result.json. `file` is the scene's.
+// The results on a scene before anything is solved (compiled model, trim, warnings, hash of `file`, the
+// scene's), and the same as in result.json.
 SceneAnalyses analyses_of(const LoadedScene& loaded, const std::string& file);
 nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file);
 

@@ -9,12 +9,13 @@ namespace elastocheck::reports {
 
 struct RecursionRequest {
     std::string method = "published";
-    int steps = 0, order = 0, expansions = 0;
-    std::string tolerance = {};
+    int steps = 0, order = 0, expansions = 0;  // 0: the scene's steps, the method's defaults
+    std::string tolerance = {};                // "0.01mm,0.001deg"; empty: the method's default
     bool arc_length = false;
 };
 
-// Throws std::invalid_argument for an option that does not apply to the method.
+// The options of the solver; the method is the name of one. Throws std::invalid_argument for an option
+// that does not apply to the method.
 recursive::Options recursion(const RecursionRequest& request);
 
 }  // namespace elastocheck::reports

@@ -87,7 +87,7 @@ SolvedBranch solve_branch(const Model& model, const Branch& branch,
                           const std::function<void(compare::Row)>& hand_over) {
     const auto sides = compare::sides_of(model, branch, solver.recursion.steps);
     compare::Analyses analyses;
-    // the last state of each side; the start a = 0 belongs to a side until that has another state
+    // The last state of each side; the start, a = 0, belongs to a side until that has another state.
     std::vector<std::optional<Equilibrium>> last_states(sides.size());
     const auto row_at = [&](const Equilibrium& state) {
         const auto side_index =
@@ -98,7 +98,7 @@ SolvedBranch solve_branch(const Model& model, const Branch& branch,
         return row;
     };
     SolvedBranch solved{compare::solve_branch(sides, solver, row_at, hand_over)};
-    // a method with steps of equal size has no error control
+    // A method with steps of equal size has no error control.
     const bool approximate =
         solver.leg == compare::Leg::recursive && recursive::has_steps(solver.recursion.method);
     for (std::size_t side_index = 0; side_index < sides.size(); ++side_index) {

@@ -1,5 +1,4 @@
-// How a scene is solved by one leg or method, and which outputs are read: what `solve` and the Python
-// module share.
+// Solving a scene by one leg or method, and reading its outputs: for `solve` and the Python module.
 #pragma once
 
 #include <functional>
@@ -23,29 +22,28 @@ struct SolverRequest {
 // Names of the legs and of the methods of the recursion.
 std::vector<std::string> solvers();
 
-// Pre: the method is one of solvers(). Throws std::invalid_argument for an option that does not
-// apply to it.
+// The settings of a solver; the method has to be one of solvers(). Throws std::invalid_argument for an
+// option that does not apply to it.
 compare::SolverSettings solver_of(const SolverRequest& request);
 
-// The solvers whose points are proved, by name: the references, and the methods of the recursion.
+// Names of the solvers whose points can be proved: the references, and the methods of the recursion.
 std::vector<std::string> certified_solvers();
-// Pre: it is one of them.
+// The settings of one of these.
 compare::SolverSettings certified_solver(const std::string& solver);
 
-// A solved branch; its points are handed over.
+// A solved branch; its points have been passed to the callback.
 struct SolvedBranch {
     EquilibriumPath path;  // without points
-    // States at the ends of the sides, of a method with equal steps: it has no tolerance, so that its
-    // error there is reported.
+    // States at the ends of the sides, of a method without a tolerance: its error there is reported.
     std::vector<std::pair<compare::BranchSide, Equilibrium>> ends = {};
     std::string softest_motion = {};  // before a failure
 };
-// Calls `found` with each point when it is found, and with its row, to which it may add; `hand_over`
-// with the rows in the order of the branch.
+// Calls `change_row` with each state when it is found, and with its row, which it may change; calls
+// `hand_over` with the rows in the order of the branch.
 SolvedBranch solve_branch(const Model& model, const Branch& branch,
                           const std::vector<compare::Channel>& channels,
                           const compare::SolverSettings& solver,
-                          const std::function<void(const Equilibrium&, compare::Row&)>& found,
+                          const std::function<void(const Equilibrium&, compare::Row&)>& change_row,
                           const std::function<void(compare::Row)>& hand_over);
 
 // Error of a method at the end of a branch side, in words: its state there against one solve of the

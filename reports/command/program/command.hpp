@@ -21,26 +21,25 @@ inline constexpr const char* groups[] = {"Solve and look",      "Compare and jud
                                          "Models in and out",   "Pages"};
 enum class Group { solve, compare, prove, change, models, pages, hidden };
 
-// Runs a command after its options are parsed; receives the command line as given, and returns the
-// exit code.
+// Runs a command whose options are parsed, given the command line as entered; returns the exit code.
 using Run = std::function<int(const std::string& command_line)>;
 
-// An object of it at namespace scope in the file of a command makes the command part of the program.
-// `set_up` adds its options, whose variables `Run` shares.
+// A command of the program: its constructor, of an object at namespace scope, registers it. `set_up` adds
+// the options, and returns the function that runs the command with their values.
 struct Command {
     Command(Group group, const char* name, const char* description, Run (*set_up)(CLI::App&));
     Group group;
     const char *name, *description;
     Run (*set_up)(CLI::App&);
 };
-// By group, then by name.
+// All commands, by group, then by name.
 std::vector<const Command*> commands();
 
-// ---- Values. Each returns the option.
+// ---- Types of values. Each returns the option.
 
-CLI::Option* as_file(CLI::Option* option);    // a name, not `-`
+CLI::Option* as_file(CLI::Option* option);    // the name of a file, not `-`
 CLI::Option* as_folder(CLI::Option* option);  // likewise
-CLI::Option* as_word(CLI::Option* option, const std::vector<std::string>& words);
+CLI::Option* as_word(CLI::Option* option, const std::vector<std::string>& words);  // one of these
 CLI::Option* repeated(CLI::Option* option);  // --option A --option B
 // A finite number from `low` to `high`, with a decimal point in any locale.
 CLI::Option* add_number(CLI::App& command, const std::string& name, double& variable,

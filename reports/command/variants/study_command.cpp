@@ -24,8 +24,7 @@ except ImportError as error:
 sys.exit(main(**json.loads(sys.argv[1])))
 )";
 
-// The folder with the package, of the build tree or of an installed program; empty where Python has
-// to find it.
+// The folder with the package, of the build tree or installed; empty where Python has to find it.
 std::string package_folder() {
     const fs::path package =
         beside_program({"reports/python/package/elastocheck/study/command.py",
@@ -47,7 +46,7 @@ int study(const Options& options) {
     throw FileError("study: there is no python3; `./dev study` installs it");
 }
 
-struct Study {
+struct StudyRequest {
     Options options;
     Running running;
     bool as_json = false;
@@ -60,14 +59,15 @@ const Command study_command{
     "Many variants of a scene, each with a row in a ledger, and the statistics of their "
     "figures; the same command goes on where it was interrupted",
     [](CLI::App& command) -> Run {
-        const auto s = std::make_shared<Study>();
+        const auto request = std::make_shared<StudyRequest>();
         const auto word = [&](const char* name, const char* key, const char* description) {
             return command.add_option_function<std::string>(
-                name, [s, key](const std::string& given) { s->options[key] = given; }, description);
+                name, [request, key](const std::string& given) { request->options[key] = given; },
+                description);
         };
         const auto flag = [&](const char* name, const char* key, const char* description) {
             command.add_flag_callback(
-                name, [s, key] { s->options[key] = true; }, description);
+                name, [request, key] { request->options[key] = true; }, description);
         };
         as_file(word("STUDY", "file", "file with variables, design and figures"))->required();
         as_folder(word("-o,--output", "folder",
@@ -75,7 +75,7 @@ const Command study_command{
             ->required();
         command
             .add_option_function<int>(
-                "--count", [s](int count) { s->options["count"] = count; },
+                "--count", [request](int count) { request->options["count"] = count; },
                 "number of variants, instead of that in the file; more than before extends the "
                 "study")
             ->check(CLI::Range(1, 1'000'000'000));
@@ -85,7 +85,9 @@ const Command study_command{
             ->type_name("K/N");
         as_folder(command.add_option_function<std::vector<std::string>>(
                       "--merge",
-                      [s](const std::vector<std::string>& from) { s->options["merge"] = from; },
+                      [request](const std::vector<std::string>& from) {
+                          request->options["merge"] = from;
+                      },
                       "add the rows of all shards in these folders, and compute nothing"))
             ->expected(1, -1);
         word("--scheduler", "scheduler",
@@ -97,14 +99,14 @@ const Command study_command{
              "probabilities that figures leave their limits, by FORM and importance sampling");
         as_file(word("--csv", "csv", "write variables and figures of all variants as CSV"));
         as_file(word("--hdf5", "hdf5", "write the same as HDF5"));
-        add_json(command, s->as_json);
-        add_running(command, s->running);
-        return [s](const std::string& line) {
-            s->options.update({{"threads", s->running.jobs},
-                               {"quiet", s->running.quiet},
-                               {"as_json", s->as_json},
-                               {"reproduce", line}});
-            return study(s->options);
+        add_json(command, request->as_json);
+        add_running(command, request->running);
+        return [request](const std::string& line) {
+            request->options.update({{"threads", request->running.jobs},
+                                     {"quiet", request->running.quiet},
+                                     {"as_json", request->as_json},
+                                     {"reproduce", line}});
+            return study(request->options);
         };
     }};
 
