@@ -5,7 +5,7 @@
 
 namespace elastocheck::live {
 
-// At the start of the first branch, jacks and tyres removed. Throws as prepared(). The answer:
+// Matrices at the start of the first branch, jacks and tyres removed. Throws as prepared(). The answer:
 //   why_not  reason why there are none; else absent
 //   causes   names of the columns, wheel by wheel
 //   centre, patch   rows: name, values [mm or deg per kN or per 100 N·m]; of the wheel centre, and of

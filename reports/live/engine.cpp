@@ -50,6 +50,7 @@ std::vector<Point> drawn_points(const Model& model, const reports::Drawing& draw
 // The rows of one branch, in ascending order of the parameter.
 struct Rows {
     std::vector<std::pair<double, std::vector<double>>> rows;  // by the parameter in SI
+    // Appends the rows to `numbers`, and returns the index of the first of theirs.
     std::size_t append_to(std::vector<double>& numbers) {
         std::ranges::sort(rows, {}, [](const auto& row) { return row.first; });
         const std::size_t at = numbers.size();
@@ -58,6 +59,7 @@ struct Rows {
     }
 };
 
+// Names of the active joints, one for each constraint, and of the elements.
 std::vector<std::string> parts_of(const Model& model) {
     std::vector<std::string> names;
     for (const auto& constraint : model.constraints)
@@ -67,7 +69,7 @@ std::vector<std::string> parts_of(const Model& model) {
     return names;
 }
 
-// Channels that are read at a point, and their places among all.
+// Channels that are computed at a point, and their indices among all.
 struct Reading {
     std::vector<Channel> channels;
     std::vector<std::size_t> place;
@@ -77,6 +79,7 @@ struct Reading {
         for (std::size_t c = 0; c < all.size(); ++c)
             if (chosen(all[c])) channels.push_back(all[c]), place.push_back(c);
     }
+    // The values in the order of all channels, of which there are `count`.
     std::vector<double> placed(const std::vector<double>& values, std::size_t count) const {
         std::vector<double> all(count, not_computed);
         for (std::size_t k = 0; k < place.size(); ++k) all[place[k]] = values[k];
@@ -92,15 +95,16 @@ struct Solver {
     std::size_t count;          // of channels
     std::vector<Point> points;  // of the drawing
     Reading all, everywhere, motions;
-    std::optional<std::vector<double>> at = {};  // where all are read, else `everywhere`
+    // parameters at which `all` channels are read, and elsewhere `everywhere`; empty: all at every point
+    std::optional<std::vector<double>> at = {};
 
     const Reading& reading(const Branch& branch, double a) const {
         if (!at) return all;
-        const double here = compare::parameter_in(compare::unit_of(branch.unit), a);
-        const bool among = std::ranges::any_of(*at, [&](double there) {
-            return std::abs(here - there) <= 1e-9 * std::max(1.0, std::abs(here));
+        const double parameter = compare::parameter_in(compare::unit_of(branch.unit), a);
+        const bool is_listed = std::ranges::any_of(*at, [&](double listed) {
+            return std::abs(parameter - listed) <= 1e-9 * std::max(1.0, std::abs(parameter));
         });
-        return among ? all : everywhere;
+        return is_listed ? all : everywhere;
     }
     // Adds the rows of all sides: by the series with the geometry of the drawing, by the published
     // method without it and without characteristics.
@@ -155,27 +159,27 @@ struct Shared {
 
 namespace {
 
-// Those of one solve, and of the last one of a similar model, if it may begin with them.
+// The analyses of a solve, which start from those of the last where the model differs in numbers only.
 struct Sharing {
     std::vector<std::shared_ptr<Shared>> now = {};
     std::vector<std::shared_ptr<const Shared>> last = {};
     bool one_factorisation = false;
 
-    // With the settled start, which all branches of the same active parts have.
-    Shared& of(const compare::BranchSide& side) {
+    // With the settled start, which all branches with the same active parts share.
+    Shared& analyses_of(const compare::BranchSide& side) {
         const auto parts = parts_of(side.model);
         const auto same = [&](const auto& shared) { return shared->parts == parts; };
         if (const auto known = std::ranges::find_if(now, same); known != now.end()) return **known;
         const auto before = std::ranges::find_if(last, same);
-        const Shared* like = before == last.end() ? nullptr : before->get();
+        const Shared* previous = before == last.end() ? nullptr : before->get();
         auto analysis = std::make_shared<recursive::Analysis>(recursive::analyse(
-            side.model, like == nullptr ? nullptr : like->analysis->system.lu.order));
-        if (like != nullptr) analysis->settled = like->analysis->settled;
+            side.model, previous == nullptr ? nullptr : previous->analysis->system.lu.order));
+        if (previous != nullptr) analysis->settled = previous->analysis->settled;
         recursive::series::keep_start(side.model, side.branch, {}, *analysis);
-        Shared made{parts, std::move(analysis)};
-        if (like != nullptr) made.responses = compare::like(like->responses);
-        made.responses.one_factorisation = one_factorisation;
-        now.push_back(std::make_shared<Shared>(std::move(made)));
+        Shared shared{parts, std::move(analysis)};
+        if (previous != nullptr) shared.responses = compare::like(previous->responses);
+        shared.responses.one_factorisation = one_factorisation;
+        now.push_back(std::make_shared<Shared>(std::move(shared)));
         return *now.back();
     }
 };
@@ -183,7 +187,7 @@ struct Sharing {
 json branch_json(const Solver& solver, Sharing& sharing, const Branch& branch,
                  const Request& request, std::vector<double>& numbers) {
     auto sides = compare::sides_of(solver.model, branch, request.points);
-    Shared& shared = sharing.of(sides.front());
+    Shared& shared = sharing.analyses_of(sides.front());
     for (auto& side : sides) side.analysis = shared.analysis;
     Rows rows;
     const EquilibriumPath path =
@@ -209,7 +213,7 @@ json branch_json(const Solver& solver, Sharing& sharing, const Branch& branch,
     return result;
 }
 
-// The first curves over a branch, by what it moves; of any other by its travel.
+// Figures that are shown first over a branch, by its load case; of another load case those of heave.
 std::vector<std::string> usual_curves(const Model& model, const Branch& branch) {
     using compare::Usual;
     static const std::map<std::string_view, int Usual::*> moved{
@@ -218,10 +222,10 @@ std::vector<std::string> usual_curves(const Model& model, const Branch& branch) 
         {"lateral force", &Usual::lateral},
         {"longitudinal force", &Usual::longitudinal},
         {"moment", &Usual::moment}};
-    const auto of = moved.find(reports::load_case(model, branch));
-    return compare::usual_over(of == moved.end() ? &Usual::heave : of->second);
+    const auto known = moved.find(reports::load_case(model, branch));
+    return compare::usual_over(known == moved.end() ? &Usual::heave : known->second);
 }
-// Position of the wheel whose figure a channel is.
+// Index of the wheel whose figure a channel is; null if it is not of one wheel.
 json wheel_of(const Model& model, const Channel& channel) {
     for (std::size_t w = 0; w < model.wheels.size(); ++w)
         if (const std::string& name = model.wheels[w].name;

@@ -1,5 +1,5 @@
-// What a live page asks of the solver: opens a scene, solves it with changed numbers by the series, writes it back. The
-// same code runs in the page as WebAssembly (reports/live/wasm) and natively in tests.
+// The solver of a live page: opens a scene, solves it with changed numbers by the series, writes it back. The same
+// code runs in the page as WebAssembly (reports/live/wasm) and natively in tests.
 #pragma once
 
 #include <memory>
@@ -47,22 +47,23 @@ struct Request {
     };
     std::vector<Setting> settings;
     int points = 40;             // equal increments of the parameter over a branch, > 0
-    std::optional<Shown> shown;  // no more is computed; absent: everything is
+    std::optional<Shown> shown;  // only this is computed; empty: everything is
     bool published = false;      // whether the published method is computed too
     std::string only;            // name of a branch: the others are not solved; empty: all are
 };
 
 // Trims and solves all branches by the power series. Throws SceneError, std::invalid_argument.
-// With `shown` it begins with what the last solve leaves, if the models differ in their numbers only:
-// elimination orders, and the settled start; and the response of a wheel on a jack follows from that
-// of the free wheel, which changes it by 1e-10.
+// With `shown` it starts from the elimination orders and the settled start of the last solve, if the
+// models differ in their numbers only; and the response of a wheel on a jack follows from that of the
+// free wheel, which changes it by 1e-10.
 // `head`:
 //   trouble   why there is no result: a trim that is not reached; else absent
 //   trim      adjusted: name, by, unit, makes; null without a trim
 //   channels  names; normally those of open()
 //   drawing   drawing_json() of the trimmed design position
 //   branches  name, unit, outcome, detail, idle: motions that nothing resists, as text,
-//             points, start: position of a = 0, at: position of its first number, published: outcome, detail, steps, points, at; null unless asked for
+//             points, start: index of the point at a = 0, at: index of its first number, published: outcome, detail,
+//             steps, points, at; null unless requested
 // `numbers`, per point of a branch in ascending order of the parameter: parameter, channels, positions of the drawing's
 // points [mm], spin axes of the wheels, points_of_figures() [mm].
 // Of a point of the published method: parameter, channels. NaN: not computed; infinite: undefined.

@@ -24,13 +24,14 @@ bool same(const std::vector<Setting>& a, const std::vector<Setting>& b) {
 Prepared& prepared(Session& session, const std::vector<Setting>& settings) {
     if (!session.parsed) throw std::logic_error("no scene is open");
     if (session.prepared && same(session.prepared->settings, settings)) return *session.prepared;
-    auto made = std::make_shared<Prepared>();
-    made->settings = settings;
-    made->trimmed = compare::trim_by_series(session.parsed->read(settings), &session.trim);
-    if (made->trimmed.record && !made->trimmed.record->reached())
-        throw std::invalid_argument("trim: " + made->trimmed.record->detail);
-    made->model = compile(made->trimmed.scene);
-    session.prepared = std::move(made);
+    auto prepared_model = std::make_shared<Prepared>();
+    prepared_model->settings = settings;
+    prepared_model->trimmed =
+        compare::trim_by_series(session.parsed->read(settings), &session.trim);
+    if (const auto& record = prepared_model->trimmed.record; record && !record->reached())
+        throw std::invalid_argument("trim: " + record->detail);
+    prepared_model->model = compile(prepared_model->trimmed.scene);
+    session.prepared = std::move(prepared_model);
     return *session.prepared;
 }
 

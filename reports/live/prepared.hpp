@@ -15,9 +15,9 @@ struct Prepared {
     std::vector<Setting> settings;
     compare::Trimmed trimmed;
     Model model;
-    // of the branch and the number of points asked for last, by the series
+    // Of the branch and the number of points requested last, solved by the series.
     struct Station {
-        std::size_t side = 0;  // position in `sides`
+        std::size_t side = 0;  // index in `sides`
         Equilibrium state;
     };
     std::string branch;
@@ -27,9 +27,10 @@ struct Prepared {
     std::vector<Station> stations;       // in ascending order of the parameter
 };
 
-// Throws as solve(), and std::invalid_argument where the trim is not reached.
+// The trimmed and compiled model. Throws as solve(), and std::invalid_argument for a trim not reached.
 Prepared& prepared(Session& session, const std::vector<Setting>& settings);
-// And the stations of a branch, those of solve(). Throws std::invalid_argument for another branch.
+// Likewise, with the stations of the branch `request.only`, the points of solve(). Throws
+// std::invalid_argument for an unknown branch.
 Prepared& prepared(Session& session, const Request& request);
 
 }  // namespace elastocheck::live

@@ -52,11 +52,11 @@ json prove(Session& session, const Request& request, int first, int count) {
     const auto end = std::min<std::ptrdiff_t>(std::ptrdiff_t{first} + std::max(count, 0),
                                               std::ssize(prepared_model.stations));
     for (std::ptrdiff_t k = std::max(first, 0); k < end; ++k) {
-        const auto& [side, state] = prepared_model.stations[static_cast<std::size_t>(k)];
-        const compare::BranchSide& on = prepared_model.sides[side];
-        const auto found = certificate::certify(on.model, on.branch, state, claim);
+        const auto& station = prepared_model.stations[static_cast<std::size_t>(k)];
+        const compare::BranchSide& side = prepared_model.sides[station.side];
+        const auto found = certificate::certify(side.model, side.branch, station.state, claim);
         answer["stations"].push_back(
-            {{"a", compare::parameter_in(compare::unit_of(on.branch.unit), state.load)},
+            {{"a", compare::parameter_in(compare::unit_of(side.branch.unit), station.state.load)},
              {"answer", name(found.state)},
              {"detail", found.detail},
              {"error_mm", millimetres(found.error.length)},

@@ -5,7 +5,7 @@
 
 namespace elastocheck::live {
 
-// Of `count` stations of the branch `request.only`, from the `first` on in ascending order of the
+// Proves `count` stations of the branch `request.only`, from the `first` on in ascending order of the
 // parameter; its points and settings are those of a solve(). Throws as prepared(). The answer:
 //   claim     distance from the computed state that is to be proved: mm, deg
 //   stations  a [unit of the branch], answer ("proved", "excluded", "open"), detail, error_mm: bound

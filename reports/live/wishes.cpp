@@ -24,7 +24,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using json = nlohmann::ordered_json;
 
-constexpr double share_of_range = 1e-4;  // of a number: the step of its differences
+constexpr double share_of_range = 1e-4;  // step of the differences, as a share of a number's range
 
 struct Varied {
     std::vector<std::string> paths;
@@ -91,9 +91,10 @@ json or_null(double value) { return std::isfinite(value) ? json(value) : json(nu
 json wish(Session& session, std::string_view text) {
     if (!session.parsed) throw std::logic_error("no scene is open");
     const auto settings = request_of(text).settings;
-    const auto model_of = [&](const std::vector<Setting>& with) {
-        compare::TrimStart start = session.trim;  // the same for each, so that it is a function
-        const auto trimmed = compare::trim_by_series(session.parsed->read(with), &start);
+    const auto model_of = [&](const std::vector<Setting>& changed) {
+        // Every trim has the same start, so that the figures are a function of the numbers.
+        compare::TrimStart start = session.trim;
+        const auto trimmed = compare::trim_by_series(session.parsed->read(changed), &start);
         return trimmed.record && !trimmed.record->reached()
                    ? std::nullopt
                    : std::optional<Model>(compile(trimmed.scene));
@@ -102,13 +103,13 @@ json wish(Session& session, std::string_view text) {
     if (!drawn) throw std::invalid_argument("the trim is not reached");
     const Varied varied = varied_of(json::parse(text), session.parsed->read(settings), *drawn);
     const auto value = [&](const VectorXd& p) -> VectorXd {
-        auto with = settings;
-        std::erase_if(with, [&](const Setting& setting) {
+        auto changed = settings;
+        std::erase_if(changed, [&](const Setting& setting) {
             return std::ranges::find(varied.paths, setting.path) != varied.paths.end();
         });
         for (std::size_t i = 0; i < varied.paths.size(); ++i)
-            with.push_back({varied.paths[i], fmt::format("{:.17g}", p[static_cast<Index>(i)])});
-        const auto model = model_of(with);
+            changed.push_back({varied.paths[i], fmt::format("{:.17g}", p[static_cast<Index>(i)])});
+        const auto model = model_of(changed);
         return model ? compare::evaluate(*model, varied.figures, compare::Leg::series).value
                      : VectorXd::Constant(std::ssize(varied.figures), compare::nan);
     };
@@ -130,11 +131,11 @@ json wish(Session& session, std::string_view text) {
 
     json answer = {{"met", met}, {"converged", solution.converged}};
     for (Index i = 0; i < solution.p.size(); ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        answer["numbers"].push_back({{"path", varied.paths[at]},
+        const auto index = static_cast<std::size_t>(i);
+        answer["numbers"].push_back({{"path", varied.paths[index]},
                                      {"from", range.start[i]},
                                      {"to", solution.p[i]},
-                                     {"at_limit", met || !moves ? 0 : solution.at_limit[at]}});
+                                     {"at_limit", met || !moves ? 0 : solution.at_limit[index]}});
     }
     const auto outputs = channels_of(*drawn);
     for (Index j = 0; j < after.size(); ++j) {

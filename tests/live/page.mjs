@@ -307,7 +307,7 @@ const tests = {
     const words = line.replaceAll("'", '').split(' ').slice(2), result = JSON.parse(execFileSync(program, ['solve-for', scene('double_wishbone'), ...words.slice(1), '--json', '--quiet'], {stdio: ['ignore', 'pipe', 'ignore']}).toString());
     const table = result.scenes[0].results[0].tables.numbers, [name, to] = ['number', 'to'].map(c => table.columns.findIndex(column => column.name === c));
     check(table.rows.length === 3, 'three numbers');
-    for (const row of table.rows) near(+(found.find(([p]) => p === row[name])?.[1] ?? await run(`state.of.get('${row[name]}').value`)), row[to], 1e-6 * Math.max(.1, Math.abs(row[to])), `${row[name]} as by solve-for`);
+    for (const row of table.rows) near(+(found.find(([p]) => p === row[name])?.[1] ?? await run(`state.numbers.get('${row[name]}').value`)), row[to], 1e-6 * Math.max(.1, Math.abs(row[to])), `${row[name]} as by solve-for`);
     // What cannot be met: the nearest, with the number at its limit; undone in one step.
     await run(`document.getElementById('undo').click()`);
     await idle();
@@ -333,7 +333,7 @@ const tests = {
     await idle();
     const changes = await settings();
     check(changes.length === 1 && changes[0][0] === `points.${name}.z`, 'arrow up moves it up: ' + JSON.stringify(changes));
-    near(+changes[0][1], await run(`state.of.get('points.${name}.z').value`) + .001, 1e-9, 'by one step');
+    near(+changes[0][1], await run(`state.numbers.get('points.${name}.z').value`) + .001, 1e-9, 'by one step');
     check(await run(`document.activeElement.dataset?.name`) === name, 'it keeps the focus');
     await browser.key('Enter');
     check(await run(`!document.getElementById('point').hidden`), 'Enter shows its numbers');

@@ -172,8 +172,7 @@ $('published').onchange = () => {
   changed();
 };
 $('trouble').onclick = () => trouble('');
-// In an entry with text that is not entered yet, the text is taken back; else the last change of a
-// number.
+// Ctrl+Z takes back the text of an entry not entered yet, else the last change of a number.
 document.addEventListener('keydown', event => {
   if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== 'z') return;
   const row = event.target.closest('.row'),
@@ -183,8 +182,8 @@ document.addEventListener('keydown', event => {
   if (text && row.revert()) return;
   event.shiftKey ? step('redo', 'undo') : step('undo', 'redo');
 });
-// The browser compiles anew what has run often: solves that nobody waits for, until there is
-// something to do.
+// Solves in the background, until there is something to do: the browser compiles code that has run
+// often to faster code.
 const warmUp = async () => {
   for (let k = 0; k < 10 && state.info && !state.busy && !state.due; ++k)
     await solvers.front.ask('solve', {request: requestOf([], state.branch)});

@@ -1,6 +1,6 @@
 // ---- Elements, numbers, units
-const asRead = document.documentElement.cloneNode(true);
-export const wholePage = () => asRead.outerHTML;
+const pageAsRead = document.documentElement.cloneNode(true);
+export const wholePage = () => pageAsRead.outerHTML;
 export const $ = id => document.getElementById(id);
 const assign = (element, name, value) => typeof value === 'function' ? element[name] = value :
     value === false ? element.removeAttribute(name) :
@@ -13,14 +13,14 @@ export const make = (tag, attributes = {}, ...children) => {
   element.append(...children.filter(child => child !== null));
   return element;
 };
-// What is drawn again after every solve is described first, and compared with what was described
-// before: only what differs is touched, since the browser lays out and paints what is, and an
-// entry that stays keeps its focus.
+// Elements that are drawn after every solve are described by sketches. Only the differences from
+// the last sketches are applied, so that the browser lays out and paints less, and an entry keeps
+// its focus.
 export const sketch = (tag, attributes = {}, ...children) =>
     ({tag, attributes, children: children.filter(child => child !== null)});
-const elementOf = it => typeof it === 'string' ?
-    document.createTextNode(it) :
-    make(it.tag, it.attributes, ...it.children.map(elementOf));
+const elementOf = part => typeof part === 'string' ?
+    document.createTextNode(part) :
+    make(part.tag, part.attributes, ...part.children.map(elementOf));
 const sketched = new WeakMap();  // element -> sketches of its children
 export const show = (parent, ...children) => {
   change(parent, sketched.get(parent) ?? [], children);

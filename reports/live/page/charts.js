@@ -18,7 +18,7 @@ const moves = curve => {
   const r = range(curve);
   return r && r[1] - r[0] > 1e-6 * Math.max(1, Math.abs(r[0]), Math.abs(r[1]));
 };
-// Those that the catalogue has for a branch of this kind, else the main ones that move.
+// The usual figures of the branch that move, up to nine; main ones that move are added up to four.
 const defaultCurves = (run, branch) => {
   const usual = state.info.branches.find(b => b.name === branch.name).usual;
   const usable = [...state.figures].filter(([, channels]) =>
@@ -30,12 +30,13 @@ const defaultCurves = (run, branch) => {
   return list.slice(0, 9);
 };
 const defaults = new WeakMap();  // of a solved branch
-// By the scene as opened, so that a drag keeps the charts in their places.
+// The figures of a branch that have a chart, chosen by its curves in the scene as opened, so that
+// the charts stay in their places during a drag.
 export const curvesOf = branch => {
-  const base = state.base.branch(branch.name), of = base ?? branch;
-  if (!state.curves && !defaults.has(of))
-    defaults.set(of, defaultCurves(base ? state.base : state.now, of));
-  const names = state.curves ?? defaults.get(of);
+  const base = state.base.branch(branch.name), solved = base ?? branch;
+  if (!state.curves && !defaults.has(solved))
+    defaults.set(solved, defaultCurves(base ? state.base : state.now, solved));
+  const names = state.curves ?? defaults.get(solved);
   return state.branch === '' && !state.curves ? names.slice(0, 3) : names;
 };
 // What a solve computes while a number is moved: the curves, and at the positions of drawing and
@@ -69,7 +70,7 @@ export const right = 8;
 export const footroom = 28;
 const headroom = 6;
 
-// What is in one chart.
+// The data of one chart.
 const dataOf = (branchName, name) => {
   const channels = state.figures.get(name) ?? [], now = state.now.branch(branchName),
         old = reference().branch(branchName), k = now ? stationIn(state.now, now) : 0;
@@ -89,14 +90,14 @@ const dataOf = (branchName, name) => {
   return {branchName, name, channel: channels[0], now, series, target, all};
 };
 // "left 1.2 · right 1.4", once where they agree; the owner of a wheel's output is before its name.
-export const ownerOf = ({name, figure, wheel}) =>
+const ownerOf = ({name, figure, wheel}) =>
   wheel === null ? '' : name.slice(0, -figure.length - 1);
 const valuesIn = (series, value) => {
   const texts = series.map(s => shown(value(s)));
   return texts.every(t => t === texts[0]) ? texts[0]
     : series.map((s, k) => `${ownerOf(s.channel)} ${texts[k]}`).join(' · ');
 };
-// Its axes. A pole of a figure does not flatten the rest of its curve.
+// The axes of a chart; cut where a pole of the figure would flatten the rest of its curve.
 const scaleOf = ({all, channel, target}) => {
   const x0 = Math.min(...all.map(p => p[0])), xs = Math.max(...all.map(p => p[0])),
         x1 = xs === x0 ? x0 + 1 : xs;
@@ -132,8 +133,8 @@ const gridOf = ({branchName, now}, {x0, x1, y0, y1, at, cut, whole}) => {
   list.push(sketch('text', {...end, y: H - 4}, `${branchName} [${now?.unit ?? ''}]`));
   return list;
 };
-// Met where every point of a branch that reaches its end lies in the band, missed where one does
-// not.
+// Whether a target band is met: missed where a point lies outside, open where the branch ends
+// early.
 const answerTo = ({target, series, now}) => !target ? ''
   : series.some(s => s.curve.some(p => !(p[1] >= target[0] && p[1] <= target[1]))) ? 'missed'
     : series[0]?.curve.length && now?.outcome === 'converged' ? 'met' : 'open';
@@ -194,7 +195,7 @@ const fastWords = ({now, series, channel}) => {
     : `published recursion off by up to ${shown(+off.toPrecision(2))} ${channel.unit}`;
 };
 export const scales = new Map();  // of the charts on the page, by their keys
-export const keyOfChart = chart => `${chart.dataset.branch}|${chart.dataset.channel}`;
+const keyOfChart = chart => `${chart.dataset.branch}|${chart.dataset.channel}`;
 const button = (kind, text, title, label, onclick) =>
   sketch('button', {type: 'button', class: kind, title, 'aria-label': label, onclick}, text);
 const sidesOf = series => series.length < 2 ? []

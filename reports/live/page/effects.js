@@ -10,7 +10,7 @@ import {images, mm, paths} from './points.js';
 import {axesOf, drawHandles, handles} from './view.js';
 
 const nudge = .1;  // [mm]
-// What moves a figure by less is rounding.
+// A smaller change of a figure is rounding.
 const least = value => 1e-7 * Math.max(1, Math.abs(value));
 
 export const listEffects = () => {
@@ -36,8 +36,8 @@ export const clearEffects = () => {
   $('effects').hidden = true;
   drawHandles(axesOf());
 };
-// Of every coordinate on a figure at a station of a branch: {point, path, axis, by: per mm}; null
-// where something else is to be done.
+// Effects of every coordinate on a figure at a station of a branch: {point, path, axis, by: per
+// mm}; null as soon as `more()` is false, because something else is to be done.
 export const effectsOn = async (name, branch, k, more) => {
   const all = [], a = state.now.a(branch, k), value = state.now.valueAt(branch, name, k);
   for (const point of [...handles.keys()].filter(key => !images.has(key)))

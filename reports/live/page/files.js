@@ -56,7 +56,7 @@ $('line').onclick = () => dialog(
 $('paste').onclick = () =>
     dialog('Text of a scene (YAML)', '', true, text => tryOpen(text, 'pasted.yaml'));
 // One row per point and curve.
-export const curvesAsCsv = () => {
+const curvesAsCsv = () => {
   const rows =
       [['branch', 'parameter', 'unit of the parameter', 'output', 'unit', 'now', referenceName()]];
   for (const branch of shownBranches())

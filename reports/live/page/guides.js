@@ -1,4 +1,4 @@
-// ---- What figures are read from, in the drawing: the road, steering axes, instant centres and
+// ---- Geometry behind the figures, in the drawing: the road, steering axes, instant centres and
 // the roll centre with the lines from the patches (points_of_figures() of the catalogue).
 import {state} from './state.js';
 
@@ -47,12 +47,12 @@ export const guides = (run, branch, k, sheet) => {
   const fromFront = axes.right[1] ** 2 > .5, upright = axes.up[2] > .5;
   const roll = run.guide(branch, k, ofWheel.length * run.drawing.wheels.length);
   run.drawing.wheels.forEach((wheel, w) => {
-    const of = Object.fromEntries(ofWheel.map((name, i) =>
+    const points = Object.fromEntries(ofWheel.map((name, i) =>
       [name, run.guide(branch, k, ofWheel.length * w + i)]));
     const patch = run.point(branch, k, wheel.patch);
-    parts.push(steeringAxis(of, patch, sheet));
+    parts.push(steeringAxis(points, patch, sheet));
     if (!upright) return;
-    const seen = fromFront ? of.front : of.side;
+    const seen = fromFront ? points.front : points.side;
     parts.push(centreOf(seen, 'instant centre', patch, sheet));
     if (fromFront && isFinite(roll)) parts.push(lineOf('roll', patch, roll, sheet));
   });

@@ -9,9 +9,9 @@ import {changed, showChangeSoon, solveSoon} from './solve.js';
 import {choose} from './numbers.js';
 
 const pointers = new Map();  // pressed: id -> [x, y] in pixels of the window
-// How far a drag of some pixels moves, per axis [mm]. In a view along an axis in its plane; in
-// another along one axis: the chosen one, or the one that the first pixels follow. A pixel is a
-// step at most.
+// Displacement of a drag by some pixels, per axis [mm]. A view along an axis moves points in its
+// plane, another view along one axis: the chosen one, or the one nearest to the first pixels. A
+// pixel moves by one step of the grid at most.
 const axisOf = (held, dx, dy, axes) => {
   const chosen = $('along').value;
   if (chosen !== '') return +chosen;
@@ -24,7 +24,7 @@ const axisOf = (held, dx, dy, axes) => {
   return held.axis;
 };
 const isPlane = axes => [0, 1, 2].some(k => Math.hypot(axes.right[k], axes.up[k]) < 1e-6);
-export const movedBy = (held, dx, dy, fine = false) => {
+const movedBy = (held, dx, dy, fine = false) => {
   const axes = axesOf(), step = +$('snap').value * (fine ? .1 : 1);
   const pixel = Math.min(1 / axes.scale, +$('snap').value || Infinity) * (fine ? .1 : 1);
   let d = [0, 0, 0];
@@ -48,7 +48,7 @@ export const release = (back = false) => {
   back ? abandon() : settle();
   changed();
 };
-// Of handles that overlap the nearest.
+// The handle under the pointer; of overlapping ones the nearest.
 const handleAt = ({target, clientX, clientY}) => {
   if (!target.closest('.handle')) return null;
   const away = handle => {
@@ -100,7 +100,7 @@ const follow = (held, event) => {
   solveSoon();
   showChangeSoon();
 };
-// As soon as the pointer has moved; the page gets its other moves with the next frame.
+// Follows raw moves of the pointer at once; `pointermove` comes only with the next frame.
 const moveAhead = event => {
   if (pointers.size === 1 && pointers.has(event.pointerId) && state.held?.name)
     follow(state.held, event);

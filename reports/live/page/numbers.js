@@ -8,12 +8,12 @@ import {axesOf, drawHandles} from './view.js';
 export const rowsOf = new Map();  // path -> [row, ...]
 const isNumber = text => /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text.trim());
 // A text in the unit of the file as one in that of the page, and back; what is not a number stays.
-export const toPage = (path, text) => {
-  const [, factor] = pageUnit(state.of.get(path).unit);
+const toPage = (path, text) => {
+  const [, factor] = pageUnit(state.numbers.get(path).unit);
   return factor === 1 || !isNumber(text) ? text : written(+text * factor);
 };
 export const fromPage = (path, text) => {
-  const [, factor] = pageUnit(state.of.get(path).unit);
+  const [, factor] = pageUnit(state.numbers.get(path).unit);
   return factor === 1 || !isNumber(text) ? text : written(+text / factor);
 };
 const sliderOf = (number, filled) => {
@@ -43,7 +43,7 @@ const numberRow = (number, words, slides) => {
       {type: 'text', inputmode: 'decimal', 'aria-label': number.path, autocomplete: 'off'});
   const row =
       make('div', {class: 'row', 'data-path': number.path}, make('span', {class: 'path'}, words));
-  // The entry has text of its own; the settings that entry and slider stand at.
+  // Whether the entry has text that is not a setting yet; the settings that entry and slider show.
   let typed = false, filled = null, slid = null;
   entry.oninput = () => { typed = true; filled = null; };
   entry.onchange = () => {
@@ -147,7 +147,7 @@ export const choose = name => {
     settle();
     changed();
   };
-  const rows = paths(name).map((p, k) => numberRow(state.of.get(p), 'xyz'[k], false));
+  const rows = paths(name).map((p, k) => numberRow(state.numbers.get(p), 'xyz'[k], false));
   const group = make('button', {id: 'group', type: 'button',
     title: 'All points of the group move together; also by Ctrl and a click'});
   group.onclick = () => { toggleInGroup(name); drawLinks(); drawHandles(axesOf()); };

@@ -52,7 +52,7 @@ const savePicture = async (picture, wide, high, times, name) => {
     URL.revokeObjectURL(image.src);
   }
 };
-// With its heading and what its lines are.
+// Saves a chart with its heading and a legend of its lines.
 export const saveChart = chart => {
   const svg = copyOf(chart.querySelector('svg')), whole = make('svg');
   for (const [name, value] of Object.entries({x: 0, y: 20, width: W, height: H}))

@@ -5,7 +5,8 @@ import {numberOf, put, state, toggleLength} from './state.js';
 
 // Points of the other side have no numbers of their own: name -> the point that they mirror.
 export const images = new Map();
-const hasNumbers = name => ['x', 'y', 'z'].every(axis => state.of.has(`points.${name}.${axis}`));
+const hasNumbers = name =>
+  ['x', 'y', 'z'].every(axis => state.numbers.has(`points.${name}.${axis}`));
 export const findImages = () => {
   images.clear();
   if (!/^mirror:/m.test(state.source)) return;
@@ -21,7 +22,7 @@ export const movable = () =>
 const twinOf = name => images.get(name) ?? name;
 const sign = (name, k) => k === 1 && images.has(name) ? -1 : 1;
 export const paths = name => [0, 1, 2].map(k => `points.${twinOf(name)}.${'xyz'[k]}`);
-export const mm = path => pageUnit(state.of.get(path).unit)[1];
+export const mm = path => pageUnit(state.numbers.get(path).unit)[1];
 export const coordinatesOf = name =>
   paths(name).map((p, k) => sign(name, k) * numberOf(p) * mm(p));
 export const isMoved = name => paths(name).some(p => state.settings.has(p));

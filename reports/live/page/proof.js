@@ -7,9 +7,11 @@ import {solvers} from './solver.js';
 import {allPoints, requestOf} from './solve.js';
 import {drawCharts, footroom, H, left, right, W} from './charts.js';
 
-const proofs = {run: null, of: new Map()};  // name of a branch -> {stations, limits, claim, done}
+// branches: name of a branch -> {stations, limits, claim, done}
+const proofs = {run: null, branches: new Map()};
 export const proofOf = branchName =>
-  proofs.run === state.now && isSolved() && !state.failure ? proofs.of.get(branchName) : undefined;
+  proofs.run === state.now && isSolved() && !state.failure ? proofs.branches.get(branchName)
+    : undefined;
 // Numbers that are not solved, whether they cannot be or the solver stopped, have no proof.
 export const dropProofs = () => {
   if (!proofs.run) return;
@@ -19,10 +21,10 @@ export const dropProofs = () => {
 export const prove = async more => {
   const run = state.now;
   if (!run || !isSolved() || state.failure) return;
-  if (proofs.run !== run) Object.assign(proofs, {run, of: new Map()});
+  if (proofs.run !== run) Object.assign(proofs, {run, branches: new Map()});
   for (const {name, points} of shownBranches()) {
-    const proof = proofs.of.get(name) ?? {stations: [], limits: [], done: points === 0};
-    proofs.of.set(name, proof);
+    const proof = proofs.branches.get(name) ?? {stations: [], limits: [], done: points === 0};
+    proofs.branches.set(name, proof);
     // some 20 ms at a time, so that a move does not wait
     for (let count = 1; !proof.done && more();) {
       const begun = performance.now();

@@ -1,4 +1,4 @@
-// ---- Answers of the solver (reports/live/engine.hpp) Of one set of numbers: the drawing, the
+// ---- Answers of the solver (reports/live/engine.hpp) for one set of numbers: the drawing, the
 // trim, and the branches that are solved, each from an answer of its own.
 export class Run {
   constructor(settings, fast = false) {
@@ -6,7 +6,7 @@ export class Run {
     this.fast = fast;  // whether the published recursion is solved too
     this.key = keyOf(settings);
     this.branches = [];
-    this.place = new Map();  // of the outputs
+    this.place = new Map();  // index of each output
   }
   // Takes the branches of an answer that are not here yet, or of which not all was computed.
   take({head, numbers}, whole = true) {
@@ -28,7 +28,7 @@ export class Run {
   }
   branch(name) { return this.branches.find(b => b.name === name); }
   a(branch, k) { return branch.numbers[branch.at + k * this.wide]; }
-  // The point nearest to a parameter, and that at it: -1 where there is none.
+  // Index of the point nearest to a parameter; exact(): of the point at it, -1 if there is none.
   near(branch, a) {
     let best = branch.start;
     for (let k = 0; k < branch.points; ++k)
@@ -51,7 +51,7 @@ export class Run {
   }
   point(branch, k, i) { return this.vector(branch, k, i); }
   spin(branch, k, wheel) { return this.vector(branch, k, this.drawing.points.length + wheel); }
-  // Of what figures are read from: four points of each wheel, then the roll centre.
+  // points_of_figures() of the catalogue: four points of each wheel, then the roll centre.
   guide(branch, k, i) {
     return this.vector(branch, k, this.drawing.points.length + this.drawing.wheels.length + i);
   }

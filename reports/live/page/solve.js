@@ -21,7 +21,7 @@ window.live = {
   state
 };  // for tests: seconds of every solve, and from the change to the picture
 
-// Of a branch or all: everything, or what is shown while a number is moved.
+// Solves a branch, or all for '', into a run: everything, or what is shown while a number moves.
 export const solveInto = async (run, solver, only, shown_) => {
   const {info} = state, place = b => info.branches.findIndex(entry => entry.name === b.name);
   const request = requestOf(run.settings, only, {published: run.fast, shown: shown_});
@@ -29,7 +29,7 @@ export const solveInto = async (run, solver, only, shown_) => {
   run.seconds ??= answer.seconds;
   run.take(answer, !shown_).branches.sort((a, b) => place(a) - place(b));
 };
-// Whether a run has what is shown, a branch or all: as far as it is drawn now.
+// Whether a run has a branch, or all for '', as far as it is drawn now.
 const has = (run, only) => {
   const list = only === '' ? run.branches : run.branches.filter(b => b.name === only);
   return list.length === (only === '' ? state.info.branches.length : 1) &&
@@ -42,7 +42,7 @@ export const solveSoon = () => {
   pump();
 };
 let later = 0;
-export const showChange = () => {
+const showChange = () => {
   clearTimeout(later);
   later = 0;
   if (!isSolved()) dropProofs();
@@ -62,7 +62,7 @@ const newest = () => {
   return [...keptRuns(), now].find(run => run?.key === key && run.fast === published) ??
       new Run(settings, published);
 };
-// Asks for the newest numbers; what is solved already is drawn with the next frame.
+// Solves the newest numbers; a run that is solved already is drawn with the next frame.
 const askNewest = () => {
   const asked = startSolve(), {info, branch} = state, base = reference(), run = newest();
   showWaiting();
@@ -85,7 +85,7 @@ const present = ({asked, info, run}, error) => {
 };
 // The worker goes on with newer numbers while the page draws. A solver that stopped is asked once
 // more.
-export const pump = async () => {
+const pump = async () => {
   if (state.busy || !state.due) return;
   setBusy(true);
   for (let turn_ = askNewest(), again = true; turn_;) {
@@ -159,7 +159,7 @@ const solvedWords = ({branches, id, seconds, settings}) => {
     ...settings.length ? [`${counted(settings.length, 'number')} changed`] : []
   ].join(' · ');
 };
-export const statusOf = () => {
+const statusOf = () => {
   const {now, failure} = state, old = now ? `; what is shown is solve ${now.id}` : '';
   if (failure) return ['failed', `not solved: ${failure.message.split('\n')[0]}${old}`];
   if (!now) return ['solving', state.info ? 'solving…' : 'starting the solver…'];

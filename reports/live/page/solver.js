@@ -3,13 +3,14 @@
 import {$} from './base.js';
 
 export const patience = {begin: 3e3, end: 60e3};  // [ms]
+// A module with an instruction of SIMD, which a browser without SIMD rejects.
 const simd = new Uint8Array([
   0, 97, 115, 109, 1,  0, 0, 0, 1,  5, 1,   96, 0,   1,  123, 3,
   2, 1,  0,   10,  10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11
 ]);
 export const browsers = 'Chrome and Edge from 91, Firefox from 113, Safari from 16.4';
 
-// What is compressed and in base64.
+// Decodes base64 and decompresses.
 export const unpacked = async (text, format) => {
   const coded = atob(text), bytes = new Uint8Array(coded.length);
   for (let k = 0; k < coded.length; ++k) bytes[k] = coded.charCodeAt(k);
@@ -17,7 +18,7 @@ export const unpacked = async (text, format) => {
   return new Response(plain, {headers: {'Content-Type': 'application/wasm'}});
 };
 
-export class Solver {
+class Solver {
   // Calls wait until the module is compiled, while the worker starts.
   constructor(module) {
     this.compiled = module.then(compiled => { this.module = compiled; });
@@ -35,7 +36,7 @@ export class Solver {
         this.worker === worker && this.restart('its answer cannot be read');
     const again = [this.ask('start')];
     if (this.scene) again.push(this.ask('open', this.scene));
-    for (const call of again) call.catch(() => 0);  // whoever asks next is told
+    for (const call of again) call.catch(() => 0);  // the next call reports the error
     this.watch ??= setInterval(() => this.check(), 200);
   }
   receive({id, begun, ...data}) {
@@ -61,7 +62,7 @@ export class Solver {
     this.scene = scene;
     return answer;
   }
-  // The call that is next, or that the worker is at.
+  // Restarts the worker if the oldest call has waited too long for its begin, or for its end.
   check() {
     const [call] = this.waiting.values(), now = performance.now();
     if (!call) return;
@@ -70,18 +71,19 @@ export class Solver {
       this.restart(`no answer within ${patience.end / 1e3} s`);
   }
   restart(why, kind = 'stopped') {
-    const told = [...this.waiting.values()];
+    const failed = [...this.waiting.values()];
     this.waiting.clear();
     this.worker.terminate();
     this.since = performance.now();
     this.start();
     const error = () => Object.assign(new Error(kind === 'cancelled' ? why
       : `the solver stopped (${why}) and was started again`), {kind});
-    for (const call of told) call.reject(error());
+    for (const call of failed) call.reject(error());
   }
 }
 
-// One for what the hand moves, one for the rest: the same where there is one core.
+// `front` solves the numbers that are moved, `back` everything else; with one core they are the
+// same.
 export const solvers = {front: null, back: null};
 const compiled = async after => {
   await after;
@@ -97,7 +99,7 @@ export const startSolvers = after => {
   solvers.front = new Solver(module);
   solvers.back = navigator.hardwareConcurrency > 1 ? new Solver(module) : solvers.front;
 };
-// Opens a scene in both; what was open stays where it is refused.
+// Opens a scene in both; the scene that was open stays where the new one is rejected.
 export const openIn = async scene => {
   const [{head}] = await Promise.all(
       [...new Set([solvers.front, solvers.back])].map(solver => solver.open(scene)));

@@ -4,23 +4,24 @@
 import {Run, keyOf} from './run.js';
 
 const fresh = () => ({
-  // The open scene, as engine.hpp opens it; its numbers by path, its outputs by name, and its
-  // figures: each the outputs of one chart, one of every wheel.
-  info: null, source: '', file: '', files: undefined, of: new Map(), channel: new Map(),
+  // The open scene, as open() of engine.hpp describes it: its numbers by path, outputs by name,
+  // and its figures: each the outputs of one chart, one of every wheel.
+  info: null, source: '', file: '', files: undefined, numbers: new Map(), channel: new Map(),
   figures: new Map(),
-  // path -> text of the numbers that are changed; the last saved
+  // path -> text of the numbers that are changed; the key of those that were saved last
   settings: new Map(), saved: keyOf([]),
-  // settings before each change, and before the one that goes on
+  // settings before each change, and before the present one; what the pointer holds
   undo: [], redo: [], before: null, held: null,
-  // the scene as opened; what is on the screen; why the newest numbers are not: {message, kind}
+  // runs of the scene as opened, and on the screen; why the newest numbers have none: {message,
+  // kind}
   base: new Run([]), now: null, failure: null,
-  // kept runs: {name, run}; the name of that which is compared with
+  // kept runs: {name, run}; name of the one to compare with, '': the scene as opened
   variants: [], compared: '',
-  // shown: a branch of '' is all, a station of null is the start
+  // what is shown; branch '': all of them; station null: the start; curves null: the default ones
   branch: '', station: null, curves: null, targets: new Map(), point: null, effects: null,
   large: '',
-  // points that move together; lengths that stay [mm], by their ends; what a wish would arrive at:
-  // {name, run, numbers}
+  // points that move together; lengths that stay [mm], by their ends; result of a wish that is not
+  // taken over: {name, run, numbers}
   group: [], locks: new Map(), preview: null,
 });
 export const state = {
@@ -37,13 +38,13 @@ const figuresOf = channels => {
 };
 export const openScene = (head, source, file, files) => Object.assign(state, fresh(), {
   info: head, source, file, files, branch: head.branches[0]?.name ?? '',
-  of: new Map(head.numbers.map(n => [n.path, n])),
+  numbers: new Map(head.numbers.map(n => [n.path, n])),
   channel: new Map(head.channels.map(c => [c.name, c])), figures: figuresOf(head.channels),
 });
 
 // ---- What is shown
-export const shownBranch = run => run.branch(state.branch) ?? run.branches[0];
-// Of the other branches the start is shown.
+const shownBranch = run => run.branch(state.branch) ?? run.branches[0];
+// Index of the shown point of a branch; of other branches than the shown one the start.
 export const stationIn = (run, branch) => !branch?.points ? 0
   : state.station === null || branch.name !== shownBranch(run).name ? branch.start
     : run.near(branch, state.station);
@@ -86,9 +87,9 @@ export const keptRuns = () =>
 
 // ---- Numbers and settings
 export const numberOf = path =>
-  state.settings.has(path) ? +state.settings.get(path) : state.of.get(path).value;
+  state.settings.has(path) ? +state.settings.get(path) : state.numbers.get(path).value;
 export const put = (path, text) => {
-  if (state.of.get(path).value === +text && text.trim() !== '') state.settings.delete(path);
+  if (state.numbers.get(path).value === +text && text.trim() !== '') state.settings.delete(path);
   else state.settings.set(path, text);
 };
 
@@ -102,7 +103,7 @@ export const toggleInGroup = name => {
   state.group = state.group.includes(name) ? state.group.filter(n => n !== name)
     : [...state.group, name];
 };
-// Keeps a length, or no longer.
+// Keeps a length, or stops keeping it.
 export const toggleLength = (key, length) => {
   if (!state.locks.delete(key)) state.locks.set(key, length);
 };

@@ -47,7 +47,7 @@ export const drawTables = () => {
   const {now, info} = state, base = reference(),
               [is, k, old, j, where] = now ? placeOfTable() : [];
   if (isLeftOut($('tables'))) return;
-  // While a drag solves another branch alone.
+  // A drag solves the shown branch alone, which may be another one.
   $('tables').classList.toggle('stale', now !== null && !is);
   if (!is) return;
   const rowOf = c => channelRow(c, base.valueAt(old, c.name, j), now.valueAt(is, c.name, k));
@@ -94,7 +94,7 @@ const drawForces = () => {
         return channelRow(c, was, value, sketch('td', {class: 'word'}, where));
       })));
 };
-// The compliance matrices at the start of the first branch, asked for while they are shown.
+// The compliance matrices at the start of the first branch, computed only while they are shown.
 const matrices = {run: null, now: null, base: null};
 const drawMatrix = async () => {
   const {now} = state, base = reference();

@@ -41,7 +41,7 @@ const keepNow = () => {
   storeWork();
 };
 $('keep').onclick = keepNow;
-// What is on the screen is what is compared with from now on: the scene as opened, or a variant.
+// Makes the numbers on the screen the reference: the scene as opened, or a variant.
 $('refer').onclick = () => {
   if (state.settings.size) keepNow();
   compareWith(state.variants.find(v => v.run.key === state.now.key)?.name ?? '');
@@ -77,8 +77,9 @@ const take = work => {
   edit(() => takeSettings(work.settings));
 };
 const isOfScene = work => work?.source === state.source &&
-  [...work.variants, work.settings].every(list => list.every(([path]) => state.of.has(path)));
-// Takes what a saved page has of its scene; offers what the browser has kept of it.
+  [...work.variants, work.settings].every(list => list.every(([path]) => state.numbers.has(path)));
+// Takes the work saved with the page; else offers the work that the browser has stored of the
+// scene.
 export const restoreWork = inFile => {
   const work = stored();
   $('compare').dataset.names = '?';

@@ -22,7 +22,7 @@ export const axesOf = () => ({
 const flat = (p, axes) =>
   add([view.wide / 2, view.high / 2], axes.scale, onSheet(add(p, -1, view.centre), axes));
 // ---- Hardpoints where they are drawn
-// With its body at the shown station.
+// Position of a hardpoint, moved with its body to the shown station.
 const placeOf = name => {
   const design = coordinatesOf(name), {now} = state;
   if (!now) return design;
@@ -43,20 +43,20 @@ export const fitView = run => {
   view.size = Math.hypot(...ends.map(([low, high]) => high - low)) * .8 || 1;
   view.zoom = 1;
 };
-// By pixels of the drawing.
+// Shifts the view by pixels of the drawing.
 export const panView = (dx, dy) => {
   const {right, up, scale} = axesOf();
   view.centre = add(add(view.centre, -dx / scale, right), dy / scale, up);
 };
-// About a place of the drawing, which stays where it is.
+// Zooms about a place of the drawing, which stays where it is.
 export const zoomView = (factor, x, y) => {
   const old = view.zoom, [fromX, fromY] = [x - view.wide / 2, y - view.high / 2];
   view.zoom = Math.min(20, Math.max(.2, old * factor));
   const grown = view.zoom / old;
   panView(fromX * (1 - grown), fromY * (1 - grown));
 };
-// Asks for the width only where it may have changed: the answer costs a layout of the page.
-export const measureView = () => {
+// Reads the width, which costs a layout of the page; called only where it may have changed.
+const measureView = () => {
   view.wide = $('drawing').clientWidth || 640;
   view.high = Math.round(view.wide * .74);
 };
@@ -69,7 +69,7 @@ const scenery = (run, branch, k, axes, was) => {
 // The movable hardpoints, each an element that keeps its place in the document, so that it keeps
 // the focus.
 export const handles = new Map();
-// What the drag has moved so far, beside the handle.
+// Displacement by the drag so far, as text beside the handle.
 const movedWords = name => {
   const from = state.held?.group?.find(([held]) => held === name)?.[1];
   if (!from) return '';
@@ -96,8 +96,7 @@ export const drawHandles = axes => {
   }
   drawArrows(axes);
 };
-// An arrow shows into which direction a move raises the chosen figure most, and by its length how
-// much.
+// Gradients of the chosen figure by the positions of hardpoints, as arrows.
 const drawArrows = axes => {
   const sums = new Map(), arrows = [];
   for (const {point, axis, by} of state.effects ?? []) {
@@ -117,7 +116,7 @@ const drawArrows = axes => {
   }
   show($('arrows'), ...arrows);
 };
-// Each layer of the scenery a group, which stays while its text does.
+// Draws each layer of the scenery into its group, if its text has changed.
 let drawnLayers = [];
 const drawLayers = layers => {
   layers.forEach((text, k) => {
@@ -161,14 +160,15 @@ export const makeHandles = () => {
 export const linkAt = (x, y) => {
   const {now} = state, [branch, k] = now ? stationOf(now) : [];
   if (!branch?.points) return '';
-  const axes = axesOf(), off = ([a, b]) => {
+  const axes = axesOf(), distance = ([a, b]) => {
     const d = [b[0] - a[0], b[1] - a[1]], l = d[0] ** 2 + d[1] ** 2 || 1;
     const t = Math.min(1, Math.max(0, ((x - a[0]) * d[0] + (y - a[1]) * d[1]) / l));
     return Math.hypot(x - a[0] - t * d[0], y - a[1] - t * d[1]);
   };
-  let best = [7, ''];
+  let best = [7, ''];  // px, words
   for (const {name, kind, points} of now.drawing.links) {
-    const ends = points.map(i => now.point(branch, k, i)), far = off(ends.map(p => flat(p, axes)));
+    const ends = points.map(i => now.point(branch, k, i)),
+          far = distance(ends.map(p => flat(p, axes)));
     if (kind === 'stop' || far >= best[0]) continue;
     const d = add(ends[1], -1, ends[0]);
     const angle = i => shown(Math.atan2(d[2], Math.abs(d[i])) * 180 / Math.PI);

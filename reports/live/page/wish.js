@@ -48,17 +48,17 @@ export const addWant = (name, branchName, a, value = '') => {
   $('wants').append(removableRow(row));
   wishLine();
 };
-// In the unit of the page.
-const unitOf = path => state.of.has(path) ? pageUnit(state.of.get(path).unit)[0] : '';
+// Unit of a number on the page.
+const unitOf = path => state.numbers.has(path) ? pageUnit(state.numbers.get(path).unit)[0] : '';
 const rangeOf = path => {
-  const [unit, factor] = pageUnit(state.of.get(path).unit), value = numberOf(path) * factor;
+  const [unit, factor] = pageUnit(state.numbers.get(path).unit), value = numberOf(path) * factor;
   const half = unit === 'mm' && Math.abs(value) > 1e-9 || path.startsWith('points.') ?
       20 :
       .5 * Math.abs(value) || 1;
   return [value - half, value + half].map(written);
 };
 export const addVaried = (path = '') => {
-  const known = state.of.has(path), [low, high] = known ? rangeOf(path) : ['', ''];
+  const known = state.numbers.has(path), [low, high] = known ? rangeOf(path) : ['', ''];
   const name = make('input', {
     type: 'text',
     list: 'paths',
@@ -72,7 +72,7 @@ export const addVaried = (path = '') => {
       'div', {class: 'vary'}, name, ' from ', from, ' to ', to,
       make('span', {class: 'unit'}, unitOf(path)));
   name.onchange = () => {
-    const known = state.of.has(name.value.trim());
+    const known = state.numbers.has(name.value.trim());
     name.setAttribute('aria-invalid', String(!known));
     if (!known) return;
     [from.value, to.value] = rangeOf(name.value.trim());
@@ -97,7 +97,7 @@ const wishes = () => {
   });
   const vary = [...$('varies').children].map(row => {
     const [name, low, high] = row.querySelectorAll('input'), path = name.value.trim(),
-                      known = state.of.has(path);
+                      known = state.numbers.has(path);
     name.setAttribute('aria-invalid', String(!known));
     sound &&= known;
     const ends = [number(low), number(high)];
@@ -118,10 +118,10 @@ export const wishLine = () => {
   ].join(' ');
 };
 const changeOf = ({path, from, to}) => {
-  const [unit, factor] = pageUnit(state.of.get(path).unit);
+  const [unit, factor] = pageUnit(state.numbers.get(path).unit);
   return `${path} ${signed((to - from) * factor)} ${unit}`.trim();
 };
-// What is found is shown in the charts beside what is, and taken over by a click.
+// Shows the found numbers in the charts as a preview, which a click takes over.
 const previewWish = async numbers => {
   const settings = new Map(state.settings);
   for (const {path, to} of numbers) settings.set(path, written(to));
@@ -131,7 +131,7 @@ const previewWish = async numbers => {
   keepPreview({name: 'preview', run, numbers, from});
   draw();
 };
-// A preview is of the numbers from which it was found.
+// Drops the preview if the numbers have changed since it was found.
 export const drawPreview = () => {
   if (state.preview && state.preview.from !== keyOf(state.settings)) keepPreview(null);
   $('wish-take').hidden = $('wish-drop').hidden = $('preview-name').hidden = !state.preview;

@@ -33,7 +33,7 @@ const enter = ({text, name, files}) => {
   for (const [file, content] of Object.entries(files ?? {})) call('file', file, content);
   return call('open', text, name);
 };
-// Texts, as their place and size, and integers.
+// Calls a function of the solver. A text is passed as its address and size, an integer as it is.
 const call = (name, ...words) => {
   if (!api) fresh();
   const given = [], reserved = [];

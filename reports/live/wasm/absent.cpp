@@ -1,5 +1,5 @@
-// What the sources name and the page has not: the two references, and the clock of the processor. The page asks
-// for none of it; a call would be a fault, and says so.
+// Functions that the sources refer to and that are not part of the page: the two references, and the clock of the
+// processor. The page calls none of them; a call of a reference throws.
 #include <stdexcept>
 
 #include "compare/jobs/jobs.hpp"

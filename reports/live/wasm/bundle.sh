@@ -1,6 +1,6 @@
 #!/bin/sh
 # bundle.sh PAGE-FOLDER: the modules of the page as one script, in the order in which they need each other at the start.
-# Their names are of one scope, so that imports and the word export are left out (tests/live/lint.mjs checks them).
+# Their names share one scope, so that imports and the word export are left out (tests/live/lint.mjs checks them).
 set -eu
 page=$1
 echo "'use strict';"

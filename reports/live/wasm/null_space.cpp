@@ -1,4 +1,4 @@
-// recursive::null_space() by Eigen's sparse QR, in place of SuiteSparse's, which is not there as WebAssembly.
+// recursive::null_space() by Eigen's sparse QR, in place of SuiteSparse's, which has no WebAssembly.
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseQR>
 
