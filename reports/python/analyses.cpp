@@ -29,8 +29,7 @@ namespace py = pybind11;
 
 namespace {
 
-// Output of a command: what it prints, its text where it prints a document, what it
-// reports as errors.
+// Output of a command: standard output, the text of the result where a document is printed, errors.
 struct Output {
     int exit_code = reports::fine;
     std::string printed = {}, text = {}, errors = {};
@@ -53,6 +52,7 @@ Output run(std::vector<std::string> words, const compare::Progress& progress) {
 
 // ---- A candidate: a Python function as a leg.
 
+// The array that a candidate returned as a path. Throws TypeError and ValueError for another shape.
 EquilibriumPath path_of(const py::object& returned, const Model& model,
                         std::span<const double> parameters) {
     const auto array =

@@ -8,9 +8,9 @@ namespace elastocheck::python {
 // Adds to the module: run(words of the command line, progress) and judge(...), each of which returns
 // (exit code, what is printed, text beside a printed document, errors).
 void bind_analyses(pybind11::module_& module);
-// Figures of many variants of a scene, and what the study of them (package/study/) takes from the
-// program: its reader of YAML, its pages, its files.
+// Adds Variants: figures of many variants of a scene.
 void bind_variants(pybind11::module_& module);
+// Adds what a study of variants (package/study/) uses of the program: reader of YAML, pages, files.
 void bind_study(pybind11::module_& module);
 
 }  // namespace elastocheck::python

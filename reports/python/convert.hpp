@@ -1,4 +1,4 @@
-// Values of the product as Python objects, and Python's as those of the product.
+// Conversion between values of this program and of Python.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -20,9 +20,9 @@ pybind11::array matrix(std::vector<double> values, std::size_t columns);
 // The same [points × bodies × 7].
 pybind11::array poses(std::vector<double> values, std::size_t bodies);
 
-// Calls a Python function (what, done) from any thread; None: empty. What the function throws ends
-// the computation and arrives at the caller. The function outlives what this returns, and is not
-// copied, since that would need the lock of the interpreter.
+// A progress that calls a Python function (what, done), from any thread; empty for None. An exception of
+// the function ends the computation and arrives at the caller. The function has to outlive the progress;
+// it is not copied, since that would need the lock of the interpreter.
 compare::Progress progress_to(const pybind11::object& function);
 
 }  // namespace elastocheck::python

@@ -18,7 +18,7 @@ void raise(const char* kind, const char* what) {
     PyErr_SetString(errors.attr(kind).ptr(), what);
 }
 
-// In the order of main() of the command.
+// The catch clauses have the order of those in main() of the command.
 void translate(std::exception_ptr failure) {
     try {
         if (failure) std::rethrow_exception(failure);

@@ -1,10 +1,10 @@
-// Exceptions of the product as those of the Python package.
+// Exceptions of this program as those of the Python package.
 #pragma once
 
 namespace elastocheck::python {
 
-// From now on exceptions of the product arrive as the classes of elastocheck/_errors.py, with the
-// message of the command line.
+// Registers the translation of exceptions of this program to the classes of elastocheck/_errors.py, with
+// the messages of the command line.
 void translate_exceptions();
 
 }  // namespace elastocheck::python

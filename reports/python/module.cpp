@@ -1,4 +1,4 @@
-// The extension module elastocheck._core; elastocheck/__init__.py is what users see of it.
+// The extension module elastocheck._core, used by elastocheck/__init__.py.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 

@@ -8,12 +8,10 @@
 #include <limits>
 #include <utility>
 
-#include "compare/comparison/compliance.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/curve.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/document/inspection.hpp"
@@ -55,9 +53,9 @@ SharedScene read(const std::string& file, const reports::Settings& settings,
 
 SharedScene varied(const SceneOfFile& scene, const reports::Settings& settings) {
     reports::Settings all = scene.settings;
-    for (const Setting& one : settings) {
-        std::erase_if(all, [&](const Setting& old) { return old.path == one.path; });
-        all.push_back(one);
+    for (const Setting& setting : settings) {
+        std::erase_if(all, [&](const Setting& old) { return old.path == setting.path; });
+        all.push_back(setting);
     }
     return loaded(scene.file, std::move(all), scene.parsed);
 }
@@ -71,7 +69,7 @@ void append(std::vector<double>& poses, const Equilibrium& state) {
 std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& request) {
     const Model& model = scene->loaded.model;
     const compare::SolverSettings solver = reports::solver_of(request.solver);
-    const recursive::Options& how = solver.recursion;
+    const recursive::Options& recursion_options = solver.recursion;
     auto channels = scene->channels;
     if (request.characteristics)
         channels =
@@ -83,27 +81,28 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
     for (const std::string& name : request.branches)
         branches.push_back(reports::branch_named(model, name));
     if (request.branches.empty()) branches = model.branches;
-    Model limited;  // the limits read the branches only
-    limited.branches = branches;
-    reports::check_every(limited, how.steps, request.solver.every);
+    Model requested;  // the checks read the branches only
+    requested.branches = branches;
+    reports::check_every(requested, recursion_options.steps, request.solver.every);
     reports::check_memory(
-        limited, {.steps = how.steps,
-                  .every = request.solver.every,
-                  .channels = channels->size() + (request.states ? 7 * model.bodies.size() : 0)});
+        requested, {.steps = recursion_options.steps,
+                    .every = request.solver.every,
+                    .channels = channels->size() + (request.states ? 7 * model.bodies.size() : 0)});
     const bool is_recursive = solver.leg == compare::Leg::recursive;
     std::vector<BranchCurves> list;
     for (const Branch& branch : branches) {
         BranchCurves& curves = list.emplace_back();
         curves.branch = branch.name;
         curves.leg = solver.leg;
-        curves.method = is_recursive ? std::string(how.method.name) : name(solver.leg);
+        curves.method =
+            is_recursive ? std::string(recursion_options.method.name) : name(solver.leg);
         curves.unit = compare::unit_of(branch.unit);
         curves.channels = channels;
         curves.scene = scene;
         reports::SolvedBranch solved = reports::solve_branch(
             model, branch, *channels, solver,
             [&](const Equilibrium& state, compare::Row& row) {
-                if (request.states) append(row.values, state);  // taken off below
+                if (request.states) append(row.values, state);  // after the outputs, removed below
             },
             [&](compare::Row row) {
                 const auto outputs =
@@ -123,7 +122,7 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
 
 namespace {
 
-// As the CSV has it: neither an undefined value nor a failure is a number.
+// NaN for an undefined value (infinite), which is an empty cell of the CSV.
 double cell(double value) {
     return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
 }
@@ -168,10 +167,10 @@ std::string csv_of(const BranchCurves& curves, bool with_header) {
 }
 
 std::vector<std::string> errors_at_ends(const BranchCurves& curves) {
-    std::vector<std::string> all;
+    std::vector<std::string> errors;
     for (const auto& [side, state] : curves.ends)
-        all.push_back(reports::error_at_end(curves.scene->loaded.model, side, state));
-    return all;
+        errors.push_back(reports::error_at_end(curves.scene->loaded.model, side, state));
+    return errors;
 }
 
 SolveRequest request_of(std::string method, int every, reports::RecursionRequest recursion) {
@@ -303,8 +302,8 @@ void bind_scene(py::module_& module) {
         .def_property_readonly("settings",
                                [](const SceneOfFile& s) {
                                    py::dict settings;
-                                   for (const Setting& one : s.settings)
-                                       settings[py::str(one.path)] = one.value;
+                                   for (const Setting& setting : s.settings)
+                                       settings[py::str(setting.path)] = setting.value;
                                    return settings;
                                })
         .def("inspect",
@@ -342,10 +341,10 @@ void bind_scene(py::module_& module) {
                     const py::gil_scoped_release unlocked;
                     curves = solve(s, request);
                 }
-                py::list all;
-                for (BranchCurves& one : curves)
-                    all.append(std::make_shared<BranchCurves>(std::move(one)));
-                return all;
+                py::list list;
+                for (BranchCurves& of_branch : curves)
+                    list.append(std::make_shared<BranchCurves>(std::move(of_branch)));
+                return list;
             },
             py::arg("method"), py::arg("channels"), py::arg("steps"), py::arg("every"),
             py::arg("tolerance"), py::arg("order"), py::arg("expansions"), py::arg("arc_length"),

@@ -17,18 +17,19 @@ namespace elastocheck::python {
 
 struct SceneOfFile {
     std::string file;
-    reports::Settings settings;  // of its numbers, the later of two of one path applies
+    reports::Settings settings;  // of two with the same path the later one applies
     std::shared_ptr<const reader::ParsedScene> parsed;
     reports::LoadedScene loaded;
-    std::shared_ptr<const std::vector<compare::Channel>> channels;  // those without a request
+    std::shared_ptr<const std::vector<compare::Channel>>
+        channels;  // the default ones of a solution
 };
 using SharedScene = std::shared_ptr<const SceneOfFile>;
 
-// Throw as the reader and trimmed_and_compiled() do. `name`: of the file in messages, instead
-// of its path.
+// Reads, trims and compiles a scene. `name`: of the file in messages, instead of its path. Throws as the
+// reader and trimmed_and_compiled().
 SharedScene read(const std::string& file, const reports::Settings& settings,
                  const std::string& name = {});
-// The same text with these settings in addition.
+// The same scene with these settings in addition; the file is not read again. Throws likewise.
 SharedScene varied(const SceneOfFile& scene, const reports::Settings& settings);
 
 // Curves of a branch by one leg or method, as the rows of the CSV of `elastocheck solve`.
@@ -51,16 +52,16 @@ struct SolveRequest {
     reports::SolverRequest solver;
     std::vector<std::string> channels = {};  // names or patterns; none: as `elastocheck solve`
     std::vector<std::string> branches = {};  // names; none: all
-    bool characteristics = false;            // in place of them all K&C figures
+    bool characteristics = false;            // all K&C figures in place of `channels`
     bool states = false;                     // keep the poses
 };
-// Throws std::invalid_argument as the command does.
+// Curves of the requested branches. Throws std::invalid_argument as the command does.
 std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& request);
 
-// The state in mm and as a quaternion w, x, y, z; appends one point of BranchCurves::poses.
+// Appends a state to BranchCurves::poses: per body x, y, z [mm] and a quaternion w, x, y, z.
 void append(std::vector<double>& poses, const Equilibrium& state);
 
-// Adds Scene and Curve to the module.
+// Adds Scene and Curves to the module.
 void bind_scene(pybind11::module_& module);
 
 }  // namespace elastocheck::python

@@ -1,4 +1,4 @@
-// What the study in Python takes from the program: its reader of YAML, its results, its files.
+// Functions of this program for the study in Python: its reader of YAML, its results, its files.
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -25,16 +25,16 @@ using Columns = std::vector<std::tuple<std::string, std::string, std::string>>;
 
 namespace {
 
-struct Whole {  // what a cursor refers to
+struct ParsedFile {  // has to outlive its cursors
     std::string file;
     reader::Value tree;
     std::vector<Number> numbers = {};
 };
 struct Field {
-    std::shared_ptr<Whole> whole;
+    std::shared_ptr<ParsedFile> parsed;
     Cursor at;
 
-    Field with(const Cursor& other) const { return {whole, other}; }
+    Field with(const Cursor& other) const { return {parsed, other}; }
 };
 
 // Name, caption, columns (name, heading, digits), rows.
@@ -44,13 +44,13 @@ using ChartWords =
     std::tuple<std::string, std::string, std::string, std::string, std::vector<std::string>,
                std::string, std::string, std::vector<double>>;
 
-Table table_of(const TableWords& of) {
+Table table_of(const TableWords& words_of_table) {
     using enum compare::Digits;
     static const std::map<std::string, compare::Digits> digits{
         {"hidden", hidden}, {"words", words}, {"whole", whole},     {"given", given},
         {"size", size},     {"three", three}, {"percent", percent},
     };
-    const auto& [id, caption, columns, rows] = of;
+    const auto& [id, caption, columns, rows] = words_of_table;
     Table table{.rows = rows, .id = id, .caption = caption};
     for (const auto& [name, heading, shown] : columns)
         table.columns.push_back({.name = name,
@@ -97,8 +97,9 @@ void bind_study(py::module_& module) {
     // A value of a YAML file, with its path and line for messages: models/reader/document/cursor.hpp.
     py::class_<Field>(module, "Field")
         .def(py::init([](const std::string& text, const std::string& file) {
-                 const auto whole = std::make_shared<Whole>(file, reader::parse_yaml(text, file));
-                 return Field{whole, {&whole->tree, "", &whole->file, &whole->numbers}};
+                 const auto parsed =
+                     std::make_shared<ParsedFile>(file, reader::parse_yaml(text, file));
+                 return Field{parsed, {&parsed->tree, "", &parsed->file, &parsed->numbers}};
              }),
              py::arg("text"), py::arg("file"))
         .def("fail", [](const Field& f, const std::string& what) { f.at.fail(what); })

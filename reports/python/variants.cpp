@@ -38,7 +38,7 @@ std::vector<VariantFigure> figures_of(const Model& model, const FigureWords& wor
     return figures;
 }
 
-// Numbers of a scene by name, which take a value in each variant, and the figures of each.
+// Variants of a scene: numbers that take a value in each, and the figures that are computed.
 class Variants {
   public:
     Variants(SharedScene scene, std::vector<std::string> numbers, const FigureWords& figures)
@@ -47,15 +47,15 @@ class Variants {
           paths_(std::move(numbers)),
           figures_(figures_of(scene_->loaded.model, figures)),
           solver_(scene_->loaded.model, figures_) {
-        for (const Setting& one : scene_->settings) {
-            if (std::ranges::find(paths_, one.path) != paths_.end()) continue;
-            const auto number = find_number(scene_->loaded.scene, one.path);
+        for (const Setting& setting : scene_->settings) {
+            if (std::ranges::find(paths_, setting.path) != paths_.end()) continue;
+            const auto number = find_number(scene_->loaded.scene, setting.path);
             if (!number)
                 throw std::invalid_argument(
                     fmt::format("'{}' is set to a text; variants are those of a scene whose "
                                 "settings are numbers",
-                                one.path));
-            paths_.push_back(one.path);
+                                setting.path));
+            paths_.push_back(setting.path);
             settings_.push_back(number->value);
         }
         (void)reader::VariedScene(*scene_->parsed, paths_);  // throws for what is not a number
@@ -64,8 +64,8 @@ class Variants {
     std::size_t numbers() const { return varied_; }
     std::size_t figures() const { return figures_.size(); }
 
-    // Why there is no scene with these numbers, "" where there is; a length that vanishes is a
-    // matter of the variants.
+    // Why there is no valid scene with these numbers; "" if there is one, or if only a length vanishes,
+    // which is the outcome of a variant and not an error.
     std::string invalid(const std::vector<double>& values) const {
         try {
             (void)reader::VariedScene(*scene_->parsed, paths_).read(with_settings(values.data()));
@@ -76,18 +76,18 @@ class Variants {
         return {};
     }
 
-    // Rows of `values` [n × numbers], each with its figures; `values` outlives the call.
+    // The figures of n variants; `values` [n × numbers].
     std::vector<VariantFigures> solve(const double* values, std::size_t n, compare::Leg leg,
                                       int threads) const {
-        constexpr std::size_t at_once = 256;
+        constexpr std::size_t batch = 256;
         std::vector<VariantFigures> all(n);
         std::atomic<std::size_t> next = 0;
         const auto work = [&] {
             reader::VariedScene varied(*scene_->parsed, paths_);
-            for (std::size_t first; (first = next.fetch_add(at_once)) < n;)
-                solve_some(varied, values, first, std::min(first + at_once, n), leg, all);
+            for (std::size_t first; (first = next.fetch_add(batch)) < n;)
+                solve_batch(varied, values, first, std::min(first + batch, n), leg, all);
         };
-        const auto count = std::min(static_cast<std::size_t>(threads), n / at_once + 1);
+        const auto count = std::min(static_cast<std::size_t>(threads), n / batch + 1);
         compare::run_jobs(std::vector<compare::Job>(count, {"variants", work}),
                           static_cast<int>(count), {});
         return all;
@@ -123,8 +123,8 @@ class Variants {
         return std::nullopt;
     }
 
-    void solve_some(reader::VariedScene& varied, const double* values, std::size_t first,
-                    std::size_t end, compare::Leg leg, std::vector<VariantFigures>& all) const {
+    void solve_batch(reader::VariedScene& varied, const double* values, std::size_t first,
+                     std::size_t end, compare::Leg leg, std::vector<VariantFigures>& all) const {
         std::vector<Model> models;
         std::vector<std::size_t> rows;
         for (std::size_t k = first; k < end; ++k) {
@@ -155,8 +155,7 @@ compare::Leg leg_named(const std::string& method) {
         fmt::format("method '{}'; allowed: series, equilibrium, energy", method));
 }
 
-// Figures [n × figures] by numbers [n × numbers]; of each variant its outcome, the leg that its figures
-// are by, its reason.
+// (figures [n × figures], outcomes, legs, reasons) of n variants with numbers [n × numbers].
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 py::tuple solve_variants(const Variants& variants, const Numbers& array, const std::string& method,
                          int threads) {
@@ -175,16 +174,16 @@ py::tuple solve_variants(const Variants& variants, const Numbers& array, const s
     py::array_t<double> found({n, variants.figures()});
     py::list outcomes, legs, reasons;
     double* at = found.mutable_data();
-    for (const VariantFigures& one : all) {
-        at = std::ranges::copy(one.values, at).out;
-        outcomes.append(one.outcome);
-        legs.append(name(one.leg));
-        reasons.append(one.reason);
+    for (const VariantFigures& variant : all) {
+        at = std::ranges::copy(variant.values, at).out;
+        outcomes.append(variant.outcome);
+        legs.append(name(variant.leg));
+        reasons.append(variant.reason);
     }
     return py::make_tuple(found, outcomes, legs, reasons);
 }
 
-// Of the numbers of curves, whose tables may be in other files than the scene's.
+// Hash of the numbers of curves, whose tables may be in other files than the scene's.
 std::string hash_of_curves(const SceneOfFile& scene) {
     std::string bytes;
     const auto add = [&](const auto& numbers) {

@@ -98,13 +98,13 @@ class Solution(Mapping):
     """Curves of a scene by one leg or method, per branch: solution["travel"]["toe"].
 
     A branch has numpy arrays: `parameter`, an output by its name, `values` [points, outputs],
-    `states` [points, bodies, 7] if they were asked for; a value without a number is nan. A branch
+    `states` [points, bodies, 7] if they were requested; a value without a number is nan. A branch
     that ends early has the points up to there, `converged` is False, and `outcome` and `detail` say
     why.
     """
 
     def __init__(self, curves):
-        self._curves = {one.branch: one for one in curves}
+        self._curves = {branch.branch: branch for branch in curves}
 
     def __getitem__(self, branch):
         return self._curves[branch]
@@ -118,22 +118,22 @@ class Solution(Mapping):
     @property
     def converged(self):
         """Whether every branch was followed to its end."""
-        return all(one.converged for one in self._curves.values())
+        return all(curves.converged for curves in self._curves.values())
 
     @property
     def messages(self):
         """What the command prints on standard error: why branches end early."""
         lines = []
-        for one in self._curves.values():
-            if not one.converged:
-                lines.append(f"{one.method}: {one.outcome}: {one.detail}")
+        for curves in self._curves.values():
+            if not curves.converged:
+                lines.append(f"{curves.method}: {curves.outcome}: {curves.detail}")
         return lines
 
     @property
     def units(self):
         """The unit of every output, by its name."""
-        for one in self._curves.values():
-            return one.units
+        for curves in self._curves.values():
+            return curves.units
         return {}
 
     @property
@@ -144,7 +144,7 @@ class Solution(Mapping):
 
     def csv(self):
         """The text that `elastocheck solve` prints, digit for digit."""
-        return "".join(one.csv(k == 0) for k, one in enumerate(self._curves.values()))
+        return "".join(curves.csv(k == 0) for k, curves in enumerate(self._curves.values()))
 
     def frame(self):
         """The same as a pandas.DataFrame."""
@@ -152,12 +152,12 @@ class Solution(Mapping):
 
         names = self.columns
         parts = []
-        for one in self._curves.values():
-            table = pandas.DataFrame(one.values, columns=names[4:])
-            table.insert(0, "unit", one.unit)
-            table.insert(0, "parameter", one.parameter)
-            table.insert(0, "leg", one.leg)
-            table.insert(0, "branch", one.branch)
+        for curves in self._curves.values():
+            table = pandas.DataFrame(curves.values, columns=names[4:])
+            table.insert(0, "unit", curves.unit)
+            table.insert(0, "parameter", curves.parameter)
+            table.insert(0, "leg", curves.leg)
+            table.insert(0, "branch", curves.branch)
             parts.append(table)
         return pandas.concat(parts, ignore_index=True) if parts else pandas.DataFrame(columns=names)
 
@@ -165,9 +165,9 @@ class Solution(Mapping):
         return self.frame()._repr_html_()
 
     def __repr__(self):
-        lines = [f"{one.branch}: {len(one)} points by {one.method}"
-                 + ("" if one.converged else f", {one.outcome}: {one.detail}")
-                 for one in self._curves.values()]
+        lines = [f"{curves.branch}: {len(curves)} points by {curves.method}"
+                 + ("" if curves.converged else f", {curves.outcome}: {curves.detail}")
+                 for curves in self._curves.values()]
         return "\n".join(lines)
 
 
@@ -194,7 +194,7 @@ def _branches(self):
 
 
 def _outputs(self):
-    """The outputs that can be asked for, by name."""
+    """The outputs by name, also those that a solution has only on request."""
     return {output[0]: Output(*output) for output in self._outputs}
 
 
@@ -309,7 +309,7 @@ def run(command, *words, threads=0, progress=None, **options):
             line.append(option)
         elif value is not None and value is not False:
             several = isinstance(value, Iterable) and not isinstance(value, str)
-            line += [f"{option}={one}" for one in (value if several else [value])]
+            line += [f"{option}={item}" for item in (value if several else [value])]
     found = Result(*_core.run(line + ["--json"], progress))
     if found.exit_code == 2:
         raise ArgumentError(found.messages.removeprefix("elastocheck: ").strip())

@@ -25,11 +25,11 @@ BATCH = 256  # variants that are solved and recorded together; the unit that sha
 
 
 def _solved(solver, ks, numbers, witnesses):
-    """Rows of the ledger of these variants, and of the witnesses among them (positions)."""
+    """Rows of the ledger for the variants with the numbers `ks`, and for their `witnesses` (positions in `ks`)."""
     tables = []
     for at, leg in [(range(len(ks)), "series"), (witnesses, "equilibrium")]:
         values, outcomes, legs, reasons = solver.solve(numbers[at], leg, 1)
-        # Where SQLite stores a number otherwise: none for nan, and zero has no sign.
+        # As SQLite stores it: NULL for nan, and zero without a sign.
         stored = np.where(np.isnan(values), None, values + 0.0).tolist()
         tables.append([(ks[i], outcome, by, reason or None, *row) for i, outcome, by, reason, row in zip(at, outcomes, legs, reasons, stored)])
     return tables
@@ -50,8 +50,8 @@ def _by_worker(prepared, *batch):
 
 @contextlib.contextmanager
 def _solvers(study, threads, scheduler):
-    """What submits a batch, and how many are to be submitted at once: to threads here, or to the workers of a dask
-    cluster, where the batch of one that is killed is computed by another."""
+    """A function that submits a batch, and the number of batches to submit at once: to threads of this process, or to the
+    workers of a dask cluster, where the batch of a worker that is killed is computed by another."""
     if not scheduler:
         threads = threads or len(os.sched_getaffinity(0))
         with concurrent.futures.ThreadPoolExecutor(threads) as pool:
@@ -81,10 +81,11 @@ def _missing(ledger, count, shard):
 
 def _drawn(design, batches):
     """Each batch with the values of its variables; neighbours are drawn at once, which is faster."""
-    for _, some in itertools.groupby(batches, lambda ks: ks[0] // (16 * BATCH)):
-        some = list(some)
-        values = design.values(some[0][0], some[-1][-1] + 1)
-        yield from ((ks, values[ks - some[0][0]]) for ks in some)
+    for _, neighbours in itertools.groupby(batches, lambda ks: ks[0] // (16 * BATCH)):
+        neighbours = list(neighbours)
+        first = neighbours[0][0]
+        values = design.values(first, neighbours[-1][-1] + 1)
+        yield from ((ks, values[ks - first]) for ks in neighbours)
 
 
 def _compute(study, ledger, batches, solvers, progress, say):
@@ -120,8 +121,8 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
     Rows are kept in ledger.sqlite in the folder. `count` replaces that of the file; `scheduler`: address of a dask
     cluster; `shard` "K/N": a part, in a ledger of its own, and None is returned; `merge`: folders with ledgers of
     shards, whose rows are added, and nothing is computed; `show`: nothing is computed or written; `rare`: FORM and
-    importance sampling for every limit. `progress(what, done)`; `say` is told what the command prints to standard
-    error. Returns a Report. Throws SceneError, SheetError, FileError, ArgumentError.
+    importance sampling for every limit. `progress(what, done)`; `say` receives the lines that the command prints to
+    standard error. Returns a Report. Throws SceneError, SheetError, FileError, ArgumentError.
     """
     part, folder = _shard(shard), os.fspath(folder)
     if show and (merge or shard):

@@ -22,13 +22,13 @@ class Design:
         self.factor = None if study.correlation is None else np.linalg.cholesky(study.correlation)
 
     def values(self, first, end):
-        """Of the variants from `first` to before `end` [variants x variables], in the units of the scene file."""
+        """Values of the variants from `first` to before `end` [variants x variables], in the units of the scene file."""
         study, k = self.study, np.arange(first, end)
         if study.kind == "list":
             return study.table[first:end]
         if study.kind == "grid":
-            at = np.unravel_index(k, [len(v.numbers) for v in study.variables])
-            return np.column_stack([np.array(v.numbers)[i] for v, i in zip(study.variables, at)])
+            places = np.unravel_index(k, [len(v.numbers) for v in study.variables])
+            return np.column_stack([np.array(v.numbers)[i] for v, i in zip(study.variables, places)])
         u = x = self.points(k)
         if self.factor is not None:  # a normal copula
             x = np.clip(ndtr(ndtri(u) @ self.factor.T), _LEAST, _MOST)
@@ -37,13 +37,15 @@ class Design:
                                 for j, v in enumerate(study.variables)])
 
     def points(self, k):
-        """Of the unit cube, before the distributions: in each block a, b, then a with one coordinate after the other from b."""
+        """Points of the unit cube for the variants k [variants x variables]; in each block of a design for Sobol indices a, b,
+        then a with one coordinate after the other from b."""
         block, place = np.divmod(k, self.study.block)
         both, d = self._bases(int(block[0]), int(block[-1]) + 1)[block - block[0]], len(self.study.variables)
         from_b = (place == 1)[:, None] | (place[:, None] == np.arange(d) + 2)
         return np.clip(np.take_along_axis(both, np.arange(d) + np.where(from_b, self.dimension - d, 0), axis=1), _LEAST, _MOST)
 
     def _bases(self, first, end):
+        """Points a, and b beside it, of the blocks from `first` to before `end` [blocks x dimension]."""
         if self.study.kind == "latin_hypercube":
             return self.cube[first:end]
         if self.study.kind == "monte_carlo":
@@ -51,7 +53,7 @@ class Design:
             return np.random.Generator(numbers).random((end - first, self.dimension))
         if first < self.sobol.num_generated:
             self.sobol.reset()
-        with warnings.catch_warnings():  # that a number of points is not a power of 2
+        with warnings.catch_warnings():  # SciPy warns that the number of points is not a power of 2
             warnings.simplefilter("ignore", UserWarning)
             while first > self.sobol.num_generated:  # fast_forward() of SciPy 1.10 has 32 bits only
                 self.sobol.random(min(first - self.sobol.num_generated, 65536))

@@ -14,7 +14,7 @@ from elastocheck._errors import ArgumentError, FileError, SheetError
 from elastocheck.study.design import Design
 
 MOST = 1_000_000_000  # variants
-# Of a distribution: its numbers, how it is described by them, SciPy's.
+# Kind of distribution: names of its numbers, its description by them, SciPy's distribution of them.
 DISTRIBUTIONS = {
     "normal": (["mean", "sd"], "normal, {:g}, sd {:g}".format, stats.norm),
     "uniform": (["low", "high"], "uniform, {:g} to {:g}".format, lambda low, high: stats.uniform(low, high - low)),
@@ -47,7 +47,7 @@ class Variable:
 
     @property
     def ends(self):
-        """Of a bounded distribution; the mean of an unbounded one."""
+        """Ends of a bounded distribution, or its values; the mean of an unbounded one."""
         bounds = self.numbers[{"normal": 2, "truncated_normal": 2}.get(self.kind, 0):]
         return (min(bounds), max(bounds)) if bounds else self.numbers[:1]
 
@@ -104,7 +104,7 @@ def _short_hash(content):
 
 
 def scene_hash(file, scene):
-    """Of a scene and of the tables of curves in other files."""
+    """Hash of a scene file and of its curves, whose tables may be in other files."""
     with open(file, "rb") as text:
         return _short_hash(text.read() + _core.hash_of_curves(scene).encode())
 
@@ -147,7 +147,7 @@ class Study:
             self.solver = _core.Variants(self.scene, self.paths, self.words)
         except ArgumentError as error:
             figures.fail(str(error))
-        # Each variable at its ends, the others as written; tails and combinations are rows.
+        # The scene has to be valid with each variable at its ends; a variant that is not valid is a row with a reason.
         self.nominal = np.array([[v.nominal for v in self.variables]])
         for j, end in ((j, end) for j, v in enumerate(self.variables) for end in v.ends):
             values = self.nominal.copy()
@@ -169,7 +169,7 @@ class Study:
         if path.startswith("branches."):
             at.fail(path + ": branches are the same for all variants; allowed: other numbers")
         both = path.split("@")[0]
-        for other, by in self.varied_by.items():  # of both sides, and of one of them: once
+        for other, by in self.varied_by.items():  # the same number, or that of both sides and of one of them
             if other == path or (other.split("@")[0] == both and both in (other, path)):
                 at.fail(f"{path} is varied by '{by}' too")
         self.varied_by[path] = variable
@@ -177,11 +177,11 @@ class Study:
     def _variable(self, name, at):
         known, variable, scale = self.scene.numbers, Variable(name), at.get("scale")
         at.only([*filter(None, DISTRIBUTIONS), "scale"])
-        for one in (scale.items("patterns") if scale.is_list else [scale]) if scale else ():
-            pattern = one.text("a number of the scene or a pattern with *")
-            for path in fnmatch.filter(known, pattern) or one.fail(
+        for entry in (scale.items("patterns") if scale.is_list else [scale]) if scale else ():
+            pattern = entry.text("a number of the scene or a pattern with *")
+            for path in fnmatch.filter(known, pattern) or entry.fail(
                     f"the scene has no number '{pattern}'" + _core.did_you_mean(pattern, list(known), "numbers")):
-                self._claim(one, path, name)
+                self._claim(entry, path, name)
                 variable.scaled[path] = known[path]
         if not scale:
             variable.nominal, variable.unit = self.scene.number(name) or at.fail(
@@ -301,7 +301,8 @@ class Study:
 
     @functools.cached_property
     def identity(self):
-        """Of all that a row depends on: not of the number of variants, but of a Latin hypercube's, nor of the limits."""
+        """Hashes of all that a row depends on; that is neither the limits nor, but for a Latin hypercube, the number of
+        variants."""
         parts = [[(v.name, v.kind, v.numbers, list(v.scaled)) for v in self.variables],
                  self.correlation is not None and self.correlation.tolist(), self.kind, self.seed, self.indices,
                  self.witness, self.words, self.kind == "latin_hypercube" and self.count,

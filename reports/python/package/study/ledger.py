@@ -20,7 +20,7 @@ TABLES = ("variants", "witnesses")
 
 
 def checksum(row):
-    """Of the content of a row (k, outcome, method, reason, figures...), its types included."""
+    """Checksum of the content of a row (k, outcome, method, reason, figures...), its types included."""
     content = marshal.dumps(row, 2)  # the last version in which equal values have equal bytes
     return int.from_bytes(hashlib.blake2b(content, digest_size=8).digest(), "little", signed=True)
 
@@ -113,7 +113,7 @@ class Ledger:
                                 f"another {what} needs another folder")
 
     def add(self, *of_tables):
-        """Rows of variants and of witnesses, without checksums, in one transaction."""
+        """Adds rows of variants and of witnesses, without checksums, in one transaction."""
         with self.base:
             for table, rows in zip(TABLES, of_tables):
                 self._insert(table, [(*row, checksum(row)) for row in rows])
@@ -122,7 +122,7 @@ class Ledger:
         self.base.executemany(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * (self.figures + 5))})", rows)
 
     def merge(self, other):
-        """Rows of another ledger of this study that are not here yet; one with other values is an error."""
+        """Adds the rows of another ledger of this study that are not here yet; one with other values is an error."""
         self.base.execute("ATTACH ? AS other", (other.file,))
         with self.base:
             for table in TABLES:
@@ -138,19 +138,19 @@ class Ledger:
         return has
 
     def values(self, j, count, table="variants"):
-        """Of one figure, by variant; nan where there is none."""
+        """Values of figure j by variant; nan where there is none."""
         values, f = np.full(count, np.nan), f"f{j + 1}"
         there = self._columns(f"SELECT k, {f} FROM {table} WHERE k < ? AND {f} IS NOT NULL", "i8,f8", count)
         values[there["f0"]] = there["f1"]
         return values
 
     def content_hash(self, count):
-        """Of the checksums of all rows of variants below `count`: equal for equal content."""
+        """Hash of the checksums of all rows of variants below `count`: equal for equal content."""
         content = hashlib.blake2b(digest_size=8)
         for table in TABLES:
             content.update(self._columns(f"SELECT checksum FROM {table} WHERE k < ? ORDER BY k", "i8", count).tobytes())
         return content.hexdigest()
 
     def _columns(self, sql, types, *values):
-        """Of numbers, f0, f1, ... of a structured array."""
+        """The columns of a query, which are numbers, as the fields f0, f1, ... of a structured array."""
         return np.fromiter(self.base.execute(sql, values), np.dtype([(f"f{j}", t) for j, t in enumerate(types.split(","))]))

@@ -27,8 +27,8 @@ KINDS = {"statistics.json": ("statistics of a study", '{\n "schema": "elastochec
          "csv": ("variants", "variant,outcome,"), "hdf5": ("variants", b"\x89HDF")}
 
 
-def heading(of):
-    return f"{of.name} [{of.unit}]" if of.unit else of.name
+def heading(quantity):
+    return f"{quantity.name} [{quantity.unit}]" if quantity.unit else quantity.name
 
 
 def _table(name, rows, caption):
@@ -43,7 +43,7 @@ class Report(Result):
     `exit_code` 0: every variant has a row; 3: some have none, none is solved, or witnesses disagree: then it is false.
     """
 
-    def __init__(self, study, ledger, reproduce="", rare=(), left=0):
+    def __init__(self, study, ledger, reproduce="", rare=(), missing=0):
         self.study, self.ledger, self.content, count = study, ledger, ledger.content_hash(study.count), study.count
         groups = ledger.rows("SELECT outcome, count(*), sum(method != 'series') FROM variants WHERE k < ? GROUP BY outcome", count)
         self.outcomes = {name: sum(rows for outcome, rows, _ in groups if outcome == name) for name in OUTCOMES}
@@ -53,7 +53,7 @@ class Report(Result):
         with warnings.catch_warnings():  # of a single value, of shares of 0 and 1
             warnings.simplefilter("ignore", RuntimeWarning)
             rows, reasons, charts = self._rows(rare)
-        reasons += [f"{left} variants are missing"] if left else []
+        reasons += [f"{missing} variants are missing"] if missing else []
         reasons += [] if self.outcomes["solved"] else ["no variant is solved"]
         captions = {"variables": "Variables", "figures": "Figures", "sobol": "Shares of the variance (Sobol indices)",
                     "rare": "Rare failures", "witnesses": f"Every {study.witness} variants by the equilibrium leg too",
@@ -69,7 +69,7 @@ class Report(Result):
         super().__init__(3 if reasons else 0, self.printed, self.found.text, "")
 
     def _rows(self, rare):
-        """Of every table, reasons against the verdict, charts."""
+        """Rows of every table, reasons against the verdict, charts."""
         study, ledger, count, design = self.study, self.ledger, self.study.count, Design(self.study)
         rows = {name: [] for name in ("figures", "sobol", "witnesses", "correlations", "histograms")} | {"rare": list(rare)}
         rows["variables"] = [{"variable": v.name, "unit": v.unit, "design": v.nominal, "distribution": str(v),
@@ -83,8 +83,8 @@ class Report(Result):
         varied, reasons, charts = sample.set_axis(study.names, axis=1), [], []
         nominal = study.solver.solve(study.numbers(study.nominal), "series", 1)[0][0]
         for j, figure in enumerate(study.figures):
-            def chart(kind, title, table, x, y, axis="", marks=(), of=figure.name):
-                charts.append((kind, title, table, x, y, of, axis, marks))
+            def chart(kind, title, table, x, y, axis="", marks=(), only=figure.name):
+                charts.append((kind, title, table, x, y, only, axis, marks))
 
             values = ledger.values(j, count)
             drawn = independent(study, values)
@@ -133,7 +133,7 @@ class Report(Result):
 
 
 def frames(report, at_once):
-    """pandas.DataFrames with a row for each variant, so many variants in each."""
+    """pandas.DataFrames with a row for each variant, `at_once` variants in each."""
     study, design = report.study, Design(report.study)
     figures = "".join(", f{} AS '{}'".format(j + 1, heading(f).replace("'", "''")) for j, f in enumerate(study.figures))
     for first in range(0, study.count, at_once):
@@ -158,7 +158,7 @@ def _write_hdf5(tables, file):
 
 
 def write_rows(report, file, kind):
-    """As "csv" or "hdf5"; the file is replaced when it is complete."""
+    """Writes a row for each variant as "csv" or "hdf5"; the file is replaced when it is complete."""
     try:
         tables = frames(report, at_once=16384)
         if kind == "hdf5":

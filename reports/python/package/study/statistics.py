@@ -27,12 +27,12 @@ def percentile_ranks(count, share):
 
 
 def independent(study, values):
-    """In a design for Sobol indices those of the variants a and b of each block."""
+    """Values of independent variants: in a design for Sobol indices, of the variants a and b of each block."""
     return values[np.arange(len(values)) % study.block < 2] if study.indices else values
 
 
 def figure_row(study, figure, values, design):
-    """Of one figure: `values` in the order of the variants from 0, nan where there is none; `design` of the scene."""
+    """The row of a figure: `values` in the order of the variants from 0, nan where there is none; `design`: of the scene."""
     drawn = independent(study, values)
     x = np.sort(drawn[np.isfinite(drawn)])
     n, outside = len(x), int(np.sum((x < figure.low) | (x > figure.high)))
@@ -68,8 +68,8 @@ def sobol_rows(study, figure, values):
     shares[:, :len(exchanged)] = 1 - shares[:, :len(exchanged)]
     low, high = np.quantile(shares[1:], [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
     return [{"figure": figure.name, "variable": variable.name}
-            | {name + of: x[j + place] for name, place in [("first", 0), ("total", len(exchanged))]
-               for of, x in [("", shares[0]), (" from", low), (" to", high)]}
+            | {name + end: x[j + place] for name, place in [("first", 0), ("total", len(exchanged))]
+               for end, x in [("", shares[0]), (" from", low), (" to", high)]}
             | {"blocks": len(a), "left out": len(whole) - len(a)} for j, variable in enumerate(study.variables)]
 
 
@@ -102,10 +102,10 @@ def rare_rows(study, threads=0, samples=4096):
         def values(x, j=j):
             return study.solver.solve(study.numbers(np.array(x)), "series", threads)[0][:, j:j + 1]
 
-        def rates(x, of=values):
-            return (of(np.array(x) + np.diag(steps)) - of(np.array(x) - np.diag(steps))) / (2 * steps[:, None])
+        def rates(x, f=values):
+            return (f(np.array(x) + np.diag(steps)) - f(np.array(x) - np.diag(steps))) / (2 * steps[:, None])
 
-        function = ot.PythonFunction(len(steps), 1, func=lambda x, of=values: of([x])[0], func_sample=values, gradient=rates)
+        function = ot.PythonFunction(len(steps), 1, func=lambda x, f=values: f([x])[0], func_sample=values, gradient=rates)
         for limit, beyond, holds in [(figure.low, "below", ot.Less()), (figure.high, "above", ot.Greater())]:
             if not math.isfinite(limit):
                 continue
