@@ -1,5 +1,5 @@
-# Writes OUTPUT: FILES under FOLDER by their names without SUFFIX, as text in the program: embedded_WHAT. The list is
-# part of the command, so that a file that comes or goes is noticed however old it is.
+# Writes the header OUTPUT with embedded_WHAT: the texts of FILES by their names under FOLDER without SUFFIX. The list of
+# files is part of the command, so that OUTPUT is made again when a file is added or removed.
 cmake_minimum_required(VERSION 3.25)
 set(entries "")
 foreach(file IN LISTS FILES)
