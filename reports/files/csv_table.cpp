@@ -7,8 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "elastocheck/read_scene.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/reader.hpp"
 #include "models/reader/tables/sheet.hpp"
 
 namespace elastocheck::reports {
