@@ -1,13 +1,15 @@
 // Linear response (compliance) of an equilibrium to small disturbances: result of every leg.
 #pragma once
 
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "elastocheck/equilibrium_path.hpp"
-#include "elastocheck/mechanism.hpp"
-#include "elastocheck/scene.hpp"
+#include "elastocheck/model.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck {
 
@@ -21,6 +23,37 @@ struct UnitWrench {
 // A disturbance, all else on the branch unchanged: a wrench, or the offset of a driven joint by one
 // unit [m, rad].
 using Disturbance = std::variant<UnitWrench, Motion>;
+
+// Throws std::invalid_argument where a disturbance does not act on the model.
+inline void check(const Model& model, std::span<const Disturbance> disturbances) {
+    const auto require = [](bool met, const char* what) {
+        if (!met) throw std::invalid_argument(what);
+    };
+    const auto check_one =
+        overloaded{[&](const UnitWrench& wrench) {
+                       require(static_cast<std::size_t>(wrench.at.body) < model.bodies.size(),
+                               "a disturbance acts on no body of the model");
+                   },
+                   [&](const Motion& motion) {
+                       const auto joint = static_cast<std::size_t>(motion.joint);
+                       require(joint < model.joints.size() && model.joints[joint].driven >= 0,
+                               "a disturbance drives a joint without offset, length or angle");
+                   }};
+    for (const Disturbance& disturbance : disturbances) std::visit(check_one, disturbance);
+}
+
+// "a wrench on 'knuckle'", "moving 'rack'"
+inline std::string name_of(const Model& model, const Disturbance& disturbance) {
+    const auto quoted = [](const auto& list, int k) {
+        return "'" + list[static_cast<std::size_t>(k)].name + "'";
+    };
+    return std::visit(
+        overloaded{
+            [&](const UnitWrench& w) { return "a wrench on " + quoted(model.bodies, w.at.body); },
+            [&](const Motion& m) { return "moving " + quoted(model.joints, m.joint); },
+        },
+        disturbance);
+}
 
 // First-order displacement of a body: dr of its origin, rotation dpi about ground axes.
 struct Increment {
