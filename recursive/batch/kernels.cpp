@@ -130,15 +130,15 @@ Factors reserve_factors(const Elimination& order) {
     return lu;
 }
 
-double log_determinant(const Factors& lu, int at) {
+double log_determinant(const Factors& lu, int lane) {
     double sum = 0;
-    for (const Lanes& inverse : lu.inverse) sum -= std::log2(std::abs(inverse[at]));
+    for (const Lanes& inverse : lu.inverse) sum -= std::log2(std::abs(inverse[lane]));
     return sum;
 }
 
 }  // namespace elastocheck::recursive::batch
 
-// The rest of the series in this arithmetic.
+// Explicit instantiations of the series for Lanes.
 namespace elastocheck::recursive::series {
 template struct Equations<batch::Lanes>;
 template Equations<batch::Lanes> equations<batch::Lanes>(const Model&, const Branch&, int, Drive);

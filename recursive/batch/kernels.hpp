@@ -1,7 +1,7 @@
 // The arithmetic of four variants at once: coefficients of the series, elimination, substitution.
 //
-// Each function is compiled for processors with AVX2 and for all others of the baseline. The program
-// chooses when it starts. Both give the same digits.
+// Each function is compiled for processors with AVX2 and for all others of the baseline. The
+// program chooses when it starts. Both give the same digits.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@
 
 namespace elastocheck::recursive::batch {
 
-// Chooses anew, for tests and for tools that do not know these instructions. Returns whether AVX2 is
-// used. Not thread-safe.
+// Uses AVX2 if it is wanted and the processor has it; for tests, and for tools that do not know
+// these instructions. Returns whether AVX2 is used. Not thread-safe.
 bool use_avx2(bool wanted);
 
 // As series::evaluate.
@@ -35,7 +35,7 @@ Factors reserve_factors(const Elimination& order);
 // Eliminates in the given order. A zero pivot leaves factors that are not finite.
 void eliminate(Factors& lu);
 // log₂ of |determinant|, one lane.
-double log_determinant(const Factors& lu, int at);
+double log_determinant(const Factors& lu, int lane);
 // Solves A x = b with the last factors.
 void solve(Factors& lu, const Lanes* b, Lanes* x);
 

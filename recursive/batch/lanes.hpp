@@ -2,8 +2,8 @@
 //
 // Templates of the formula, the linear algebra and the power series that do not branch on a value
 // take it in place of double. Each lane is computed by the same operations in the same order as a
-// double, so that a variant's result does not depend on its neighbours, nor on the instructions that
-// the processor has (AVX: four lanes in one; SSE2: two by two; no fused multiply-add).
+// double, so that a variant's result does not depend on its neighbours, nor on the instructions
+// that the processor has (AVX: four lanes in one; SSE2: two by two; no fused multiply-add).
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +21,8 @@ struct Lanes {
     Lanes() = default;
     Lanes(double all) : v{all, all, all, all} {}  // NOLINT: implicit, as of an int to a double
     explicit Lanes(const Register& of) : v(of) {}
-    // User-provided, so that it is passed by reference whatever the target of a function is: callers
-    // with and without AVX would pass a register in different ways.
+    // User-provided, so that it is passed by reference whatever the target of a function is:
+    // callers with and without AVX would pass a register in different ways.
     Lanes(const Lanes& other) : v(other.v) {}
     Lanes& operator=(const Lanes& other) {
         v = other.v;
@@ -54,9 +54,9 @@ struct Lanes {
     friend Lanes operator-(const Lanes& a) { return Lanes(-a.v); }
 };
 
-// Value of one lane.
-inline double lane(const Lanes& all, int at) { return all.v[at]; }
-inline void set_lane(Lanes& all, int at, double value) { all.v[at] = value; }
+// As for a double in series/taylor.hpp.
+inline double lane(const Lanes& all, int number) { return all.v[number]; }
+inline void set_lane(Lanes& all, int number, double value) { all.v[number] = value; }
 inline bool is_zero(const Lanes& all) {
     return all.v[0] == 0 && all.v[1] == 0 && all.v[2] == 0 && all.v[3] == 0;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recursive/diagnosis/length.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/series/polynomial.hpp"
@@ -14,12 +14,13 @@
 
 namespace elastocheck::recursive::batch {
 namespace {
-// Relative correction of x_1 above which all coefficients of a lane are corrected. The scalar path
-// does so from 1e-13 on, which costs half as much again; x_1 itself is always corrected here, and of
-// the higher orders, a fraction of the travel, 3e-12 is below the tolerance of the series.
+// Relative correction of x_1 above which all coefficients of a lane are corrected, which costs half
+// an expansion more. The scalar path does so from 1e-13 on. Here x_1 itself is always corrected,
+// and 3e-12 of the higher orders, a fraction of the travel, is below the tolerance of the series.
 constexpr double loses_digits = 30 * series::loses_digits;
 
-void go(SteppingState& s, Drive drive, double to) {
+// Sets the parameter of the equations, t or a, and the inputs there.
+void set_parameter(SteppingState& s, Drive drive, double to) {
     go_to(s, drive == Drive::start ? Parameters{to, 0} : Parameters{1, to});
     s.a = s.parameters.a;
 }
@@ -30,16 +31,16 @@ void move_to(Slot& slot, Drive drive, double tau) {
     series::horner(slot.c.x, tau, slot.x);
     series::displace(slot.from, slot.x, s.q);
     s.lambda = slot.x.tail(s.m());
-    go(s, drive, series::polynomial(slot.c.load, tau));
+    set_parameter(s, drive, series::polynomial(slot.c.load, tau));
 }
 
-// The deformations of the curves, as polynomials of the last expansion.
-void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int at) {
+// Reads the coefficients of the curves' deformations in the last expansion.
+void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int lane) {
     slot.deformations.resize(e.order() + 1, static_cast<Eigen::Index>(slot.curves.size()));
     for (std::size_t c = 0; c < slot.curves.size(); ++c)
         for (int k = 0; k <= e.order(); ++k)
             slot.deformations(k, static_cast<Eigen::Index>(c)) =
-                lane(series::deformation(e, slot.curves[c].elastic, slot.curves[c].axis, k), at);
+                series::deformation(e, slot.curves[c].elastic, slot.curves[c].axis, k)[lane];
 }
 
 }  // namespace
@@ -53,8 +54,8 @@ Pack::Pack(const Model& model, const Analysis& analysis, const BatchOptions& bat
     const SaddlePoint<double>& system = design.system;
     std::vector<bool> covered(static_cast<std::size_t>(system.M.part_at(system.m, 0)), false);
     for (const int source : system.lu.source)
-        if (const auto at = static_cast<std::size_t>(source); at < covered.size())  // else border
-            covered[at] = true;
+        if (const auto k = static_cast<std::size_t>(source); k < covered.size())  // else border
+            covered[k] = true;
     for (std::size_t k = 0; k < covered.size(); ++k)
         if (!covered[k]) outside.push_back(static_cast<int>(k));
     for (std::size_t k = 0; k < model.branches.size(); ++k) {
@@ -101,9 +102,9 @@ void Pack::follow(std::span<const Model* const> variants) {
     for (std::size_t group = 0; group < groups.size(); ++group) follow_group(group);
 }
 
-// The state at the design position, and what belongs to it.
-void Pack::prepare(int at, const Branch& branch) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
+// Sets the lane to the design position of its variant: state, inputs, residuals, matrix.
+void Pack::prepare(int lane, const Branch& branch) {
+    Slot& slot = slots[static_cast<std::size_t>(lane)];
     slot.branch = branch;
     if (!slot.s) slot.s = std::make_unique<SteppingState>(slot.model, slot.branch, design);
     SteppingState& s = *slot.s;
@@ -125,22 +126,16 @@ void Pack::prepare(int at, const Branch& branch) {
     external_force<double>(s.model, undriven, s.inputs, s.q, s.start.R_d);
     s.start.R_d -= elastic_force<double>(s.model, s.inputs, s.q);
     s.start.Phi_d = s.work.Phi;
-    // A residual that is rounding of coordinates, or of stiffness times them, counts as zero.
-    const double rounding =
-        10 * std::numeric_limits<double>::epsilon() * (s.setup.length + reach(s.q));
-    const auto largest_of = [](const Vector<double>& v) {
-        return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
-    };
-    slot.at_rest = largest_of(s.start.R_d.cwiseQuotient(s.system.weight.head(s.n()))) <=
-                       rounding * stiffest(s.system.M) &&
-                   largest_of(s.work.Phi) <= rounding;
+    const double size = s.setup.length + reach(s.q);
+    slot.at_rest = is_at_rest(s.system, s.start.R_d, s.work.Phi,
+                              10 * std::numeric_limits<double>::epsilon() * size);
     if (!s.start.R_d.allFinite() || !s.work.Phi.allFinite()) slot.inside = false;
 }
 
 void Pack::follow_group(std::size_t group) {
     const std::vector<std::size_t>& branches = groups[group];
     bool settles = false;
-    each(inside(), [&](Slot& slot, int at) {
+    each(inside(), [&](Slot& slot, int lane) {
         const Branch& front = slot.model.branches[branches.front()];
         slot.inside = has_energy(slot.model, front);
         for (const std::size_t k : branches) {
@@ -148,7 +143,7 @@ void Pack::follow_group(std::size_t group) {
             slot.inside = slot.inside && series::same_drivers(front, branch) && branch.to != 0 &&
                           std::isfinite(branch.to);
         }
-        if (slot.inside) prepare(at, front);
+        if (slot.inside) prepare(lane, front);
         if (slot.inside) settles = settles || !slot.at_rest || !starts_as_drawn(front);
     });
     if (settles) {
@@ -162,62 +157,62 @@ void Pack::follow_group(std::size_t group) {
     solve_branch(group, Drive::rate, !settles);
 }
 
-// The pieces of the curves of a lane, in the equations and the inputs.
-void Pack::use_pieces(series::Equations<Lanes>& e, int at) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
-    for (const series::Followed& f : slot.curves) {
+// Writes the present pieces of a lane's curves into the equations and the inputs.
+void Pack::use_pieces(series::Equations<Lanes>& e, int lane) {
+    Slot& slot = slots[static_cast<std::size_t>(lane)];
+    for (const series::CurvePiece& f : slot.curves) {
         const auto piece = static_cast<std::size_t>(f.piece);
         series::CubicSeries<Lanes>& cubic = series::cubic_of(e, f.elastic, f.axis);
-        for (std::size_t k = 0; k < 4; ++k) set_lane(cubic.c[k], at, f.curve->pieces[piece][k]);
-        set_lane(cubic.about, at, f.curve->knots[piece == 0 ? 0 : piece - 1]);
-        series::follow_on(f, slot.s->inputs);
+        for (std::size_t k = 0; k < 4; ++k) set_lane(cubic.c[k], lane, f.curve->pieces[piece][k]);
+        set_lane(cubic.about, lane, f.curve->knots[piece == 0 ? 0 : piece - 1]);
+        series::set_piece(f, slot.s->inputs);
     }
 }
 
 void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
-                           const std::vector<LaneEnds>& to) {
-    each(inside(), [&](Slot& slot, int) { go(*slot.s, drive, 0); });
+                           const std::vector<LaneEnds>& ends) {
+    each(inside(), [&](Slot& slot, int) { set_parameter(*slot.s, drive, 0); });
     if (e.curved) {
         each(inside(),
-             [&](Slot& slot, int at) { series::begin(e, slot.s->q, slot.s->lambda, 0, at); });
+             [&](Slot& slot, int lane) { series::begin(e, slot.s->q, slot.s->lambda, 0, lane); });
         evaluate(e, {0, series::Pass::known});
-        each(inside(), [&](Slot& slot, int at) {
-            for (series::Followed& f : slot.curves)
-                f.piece = piece_at<double>(*f.curve,
-                                           lane(series::deformation(e, f.elastic, f.axis, 0), at));
-            use_pieces(e, at);
+        each(inside(), [&](Slot& slot, int lane) {
+            for (series::CurvePiece& f : slot.curves)
+                f.piece =
+                    piece_at<double>(*f.curve, series::deformation(e, f.elastic, f.axis, 0)[lane]);
+            use_pieces(e, lane);
         });
     }
-    each(inside(), [&](Slot& slot, int at) {
+    each(inside(), [&](Slot& slot, int lane) {
         SteppingState& s = *slot.s;
-        for (const auto& end : to) {
-            go(s, drive, end[static_cast<std::size_t>(at)]);
+        for (const auto& end : ends) {
+            set_parameter(s, drive, end[static_cast<std::size_t>(lane)]);
             slot.inside = slot.inside && !(drive == Drive::start
                                                ? loads_idle_mode(s)
                                                : check_idle_load_here(s, 0) != Outcome::converged);
         }
-        go(s, drive, 0);
+        set_parameter(s, drive, 0);
         if (!slot.inside) return;
-        e.curved ? assemble(at) : load_matrix(at);  // without curves that of prepare()
+        e.curved ? assemble(lane) : load_matrix(lane);  // without curves that of prepare()
     });
     // The first elimination gives the held directions of the variant, the second holds them.
     if (design.system.held.size() > 0) {
         factorise(inside(), false);
-        each(inside(), [&](Slot&, int at) { load_matrix(at); });
+        each(inside(), [&](Slot&, int lane) { load_matrix(lane); });
     }
     factorise(inside(), true);
 }
 
-// The polynomial about the states of the lanes, with the factors of the last elimination.
+// Computes the polynomials about the states of the lanes, with the factors of the last elimination.
 void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, Drive drive,
                   const LaneEnds& to) {
     const SaddlePoint<double>& saddle_point = design.system;
     const int n = saddle_point.n, m = saddle_point.m;
-    each(inside(), [&](Slot& slot, int at) {
+    each(inside(), [&](Slot& slot, int lane) {
         SteppingState& s = *slot.s;
-        series::begin(e, s.q, s.lambda, series::parameter(s, drive), at);
+        series::begin(e, s.q, s.lambda, series::parameter(s, drive), lane);
         drive_at(s, drive, 1.0, s.q, s.lambda);
-        load_rhs(at);
+        load_rhs(lane);
     });
     evaluate(e, {0, series::Pass::known});
     solve(lu, rhs.data(), solution.data());
@@ -228,7 +223,7 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
         c.x(n + row, 0) = e.lambda[static_cast<std::size_t>(row)].c[0];
     c.load.setZero();
     c.load[0] = e.a.c[0];
-    c.load[1] = each_lane([&](int at) { return to[static_cast<std::size_t>(at)]; });
+    c.load[1] = each_lane([&](int lane) { return to[static_cast<std::size_t>(lane)]; });
     for (int k = 0; k < n + m; ++k) c.x(k, 1) = c.load[1] * c.unit[k];
     x = c.x.col(1);
     Lanes corrected = 0;  // 1 in lanes that lose digits, else 0
@@ -253,10 +248,10 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
                     correction += x[k] * x[k];
                     whole += c.x(k, 1) * c.x(k, 1);
                 }
-                each(inside(), [&](Slot&, int at) {
-                    const bool too_large = !(std::sqrt(lane(correction, at)) <=
-                                             loses_digits * std::sqrt(lane(whole, at)));
-                    set_lane(corrected, at, too_large ? 1 : 0);
+                each(inside(), [&](Slot&, int lane) {
+                    const bool too_large =
+                        !(std::sqrt(correction[lane]) <= loses_digits * std::sqrt(whole[lane]));
+                    set_lane(corrected, lane, too_large ? 1 : 0);
                 });
                 for (int k = 0; k < n + m; ++k) c.x(k, 1) += x[k] - only_where(corrected, x[k]);
                 return !is_zero(corrected);
@@ -267,21 +262,21 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
             }});
 }
 
-// Shortens the range of a lane to where the first deformation leaves its piece. The lane leaves where
-// one does so at once: its expansion began on the wrong piece.
-static void stop_at_knots(Slot& slot, const series::Near& near) {
-    std::vector<series::Leaving> met;
+// Shortens the range of a lane to where the first deformation leaves its piece. The variant leaves
+// the lane where one does so at τ = 0: its expansion began on the wrong piece.
+static void stop_at_knots(Slot& slot, const series::KnotTolerance& near) {
+    std::vector<series::PieceExit> met;
     std::vector<std::size_t> crossed;
-    slot.over.clear();
+    slot.crossings.clear();
     const auto column = [&](std::size_t k) {
         return Eigen::VectorXd(slot.deformations.col(static_cast<Eigen::Index>(k)));
     };
     const double reach = slot.reached;
     for (std::size_t k = 0; k < slot.curves.size(); ++k)
-        if (const auto there = series::leaving(column(k), slot.curves[k], reach, near)) {
+        if (const auto there = series::exit_from_piece(column(k), slot.curves[k], reach, near)) {
             met.push_back(*there);
             crossed.push_back(k);
-            if (there->at_once) slot.inside = false;
+            if (there->wrong_piece) slot.inside = false;
             if (there->tau < slot.reached) {
                 slot.reached = there->tau;
                 slot.last = false;
@@ -289,17 +284,18 @@ static void stop_at_knots(Slot& slot, const series::Near& near) {
         }
     // Several deformations may reach their knots at the same τ.
     for (std::size_t k = 0; k < met.size(); ++k)
-        if (met[k].tau <= slot.reached || series::meets(column(crossed[k]), slot.curves[crossed[k]],
-                                                        met[k].direction, slot.reached, near))
-            slot.over.emplace_back(crossed[k], met[k].direction);
+        if (met[k].tau <= slot.reached ||
+            series::is_at_knot(column(crossed[k]), slot.curves[crossed[k]], met[k].direction,
+                               slot.reached, near))
+            slot.crossings.emplace_back(crossed[k], met[k].direction);
 }
 
-// Range of validity of a lane's polynomial. The lane leaves near a limit point.
-void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive, double to) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
+// Range of validity of a lane's polynomial. The variant leaves the lane near a limit point.
+void Pack::find_range(const series::Coefficients<Lanes>& c, int lane, Drive drive, double to) {
+    Slot& slot = slots[static_cast<std::size_t>(lane)];
     SteppingState& s = *slot.s;
-    for (Eigen::Index k = 0; k < c.x.size(); ++k) slot.c.x.data()[k] = lane(c.x.data()[k], at);
-    for (Eigen::Index k = 0; k < c.load.size(); ++k) slot.c.load[k] = lane(c.load[k], at);
+    for (Eigen::Index k = 0; k < c.x.size(); ++k) slot.c.x.data()[k] = c.x.data()[k][lane];
+    for (Eigen::Index k = 0; k < c.load.size(); ++k) slot.c.load[k] = c.load[k][lane];
     slot.from = s.q;
     const series::Singularity nearest = series::nearest_singularity(s, slot.c);
     const double tolerance = options.series.tolerance, per_unit = s.setup.length / std::abs(to),
@@ -318,9 +314,9 @@ void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive,
     if (!whole && nearest.radius < close && straight_ahead) slot.inside = false;
 }
 
-// The points of the branch in the accepted range.
-void Pack::sample(int at, std::size_t branch) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
+// Records the points of the branch in the accepted range.
+void Pack::sample(int lane, std::size_t branch) {
+    Slot& slot = slots[static_cast<std::size_t>(lane)];
     SteppingState& s = *slot.s;
     EquilibriumPath& path = slot.paths[branch];
     const auto points = static_cast<std::size_t>(options.points);
@@ -350,7 +346,7 @@ void Pack::sample(int at, std::size_t branch) {
         series::displace(slot.from, at_tau, point);
         to_point.load = load_at(slot.next + k);
         if (options.wrenches) {
-            go(s, Drive::rate, to_point.load);
+            set_parameter(s, Drive::rate, to_point.load);
             const Vector<double> lambda = at_tau.tail(s.m());
             record(s.model, s.inputs, point, {lambda, point}, to_point);
         } else {
@@ -360,25 +356,25 @@ void Pack::sample(int at, std::size_t branch) {
         }
     }
     slot.next += count;
-    if (options.wrenches) go(s, Drive::rate, end);
+    if (options.wrenches) set_parameter(s, Drive::rate, end);
 }
 
-// Goes over to the pieces behind the knots at the ends of the ranges.
+// Changes to the pieces behind the knots at the ends of the ranges.
 void Pack::cross_knots(series::Equations<Lanes>& e) {
     Mask jumping{};
-    each(going(), [&](Slot& slot, int at) {
-        for (const auto& [k, direction] : slot.over)
-            if (series::step_over(slot.curves[k], direction))
-                jumping[static_cast<std::size_t>(at)] = true;
-        if (slot.over.empty()) return;
-        use_pieces(e, at);
-        if (jumping[static_cast<std::size_t>(at)]) assemble(at);
+    each(going(), [&](Slot& slot, int lane) {
+        for (const auto& [k, direction] : slot.crossings)
+            if (series::cross_knot(slot.curves[k], direction))
+                jumping[static_cast<std::size_t>(lane)] = true;
+        if (slot.crossings.empty()) return;
+        use_pieces(e, lane);
+        if (jumping[static_cast<std::size_t>(lane)]) assemble(lane);
     });
     if (std::ranges::count(jumping, true) == 0) return;
     factorise(jumping, false);
-    each(jumping, [&](Slot& slot, int at) {
-        slot.inside = slot.inside && static_cast<int>(lane(lu.sign, at)) == slot.side;
-        slot.log_begin = log_determinant(lu, at);
+    each(jumping, [&](Slot& slot, int lane) {
+        slot.inside = slot.inside && static_cast<int>(lu.sign[lane]) == slot.sign_at_start;
+        slot.log_begin = log_determinant(lu, lane);
     });
 }
 
@@ -386,42 +382,42 @@ std::vector<LaneEnds> Pack::load_group(std::size_t group, Drive drive) {
     const bool rate = drive == Drive::rate;
     series::Equations<Lanes>& e = rate ? equations[group].rate : equations[group].start;
     const std::vector<std::size_t>& branches = groups[group];
-    std::vector<LaneEnds> to(rate ? branches.size() : 1);
-    for (auto& end : to) end.fill(1);
-    each(inside(), [&](Slot& slot, int at) {
-        const auto k = static_cast<std::size_t>(at);
-        series::take(e, slot.model, slot.branch, at);
-        for (std::size_t side = 0; rate && side < to.size(); ++side)
-            to[side][k] = slot.model.branches[branches[side]].to;
+    std::vector<LaneEnds> ends(rate ? branches.size() : 1);
+    for (auto& end : ends) end.fill(1);
+    each(inside(), [&](Slot& slot, int lane) {
+        const auto k = static_cast<std::size_t>(lane);
+        series::take(e, slot.model, slot.branch, lane);
+        for (std::size_t side = 0; rate && side < ends.size(); ++side)
+            ends[side][k] = slot.model.branches[branches[side]].to;
         for (Eigen::Index row = 0; !rate && row < e.G_d.size(); ++row)
-            set_lane(e.G_d[row], at, -slot.s->start.R_d[row]);
+            set_lane(e.G_d[row], lane, -slot.s->start.R_d[row]);
         for (Eigen::Index row = 0; !rate && row < e.Phi_d.size(); ++row)
-            set_lane(e.Phi_d[row], at, slot.s->start.Phi_d[row]);
+            set_lane(e.Phi_d[row], lane, slot.s->start.Phi_d[row]);
     });
     series::settle_on_constants(e);
-    return to;
+    return ends;
 }
 
 void Pack::keep_start(const series::Equations<Lanes>& e) {
-    each(inside(), [&](Slot& slot, int at) {
-        read_deformations(e, slot, at);
+    each(inside(), [&](Slot& slot, int lane) {
+        read_deformations(e, slot, lane);
         slot.deformations_at_start = slot.deformations;
         slot.curves_at_start = slot.curves;
         slot.q_start = slot.s->q;
         slot.lambda_start = slot.s->lambda;
-        slot.side = static_cast<int>(lane(lu.sign, at));
-        slot.log_at_start = log_determinant(lu, at);
+        slot.sign_at_start = static_cast<int>(lu.sign[lane]);
+        slot.log_at_start = log_determinant(lu, lane);
     });
 }
 
-// The expansion at the start of another side is the first one's in another unit of τ: coefficient k
-// times the quotient of the ends to the k.
-void Pack::begin_side(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& to,
+// The expansion at the start of another side is that of the first side in another unit of τ:
+// coefficient k times rᵏ, r the quotient of the sides' ends.
+void Pack::begin_side(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& ends,
                       std::size_t side) {
     present = first;
-    const auto share = [&](int at) {
-        const auto k = static_cast<std::size_t>(at);
-        return to[side][k] / to.front()[k];
+    const auto share = [&](int lane) {
+        const auto k = static_cast<std::size_t>(lane);
+        return ends[side][k] / ends.front()[k];
     };
     if (side > 0) {
         const Lanes shares = each_lane(share);
@@ -432,18 +428,18 @@ void Pack::begin_side(series::Equations<Lanes>& e, Drive drive, const std::vecto
         }
         present.load[1] *= shares;
     }
-    each(inside(), [&](Slot& slot, int lane_number) {
+    each(inside(), [&](Slot& slot, int lane) {
         slot.s->q = slot.q_start;
         slot.s->lambda = slot.lambda_start;
-        go(*slot.s, drive, 0);
+        set_parameter(*slot.s, drive, 0);
         slot.log_begin = slot.log_at_start;
         slot.deformations = slot.deformations_at_start;
         slot.curves = slot.curves_at_start;
-        use_pieces(e, lane_number);
+        use_pieces(e, lane);
         double power = 1;
         for (Eigen::Index row = 0; row < slot.deformations.rows(); ++row) {
             slot.deformations.row(row) *= power;
-            power *= share(lane_number);
+            power *= share(lane);
         }
         slot.going = true;
         slot.next = 0;
@@ -462,14 +458,14 @@ void Pack::clear_paths(std::size_t branch) {
 }
 
 void Pack::measure_middle(Drive drive) {
-    each(going(), [&](Slot& slot, int at) {
+    each(going(), [&](Slot& slot, int lane) {
         move_to(slot, drive, slot.reached / 2);
-        assemble(at);
+        assemble(lane);
     });
     factorise(going(), false);
-    each(going(), [&](Slot& slot, int at) {
-        slot.in_middle = static_cast<int>(lane(lu.sign, at)) == slot.side
-                             ? std::exp2(log_determinant(lu, at) - slot.log_begin)
+    each(going(), [&](Slot& slot, int lane) {
+        slot.at_middle = static_cast<int>(lu.sign[lane]) == slot.sign_at_start
+                             ? std::exp2(log_determinant(lu, lane) - slot.log_begin)
                              : -1;
     });
 }
@@ -478,21 +474,21 @@ void Pack::solve_branch(std::size_t group, Drive drive, bool from_design) {
     const bool rate = drive == Drive::rate;
     series::Equations<Lanes>& e = rate ? equations[group].rate : equations[group].start;
     const std::vector<std::size_t>& branches = groups[group];
-    const std::vector<LaneEnds> to = load_group(group, drive);
+    const std::vector<LaneEnds> ends = load_group(group, drive);
     if (from_design)
-        start_at_design(e, drive, to);
+        start_at_design(e, drive, ends);
     else
-        each(inside(), [&](Slot& slot, int at) {
-            go(*slot.s, drive, 0);
-            use_pieces(e, at);
+        each(inside(), [&](Slot& slot, int lane) {
+            set_parameter(*slot.s, drive, 0);
+            use_pieces(e, lane);
         });
-    expand(e, first, drive, to.front());
+    expand(e, first, drive, ends.front());
     Matrix<Lanes> softest_at_start, softest;
     if (rate) judge_start(softest_at_start);
     keep_start(e);
-    for (std::size_t side = 0; side < to.size(); ++side) {
+    for (std::size_t side = 0; side < ends.size(); ++side) {
         softest = softest_at_start;
-        begin_side(e, drive, to, side);
+        begin_side(e, drive, ends, side);
         if (rate) clear_paths(branches[side]);
         int knots = 0;
         for (const auto& f : slots.front().curves) knots += static_cast<int>(f.curve->knots.size());
@@ -503,17 +499,17 @@ void Pack::solve_branch(std::size_t group, Drive drive, bool from_design) {
                 break;
             }
             if (k > 0) {
-                expand(e, present, drive, to[side]);
-                each(going(), [&](Slot& slot, int at) { read_deformations(e, slot, at); });
+                expand(e, present, drive, ends[side]);
+                each(going(), [&](Slot& slot, int lane) { read_deformations(e, slot, lane); });
             }
-            each(going(), [&](Slot&, int at) {
-                find_range(present, at, drive, to[side][static_cast<std::size_t>(at)]);
+            each(going(), [&](Slot&, int lane) {
+                find_range(present, lane, drive, ends[side][static_cast<std::size_t>(lane)]);
             });
             if (rate) measure_middle(drive);
-            correct_ends(drive, to[side]);
+            correct_ends(drive, ends[side]);
             check_ends(rate, softest);
-            each(going(), [&](Slot& slot, int at) {
-                if (rate) sample(at, branches[side]);
+            each(going(), [&](Slot& slot, int lane) {
+                if (rate) sample(lane, branches[side]);
                 slot.going = !slot.last;
                 if (slot.going || !rate) return;
                 slot.paths[branches[side]].counts = slot.s->counts;

@@ -1,14 +1,14 @@
 // Four variants of a model in lockstep along the branches that have the same drivers.
 //
-// Each lane has a variant of its own: its copy of the model, its state, its matrix and its checks,
-// by the same functions as where it is solved alone (stepping_state.hpp). In one for all four are
-// the series, the elimination in the pivot order of the design, and the substitutions. The sides of
+// Each lane has its own variant: a copy of the model, a state, a matrix and checks, by the same
+// functions as where it is solved alone (stepping_state.hpp). The series, the elimination in the
+// pivot order of the design, and the substitutions are computed for all four at once. The sides of
 // a branch share the expansion at its start: with a_1 r times as large, x_k is rᵏ times as large.
 //
-// A lane leaves where anything is not plain: the design position is nearer to singular than the
-// design's by three digits, an idle mode or a redundancy is not exactly that, a pivot is refused, an
-// expansion is rejected or begins at a knot, the determinant or the least stiffness shows an event.
-// Its variant is then solved alone from its start, which finds what there is to report.
+// A variant leaves its lane where a decision is close: its design position is nearer to singular
+// than the design's by three digits, an idle mode or a redundancy is not exact, a pivot is refused,
+// an expansion is rejected or begins at a knot, the determinant or the least stiffness shows an
+// event. It is then solved alone from its start, which gives its result or the reason of its end.
 #pragma once
 
 #include <array>
@@ -29,24 +29,25 @@ struct Slot {
     std::unique_ptr<SteppingState> s;
     bool inside = false;   // holds a variant that has not left
     bool at_rest = false;  // as Analysis::at_rest
-    std::vector<series::Followed> curves, curves_at_start;
-    std::vector<std::pair<std::size_t, int>> over;  // curves at their knots at the end, directions
+    std::vector<series::CurvePiece> curves, curves_at_start;
+    // curves that are at a knot at the end of the present expansion, and the directions
+    std::vector<std::pair<std::size_t, int>> crossings;
     Matrix<double> deformations, deformations_at_start;  // of the curves, their coefficients
     series::Coefficients<double> c;                      // of the present expansion
     std::vector<EquilibriumPath> paths;                  // of the branches
     State<double> from;                                  // at τ = 0 of the present expansion
     State<double> q_start;                               // at the start of the branches
     Vector<double> lambda_start, x;
-    int side = 0;             // as in the scalar path: sign of the determinant at the start
-    double log_at_start = 0;  // log₂ |determinant| at the start of the branches
+    int sign_at_start = 0;    // sign of the determinant at the start of the branches
+    double log_at_start = 0;  // log₂ |determinant| there
     double log_begin = 0;     // log₂ |determinant| at the start of the expansion
-    double in_middle = 1;     // determinant in the middle over that at the start
+    double at_middle = 1;     // determinant in the middle of the expansion over that at its start
     double error = 0;         // of the present expansion at its end [m]
     double reached = 0;       // τ at the end of the present expansion
     bool last = false;        // whether that is the end of the branch
-    bool going = false;       // on the present side
-    std::size_t next = 0;     // point of the branch
-    double before = 0;        // size of the last correction
+    bool going = false;       // has not reached the end of the present side
+    std::size_t next = 0;     // next point of the branch to be recorded
+    double last_correction = 0;  // size of the last Newton correction [m]
 };
 
 using Mask = std::array<bool, Lanes::count>;
@@ -63,8 +64,8 @@ struct Pack {
 
     Pack(const Model& model, const Analysis& analysis, const BatchOptions& batch_options);
 
-    // Follows all branches of the variants, one to a lane, at most four. A slot that is not inside
-    // afterwards has left; the others have their paths.
+    // Follows all branches of the variants, one to a lane, at most four. The slots that are
+    // `inside` afterwards have their paths; the other variants are to be solved alone.
     void follow(std::span<const Model* const> variants);
 
   private:
@@ -74,7 +75,7 @@ struct Pack {
     std::vector<Group> equations;  // of the groups
     series::Coefficients<Lanes> first, present;
     Vector<Lanes> x;
-    Matrix<Lanes> definite;
+    Matrix<Lanes> definite;  // workspace of judge_start() [6nb × 6nb]
     Matrix<double> powers, values;
     State<double> point;
 
@@ -86,33 +87,34 @@ struct Pack {
             if (mask[k] && slots[k].inside) visit(slots[k], static_cast<int>(k));
     }
 
-    void prepare(int at, const Branch& branch);
+    void prepare(int lane, const Branch& branch);
     void follow_group(std::size_t group);
-    void assemble(int at);
-    void load_matrix(int at);
+    void assemble(int lane);
+    void load_matrix(int lane);
     void factorise(const Mask& mask, bool at_design);
     void back_substitute(const Mask& mask);
-    void load_rhs(int at);
-    void start_at_design(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& to);
-    void use_pieces(series::Equations<Lanes>& e, int at);
+    void load_rhs(int lane);
+    void start_at_design(series::Equations<Lanes>& e, Drive drive,
+                         const std::vector<LaneEnds>& ends);
+    void use_pieces(series::Equations<Lanes>& e, int lane);
     void expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, Drive drive,
                 const LaneEnds& to);
-    void find_range(const series::Coefficients<Lanes>& c, int at, Drive drive, double to);
+    void find_range(const series::Coefficients<Lanes>& c, int lane, Drive drive, double to);
     void correct_ends(Drive drive, const LaneEnds& to);
     void cross_knots(series::Equations<Lanes>& e);
-    void check_ends(bool stable, Matrix<Lanes>& softest);
-    // Loads the equations of a group of branches with the same drivers; the ends of its sides.
+    void check_ends(bool with_stiffness, Matrix<Lanes>& softest);
+    // Sets the equations to the variants of the lanes; returns the ends of the group's sides.
     std::vector<LaneEnds> load_group(std::size_t group, Drive drive);
-    void keep_start(const series::Equations<Lanes>& e);
+    void keep_start(const series::Equations<Lanes>& e);  // what begin_side() returns to
     // Returns to the start, with the first side's expansion there scaled to this side.
-    void begin_side(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& to,
+    void begin_side(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& ends,
                     std::size_t side);
     void clear_paths(std::size_t branch);
     void measure_middle(Drive drive);  // the determinant in the middle of the present expansions
     void solve_branch(std::size_t group, Drive drive, bool from_design);
     std::array<LeastStiffness, Lanes::count> min_stiffness(const Mask& mask, Matrix<Lanes>& U);
     void judge_start(Matrix<Lanes>& softest);
-    void sample(int at, std::size_t branch);
+    void sample(int lane, std::size_t branch);
 };
 
 }  // namespace elastocheck::recursive::batch

@@ -8,8 +8,8 @@
 namespace elastocheck::recursive::batch {
 namespace {
 
-// A lane whose smallest pivot at the design position, over the largest, is below this fraction of
-// the design's ratio leaves: it may have an idle mode or a redundancy that the design has not.
+// Smallest over largest pivot at the design position, as a fraction of the design's ratio: below it
+// a variant may have an idle mode or a redundancy that the design has not, and leaves its lane.
 constexpr double min_share_of_ratio = 1e-3;
 // Strain up to which a held mode is exactly idle, or a combination exactly redundant.
 constexpr double exactly_idle = 1e-12;
@@ -17,76 +17,77 @@ constexpr double largest_multiplier = 1e4;  // as in the scalar path
 
 }  // namespace
 
-void Pack::assemble(int at) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
+void Pack::assemble(int lane) {
+    Slot& slot = slots[static_cast<std::size_t>(lane)];
     SteppingState& s = *slot.s;
     assemble_constraints<double>(s.model, s.inputs, s.q, s.system.M, s.work.Phi);
     add_consistent_tangent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M);
-    load_matrix(at);
+    load_matrix(lane);
 }
 
 // Scales and borders the matrix of a lane.
-void Pack::load_matrix(int at) {
-    Slot& slot = slots[static_cast<std::size_t>(at)];
+void Pack::load_matrix(int lane) {
+    Slot& slot = slots[static_cast<std::size_t>(lane)];
     SteppingState& s = *slot.s;
     for (const int k : outside)
         if (s.system.M.values[static_cast<std::size_t>(k)] != 0) slot.inside = false;
     set_border(s.system);
-    const SparseLU<double>& of = s.system.lu;
+    const SparseLU<double>& entries = s.system.lu;
     for (std::size_t e = 0; e < lu.values.size(); ++e)
-        set_lane(lu.values[e], at,
-                 s.system.M.values[static_cast<std::size_t>(of.source[e])] * of.factor[e]);
+        set_lane(
+            lu.values[e], lane,
+            s.system.M.values[static_cast<std::size_t>(entries.source[e])] * entries.factor[e]);
 }
 
 // Factorises the matrices of all lanes, and updates and checks the held directions of those
 // in the mask.
 void Pack::factorise(const Mask& mask, bool at_design) {
     eliminate(lu);
-    const SaddlePoint<double>& of = design.system;
-    for (int c = 0; c < of.held.size(); ++c) {
+    const SaddlePoint<double>& shared = design.system;
+    for (int c = 0; c < shared.held.size(); ++c) {
         std::fill(rhs.begin(), rhs.end(), Lanes(0));
-        rhs[static_cast<std::size_t>(of.n + of.m + c)] = 1;
+        rhs[static_cast<std::size_t>(shared.n + shared.m + c)] = 1;
         solve(lu, rhs.data(), solution.data());
-        each(mask, [&](Slot& slot, int at) {
+        each(mask, [&](Slot& slot, int lane) {
             Held<double>& held = slot.s->system.held;
             for (int e = held.begin(c); e < held.end(c); ++e) {
                 const int row = held.row[static_cast<std::size_t>(e)];
                 held.value[static_cast<std::size_t>(e)] =
-                    lane(solution[static_cast<std::size_t>(row)], at) * of.scale[row];
+                    solution[static_cast<std::size_t>(row)][lane] * shared.scale[row];
             }
         });
     }
-    each(mask, [&](Slot& slot, int at) {
+    each(mask, [&](Slot& slot, int lane) {
         SteppingState& s = *slot.s;
         ++s.counts.factorisations;
         orthonormalise(s.system);
-        const double ratio = lane(lu.min_pivot, at) / lane(lu.largest_pivot, at);
-        const bool regular = lane(lu.finite, at) == 0 && is_regular(s, ratio) &&
-                             lane(lu.largest_multiplier, at) <= largest_multiplier &&
+        const double ratio = lu.min_pivot[lane] / lu.largest_pivot[lane];
+        const bool regular = lu.finite[lane] == 0 && is_regular(s, ratio) &&
+                             lu.largest_multiplier[lane] <= largest_multiplier &&
                              check_factors(s, s.q, ratio) == Outcome::converged;
         slot.inside = regular && (!at_design || (ratio > min_share_of_ratio * design.pivot_ratio &&
                                                  strain_of_held(s, s.q) <= exactly_idle));
     });
 }
 
-void Pack::load_rhs(int at) {
-    const SteppingState& s = *slots[static_cast<std::size_t>(at)].s;
+void Pack::load_rhs(int lane) {
+    const SteppingState& s = *slots[static_cast<std::size_t>(lane)].s;
     const int n = s.n(), m = s.m();
-    const auto put = [&](int k, double of) {
-        set_lane(rhs[static_cast<std::size_t>(k)], at, of * s.system.scale[k]);
+    const auto put = [&](int k, double value) {
+        set_lane(rhs[static_cast<std::size_t>(k)], lane, value * s.system.scale[k]);
     };
     for (int k = 0; k < n; ++k) put(k, s.work.upper[k]);
     for (int k = 0; k < m; ++k) put(n + k, s.work.lower[k]);
     for (int k = n + m; k < n + m + s.system.borders(); ++k)
-        set_lane(rhs[static_cast<std::size_t>(k)], at, 0);
+        set_lane(rhs[static_cast<std::size_t>(k)], lane, 0);
 }
 
 void Pack::back_substitute(const Mask& mask) {
     solve(lu, rhs.data(), solution.data());
-    each(mask, [&](Slot& slot, int at) {
+    each(mask, [&](Slot& slot, int lane) {
         SteppingState& s = *slot.s;
         for (int k = 0; k < s.n() + s.m(); ++k)
-            s.work.x[k] = lane(solution[static_cast<std::size_t>(k)], at) * s.system.scale[k];
+            s.work.x[k] = solution[static_cast<std::size_t>(k)][lane] * s.system.scale[k];
         ++s.counts.iterations;
     });
 }
@@ -94,43 +95,43 @@ void Pack::back_substitute(const Mask& mask) {
 // Newton corrections at the ends of the ranges; the last factors serve the next expansion.
 void Pack::correct_ends(Drive drive, const LaneEnds& to) {
     Mask correcting = going();
-    each(correcting, [&](Slot& slot, int at) {
+    each(correcting, [&](Slot& slot, int lane) {
         move_to(slot, drive, slot.reached);
-        if (slot.last) go(*slot.s, drive, to[static_cast<std::size_t>(at)]);
-        slot.before = std::numeric_limits<double>::infinity();
+        if (slot.last) set_parameter(*slot.s, drive, to[static_cast<std::size_t>(lane)]);
+        slot.last_correction = std::numeric_limits<double>::infinity();
     });
     for (int k = 0; k < 8 && std::ranges::count(correcting, true) > 0; ++k) {
-        each(correcting, [&](Slot&, int at) { assemble(at); });
+        each(correcting, [&](Slot&, int lane) { assemble(lane); });
         factorise(correcting, false);
-        each(correcting, [&](Slot& slot, int at) {
+        each(correcting, [&](Slot& slot, int lane) {
             residual_at(*slot.s, slot.s->q, slot.s->lambda);
-            load_rhs(at);
+            load_rhs(lane);
         });
         back_substitute(correcting);
-        for (std::size_t lane_number = 0; lane_number < slots.size(); ++lane_number) {
-            Slot& slot = slots[lane_number];
-            correcting[lane_number] = correcting[lane_number] && slot.inside;
-            if (!correcting[lane_number]) continue;
+        for (std::size_t lane = 0; lane < slots.size(); ++lane) {
+            Slot& slot = slots[lane];
+            correcting[lane] = correcting[lane] && slot.inside;
+            if (!correcting[lane]) continue;
             SteppingState& s = *slot.s;
             const double size = std::sqrt(size_of_solution(s));
             if (!s.work.x.allFinite() || check_idle_load_here(s, size) != Outcome::converged) {
-                slot.inside = correcting[lane_number] = false;
+                slot.inside = correcting[lane] = false;
                 continue;
             }
             if (k == 0) slot.error = size;
-            if (!(size < slot.before)) {  // at rounding level
-                correcting[lane_number] = false;
+            if (!(size < slot.last_correction)) {  // at rounding level
+                correcting[lane] = false;
                 continue;
             }
-            slot.before = size;
+            slot.last_correction = size;
             s.step.dq = s.work.x.head(s.n());
             advance(s.q, s.step.dq);
             s.lambda += s.work.x.tail(s.m());
             const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.setup.length;
-            // No expansion starts at the end of a branch: its error is known, that is enough.
-            correcting[lane_number] =
-                !(slot.last && drive == Drive::rate) &&
-                !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
+            // No expansion starts at the end of a branch: the first correction, which is the error
+            // there, is enough.
+            correcting[lane] = !(slot.last && drive == Drive::rate) &&
+                               !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
         }
     }
     each(going(), [&](Slot& slot, int) {

@@ -5,6 +5,7 @@
 
 #include "recursive/batch/pack.hpp"
 #include "recursive/stepping/stability.hpp"
+#include "recursive/stepping/step_check.hpp"
 #include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive::batch {
@@ -12,22 +13,22 @@ namespace {
 
 constexpr int max_coordinates = 300;  // of a stability test with a dense matrix
 
-// Whether an idle mode may be unstable under load: the first look of negative_idle_stiffness().
+// Whether an idle mode may be unstable under load: the first test of negative_idle_stiffness().
 bool may_push_idle(SteppingState& s) {
-    constexpr double noticed = 1e-6;
+    constexpr double significant = 1e-6;
     const double stiffness = min_of_idle(s);
     if (!(stiffness < 0)) return false;
     external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.upper);
     elastic_force<double>(s.model, s.inputs, s.q, s.work.force);
-    const double acts = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
-    return !(stiffness >= -noticed * acts / s.setup.length);
+    const double forces = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
+    return !(stiffness >= -significant * forces / s.setup.length);
 }
 
 }  // namespace
 
 // As min_stiffness() of one variant: the same iteration with the factors of the lanes.
 std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, Matrix<Lanes>& U) {
-    constexpr int vectors = 3, first_turns = 5, turns = 2;
+    constexpr int vectors = 3, first_iterations = 5, iterations = 2;
     std::array<LeastStiffness, Lanes::count> stiffness{};
     const int n = design.system.n;
     const int free =
@@ -36,7 +37,7 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
     Vector<Lanes> W(n), W2(n);
     for (int k = 0; k < n; ++k) {
         W[k] = 1;
-        each(mask, [&](Slot& slot, int at) { set_lane(W[k], at, slot.s->system.weight[k]); });
+        each(mask, [&](Slot& slot, int lane) { set_lane(W[k], lane, slot.s->system.weight[k]); });
         W2[k] = W[k] * W[k];
     }
     const auto inner = [&](const Matrix<Lanes>& A, Eigen::Index a, const Matrix<Lanes>& B,
@@ -57,8 +58,8 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
             const Lanes left = inner(U, c, U, c), inverse = 1 / sqrt(left);
             for (int k = 0; k < n; ++k) U(k, c) *= inverse;
             // one variant alone drops the dependent vector
-            each(mask, [&](Slot& slot, int at) {
-                if (!(lane(left, at) > zero_tolerance * zero_tolerance * lane(whole, at)))
+            each(mask, [&](Slot& slot, int lane) {
+                if (!(left[lane] > zero_tolerance * zero_tolerance * whole[lane]))
                     slot.inside = false;
             });
         }
@@ -70,48 +71,53 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
             for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / W[k];
         orthonormalise_columns();
     }
-    const SaddlePoint<double>& of = design.system;
+    const Vector<double>& scale = design.system.scale;
     Matrix<Lanes> V(n, U.cols()), H(U.cols(), U.cols());
-    for (int turn = begins ? first_turns : turns; turn > 0; --turn) {
+    for (int iteration = begins ? first_iterations : iterations; iteration > 0; --iteration) {
         std::fill(rhs.begin(), rhs.end(), Lanes(0));
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
             for (int k = 0; k < n; ++k)
-                rhs[static_cast<std::size_t>(k)] = U(k, c) * W2[k] * Lanes(of.scale[k]);
+                rhs[static_cast<std::size_t>(k)] = U(k, c) * W2[k] * Lanes(scale[k]);
             solve(lu, rhs.data(), solution.data());
             for (int k = 0; k < n; ++k)
-                V(k, c) = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
+                V(k, c) = solution[static_cast<std::size_t>(k)] * Lanes(scale[k]);
         }
-        if (turn == 1)
+        if (iteration == 1)
             for (Eigen::Index a = 0; a < U.cols(); ++a)
                 for (Eigen::Index b = 0; b < U.cols(); ++b) H(a, b) = inner(U, a, V, b);
         U = V;
         orthonormalise_columns();
     }
-    each(mask, [&](Slot&, int at) {
-        Eigen::MatrixXd one(H.rows(), H.cols());
-        for (Eigen::Index k = 0; k < H.size(); ++k) one.data()[k] = lane(H.data()[k], at);
-        stiffness[static_cast<std::size_t>(at)] = detail::min_of(one);
+    each(mask, [&](Slot&, int lane) {
+        Eigen::MatrixXd own(H.rows(), H.cols());
+        for (Eigen::Index k = 0; k < H.size(); ++k) own.data()[k] = H.data()[k][lane];
+        stiffness[static_cast<std::size_t>(lane)] = detail::min_of(own);
     });
     return stiffness;
 }
 
-// Whether the start is stable by the tests of stability.hpp; a lane in which one of
-// them fails leaves.
+// Tests that the starts are stable; a variant that fails a test leaves its lane. With the least
+// stiffness and the idle modes, as in stability.hpp, and by the pivots of
+//
+//   W⁻¹ K W⁻¹ + κ Σ r rᵀ / r·r + κ (rounding I + Σ e eᵀ)     κ the largest entry of W⁻¹ K W⁻¹
+//
+// r the rows of Φ_q W⁻¹ and e the largest unknown of each idle mode: where it is positive definite,
+// K is on the motions that the constraints allow (Finsler). `definite` holds the lower half.
 void Pack::judge_start(Matrix<Lanes>& softest) {
     const int n = design.system.n;
     const auto least = min_stiffness(inside(), softest);
     if (n > max_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
-    each(inside(), [&](Slot& slot, int at) {
-        const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
+    each(inside(), [&](Slot& slot, int lane) {
+        const auto& [mu, of_energy] = least[static_cast<std::size_t>(lane)];
         slot.inside = of_energy && mu > 0 && !may_push_idle(*slot.s);
     });
     definite.setZero(n, n);
-    each(inside(), [&](Slot& slot, int at) {
+    each(inside(), [&](Slot& slot, int lane) {
         const SteppingState& s = *slot.s;
         const SaddleMatrix<double>& M = s.system.M;
         const Vector<double>& W = s.system.weight;
         const auto add = [&](Eigen::Index i, Eigen::Index j, double by) {
-            set_lane(definite(i, j), at, lane(definite(i, j), at) + by);
+            set_lane(definite(i, j), lane, definite(i, j)[lane] + by);
         };
         double stiffness = 0;
         for_each_entry(M, [&](int i, int j, int entry) {
@@ -156,21 +162,22 @@ void Pack::judge_start(Matrix<Lanes>& softest) {
         }
     });
     const Lanes min_of_all = min_pivot(definite);
-    each(inside(), [&](Slot& slot, int at) { slot.inside = lane(min_of_all, at) > 0; });
+    each(inside(), [&](Slot& slot, int lane) { slot.inside = min_of_all[lane] > 0; });
 }
 
-// Stability at the ends of the ranges, and of the determinant between.
-void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
+// Checks the determinant's sign and reversed elements at the ends of the ranges; with stiffness
+// also the stability there and the determinant in between.
+void Pack::check_ends(bool with_stiffness, Matrix<Lanes>& softest) {
     std::array<LeastStiffness, Lanes::count> least{};
-    if (stable) least = min_stiffness(going(), softest);
-    each(going(), [&](Slot& slot, int at) {
-        const double log_end = log_determinant(lu, at);
-        slot.inside = static_cast<int>(lane(lu.sign, at)) == slot.side &&
+    if (with_stiffness) least = min_stiffness(going(), softest);
+    each(going(), [&](Slot& slot, int lane) {
+        const double log_end = log_determinant(lu, lane);
+        slot.inside = static_cast<int>(lu.sign[lane]) == slot.sign_at_start &&
                       !any_reversed(slot.s->model, slot.from, slot.s->q);
-        if (stable) {
-            const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
+        if (with_stiffness) {
+            const auto& [mu, of_energy] = least[static_cast<std::size_t>(lane)];
             slot.inside = slot.inside && of_energy && mu > 0 && !may_push_idle(*slot.s) &&
-                          !may_reach_zero({1, slot.in_middle, std::exp2(log_end - slot.log_begin)});
+                          !may_reach_zero({1, slot.at_middle, std::exp2(log_end - slot.log_begin)});
         }
         slot.log_begin = log_end;
     });
