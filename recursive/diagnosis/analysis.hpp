@@ -18,9 +18,9 @@ struct Start;
 
 // Least reduced stiffness of an equilibrium (stiffness.hpp).
 struct LeastStiffness {
-    double value = std::numeric_limits<
-        double>::infinity();  // μ; its modulus where forces have no energy. ∞: no motion is free
-    bool of_energy = true;    // whether K is symmetric, so that the sign of μ decides stability
+    // μ; its modulus where forces have no energy; ∞ where no motion is free
+    double value = std::numeric_limits<double>::infinity();
+    bool of_energy = true;  // whether K is symmetric, so that the sign of μ decides stability
 };
 
 // Stability of an equilibrium where a branch starts (stability.hpp).
@@ -32,11 +32,11 @@ struct StartStability {
 };
 
 // Constant after analyse(): branches and threads may share one. It depends on the constraints,
-// elastic elements and bodies of its model; loads and drivers belong to the branches. `settled` is of
-// the drivers that series::keep_start() was given, which is called before the analysis is shared.
+// elastic elements and bodies of its model; loads and drivers belong to the branches. Only
+// `settled` belongs to drivers, those given to series::keep_start() before the analysis is shared.
 struct Analysis {
     Diagnosis diagnosis;
-    // (24) with ∂G/∂q for K at the design position at the design position, λ = 0: factorised
+    // (24) with ∂G/∂q in place of K, at the design position and λ = 0: factorised
     SaddlePoint<double> system;
     Vector<double> R_d, Phi_d;  // residuals at the design position: f_ext - f_elast [6nb], Φ [m]
     double pivot_ratio = 0;     // of those factors, smallest over largest
@@ -45,6 +45,16 @@ struct Analysis {
     StartStability start;  // of the design position, if it is an equilibrium and has no curves
     std::shared_ptr<const series::Start> settled;  // null before series::keep_start()
 };
+
+// Whether residuals at the design position are rounding, `rounding` [m] that of its coordinates:
+// |Φ| up to it, forces up to it times the largest stiffness.
+inline bool is_at_rest(const SaddlePoint<double>& system, const Vector<double>& R_d,
+                       const Vector<double>& Phi_d, double rounding) {
+    const auto largest = [](const auto& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; };
+    return largest(R_d.cwiseQuotient(system.weight.head(system.n))) <=
+               rounding * stiffest(system.M) &&
+           largest(Phi_d) <= rounding;
+}
 
 // Analyses the model. A model far from the origin is first moved to its centre (recentre.hpp).
 // `like`: the elimination order of a similar model, which spares the search for one.

@@ -44,7 +44,7 @@ struct Complement {
 // lie close to the largest, the last digits are not converged; two digits are shown.
 template <class Operator>
 double largest_eigenvalue(Eigen::Index size, const Complement& P, const Operator& A) {
-    constexpr double same = 1e-10;
+    constexpr double accuracy = 1e-10;
     const Eigen::Index max_steps = std::min<Eigen::Index>(4 * size, 256);
     std::mt19937 random(1);  // the same sequence on every platform
     VectorXd v(size), before = VectorXd::Zero(size), alpha(max_steps), beta(max_steps);
@@ -58,12 +58,12 @@ double largest_eigenvalue(Eigen::Index size, const Complement& P, const Operator
         if (k > 0) w -= beta[k - 1] * before;
         beta[k] = w.norm();
         const bool is_last =
-            k + 1 == max_steps || !(beta[k] > same * alpha.head(k + 1).cwiseAbs().maxCoeff());
+            k + 1 == max_steps || !(beta[k] > accuracy * alpha.head(k + 1).cwiseAbs().maxCoeff());
         if (is_last || k + 1 == look) {
             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> T;
             T.computeFromTridiagonal(alpha.head(k + 1), beta.head(k), Eigen::EigenvaluesOnly);
             const double found = T.eigenvalues().cwiseAbs().maxCoeff();
-            if (is_last || std::abs(found - largest) <= same * found) return found;
+            if (is_last || std::abs(found - largest) <= accuracy * found) return found;
             largest = found;
             look += look / 2;
         }

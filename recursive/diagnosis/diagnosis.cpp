@@ -15,8 +15,6 @@
 
 #include "models/eigen/dense.hpp"
 #include "recursive/diagnosis/finite.hpp"
-#include "recursive/diagnosis/length.hpp"
-#include "recursive/diagnosis/motion.hpp"
 #include "recursive/diagnosis/self_stress.hpp"
 #include "recursive/formula/reactions.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
@@ -93,7 +91,7 @@ VectorXd physical_of(Eigen::Index n, double length) {
     return physical;
 }
 
-// Φ_q by (Δr, L Δπ), and of rows of unit length.
+// Φ_q with respect to (Δr, L Δπ), with rows of unit length.
 struct ConstraintRows {
     VectorXd physical;
     Rows Phi_q;
@@ -179,10 +177,10 @@ Columns modes_of_single_bodies(const Rows& rows, int bodies) {
     std::vector<Eigen::Triplet<double>> entries;
     int modes = 0;
     for (int b = 0; b < bodies; ++b) {
-        const auto& its = on[static_cast<std::size_t>(b)];
-        MatrixXd own = MatrixXd::Zero(6, static_cast<Eigen::Index>(its.size()));
+        const auto& rows_of_body = on[static_cast<std::size_t>(b)];
+        MatrixXd own = MatrixXd::Zero(6, static_cast<Eigen::Index>(rows_of_body.size()));
         for (Eigen::Index c = 0; c < own.cols(); ++c)
-            for (Rows::InnerIterator e(rows, its[static_cast<std::size_t>(c)]); e; ++e)
+            for (Rows::InnerIterator e(rows, rows_of_body[static_cast<std::size_t>(c)]); e; ++e)
                 if (e.col() / 6 == b) own(e.col() % 6, c) = e.value();
         MatrixXd Q = MatrixXd::Identity(6, 6);
         Eigen::Index rank = 0;
@@ -267,13 +265,13 @@ void find_undetermined(const std::vector<int>& joint_of_row, const Columns& depe
         return joint;
     };
     for (int c = 0; c < dependencies.outerSize(); ++c) {
-        int one = -1;
+        int first_joint = -1;
         for (Columns::InnerIterator y(dependencies, c); y; ++y) {
             if (!(std::abs(y.value()) > part_threshold)) continue;
             const int joint = joint_of_row[static_cast<std::size_t>(y.row())];
             result.determined[static_cast<std::size_t>(joint)] = false;
-            if (one < 0) one = joint;
-            const auto [low, high] = std::minmax({smallest(one), smallest(joint)});
+            if (first_joint < 0) first_joint = joint;
+            const auto [low, high] = std::minmax({smallest(first_joint), smallest(joint)});
             set[static_cast<std::size_t>(high)] = low;
         }
     }
@@ -290,25 +288,26 @@ void find_undetermined(const std::vector<int>& joint_of_row, const Columns& depe
 }
 
 // Redundant joints, from the dependent rows.
-void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeating,
+void find_redundant(const std::vector<int>& joint_of_row, const DependentRows& dependent,
                     const VectorXd& Phi, double reach, Diagnosis& result) {
-    std::vector<std::map<int, double>> among;  // of each redundancy: Σ y² by joint
-    for (std::size_t c = 0; c < repeating.rows.size(); ++c) {
-        const int joint = joint_of_row[static_cast<std::size_t>(repeating.rows[c])];
+    std::vector<std::map<int, double>> share_of_joint;  // of each redundancy: Σ y² by joint
+    for (std::size_t c = 0; c < dependent.rows.size(); ++c) {
+        const int joint = joint_of_row[static_cast<std::size_t>(dependent.rows[c])];
         if (result.redundant.empty() || result.redundant.back().joint != joint) {
             result.redundant.emplace_back().joint = joint;
-            among.emplace_back();
+            share_of_joint.emplace_back();
         }
-        ++result.redundant.back().rows;
-        result.redundant.back().left = std::max(result.redundant.back().left, repeating.left[c]);
-        for (Columns::InnerIterator y(repeating.dependencies, static_cast<Eigen::Index>(c)); y; ++y)
+        Redundancy& redundancy = result.redundant.back();
+        ++redundancy.rows;
+        redundancy.remainder = std::max(redundancy.remainder, dependent.remainder[c]);
+        for (Columns::InnerIterator y(dependent.dependencies, static_cast<Eigen::Index>(c)); y; ++y)
             if (std::abs(y.value()) > part_threshold)
-                among.back()[joint_of_row[static_cast<std::size_t>(y.row())]] +=
+                share_of_joint.back()[joint_of_row[static_cast<std::size_t>(y.row())]] +=
                     y.value() * y.value();
     }
-    for (std::size_t k = 0; k < among.size(); ++k) {
+    for (std::size_t k = 0; k < share_of_joint.size(); ++k) {
         auto& shares = result.redundant[k].shares;
-        shares.assign(among[k].begin(), among[k].end());
+        shares.assign(share_of_joint[k].begin(), share_of_joint[k].end());
         double whole = 0;
         for (const auto& [joint, part] : shares) whole += part;
         for (auto& [joint, part] : shares) part /= whole;
@@ -322,8 +321,8 @@ void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeat
         // Rows are computed from differences of coordinates, and their directions vary with the
         // constraint error.
         constexpr double digits = 1024 * std::numeric_limits<double>::epsilon();
-        r.undecided = r.left > digits * (1 + reach / result.length) +
-                                   10 * result.constraint_error / std::min(1.0, result.length);
+        r.undecided = r.remainder > digits * (1 + reach / result.length) +
+                                        10 * result.constraint_error / std::min(1.0, result.length);
     }
 }
 
@@ -422,11 +421,11 @@ IdleMode motion_of(const Model& model, const std::vector<Pose>& poses, const Vec
 double characteristic_length(const Model& model) {
     double sum = 0;
     int count = 0;
-    const auto where = [&](BodyId b) {
+    const auto distance = [&](BodyId b) {
         return model.bodies[static_cast<std::size_t>(b)].design.r.norm();
     };
     const auto take = [&](const auto& end) {
-        if (end.body == ground || end.s_local.norm() <= lever_rounding * where(end.body)) return;
+        if (end.body == ground || end.s_local.norm() <= lever_rounding * distance(end.body)) return;
         sum += end.s_local.squaredNorm();
         ++count;
     };
@@ -437,9 +436,10 @@ double characteristic_length(const Model& model) {
 
 std::vector<int> dependent_rows(const Model& model) {
     if (!not_finite(model).empty()) return {};
-    return repeated(constraint_rows_of(model, inputs_as_drawn<double>(model),
-                                       design_state<double>(model), characteristic_length(model))
-                        .Phi_q)
+    return find_dependent_rows(constraint_rows_of(model, inputs_as_drawn<double>(model),
+                                                  design_state<double>(model),
+                                                  characteristic_length(model))
+                                   .Phi_q)
         .rows;
 }
 
@@ -455,13 +455,13 @@ std::vector<SelfStress> self_stresses(const Model& model, const Branch& branch,
     const Inputs<double> inputs = inputs_at<double>(model, branch, state.load);
     const ConstraintRows rows = constraint_rows_of(model, inputs, q, L);
     const double error = state.constraint_error / std::min(1.0, L);
-    const Repeated repeating = repeated(
+    const DependentRows found = find_dependent_rows(
         rows.Phi_q, dependent, std::clamp(per_error * error, rank_threshold, largest_remainder));
     std::vector<SelfStress> list;
-    for (std::size_t c = 0; c < repeating.rows.size(); ++c) {
-        const VectorXd y = repeating.dependencies.col(static_cast<Eigen::Index>(c));
+    for (std::size_t c = 0; c < found.rows.size(); ++c) {
+        const VectorXd y = found.dependencies.col(static_cast<Eigen::Index>(c));
         SelfStress& stress = list.emplace_back(
-            SelfStress{std::vector<Wrench>(model.joints.size()), repeating.left[c]});
+            SelfStress{std::vector<Wrench>(model.joints.size()), found.remainder[c]});
         joint_wrenches<double>(model, inputs, q, y.cwiseQuotient(rows.length), stress.wrenches);
         double largest = 0;
         for (const Wrench& w : stress.wrenches)
@@ -494,24 +494,24 @@ Diagnosis diagnose(const Model& model) {
     const VectorXd Phi = constraint_values<double>(model, inputs, q);
     result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
     auto [physical, Phi_q, row_length] = constraint_rows_of(model, inputs, q, L);
-    const Repeated repeating = repeated(Phi_q);
-    result.rank = m - static_cast<int>(repeating.rows.size());
+    const DependentRows dependent = find_dependent_rows(Phi_q);
+    result.rank = m - static_cast<int>(dependent.rows.size());
     std::vector<int> joint_of_row;  // ascending
     for (const auto& c : model.constraints)
         joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
     double reach = 0;
     for (const auto& body : model.bodies) reach = std::max(reach, body.design.r.norm());
-    find_redundant(joint_of_row, repeating, Phi, reach, result);
+    find_redundant(joint_of_row, dependent, Phi, reach, result);
     result.determined.assign(model.joints.size(), true);
-    find_undetermined(joint_of_row, repeating.dependencies, result);
+    find_undetermined(joint_of_row, dependent.dependencies, result);
 
     // Modes of single bodies first; appended as rows they make the other modes orthogonal to them.
     Rows elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
     normalise(elastic);
-    Phi_q = without(Phi_q, repeating.rows);
-    const Rows noticed = stacked({Phi_q, elastic}, n);
-    const Columns single = modes_of_single_bodies(noticed, nb);
-    const Columns several = null_space(stacked({noticed, Rows(single.transpose())}, n));
+    Phi_q = without(Phi_q, dependent.rows);
+    const Rows straining = stacked({Phi_q, elastic}, n);
+    const Columns single = modes_of_single_bodies(straining, nb);
+    const Columns several = null_space(stacked({straining, Rows(single.transpose())}, n));
     const auto attached = attachments(model);
     for (const Columns* modes : {&single, &several})
         for (int c = 0; c < modes->outerSize(); ++c) {
@@ -527,8 +527,8 @@ Diagnosis diagnose(const Model& model) {
             held.emplace_back(z.index(), column, z.value());
         ++column;
     }
-    for (int c = 0; c < repeating.dependencies.outerSize(); ++c, ++column)
-        for (Columns::InnerIterator y(repeating.dependencies, c); y; ++y)  // λ of the unscaled rows
+    for (int c = 0; c < dependent.dependencies.outerSize(); ++c, ++column)
+        for (Columns::InnerIterator y(dependent.dependencies, c); y; ++y)  // λ of the unscaled rows
             held.emplace_back(n + y.row(), column, y.value() / row_length[y.row()]);
     result.null_space.resize(n + m, column);
     result.null_space.setFromTriplets(held.begin(), held.end());
@@ -538,7 +538,8 @@ Diagnosis diagnose(const Model& model) {
     for (const auto& load : model.static_loads) add_load<double>(load.kind, 1.0, q, f);
     f -= elastic_force<double>(model, inputs, q);
     if (!f.isZero(0))
-        result.imbalance = left_free(Phi_q, physical.asDiagonal() * f).cwiseAbs().maxCoeff();
+        result.imbalance =
+            orthogonal_component(Phi_q, physical.asDiagonal() * f).cwiseAbs().maxCoeff();
     return result;
 }
 
@@ -546,7 +547,7 @@ std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diag
     std::vector<std::string> lines;
     if (diagnosis.redundant.empty()) return lines;
     const Inputs<double> inputs = inputs_as_drawn<double>(model);
-    std::vector<int> drives;  // of branches: they hold nothing, but move bodies
+    std::vector<int> drives;  // rows of joints that are active only where driven: they hold no body
     for (const ModelJoint& joint : model.joints)
         if (joint.active_only_where_driven)
             drives.push_back(inputs.row[static_cast<std::size_t>(joint.driven)]);
@@ -554,7 +555,7 @@ std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diag
     const Rows Phi_q = without(
         constraint_rows_of(model, inputs, design_state<double>(model), diagnosis.length).Phi_q,
         drives);
-    const Rows free = Rows(null_space(without(Phi_q, repeated(Phi_q).rows)).transpose());
+    const Rows free = Rows(null_space(without(Phi_q, find_dependent_rows(Phi_q).rows)).transpose());
     std::vector<bool> moves(model.bodies.size());
     for (int k = 0; k < free.outerSize(); ++k)
         for (Rows::InnerIterator e(free, k); e; ++e)
@@ -564,8 +565,8 @@ std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diag
         for (BodyId b = 0; b < static_cast<BodyId>(moves.size()); ++b) {
             std::vector<std::string> joints;
             for (const int joint : set) {
-                const ModelJoint& one = model.joints[static_cast<std::size_t>(joint)];
-                if (one.i == b || one.j == b) joints.push_back(one.name);
+                const ModelJoint& member = model.joints[static_cast<std::size_t>(joint)];
+                if (member.i == b || member.j == b) joints.push_back(member.name);
             }
             if (!moves[static_cast<std::size_t>(b)] && joints.size() > 1)
                 lines.push_back(fmt::format("body '{}' cannot move: the joints {} lock it",

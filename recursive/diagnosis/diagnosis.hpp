@@ -10,11 +10,14 @@
 //                         in the element's own axes
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <string>
 #include <vector>
 
+#include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
+#include "models/vanishing_length.hpp"
 
 namespace elastocheck::recursive {
 
@@ -31,8 +34,8 @@ struct Redundancy {
     int joint = 0;             // position in Model::joints
     int rows = 0;              // number of its rows that depend on the rows of earlier joints
     bool contradicts = false;  // whether Φ ≠ 0 there: the joints cannot all be closed
-    double left = 0;  // largest remainder of such a row of unit length; 0 if it depends exactly
-    // whether `left` exceeds rounding: the row may be dependent or independent
+    double remainder = 0;      // largest of such a row of unit length; 0 if it depends exactly
+    // whether `remainder` exceeds rounding: the row may be dependent or independent
     bool undecided = false;
     // Joints that share the dependency, each with its squared entries in the left null
     // vectors y of the row-scaled Φ_q: largest first, sum 1. Removing any of these joints
@@ -64,6 +67,17 @@ struct Diagnosis {
 
 Diagnosis diagnose(const Model& model);
 
+// L: root mean square lever of all attachments, invariant under motions of the ground frame [m].
+double characteristic_length(const Model& model);
+
+// The motion dq [6nb] of the bodies at these poses, named by the body that it moves most.
+IdleMode motion_of(const Model& model, const std::vector<Pose>& poses, const Eigen::VectorXd& dq,
+                   double length);
+
+// Bodies that redundant joints leave no motion: "body 'arm' cannot move: the joints 'arm_front' and
+// 'arm_rear' lock it". A held rack does not move either, and its joints are not redundant.
+std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diagnosis);
+
 // "'a'", "'a' and 'b'", "'a', 'b' and 'c'"
 std::string listed(const std::vector<std::string>& names);
 
@@ -76,6 +90,12 @@ std::string undecided(const Model& model, const Diagnosis& diagnosis);
 std::vector<std::string> describe_idle_modes(const Diagnosis& diagnosis);
 // The same in one line.
 std::string idle_modes(const Diagnosis& diagnosis);
+
+// Why a path ended, after its place: ": redundant joints are inconsistent"; empty for an outcome
+// that the diagnosis does not explain.
+std::string end_by_diagnosis(Outcome outcome, const Diagnosis& diagnosis);
+// "joint 'link' would have no length from 35 mm on"
+std::string no_length(const Model& model, const Branch& branch, const Vanishing& vanishing);
 
 // κ₂ of eq. (24) at the design position, without idle and redundant directions.
 struct Conditioning {

@@ -26,23 +26,23 @@ std::string not_finite(const Model& model) {
     const State<double> q = design_state<double>(model);
     const Inputs<double> inputs = inputs_as_drawn<double>(model);
     std::vector<std::string> names;
-    const auto name = [&](const std::string& kind, const std::string& who) {
-        const std::string entry = kind + " '" + who + "'";
+    const auto add = [&](const std::string& kind, const std::string& name) {
+        const std::string entry = kind + " '" + name + "'";
         if (std::ranges::find(names, entry) == names.end()) names.push_back(entry);
     };
     for (std::size_t c = 0; c < model.constraints.size(); ++c)
         rows<double>(model.constraints[c].kind, inputs.offset[c], q, [&](const Row<double>& row) {
             if (!is_finite(row))
-                name("joint",
-                     model.joints[static_cast<std::size_t>(model.constraints[c].joint)].name);
+                add("joint",
+                    model.joints[static_cast<std::size_t>(model.constraints[c].joint)].name);
         });
-    for (std::size_t at = 0; at < model.elastics.size(); ++at)
-        if (!is_finite(model.elastics[at].kind, inputs.rest[at], q))
-            name("element", model.elastics[at].name);
-    std::string all;
-    for (const auto& one : names)
-        all += (all.empty() ? "a number of the model is not finite in " : ", ") + one;
-    return all;
+    for (std::size_t e = 0; e < model.elastics.size(); ++e)
+        if (!is_finite(model.elastics[e].kind, inputs.rest[e], q))
+            add("element", model.elastics[e].name);
+    std::string text;
+    for (const auto& name : names)
+        text += (text.empty() ? "a number of the model is not finite in " : ", ") + name;
+    return text;
 }
 
 }  // namespace elastocheck::recursive

@@ -8,9 +8,9 @@
 
 namespace elastocheck::recursive {
 
-// Names the element whose values at the design position are NaN or overflow: "at the design
-// position a number is not finite in joint 'link'"; empty where all are finite. Rank, idle modes
-// and conditioning are undefined for such a model.
+// Names the joints and elements whose values at the design position are NaN or overflow: "a number
+// of the model is not finite in joint 'link'"; empty where all are finite. Rank, idle modes and
+// conditioning are undefined for such a model.
 std::string not_finite(const Model& model);
 
 }  // namespace elastocheck::recursive

@@ -11,15 +11,16 @@ struct End {
     std::size_t body, constraint;
 };
 struct Visit {
-    std::size_t body, by;  // the constraint by which the search came
-    std::size_t next = 0;  // index among its ends
+    std::size_t body, from;  // the constraint by which the search came
+    std::size_t next = 0;    // index among its ends
 };
 
 }  // namespace
 
 std::vector<int> loops(const Model& model) {
-    const std::size_t nowhere = model.constraints.size();
-    std::vector<std::vector<End>> ends(model.bodies.size() + 1);  // ground in slot 0
+    const std::size_t no_constraint = model.constraints.size();
+    // edges of the graph at each body: the other body and the constraint; ground in slot 0
+    std::vector<std::vector<End>> ends(model.bodies.size() + 1);
     std::vector<int> block(model.constraints.size(), -1);
     int time = 0, blocks = 0;
     for (std::size_t c = 0; c < model.constraints.size(); ++c) {
@@ -31,38 +32,40 @@ std::vector<int> loops(const Model& model) {
         ends[static_cast<std::size_t>(i + 1)].push_back({static_cast<std::size_t>(j + 1), c});
         ends[static_cast<std::size_t>(j + 1)].push_back({static_cast<std::size_t>(i + 1), c});
     }
-    // Depth-first search (Hopcroft and Tarjan 1973): discovery time and low point of each body.
-    std::vector<int> came(ends.size(), -1), earliest(ends.size(), 0);
+    // Depth-first search (Hopcroft and Tarjan 1973): discovery time of each body, and its low
+    // point, the earliest discovery that its descendants reach by an edge outside the tree. A block
+    // is complete where the low point of a body is not before the discovery of its parent.
+    std::vector<int> discovered(ends.size(), -1), low_point(ends.size(), 0);
     std::vector<std::size_t> open;  // constraints whose block is not complete
     std::vector<Visit> stack;
-    const auto come_to = [&](std::size_t body, std::size_t by) {
-        came[body] = earliest[body] = time++;
-        stack.push_back({body, by});
+    const auto discover = [&](std::size_t body, std::size_t from) {
+        discovered[body] = low_point[body] = time++;
+        stack.push_back({body, from});
     };
     for (std::size_t root = 0; root < ends.size(); ++root) {
-        if (came[root] < 0) come_to(root, nowhere);
+        if (discovered[root] < 0) discover(root, no_constraint);
         while (!stack.empty()) {
             Visit& visit = stack.back();
             const std::size_t body = visit.body;
             if (visit.next < ends[body].size()) {
                 const End end = ends[body][visit.next++];
-                if (end.constraint == visit.by) continue;
-                if (came[end.body] < 0) {
+                if (end.constraint == visit.from) continue;
+                if (discovered[end.body] < 0) {
                     open.push_back(end.constraint);
-                    come_to(end.body, end.constraint);
-                } else if (came[end.body] < came[body]) {
+                    discover(end.body, end.constraint);
+                } else if (discovered[end.body] < discovered[body]) {
                     open.push_back(end.constraint);
-                    earliest[body] = std::min(earliest[body], came[end.body]);
+                    low_point[body] = std::min(low_point[body], discovered[end.body]);
                 }
                 continue;
             }
-            const std::size_t by = visit.by;
+            const std::size_t from = visit.from;
             stack.pop_back();
             if (stack.empty()) continue;
-            const std::size_t before = stack.back().body;
-            earliest[before] = std::min(earliest[before], earliest[body]);
-            if (earliest[body] < came[before]) continue;
-            for (std::size_t last = nowhere; last != by; open.pop_back())
+            const std::size_t parent = stack.back().body;
+            low_point[parent] = std::min(low_point[parent], low_point[body]);
+            if (low_point[body] < discovered[parent]) continue;
+            for (std::size_t last = no_constraint; last != from; open.pop_back())
                 block[last = open.back()] = blocks;
             ++blocks;
         }

@@ -12,14 +12,14 @@ namespace elastocheck::recursive {
 // Rows of Φ_q at the design position that depend on the rows before them, ascending.
 std::vector<int> dependent_rows(const Model& model);
 
-// Wrenches of all joints that are in balance without a load, a solution of yᵀ Φ_q = 0: the largest
-// is 1 N, or 1 N times the characteristic length. What reads zero from all of them is determined by
-// the loads.
+// Wrenches of all joints that are in balance without a load, a solution of yᵀ Φ_q = 0, scaled so
+// that the largest force is 1 N or the largest moment 1 N times the characteristic length. A
+// reaction that is zero in all self-stresses is determined by the loads.
 struct SelfStress {
     std::vector<Wrench> wrenches;  // as Equilibrium::reactions
-    double left = 0;               // remainder of Φ_q, by the constraint error of the state
+    double remainder = 0;          // of the dependent row, from the constraint error of the state
 };
-// A basis of the self-stresses in a state. `dependent`: of dependent_rows().
+// A basis of the self-stresses in a state, one for each of the `dependent` rows (dependent_rows()).
 std::vector<SelfStress> self_stresses(const Model& model, const Branch& branch,
                                       std::span<const int> dependent, const Equilibrium& state);
 

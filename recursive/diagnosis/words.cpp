@@ -1,8 +1,9 @@
-// What a diagnosis says of idle modes, in words.
+// Messages of a diagnosis: idle modes, undecided redundancy, why a path ended.
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "models/parameter_unit.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/linear_algebra/rank.hpp"
 
@@ -33,7 +34,7 @@ std::string undecided(const Model& model, const Diagnosis& diagnosis) {
         "whether joint '{}' is redundant is undecidable: the independent part of one of its "
         "equations is {:.1e}, more than rounding and less than {:.0e}; make it exactly redundant "
         "or clearly independent",
-        model.joints[static_cast<std::size_t>(in_doubt->joint)].name, in_doubt->left,
+        model.joints[static_cast<std::size_t>(in_doubt->joint)].name, in_doubt->remainder,
         rank_threshold);
 }
 
@@ -55,6 +56,31 @@ std::string idle_modes(const Diagnosis& diagnosis) {
     std::string all;
     for (const auto& line : describe_idle_modes(diagnosis)) all += (all.empty() ? "" : "; ") + line;
     return all;
+}
+
+std::string no_length(const Model& model, const Branch& branch, const Vanishing& vanishing) {
+    return fmt::format("joint '{}' would have no length from {} on",
+                       model.joints[static_cast<std::size_t>(vanishing.joint)].name,
+                       parameter_text(branch.unit, vanishing.at));
+}
+
+std::string end_by_diagnosis(Outcome outcome, const Diagnosis& diagnosis) {
+    switch (outcome) {
+        case Outcome::loaded_idle_mode:
+            return ": the load acts on a motion that no joint or element resists at the design "
+                   "position: " +
+                   idle_modes(diagnosis);
+        case Outcome::inconsistent_constraints: return ": redundant joints are inconsistent";
+        case Outcome::bifurcation_point:
+            return ": another curve of equilibria crosses the branch, which is unstable past this "
+                   "point";
+        case Outcome::singular:
+            return diagnosis.null_space.cols() > 0
+                       ? ", or an idle mode or redundant constraint of the design position no "
+                         "longer is one"
+                       : "";
+        default: return {};
+    }
 }
 
 }  // namespace elastocheck::recursive
