@@ -54,7 +54,7 @@ struct Row {
 namespace detail {
 
 template <class Real>
-Row<Real> at_rest() {
+Row<Real> zero_row() {
     const Vector3<Real> zero = Vector3<Real>::Zero();
     return {ground, ground, 0, true, zero, zero, zero, zero};
 }
@@ -94,7 +94,7 @@ void rows(const DistanceBetween& c, Real length, const State<Real>& q, Sink&& si
 
 // The direction w of a DirectionAtAngle, ground axes.
 template <class Real>
-Vector3<Real> across(const DirectionAtAngle& c, Real angle, const State<Real>& q) {
+Vector3<Real> normal_at_angle(const DirectionAtAngle& c, Real angle, const State<Real>& q) {
     using std::cos;
     using std::sin;
     return cos(angle) * q[c.y_j.body].lever(c.y_j.u_local) -
@@ -103,7 +103,7 @@ Vector3<Real> across(const DirectionAtAngle& c, Real angle, const State<Real>& q
 
 template <class Real, class Sink>
 void rows(const DirectionAtAngle& c, Real angle, const State<Real>& q, Sink&& sink) {
-    const Vector3<Real> u_i = q[c.i.body].lever(c.i.u_local), w = across(c, angle, q);
+    const Vector3<Real> u_i = q[c.i.body].lever(c.i.u_local), w = normal_at_angle(c, angle, q);
     const Vector3<Real> zero = Vector3<Real>::Zero();
     sink(Row<Real>{c.i.body, c.j.body, u_i.dot(w), false, zero, zero, zero, u_i.cross(w)});
 }
@@ -111,17 +111,17 @@ void rows(const DirectionAtAngle& c, Real angle, const State<Real>& q, Sink&& si
 // Derivative of a row with respect to c, entry by entry: zero for a constraint without c.
 template <class Real>
 Row<Real> rate(const CoincidentPoints&, Real, const State<Real>&) {
-    return at_rest<Real>();
-}
-template <class Real>
-Row<Real> rate(const PointInPlane&, Real, const State<Real>&) {
-    Row<Real> row = at_rest<Real>();
-    row.Phi = -1;
-    return row;
+    return zero_row<Real>();
 }
 template <class Real>
 Row<Real> rate(const PerpendicularDirections&, Real, const State<Real>&) {
-    return at_rest<Real>();
+    return zero_row<Real>();
+}
+template <class Real>
+Row<Real> rate(const PointInPlane&, Real, const State<Real>&) {
+    Row<Real> row = zero_row<Real>();
+    row.Phi = -1;
+    return row;
 }
 template <class Real>
 Row<Real> rate(const DistanceBetween& c, Real length, const State<Real>& q) {
@@ -161,7 +161,7 @@ template <class Real>
 Row<Real> rate(const ConstraintKind& kind, Real offset, const State<Real>& q) {
     return std::visit([&](const auto& c) { return detail::rate<Real>(c, offset, q); }, kind);
 }
-// ∂Φ/∂c of a constraint; 0 for a constraint without c.
+// ∂Φ/∂c alone.
 template <class Real>
 Real slope(const ConstraintKind& kind, Real offset, const State<Real>& q) {
     return rate<Real>(kind, offset, q).Phi;

@@ -11,11 +11,11 @@ namespace elastocheck::recursive {
 enum class Drive { start, rate };
 
 template <class Real>
-Real speed(const Driver& driver, Drive drive) {
+Real amplitude(const Driver& driver, Drive drive) {
     return static_cast<Real>(drive == Drive::start ? driver.start : driver.rate);
 }
 
-// A change of the drivers by `amount` of their drive, at q and these inputs.
+// A change of t (Drive::start) or a (Drive::rate) by `amount`, at q and these inputs.
 template <class Real>
 struct DriverChange {
     const Model& model;
@@ -32,7 +32,7 @@ void add_load_rate(const Branch& branch, Drive drive, Real amount, const State<R
                    Vector<Real>& force) {
     for (const auto& driver : branch.drivers)
         if (const Load* load = driven_load(driver.what))
-            add_load<Real>(load->kind, amount * speed<Real>(driver, drive), q, force);
+            add_load<Real>(load->kind, amount * amplitude<Real>(driver, drive), q, force);
 }
 
 // amount · ∂f_elast/∂a, element by element: add(element number, (F, M) on its body j).
@@ -40,7 +40,7 @@ template <class Real, class Add>
 void for_each_stored_rate(const DriverChange<Real>& change, Add&& add) {
     const auto& [model, branch, inputs, drive, amount, q] = change;
     for (const auto& driver : branch.drivers) {
-        const Real change_of_input = amount * speed<Real>(driver, drive);
+        const Real change_of_input = amount * amplitude<Real>(driver, drive);
         std::visit(overloaded{
                        [](const Load&) {},
                        [](const Motion&) {},
@@ -82,23 +82,23 @@ void for_each_row_rate(const DriverChange<Real>& change, Add&& add) {
         if (const int joint = driven_joint(driver.what); joint >= 0) {
             const std::size_t k = constraint_of(model, {joint});
             add(inputs.row[k], rate<Real>(model.constraints[k].kind, inputs.offset[k], q),
-                amount * speed<Real>(driver, drive));
+                amount * amplitude<Real>(driver, drive));
         }
 }
 // Adds amount · ∂Φ/∂a to `Phi` [m].
 template <class Real>
 void add_constraint_rate(const DriverChange<Real>& change, Vector<Real>& Phi) {
     for_each_row_rate<Real>(change,
-                            [&](int row, const Row<Real>& d, Real by) { Phi[row] += by * d.Phi; });
+                            [&](int row, const Row<Real>& d, Real dc) { Phi[row] += dc * d.Phi; });
 }
 // Adds amount · ∂(Φ_qᵀ λ)/∂a to `force` [6nb]: a driven length or angle scales or rotates the rows
 // along which λ acts.
 template <class Real>
 void add_reaction_rate(const DriverChange<Real>& change, const Vector<Real>& lambda,
                        Vector<Real>& force) {
-    for_each_row_rate<Real>(change, [&](int row, const Row<Real>& d, Real by) {
-        if (d.i != ground) force.template segment<6>(6 * d.i) += by * lambda[row] * d.on_i();
-        if (d.j != ground) force.template segment<6>(6 * d.j) += by * lambda[row] * d.on_j();
+    for_each_row_rate<Real>(change, [&](int row, const Row<Real>& d, Real dc) {
+        if (d.i != ground) force.template segment<6>(6 * d.i) += dc * lambda[row] * d.on_i();
+        if (d.j != ground) force.template segment<6>(6 * d.j) += dc * lambda[row] * d.on_j();
     });
 }
 

@@ -21,9 +21,8 @@
 //
 // Elements that the paper does not cover enter K in this same form, as an extension: a curve with
 // its slope at the current deformation, a frame in the middle with its axes A_f in place of A_i.
-// Angles that differ only at finite rotations, forces that are not conjugate, and an omitted
-// moment of the offset do not change increments between unloaded markers. They do not enter K,
-// only the forces.
+// Other definitions of the angles, forces that are not conjugate, and an omitted moment of the
+// offset do not change increments between unloaded markers: they enter the forces, and not K.
 #pragma once
 
 #include "recursive/formula/inputs.hpp"

@@ -116,9 +116,9 @@ inline void check(const Model& model, const Branch& branch) {
 // The last parameter that is followed: `to` unless a driven length between two points vanishes
 // before. The row (d·d - c²) / (2c) of a length c is also zero where c = -|d|.
 inline double last_parameter(const Model& model, const Branch& branch) {
-    constexpr double before = 1 - 1e-3;
-    const auto gone = vanishing_length(model, branch);
-    return gone ? before * gone->at : branch.to;
+    constexpr double share = 1 - 1e-3;
+    const auto vanishing = vanishing_length(model, branch);
+    return vanishing ? share * vanishing->at : branch.to;
 }
 
 // The inputs at (t, a), from those at the design position. Allocates only on the first call with

@@ -17,7 +17,8 @@
 
 namespace elastocheck::recursive {
 
-// Number of a curve's piece, 0 before the first knot; `wherever`: the piece of the deformation.
+// Number of a curve's piece, 0 before the first knot; `wherever`: the piece that contains the
+// deformation.
 using Piece = int;
 inline constexpr Piece wherever = -1;
 using Pieces = std::array<Piece, 6>;

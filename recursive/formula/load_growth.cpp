@@ -29,8 +29,8 @@ bool is_driven(const Branch& branch, int element) {
 
 }  // namespace
 
-std::optional<Grown> grown(const Model& model, const Branch& branch) {
-    Grown result{model, branch};
+std::optional<GrowingForces> with_growing_forces(const Model& model, const Branch& branch) {
+    GrowingForces result{model, branch};
     auto& drivers = result.branch.drivers;
     for (const Load& load : model.static_loads) drivers.push_back({load, 1, 0});
     result.model.static_loads.clear();
@@ -39,7 +39,7 @@ std::optional<Grown> grown(const Model& model, const Branch& branch) {
         const int element = static_cast<int>(k);
         ElasticKind& kind = result.model.elastics[k].kind;
         if (double* free_length = driven_number(kind)) {
-            // ℓ of a free length of zero
+            // with ℓ₀ = 0 the deflection is ℓ
             const double length = deflections<double>(kind, Rest<double>{}, q)[0];
             if (!(length > 0) || length == *free_length) continue;
             if (curve_of(kind, 0) == nullptr) {

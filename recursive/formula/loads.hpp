@@ -31,7 +31,7 @@ void add_load(const FollowerMoment& moment, Real factor, const State<Real>& q,
               Vector<Real>& f_ext) {
     f_ext.template segment<3>(6 * moment.body + 3) += factor * q[moment.body].lever(moment.m_local);
 }
-// From the origin of the carrier to the patch.
+// Lever from the origin of the carrier to the patch, ground axes.
 template <class Real>
 Vector3<Real> lever_of(const BrakeForce& brake, const State<Real>& q) {
     return q[brake.patch.body].r + q[brake.patch.body].lever(brake.patch.s_local) - q[brake.body].r;

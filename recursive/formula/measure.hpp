@@ -67,7 +67,7 @@ Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
     return Matrix3<Real>::Identity() - t / 2 + c * (t * t);
 }
 
-// ∂(J(θ)⁻ᵀ m)/∂θ. With J⁻ᵀ = I + ½ θ̃ + c θ̃² and ∇c = h θ:
+// ∂(J(θ)⁻ᵀ m)/∂θ. With J⁻ᵀ = I + ½ θ̃ + c θ̃² and ∇c = h θ, h = c'(θ)/θ:
 //   δ(J⁻ᵀ m) = ½ δθ × m + c (δθ × (θ × m) + θ × (δθ × m)) + h (θ·δθ) θ × (θ × m)
 template <class Real>
 Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m) {
@@ -127,7 +127,7 @@ Matrix3<Real> cardan_turning_moment(const Vector3<Real>& theta, const Vector3<Re
 
 // ---- Projected angles.
 
-// One of them: n and c as above.
+// One angle atan2(n, c), in the letters above.
 template <class Real>
 struct Projection {
     Vector3<Real> w, u, v;  // column of B; axes of i
@@ -151,14 +151,14 @@ template <class Real>
 Vector3<Real> projected(const Matrix3<Real>& B) {
     using std::atan2;
     Vector3<Real> theta;
-    for (int k = 0; const auto& one : projections<Real>(B)) theta[k++] = atan2(one.n, one.c);
+    for (int k = 0; const auto& plane : projections<Real>(B)) theta[k++] = atan2(plane.n, plane.c);
     return theta;
 }
 template <class Real>
 Matrix3<Real> projected_jacobian(const Matrix3<Real>& B) {
     Matrix3<Real> H;
-    for (int k = 0; const auto& one : projections<Real>(B))
-        H.row(k++) = one.w.cross(one.g()) / one.r2();
+    for (int k = 0; const auto& plane : projections<Real>(B))
+        H.row(k++) = plane.w.cross(plane.g()) / plane.r2();
     return H;
 }
 // ∂(Hᵀ m)/∂φ: with δn = (w × u)·δφ, δc = (w × v)·δφ
@@ -225,8 +225,8 @@ Middle<Real> middle(const Matrix3<Real>& B) {
     if (p.w() < 0) p.coeffs() = -p.coeffs();
     // The quaternion halfway between (1, 0) and p.
     const Eigen::Quaternion<Real> half(1 + p.w(), p.x(), p.y(), p.z());
-    const Vector3<Real> t2 = half.vec() / half.w();  // tan(|θ|/4) θ/|θ|
-    return {half.normalized().toRotationMatrix(), t2};
+    const Vector3<Real> t = half.vec() / half.w();  // tan(|θ|/4) θ/|θ|
+    return {half.normalized().toRotationMatrix(), t};
 }
 // P = ∂η/∂φ [3 × 3]
 template <class Real>

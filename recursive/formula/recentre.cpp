@@ -22,7 +22,7 @@ void for_each_ground_point(Any& model, Visit&& visit) {
 }  // namespace
 
 std::optional<Eigen::Vector3d> far_centre(const Model& model) {
-    constexpr double two_digits = 100;
+    constexpr double two_digits = 100;  // distance of the origin over the size of the model
     Eigen::Vector3d c = Eigen::Vector3d::Zero();
     for (const auto& body : model.bodies)
         c += body.design.r / static_cast<double>(model.bodies.size());

@@ -70,7 +70,7 @@ void add_levers(BodyId i, BodyId j, const ElementForce<Real>& force, bool at_p_j
         add_turning_lever<Real>(i, force.lever_i, -force.F, target);
 }
 
-// A force on j at p_j, its opposite on i at p_i, which changes by δF = K (δp_j - δp_i), K symmetric.
+// A force on j at p_j, its opposite on i at p_i, with δF = K (δp_j - δp_i), K symmetric.
 template <class Real, class Target>
 void add_between_points(BodyId i, BodyId j, const ElementForce<Real>& force, const Matrix3<Real>& K,
                         Target& target) {
@@ -150,10 +150,10 @@ template <class Real, class Target>
 void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
     const Spatial<Real> g = deformation<Real>(e, q);
     const Vector3<Real> rho = g.s_i + g.D;
-    const Vector6<Real> answered = strain<Real>(rest, g);
+    const Vector6<Real> deflection = strain<Real>(rest, g);
     const Matrix6<Real> K = hessian<Real>(
-        e.law, [&] { return answered; }, rest.piece);
-    const Vector6<Real> stress = gradient<Real>(e.law, answered, rest.piece) + rest.preload;
+        e.law, [&] { return deflection; }, rest.piece);
+    const Vector6<Real> stress = gradient<Real>(e.law, deflection, rest.piece) + rest.preload;
     const Matrix3<Real> H = jacobian<Real>(e.formulation.angles, g.B, g.theta());
     const Matrix6<Real> E = strain_rate<Real>(e, g, H);
 
@@ -225,8 +225,8 @@ void add_curvature(const PointInPlane& c, Real, const State<Real>& q, const Real
     add_moving_lever<Real>(j, i, s_i, F, target);
 }
 
-// Two directions u_i, u_j fixed in their bodies: the couple M = λ u_i × u_j on i, its opposite on j,
-// with δM = λ (ũ_j ũ_i δπ_i - ũ_i ũ_j δπ_j).
+// Two directions u_i, u_j fixed in their bodies: the couple M = λ u_i × u_j on i, its opposite on
+// j, with δM = λ (ũ_j ũ_i δπ_i - ũ_i ũ_j δπ_j).
 template <class Real, class Target>
 void add_couple_curvature(BodyId i, BodyId j, const Vector3<Real>& u_i, const Vector3<Real>& u_j,
                           Real lambda, Target& target) {
@@ -246,7 +246,7 @@ template <class Real, class Target>
 void add_curvature(const DirectionAtAngle& c, Real angle, const State<Real>& q, const Real* lambda,
                    Target& target) {
     add_couple_curvature<Real>(c.i.body, c.j.body, q[c.i.body].lever(c.i.u_local),
-                               across(c, angle, q), *lambda, target);
+                               normal_at_angle(c, angle, q), *lambda, target);
 }
 
 // F = λ/c (p_i - p_j) on i.
