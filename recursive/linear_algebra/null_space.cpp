@@ -29,14 +29,14 @@ Columns null_space(const Rows& rows) {
         const auto* const value = static_cast<const double*>(R->x);
         Scattered x(n);
         for (int c = static_cast<int>(rank); c < n; ++c) {
-            std::priority_queue<int> later;
-            const auto add = [&](Long at, double what) {
-                if (x.add(static_cast<int>(at), what)) later.push(static_cast<int>(at));
+            std::priority_queue<int> unsolved;  // unknowns of the triangle, last to first
+            const auto add = [&](Long k, double value_k) {
+                if (x.add(static_cast<int>(k), value_k)) unsolved.push(static_cast<int>(k));
             };
             for (Long e = first[c]; e < first[c + 1]; ++e) add(row[e], -value[e]);
-            while (!later.empty()) {
-                const int k = later.top();
-                later.pop();
+            while (!unsolved.empty()) {
+                const int k = unsolved.top();
+                unsolved.pop();
                 // last entry of a column of the triangle, since rows ascend
                 const Long diagonal = first[k + 1] - 1;
                 x.value[k] /= value[diagonal];

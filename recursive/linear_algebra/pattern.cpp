@@ -20,7 +20,8 @@ Mask cross(const Mask& v) { return {v[1] || v[2], v[2] || v[0], v[0] || v[1]}; }
 Mask both(const Mask& u, const Mask& v) { return {u[0] || v[0], u[1] || v[1], u[2] || v[2]}; }
 bool has_lever(const Point& point) { return point.body == ground || !point.s_local.isZero(0); }
 
-struct Touched {
+// Structural entries of the full matrix, both halves.
+struct Entries {
     int n;                                 // 6nb
     std::vector<std::vector<int>> column;  // rows of each column, unsorted [6nb + m]
 
@@ -41,16 +42,16 @@ struct Touched {
         for (int c = 0; c < 3; ++c)
             if (m[static_cast<std::size_t>(c)]) entry(n + k, half + c);
     }
-    // A force that depends on all of these halves and acts on all of them.
-    void among(const std::vector<int>& halves) {
+    // Entries of a force that depends on all of these halves and acts on all of them.
+    void couple(const std::vector<int>& halves) {
         for (const int a : halves)
             for (const int b : halves) block(a, b);
     }
 };
 
-// Forces between points depend on the levers that exist. Between markers the frame is fixed in i:
-// the force rotates with it, and its lever reaches to p_j.
-void touch(Touched& t, const ElasticKind& element) {
+// A force between points depends on the positions and on the levers that are not zero. Between
+// markers it rotates with the frame in i, and its lever reaches to p_j: it depends on all halves.
+void add_entries(Entries& t, const ElasticKind& element) {
     std::vector<int> halves;
     each_member(element, overloaded{[&](const Point& p) {
                                         halves.push_back(t.r(p.body));
@@ -59,7 +60,7 @@ void touch(Touched& t, const ElasticKind& element) {
                                     [&](const Marker& m) {
                                         halves.insert(halves.end(), {t.r(m.body), t.pi(m.body)});
                                     }});
-    t.among(halves);
+    t.couple(halves);
 }
 
 // Sorts and removes duplicates.
@@ -69,7 +70,7 @@ void sort_once(std::vector<int>& numbers) {
 }
 
 // Rows of Φ from k on, and the curvature of the constraint.
-void touch(Touched& t, const CoincidentPoints& c, int k) {
+void add_entries(Entries& t, const CoincidentPoints& c, int k) {
     for (int row = 0; row < 3; ++row) {
         Mask n = none;
         n[static_cast<std::size_t>(row)] = true;
@@ -81,7 +82,7 @@ void touch(Touched& t, const CoincidentPoints& c, int k) {
     for (const Point& point : {c.i, c.j})
         if (has_lever(point)) t.block(t.pi(point.body), t.pi(point.body));
 }
-void touch(Touched& t, const PointInPlane& c, int k) {
+void add_entries(Entries& t, const PointInPlane& c, int k) {
     const Mask n = mask(c.normal_j.body, c.normal_j.u_local);
     const int r_i = t.r(c.i.body), pi_i = has_lever(c.i) ? t.pi(c.i.body) : -1, r_j = t.r(c.j.body),
               pi_j = t.pi(c.j.body);
@@ -92,7 +93,7 @@ void touch(Touched& t, const PointInPlane& c, int k) {
     t.block(pi_i, pi_i);
     for (const int half : {r_i, pi_i, r_j, pi_j}) t.block(half, pi_j);
 }
-void touch_couple(Touched& t, BodyId i, BodyId j, const Mask& u_i, const Mask& u_j, int k) {
+void add_couple(Entries& t, BodyId i, BodyId j, const Mask& u_i, const Mask& u_j, int k) {
     for (const BodyId b : {i, j}) {
         // u_i × u_j: one of them is fixed in a moving body and may have any direction.
         t.row(k, t.pi(b), i == ground ? cross(u_i) : j == ground ? cross(u_j) : all);
@@ -100,31 +101,30 @@ void touch_couple(Touched& t, BodyId i, BodyId j, const Mask& u_i, const Mask& u
         t.block(t.pi(b), t.pi(j));
     }
 }
-void touch(Touched& t, const PerpendicularDirections& c, int k) {
-    touch_couple(t, c.i.body, c.j.body, mask(c.i.body, c.i.u_local), mask(c.j.body, c.j.u_local),
-                 k);
+void add_entries(Entries& t, const PerpendicularDirections& c, int k) {
+    add_couple(t, c.i.body, c.j.body, mask(c.i.body, c.i.u_local), mask(c.j.body, c.j.u_local), k);
 }
-void touch(Touched& t, const DistanceBetween& c, int k) {
+void add_entries(Entries& t, const DistanceBetween& c, int k) {
     for (const Point& point : {c.i, c.j}) {
         t.row(k, t.r(point.body), all);
         if (has_lever(point)) t.row(k, t.pi(point.body), all);
     }
-    t.among({t.r(c.i.body), has_lever(c.i) ? t.pi(c.i.body) : -1, t.r(c.j.body),
-             has_lever(c.j) ? t.pi(c.j.body) : -1});
+    t.couple({t.r(c.i.body), has_lever(c.i) ? t.pi(c.i.body) : -1, t.r(c.j.body),
+              has_lever(c.j) ? t.pi(c.j.body) : -1});
 }
-void touch(Touched& t, const DirectionAtAngle& c, int k) {
-    touch_couple(t, c.i.body, c.j.body, mask(c.i.body, c.i.u_local),
-                 both(mask(c.j.body, c.j.u_local), mask(c.y_j.body, c.y_j.u_local)), k);
+void add_entries(Entries& t, const DirectionAtAngle& c, int k) {
+    add_couple(t, c.i.body, c.j.body, mask(c.i.body, c.i.u_local),
+               both(mask(c.j.body, c.j.u_local), mask(c.y_j.body, c.y_j.u_local)), k);
 }
 
 }  // namespace
 
 Pattern pattern(const Model& model) {
     const int n = coordinates(model), size = n + constraint_rows(model);
-    Touched t{n, std::vector<std::vector<int>>(static_cast<std::size_t>(size))};
+    Entries t{n, std::vector<std::vector<int>>(static_cast<std::size_t>(size))};
     for (BodyId b = 0; b < n / 6; ++b) t.block(t.pi(b), t.pi(b));  // a load on the body
-    for (const auto& elastic : model.elastics) touch(t, elastic.kind);
-    const auto touch_load = [&](const LoadKind& load) {
+    for (const auto& elastic : model.elastics) add_entries(t, elastic.kind);
+    const auto add_load = [&](const LoadKind& load) {
         std::visit(
             overloaded{
                 [](const DeadForce&) {},
@@ -140,13 +140,13 @@ Pattern pattern(const Model& model) {
             },
             load);
     };
-    for (const auto& load : model.static_loads) touch_load(load.kind);
+    for (const auto& load : model.static_loads) add_load(load.kind);
     for (const auto& branch : model.branches)
         for (const auto& driver : branch.drivers)
-            if (const Load* load = driven_load(driver.what)) touch_load(load->kind);
+            if (const Load* load = driven_load(driver.what)) add_load(load->kind);
     int row = 0;
     for (const auto& constraint : model.constraints) {
-        std::visit([&](const auto& c) { touch(t, c, row); }, constraint.kind);
+        std::visit([&](const auto& c) { add_entries(t, c, row); }, constraint.kind);
         row += rows(constraint.kind);
     }
     Pattern result{size, {}, {}};

@@ -40,15 +40,15 @@ struct PivotSearch {
     // and row (fill included).
     std::vector<int> row, col, below, first_below, right, first_right;
 
-    // Workspace of the full search: the matrix and its filled entries ...
-    std::vector<Real> W;
-    std::vector<char> filled;
-    std::vector<long> in_row, in_column;  // ... remaining entries per row and column
-    std::vector<Real> largest;            // ... and the largest entry of a column
+    // Workspace of the full search
+    std::vector<Real> W;                  // the matrix
+    std::vector<char> filled;             // whether an entry is a non-zero, fill included
+    std::vector<long> in_row, in_column;  // remaining entries per row and column
+    std::vector<Real> largest;            // largest remaining entry of each column
 
     static constexpr Real min_pivot = Real(0.1);  // as a fraction of its column's largest entry
-    static constexpr int exhaustive = 60;         // up to this size the full search is used
-    static constexpr int columns = 4;             // ... and beyond it this many columns per pivot
+    static constexpr int exhaustive = 60;         // up to this size the full search is used,
+    static constexpr int columns = 4;             // beyond it this many columns per pivot
 };
 
 namespace detail {
@@ -154,7 +154,7 @@ void search_all(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
     }
 }
 
-// Rows or columns in linked lists by their number of entries; the last one changed is first.
+// Columns in linked lists by their number of entries; the last one changed is first.
 struct ByCount {
     std::vector<int> head, next, previous, count;
 
@@ -178,7 +178,7 @@ struct ByCount {
 
 // The remaining matrix: columns with their values, rows without.
 template <class Real>
-struct Left {
+struct Remaining {
     struct Entry {
         int row;
         Real value;
@@ -199,25 +199,26 @@ struct Pivot {
 // The best pivot of the first few columns, shortest first; row -1 where all remaining
 // entries are zero.
 template <class Real>
-Pivot<Real> best_of_few(Left<Real>& left, const ByCount& columns) {
+Pivot<Real> best_of_few(Remaining<Real>& remaining, const ByCount& columns) {
     Pivot<Real> best;
     auto best_fill = std::numeric_limits<std::size_t>::max();
-    int looked_at = 0;
+    int searched = 0;
     for (std::size_t entries = 1; entries < columns.head.size(); ++entries)
         for (int c = columns.head[entries]; c >= 0; c = columns.next[ByCount::at(c)]) {
             Real largest = 0;
-            for (const auto& e : left.in_column(c)) largest = std::max(largest, std::abs(e.value));
+            for (const auto& e : remaining.in_column(c))
+                largest = std::max(largest, std::abs(e.value));
             if (!(largest > 0)) continue;
-            for (const auto& e : left.in_column(c)) {
+            for (const auto& e : remaining.in_column(c)) {
                 const Real value = std::abs(e.value);
                 if (!(value >= PivotSearch<Real>::min_pivot * largest)) continue;
-                const std::size_t fill = (left.in_row(e.row).size() - 1) * (entries - 1);
+                const std::size_t fill = (remaining.in_row(e.row).size() - 1) * (entries - 1);
                 if (fill > best_fill || (fill == best_fill && !(value > std::abs(best.value))))
                     continue;
                 best_fill = fill;
                 best = {e.row, c, e.value};
             }
-            if (best_fill == 0 || ++looked_at == PivotSearch<Real>::columns) return best;
+            if (best_fill == 0 || ++searched == PivotSearch<Real>::columns) return best;
         }
     return best;
 }
@@ -229,15 +230,15 @@ void search_few(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
     const auto at = [](int k) { return static_cast<std::size_t>(k); };
     search.row.clear();
     search.col.clear();
-    Left<Real> left{std::vector<std::vector<typename Left<Real>::Entry>>(n),
-                    std::vector<std::vector<int>>(n)};
+    Remaining<Real> remaining{std::vector<std::vector<typename Remaining<Real>::Entry>>(n),
+                              std::vector<std::vector<int>>(n)};
     for (std::size_t j = 0; j < n; ++j)
         for (int e = pattern.first[j]; e < pattern.first[j + 1]; ++e) {
-            left.column[j].push_back({pattern.row[at(e)], values[e]});
-            left.in_row(pattern.row[at(e)]).push_back(static_cast<int>(j));
+            remaining.column[j].push_back({pattern.row[at(e)], values[e]});
+            remaining.in_row(pattern.row[at(e)]).push_back(static_cast<int>(j));
         }
     ByCount columns(n);
-    for (std::size_t j = n; j-- > 0;) columns.put(static_cast<int>(j), left.column[j].size());
+    for (std::size_t j = n; j-- > 0;) columns.put(static_cast<int>(j), remaining.column[j].size());
     std::vector<char> row_is_left(n, 1);
     std::size_t first_left = 0;
     std::vector<Real> multiplier(n, 0);
@@ -245,7 +246,7 @@ void search_few(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
     std::vector<char> below(n, 0), met(n, 0);
 
     for (std::size_t k = 0; k < n; ++k) {
-        Pivot<Real> pivot = best_of_few(left, columns);
+        Pivot<Real> pivot = best_of_few(remaining, columns);
         if (pivot.row < 0) {
             // The zero pivot reports a singular matrix. A later matrix of this pattern may be
             // regular, so its fill is included.
@@ -261,20 +262,20 @@ void search_few(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
         row_is_left[at(pivot.row)] = 0;
         columns.take_out(pivot.col);
 
-        const auto column = std::move(left.in_column(pivot.col));
+        const auto column = std::move(remaining.in_column(pivot.col));
         for (const auto& e : column) {
             if (e.row == pivot.row) continue;
-            std::erase(left.in_row(e.row), pivot.col);
+            std::erase(remaining.in_row(e.row), pivot.col);
             search.below.push_back(e.row);
             below[at(e.row)] = 1;
             multiplier[at(e.row)] = pivot.value != Real(0) ? e.value / pivot.value : Real(0);
         }
         const std::size_t rows_below = search.below.size() - at(search.first_below.back());
-        const auto row = std::move(left.in_row(pivot.row));
+        const auto row = std::move(remaining.in_row(pivot.row));
         for (const int c : row) {
             if (c == pivot.col) continue;
             search.right.push_back(c);
-            auto& entries = left.in_column(c);
+            auto& entries = remaining.in_column(c);
             const auto own =
                 std::ranges::find_if(entries, [&](const auto& e) { return e.row == pivot.row; });
             const Real u = own->value;
@@ -291,7 +292,7 @@ void search_few(PivotSearch<Real>& search, const Pattern& pattern, const Real* v
                 if (e.row == pivot.row) continue;
                 if (already < rows_below && !met[at(e.row)]) {
                     entries.push_back({e.row, -multiplier[at(e.row)] * u});
-                    left.in_row(e.row).push_back(c);
+                    remaining.in_row(e.row).push_back(c);
                 }
                 met[at(e.row)] = 0;
             }

@@ -41,14 +41,15 @@ struct Reduced {
 // and is zero for a dependent row. No combination of rows is nearer to row k than its distance from
 // their span, so a row that is dependent here is so by any measure. Back substitution with the same
 // l, starting from row k alone, gives its dependency in terms of the rows themselves.
-Repeated repeated(const Rows& rows, std::span<const int> expected, double remainder) {
+DependentRows find_dependent_rows(const Rows& rows, std::span<const int> expected,
+                                  double max_remainder) {
     const auto m = static_cast<std::size_t>(rows.rows()), n = static_cast<std::size_t>(rows.cols());
-    // of a column: how many rows touch it, whose pivot it is
+    // of each column: its number of entries in the rows to come, and the row whose pivot it is
     std::vector<int> to_come(n, 0), pivot_of(n, -1);
     for (int k = 0; k < rows.outerSize(); ++k)
         for (Rows::InnerIterator e(rows, k); e; ++e) ++to_come[static_cast<std::size_t>(e.col())];
 
-    Repeated result;
+    DependentRows result;
     std::vector<Eigen::Triplet<double>> dependencies;
     std::vector<Reduced> reduced(m);
     Scattered x(rows.cols()), y(rows.rows());
@@ -77,7 +78,7 @@ Repeated repeated(const Rows& rows, std::span<const int> expected, double remain
         }
         double largest = 0;
         for (const int at : x.touched) largest = std::max(largest, std::abs(x.value[at]));
-        if (largest > (std::ranges::binary_search(expected, k) ? remainder : rank_threshold)) {
+        if (largest > (std::ranges::binary_search(expected, k) ? max_remainder : rank_threshold)) {
             for (const int at : x.touched) {
                 const double size = std::abs(x.value[at]);
                 if (!(size >= pivot_threshold * largest)) continue;
@@ -110,7 +111,7 @@ Repeated repeated(const Rows& rows, std::span<const int> expected, double remain
             y.append_to(dependencies, static_cast<int>(result.rows.size()));
             y.clear();
             result.rows.push_back(k);
-            result.left.push_back(largest);
+            result.remainder.push_back(largest);
         }
         x.clear();
     }
@@ -119,29 +120,29 @@ Repeated repeated(const Rows& rows, std::span<const int> expected, double remain
     return result;
 }
 
-// ⎡ I   Aᵀ ⎤ ⎧ left ⎫   ⎧ f ⎫
-// ⎣ A   0  ⎦ ⎩  μ   ⎭ = ⎩ 0 ⎭
+// ⎡ I   Aᵀ ⎤ ⎧ g ⎫   ⎧ f ⎫
+// ⎣ A   0  ⎦ ⎩ μ ⎭ = ⎩ 0 ⎭
 //
 // Iterative refinement with a nearby regular matrix that has -ε² in place of 0. Eliminating μ there
 // leaves I + Aᵀ A / ε², which couples only bodies that share a row. In a direction with singular
 // value σ each round leaves the fraction ε² / (ε² + σ²) of the error, plus its own rounding times
 // 1 / ε².
-VectorXd left_free(const Rows& rows, const VectorXd& f) {
+VectorXd orthogonal_component(const Rows& rows, const VectorXd& f) {
     constexpr double e2 = 1e-12, enough = 1e-14;
     constexpr int max_rounds = 50;
     const Columns A = rows, At = A.transpose();
     Columns N = At * A / e2;
     for (int k = 0; k < N.cols(); ++k) N.coeffRef(k, k) += 1;
     const Eigen::SimplicialLDLT<Columns> factors(N);
-    VectorXd left = VectorXd::Zero(f.size()), mu = VectorXd::Zero(rows.rows());
+    VectorXd g = VectorXd::Zero(f.size()), mu = VectorXd::Zero(rows.rows());
     for (int round = 0; round < max_rounds; ++round) {
-        const VectorXd force = f - left - At * mu, motion = -(A * left);
+        const VectorXd force = f - g - At * mu, motion = -(A * g);
         if (force.norm() + motion.norm() <= enough * f.norm()) break;
-        const VectorXd more = factors.solve(force + At * motion / e2);
-        left += more;
-        mu += (A * more - motion) / e2;
+        const VectorXd dg = factors.solve(force + At * motion / e2);
+        g += dg;
+        mu += (A * dg - motion) / e2;
     }
-    return left;
+    return g;
 }
 
 }  // namespace elastocheck::recursive

@@ -57,71 +57,74 @@ Pattern bordered(const Pattern& inner, const Held<double>& held) {
     return result;
 }
 
-// Places of the directions in the columns of `null_space`. An idle mode has the bodies that it
-// moves, at any point of the branch. A redundant combination has all rows of its loops of joints
-// (`loop` of every row: joints of different loops are independent). Directions that share a place
-// get each other's places.
-Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
-                    const Vector<double>& weight, int n, const std::vector<int>& loop) {
+// Entries that each held direction, a column of `null_space`, may have on the whole branch. For an
+// idle mode they are the unknowns of the bodies that it moves, for a redundant combination the rows
+// of its loops of joints (`loop` of every row; joints of different loops are independent).
+// Directions that share a body or loop form a group (union-find; its leader is the first), whose
+// directions all have the entries of the group.
+Held<double> held_entries(int idle, const Eigen::SparseMatrix<double>& null_space,
+                          const Vector<double>& weight, int n, const std::vector<int>& loop) {
     using Column = Eigen::SparseMatrix<double>::InnerIterator;
     const auto as_index = [](auto k) { return static_cast<std::size_t>(k); };
     const auto d = static_cast<int>(null_space.cols());
-    // A place is a body or a loop (numbered after the bodies), with the first
-    // direction found there.
+    // A part is a body or a loop (numbered after the bodies), with the first direction found there.
     const int bodies = n / 6, loops = loop.empty() ? 0 : *std::ranges::max_element(loop) + 1;
     std::vector<int> leader(as_index(d)), first_there(as_index(bodies + loops), -1);
     std::vector<std::vector<int>> of_leader(as_index(d));
-    const auto lead = [&](int c) {
+    const auto leader_of = [&](int c) {
         while (leader[as_index(c)] != c)
             c = leader[as_index(c)] = leader[as_index(leader[as_index(c)])];
         return c;
     };
     for (int c = 0; c < d; ++c) {
         leader[as_index(c)] = c;
-        std::map<int, double> share;  // squared norm in each place
+        std::map<int, double> share;  // squared norm in each part
         double total = 0;
         for (Column e(null_space, c); e; ++e) {
             const auto row = static_cast<int>(e.row());
-            const int place = row < n ? row / 6 : bodies + loop[as_index(row - n)];
+            const int part = row < n ? row / 6 : bodies + loop[as_index(row - n)];
             const double size = weight[row] * e.value();
-            share[place] += size * size;
+            share[part] += size * size;
             total += size * size;
         }
-        for (const auto& [place, size] : share) {
+        for (const auto& [part, size] : share) {
             if (!(size > 1e-10 * total)) continue;
-            if (first_there[as_index(place)] < 0) {
-                first_there[as_index(place)] = c;
+            if (first_there[as_index(part)] < 0) {
+                first_there[as_index(part)] = c;
             } else {
-                const int first_leader = lead(first_there[as_index(place)]), other = lead(c);
+                const int first_leader = leader_of(first_there[as_index(part)]),
+                          other = leader_of(c);
                 leader[as_index(std::max(first_leader, other))] = std::min(first_leader, other);
             }
         }
     }
-    const auto give = [&](int place, int row) {
-        if (first_there[as_index(place)] >= 0)
-            of_leader[as_index(lead(first_there[as_index(place)]))].push_back(row);
+    const auto add_entry = [&](int part, int row) {
+        if (first_there[as_index(part)] >= 0)
+            of_leader[as_index(leader_of(first_there[as_index(part)]))].push_back(row);
     };
-    for (int row = 0; row < n; ++row) give(row / 6, row);
-    for (std::size_t k = 0; k < loop.size(); ++k) give(bodies + loop[k], n + static_cast<int>(k));
+    for (int row = 0; row < n; ++row) add_entry(row / 6, row);
+    for (std::size_t k = 0; k < loop.size(); ++k)
+        add_entry(bodies + loop[k], n + static_cast<int>(k));
     std::vector<int> order(as_index(d));
     for (int c = 0; c < d; ++c) order[as_index(c)] = c;
-    std::ranges::stable_sort(order, {}, lead);  // idle modes and combinations have no common places
+    // idle modes stay first: they share no part with redundant combinations
+    std::ranges::stable_sort(order, {}, leader_of);
 
     Held<double> held;
     held.idle = idle;
     held.first.push_back(0);
     for (int k = 0; k < d; ++k) {
         const int c = order[as_index(k)];
-        const auto& rows = of_leader[as_index(lead(c))];
-        held.with.push_back(k > 0 && lead(order[as_index(k - 1)]) == lead(c) ? held.with.back()
-                                                                             : k);
+        const auto& rows = of_leader[as_index(leader_of(c))];
+        const bool same_group = k > 0 && leader_of(order[as_index(k - 1)]) == leader_of(c);
+        held.with.push_back(same_group ? held.with.back() : k);
         held.row.insert(held.row.end(), rows.begin(), rows.end());
         held.first.push_back(static_cast<int>(held.row.size()));
         held.value.resize(held.row.size(), 0);
         for (Column e(null_space, c); e; ++e) {
-            const auto place = std::ranges::lower_bound(rows, static_cast<int>(e.row()));
-            if (place != rows.end() && *place == e.row())
-                held.value[as_index(held.begin(k) + (place - rows.begin()))] = e.value();
+            const auto at = std::ranges::lower_bound(rows, static_cast<int>(e.row()));
+            if (at != rows.end() && *at == e.row())
+                held.value[as_index(held.begin(k) + (at - rows.begin()))] = e.value();
         }
     }
     return held;
@@ -164,7 +167,7 @@ void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<do
     system.scale = equilibration(system.M);
     system.largest = {system.M.values.begin(), system.M.values.end()};
     for (double& entry : system.largest) entry = std::abs(entry);
-    system.held = places(idle, null_space, system.weight, system.n, loop);
+    system.held = held_entries(idle, null_space, system.weight, system.n, loop);
     orthonormalise(system);
 
     const Pattern pattern = bordered(inner, system.held);

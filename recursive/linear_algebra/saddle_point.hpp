@@ -23,14 +23,14 @@
 
 namespace elastocheck::recursive {
 
-// Held directions: idle modes first, then redundant combinations, each with its places, which are
-// the entries that may be non-zero. Two directions share all their places or none; those that share
-// them are consecutive.
+// Held directions: idle modes first, then redundant combinations, each with the entries that may be
+// non-zero on the branch. Two directions have the same entries or none in common; those with the
+// same entries are consecutive.
 template <class Real>
 struct Held {
     int idle = 0;            // number of idle modes
     std::vector<int> first;  // index of each direction's first entry, and the end [d + 1]
-    std::vector<int> with;   // first direction with the same places [d]
+    std::vector<int> with;   // first direction with the same entries [d]
     // of each entry, ascending within a direction; all six rows of a body for an idle mode
     std::vector<int> row;
     std::vector<Real> value;  // z or y, physical units, of unit norm in `weight`
@@ -60,11 +60,11 @@ struct Held {
 template <class Real>
 struct SaddlePoint {
     int n = 0, m = 0;  // 6nb, rows of Φ
-    // raw [(n+m) × (n+m)]; assembled by the caller. Its values are followed by the border: b of every
-    // held direction in scaled coordinates, of unit length
+    // raw [(n+m) × (n+m)]; assembled by the caller. Its values are followed by the border: b of
+    // every held direction in scaled coordinates, of unit length
     SaddleMatrix<Real> M;
     Vector<Real> scale;           // D, powers of two
-    std::vector<double> largest;  // of each entry of M, among the matrices that D is fixed from
+    std::vector<double> largest;  // |entry| of M, the largest of the matrices from which D is fixed
     Vector<Real> weight;          // W: 1 for Δr [m], L for Δπ, 1 for λ
     Held<Real> held;
     Vector<Real> rhs, solution;
@@ -80,7 +80,7 @@ struct SaddlePoint {
 // in (½, 2].
 Vector<double> equilibration(const SaddleMatrix<double>& M);
 
-// W² at the places of a direction.
+// W² at the entries of a direction.
 template <class Real>
 auto weights(const SaddlePoint<Real>& system, int c) {
     return [&system, from = system.held.begin(c)](Eigen::Index e) {
@@ -89,8 +89,8 @@ auto weights(const SaddlePoint<Real>& system, int c) {
     };
 }
 
-// Makes the held directions orthonormal in the norm W; those without common places
-// are orthogonal already.
+// Makes the held directions orthonormal in the norm W; those without common entries are orthogonal
+// already.
 template <class Real>
 void orthonormalise(SaddlePoint<Real>& system) {
     Held<Real>& held = system.held;
@@ -132,9 +132,10 @@ void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<do
              const Pattern& inner, const std::vector<int>& loop,
              const EliminationOrder& like = nullptr);
 
-// Fixes the scaling again, from the larger of each entry of M now and before: the geometric stiffness
-// of a large λ may exceed the stiffness at λ = 0 by any factor, and pivots in a scaling for the one
-// say nothing about the other. An entry that cancels, as at a limit point, keeps its scale.
+// Fixes the scaling again, from the larger of each entry of M now and before: the geometric
+// stiffness of a large λ may exceed the stiffness at λ = 0 by any factor, and pivots in a scaling
+// for the one say nothing about the other. An entry that cancels, as at a limit point, keeps its
+// scale.
 void rescale(SaddlePoint<double>& system);
 
 // log₂ |det| of the last matrix factorised, in the first scaling.
@@ -183,7 +184,7 @@ Real factorise(SaddlePoint<Real>& system) {
     set_border(system);
     const Real pivot_ratio = factorise(system.lu, system.M.values.data());
 
-    // The solution for e_c of the border, at the places of the direction only.
+    // The solution for the unit vector e_c of the border, at the entries of the direction only.
     Held<Real>& held = system.held;
     for (int c = 0; c < held.size(); ++c) {
         const int from = held.begin(c), count = held.end(c) - from;

@@ -18,8 +18,8 @@ struct Scattered {
     explicit Scattered(Eigen::Index size)
         : value(Eigen::VectorXd::Zero(size)), is_touched(static_cast<std::size_t>(size), 0) {}
     // Returns whether the position is new.
-    bool add(int at, double what) {
-        value[at] += what;
+    bool add(int at, double amount) {
+        value[at] += amount;
         if (is_touched[static_cast<std::size_t>(at)]) return false;
         is_touched[static_cast<std::size_t>(at)] = 1;
         touched.push_back(at);
@@ -32,14 +32,11 @@ struct Scattered {
         }
         touched.clear();
     }
-    double norm() const {
-        double sum = 0;
-        for (const int at : touched) sum += value[at] * value[at];
-        return std::sqrt(sum);
-    }
     // Appends the vector as a column of unit length, without entries at rounding level.
     void append_to(std::vector<Eigen::Triplet<double>>& entries, int column) const {
-        const double whole = norm();
+        double square = 0;
+        for (const int at : touched) square += value[at] * value[at];
+        const double whole = std::sqrt(square);
         for (const int at : touched)
             if (std::abs(value[at]) > rounding * whole)
                 entries.emplace_back(at, column, value[at] / whole);

@@ -16,7 +16,8 @@
 // order is kept while no multiplier of L exceeds a hundred (or the caller's `largest_multiplier`);
 // beyond it a new order is chosen from the current values.
 //
-// Entry e of the pattern is values[source[e]] · factor[e], so that the caller's matrix needs no copy.
+// Entry e of the pattern is values[source[e]] · factor[e], so that the caller's matrix needs no
+// copy.
 #pragma once
 
 #include <cstring>
@@ -28,8 +29,8 @@
 
 namespace elastocheck::recursive {
 
-// Elimination order, and the places of L and U in one array: their rows one after the other. Shared by
-// the matrices that are eliminated in it.
+// Elimination order, and the places of L and U in one array: their rows one after the other. Shared
+// by the matrices that are eliminated in it.
 struct Elimination {
     struct Run {  // adjacent columns of a row, and the place of the first
         int column, length, at;
@@ -40,8 +41,8 @@ struct Elimination {
     Pattern pattern;
     std::vector<int> row, col;        // the k-th pivot is A(row[k], col[k])
     std::vector<int> row_of, col_of;  // ... and the inverse permutations
-    std::vector<int> to;              // place of every entry of the pattern
-    std::vector<int> column;          // of every place
+    std::vector<int> to;              // place of every entry of the pattern in LU
+    std::vector<int> column;          // of every place of LU
     std::vector<int> first, pivot;    // place where each row begins, and of its pivot
     // Per row: the runs of U, ascending. Per column k of L: its entries, ascending, and for each of
     // them and each run of U_k the place in its row from which that run is subtracted.
@@ -229,7 +230,7 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
     lay_out(lu, search);
 }
 
-// Goes on in another order for the same pattern; not factorised.
+// Changes to another order for the same pattern; not factorised.
 template <class Real>
 void take_order(SparseLU<Real>& lu, const EliminationOrder& order) {
     lu.order = order;
@@ -274,9 +275,7 @@ void analyse(SparseLU<Real>& lu, const SparseLU<Other>& other) {
     reserve(lu);
 }
 
-// Subtracts the rows of U from the `rows` rows of L from `below` on.
-//
-//   A_i ← A_i - l_ik U_k
+// A_i ← A_i - l_ik U_k for the `rows` rows i with entries of L from `below` on.
 template <int rows, class Real>
 inline void subtract(Real* LU, const Elimination::Below* below, const int* target,
                      std::span<const Elimination::Run> right, Real inverse, Real& largest) {
@@ -291,12 +290,12 @@ inline void subtract(Real* LU, const Elimination::Below* below, const int* targe
         const Real* const u = LU + run.at + even;
         Real* a[rows];
         for (int i = 0; i < rows; ++i) a[i] = LU + target[i * runs] + even;
-        for (std::ptrdiff_t c = -even; c != 0; c += 2) {  // two at a time: the compiler's vectors
-            const Real one = u[c], two = u[c + 1];
+        for (std::ptrdiff_t c = -even; c != 0; c += 2) {  // two at a time, for vector instructions
+            const Real u_0 = u[c], u_1 = u[c + 1];
             Real left[rows][2];
             for (int i = 0; i < rows; ++i) {
-                left[i][0] = a[i][c] - l[i] * one;
-                left[i][1] = a[i][c + 1] - l[i] * two;
+                left[i][0] = a[i][c] - l[i] * u_0;
+                left[i][1] = a[i][c + 1] - l[i] * u_1;
             }
             for (int i = 0; i < rows; ++i) {
                 a[i][c] = left[i][0];
