@@ -10,7 +10,7 @@ double parameter(const SteppingState& s, Drive drive) {
     return drive == Drive::start ? s.parameters.t : s.parameters.a;
 }
 
-void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double first,
+void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double a_1,
             bool arc_length, const Vector<double>& ahead) {
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
@@ -29,10 +29,10 @@ void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, dou
     c.load[0] = here;
     if (arc_length) {
         const double size = std::sqrt(inner(c.unit, c.unit));
-        const bool back = ahead.isZero(0) ? first < 0 : inner(c.unit, ahead) < 0;
+        const bool back = ahead.isZero(0) ? a_1 < 0 : inner(c.unit, ahead) < 0;
         c.load[1] = (back ? -1 : 1) / size;
     } else {
-        c.load[1] = first;
+        c.load[1] = a_1;
     }
     c.x.col(1) = c.load[1] * c.unit;
     s.work.x = c.x.col(1);

@@ -13,7 +13,7 @@ struct Coefficients {
     Matrix<Real> x;     // (r_k, 2 g_k; λ_k) [(n+m) × (p+1)]
     Vector<Real> load;  // a_k
     Vector<Real> unit;  // x̂, the solution for a unit of a
-    Vector<Real> none;  // zero
+    Vector<Real> none;  // zero, for pass `known`
 };
 
 template <class Real>
@@ -26,17 +26,17 @@ Coefficients<Real> reserve_coefficients(int unknowns, int order) {
 template <class Solve, class Straighten, class Loses, class Keep>
 struct OrderSteps {
     Solve solve;            // (): sets x to the solution for the right-hand side (-G, -Φ)
-    Straighten straighten;  // (k): may change x_k, in x, and a_k
-    // (correct): whether the correction of x_1, which correct() puts into x, is so large that all
-    // orders are corrected
+    Straighten straighten;  // (k): makes x_k, in x, orthogonal to x_1 by a_k, for arc length
+    // (correct): whether x_1 loses digits, so that all orders are corrected; correct() sets x to
+    // the correction of x_1
     Loses loses;
-    Keep keep;  // (): drops from x the corrections that are not needed
+    Keep keep;  // (): sets to zero the corrections in x that are not needed
 };
 template <class Solve, class Straighten, class Loses, class Keep>
 OrderSteps(Solve, Straighten, Loses, Keep) -> OrderSteps<Solve, Straighten, Loses, Keep>;
 
-// Computes the orders 1 ... p after begin() and pass `known` of order 0. x_1 = a_1 x̂ is in c.x and in
-// `x`, a workspace.
+// Computes the orders 1 ... p after begin() and pass `known` of order 0. x_1 = a_1 x̂ is in c.x and
+// in `x`, a workspace.
 //
 // Residual correction of x_k: coefficient k of (G, Φ) evaluated element by element with x_k, and
 // solved with the same factors. It removes the rounding of the assembled matrix.
@@ -82,10 +82,10 @@ void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x,
 // not help.
 inline constexpr double loses_digits = 1e-13;
 
-// Computes the polynomial x(τ) about (s.q, s.lambda, s.a), with the factors in s.system. `first` is
-// a_1 with a as parameter. With arc length only the sign of `first` counts, or, where `ahead` [n]
-// is not zero, the direction of the previous motion. Allocates nothing.
-void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double first,
+// Computes the polynomial x(τ) about (s.q, s.lambda, s.a), with the factors in s.system. `a_1` is
+// a_1 with a as parameter. With arc length only its sign counts, or, where `ahead` [n] is not zero,
+// the direction of the previous motion. Allocates nothing.
+void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double a_1,
             bool arc_length, const Vector<double>& ahead);
 
 // The present parameter of the equations: a, or t while settling.

@@ -30,7 +30,7 @@ bool became_inconsistent(SteppingState& s) {
 // Newton corrections at the present point; the last factors serve the next expansion. The first
 // correction is the error of the expansion. With arc length the parameter is corrected too, so that
 // nothing moves along the path.
-Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
+Outcome correct_at_end(Continuation& w, Certificate* certificate, double& error) {
     SteppingState& s = w.s;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
@@ -39,33 +39,34 @@ Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
     for (int k = 0; k < 8; ++k) {
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
-        double slid = 0;
-        const bool slide = w.by_arc() && !w.ahead.isZero(0);
-        if (slide) {
+        double parameter_change = 0;  // [m]
+        const bool free_parameter = w.by_arc() && !w.ahead.isZero(0);
+        if (free_parameter) {
             drive_at(s, w.e.drive, 1.0, s.q, s.lambda);
             back_substitute(s);
             w.c.unit = s.work.x;
         }
         residual_at(s, s.q, s.lambda);
-        if (k == 0 && judged != nullptr) {
-            judged->force_end = largest_force(s);
-            judged->constraint_end = largest_violation(s);
+        if (k == 0 && certificate != nullptr) {
+            certificate->force_end = largest_force(s);
+            certificate->constraint_end = largest_violation(s);
         }
         back_substitute(s);
-        if (slide) {
+        if (free_parameter) {
             const auto along = w.ahead.head(n).array() * W2;
             const double da = -(along * s.work.x.head(n).array()).sum() /
                               (along * w.c.unit.head(n).array()).sum();
             s.work.x += da * w.c.unit;
-            w.go_to(w.at() + da);
-            slid = w.per_unit * std::abs(da);
+            w.go_to(w.parameter_now() + da);
+            parameter_change = w.per_unit * std::abs(da);
         }
         if (!s.work.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
-        if (const Outcome outcome = check_idle_load_here(w.s, std::max(size, slid));
+        const double missed = std::max(size, parameter_change);
+        if (const Outcome outcome = check_idle_load_here(w.s, missed);
             outcome != Outcome::converged)
             return outcome;
-        if (k == 0) error = std::max(size, slid);
+        if (k == 0) error = missed;
         if (!(size < before)) break;  // at rounding level
         before = size;
         s.step.dq = s.work.x.head(n);
@@ -87,18 +88,21 @@ std::vector<Pose> poses_of(const State<double>& q) {
 // Shortens the range to where the first deformation leaves its piece.
 void stop_at_knots(const Continuation& w, End& end) {
     const double reach = end.tau;
-    std::vector<std::pair<Crossing, Leaving>> met;
+    std::vector<std::pair<Crossing, PieceExit>> met;
     for (std::size_t k = 0; k < w.curves.size(); ++k)
-        if (const auto there = leaving(w.e, w.curves[k], reach, w.near)) {
+        if (const auto there =
+                exit_from_piece(deformation_series(w.e, w.curves[k]), w.curves[k], reach, w.near)) {
             met.push_back({{k, there->direction}, *there});
-            if (there->at_once) end.at_once.push_back(met.back().first);
-            if (there->tau < end.tau) end = {.tau = there->tau, .at_once = std::move(end.at_once)};
+            if (there->wrong_piece) end.wrong_pieces.push_back(met.back().first);
+            if (there->tau < end.tau)
+                end = {.tau = there->tau, .wrong_pieces = std::move(end.wrong_pieces)};
         }
     // Several deformations may reach their knots at the same τ.
     for (const auto& [crossing, there] : met)
         if (there.tau <= end.tau ||
-            meets(w.e, w.curves[crossing.curve], crossing.direction, end.tau, w.near))
-            end.over.push_back(crossing);
+            is_at_knot(deformation_series(w.e, w.curves[crossing.curve]), w.curves[crossing.curve],
+                       crossing.direction, end.tau, w.near))
+            end.crossings.push_back(crossing);
 }
 
 // Whether a curve leaves its piece before a limit point at τ_s straight ahead. Such a limit point
@@ -106,9 +110,9 @@ void stop_at_knots(const Continuation& w, End& end) {
 // deformation still moves by 2 τ_s times its present rate; the test allows twice that, for the
 // terms that the square root omits.
 bool meets_knot_before(const Continuation& w, double tau_s) {
-    return std::ranges::any_of(w.curves, [&](const Followed& f) {
+    return std::ranges::any_of(w.curves, [&](const CurvePiece& f) {
         const double rate = deformation(w.e, f.elastic, f.axis, 1);
-        const auto to = to_knot(w.e, f, rate < 0 ? -1 : +1);
+        const auto to = distance_to_knot(w.e, f, rate < 0 ? -1 : +1);
         return to && *to <= 4 * tau_s * std::abs(rate);
     });
 }
@@ -122,20 +126,21 @@ Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singul
     if (w.by_arc()) {
         // [m]; a branch without curvature would have an infinite range
         end.tau = std::min(end.tau, 1.0);
-        if (const auto met =
+        if (const auto first =
                 first_zero([&](double t) { return polynomial(w.c.load, t) - w.end; }, end.tau))
-            end = {.tau = *met, .last = true};
+            end = {.tau = *first, .last = true};
         stop_at_knots(w, end);
         return Outcome::converged;
     }
     const double rest = (w.end - a_0) / w.to;
     if (end.tau >= rest) end = {.tau = rest, .last = true};
     stop_at_knots(w, end);
-    if (end.last || !end.over.empty() || !end.at_once.empty()) return Outcome::converged;
-    constexpr double near = 1e-4, at_it = 1e-8;  // of the branch
+    if (end.last || !end.crossings.empty() || !end.wrong_pieces.empty()) return Outcome::converged;
+    // distance of the singularity, as a share of the branch: close; too close to resolve
+    constexpr double near = 1e-4, unresolved = 1e-8;
     const bool straight_ahead = singularity.angle < 1e-3 && singularity.misfit < 1e-2;
     if (singularity.radius < near && straight_ahead &&
-        (singularity.radius < at_it || !meets_knot_before(w, singularity.radius))) {
+        (singularity.radius < unresolved || !meets_knot_before(w, singularity.radius))) {
         // A branch point straight ahead that comes nearer with each expansion is a limit point.
         w.path.limits.push_back(a_0 + singularity.radius * w.to);
         return Outcome::limit_point;
@@ -146,24 +151,24 @@ Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singul
 }
 
 // Evaluates the expansion about `from` at its midpoint and end, corrects the end by Newton's method
-// and fills the certificate `judged`. If the error at the end is too large, the range is shortened
+// and fills the certificate. If the error at the end is too large, the range is shortened
 // and the evaluation repeated.
 Outcome accept_expansion(Continuation& w, const State<double>& from, End& end,
-                         Certificate& judged) {
+                         Certificate& certificate) {
     for (int shorter = 0; shorter <= 20; ++shorter) {
         move_to(w, from, end.tau / 2);
         residual_at(w.s, w.s.q, w.s.lambda);
-        judged.force_middle = largest_force(w.s);
-        judged.constraint_middle = largest_violation(w.s);
+        certificate.force_middle = largest_force(w.s);
+        certificate.constraint_middle = largest_violation(w.s);
         if (w.stable)
-            w.in_middle =
+            w.at_middle =
                 factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged ? determinant(w) : -1;
 
         move_to(w, from, end.tau);
         if (end.last && !w.by_arc()) w.go_to(w.end);
         w.ahead = w.by_arc() ? derivative(w.c.x, end.tau) : Vector<double>(w.c.x.col(1));
-        const Outcome outcome = correct_at_end(w, &judged, judged.error_end);
-        const double error = judged.error_end;
+        const Outcome outcome = correct_at_end(w, &certificate, certificate.error_end);
+        const double error = certificate.error_end;
         if (outcome == Outcome::converged && error <= 10 * w.options.tolerance) return outcome;
         if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode ||
             outcome == Outcome::inconsistent_constraints)
@@ -181,12 +186,12 @@ Outcome begin_at_design(Continuation& w, const Analysis& analysis) {
     w.go_to(0);
     // Select the piece of each curve: at a knot the analysis may have used the other piece.
     if (!w.curves.empty()) {
-        begin(w.e, w.s.q, w.s.lambda, w.at());
+        begin(w.e, w.s.q, w.s.lambda, w.parameter_now());
         evaluate(w.e, {0, Pass::known});
     }
     for (auto& curve : w.curves) {
         find_piece(w.e, curve);
-        w.follow(curve);
+        w.use(curve);
     }
     w.go_to(w.to);  // with all forces at the end of the branch
     if (w.e.drive == Drive::start ? loads_idle_mode(w.s)
@@ -197,25 +202,25 @@ Outcome begin_at_design(Continuation& w, const Analysis& analysis) {
     return factorise_at(w.s, w.s.q, w.s.lambda);
 }
 
-// Changes every curve in `over` to its neighbouring piece. The matrix is factorised again if a
+// Changes every curve in `crossings` to its neighbouring piece. The matrix is factorised again if a
 // slope jumps; the direction of the motion jumps there too. With arc length the path continues on
 // the side on which the product of the determinant's sign and a' is unchanged.
-Outcome cross_knots(Continuation& w, const std::vector<Crossing>& over) {
+Outcome cross_knots(Continuation& w, const std::vector<Crossing>& crossings) {
     bool jumps = false;
-    for (const auto& [k, direction] : over) {
-        jumps = step_over(w.curves[k], direction) || jumps;
-        w.follow(w.curves[k]);
+    for (const auto& [k, direction] : crossings) {
+        jumps = cross_knot(w.curves[k], direction) || jumps;
+        w.use(w.curves[k]);
     }
     if (!jumps) return Outcome::converged;
     const Outcome outcome = factorise_at(w.s, w.s.q, w.s.lambda);
     if (w.by_arc() && !w.path.expansions.empty()) {
         w.ahead.setZero();
-        w.first = w.s.system.lu.orientation == w.side ? std::abs(w.to) : -std::abs(w.to);
+        w.a_1 = w.s.system.lu.orientation == w.sign_at_start ? std::abs(w.to) : -std::abs(w.to);
     }
     return outcome;
 }
 
-std::vector<Piece> pieces_of(const std::vector<Followed>& curves) {
+std::vector<Piece> pieces_of(const std::vector<CurvePiece>& curves) {
     std::vector<Piece> all;
     for (const auto& curve : curves) all.push_back(curve.piece);
     return all;
@@ -223,35 +228,35 @@ std::vector<Piece> pieces_of(const std::vector<Followed>& curves) {
 
 // Expands at the present point on the pieces that the motion enters. A deformation that starts at a
 // knot and leaves its piece at once belongs to the neighbouring piece. Each change of piece changes
-// the motion: a linear complementarity problem. All such curves change piece together; once a set of
-// pieces would repeat, only the first of them does, which ends where a solution exists (Murty 1974).
-// Where no set agrees with its motion, the path turns back at the knot.
+// the motion: a linear complementarity problem. All such curves change piece together; once a set
+// of pieces would repeat, only the first of them does, which ends where a solution exists (Murty
+// 1974). Where no set agrees with its motion, the path turns back at the knot.
 Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
     std::vector<std::vector<Piece>> tried;
     bool together = true;
     for (;;) {
-        expand(w.s, w.e, w.c, w.first, w.by_arc(), w.ahead);
+        expand(w.s, w.e, w.c, w.a_1, w.by_arc(), w.ahead);
         singularity = nearest_singularity(w.s, w.c);
-        if (const Outcome o = range_of_validity(w, w.at(), singularity, end);
+        if (const Outcome o = range_of_validity(w, w.parameter_now(), singularity, end);
             o != Outcome::converged)
             return o;
-        if (end.at_once.empty()) return Outcome::converged;
+        if (end.wrong_pieces.empty()) return Outcome::converged;
         tried.push_back(pieces_of(w.curves));
         const auto would_repeat = [&] {
             auto next = pieces_of(w.curves);
-            for (const auto& [k, direction] : end.at_once) next[k] += direction;
+            for (const auto& [k, direction] : end.wrong_pieces) next[k] += direction;
             return std::ranges::find(tried, next) != tried.end();
         };
         if (together && would_repeat()) {
             together = false;
             tried.assign(1, pieces_of(w.curves));
         }
-        if (!together) end.at_once.resize(1);
+        if (!together) end.wrong_pieces.resize(1);
         if (would_repeat()) {
-            w.path.limits.push_back(w.at());
+            w.path.limits.push_back(w.parameter_now());
             return Outcome::limit_point;
         }
-        if (const Outcome o = cross_knots(w, end.at_once); o != Outcome::converged) return o;
+        if (const Outcome o = cross_knots(w, end.wrong_pieces); o != Outcome::converged) return o;
     }
 }
 
@@ -272,21 +277,21 @@ struct SharedStart {
     Matrix<double> x;
     Vector<double> load;
     double log_determinant = 0;
-    int side = 0;
+    int determinant_sign = 0;
     StartStability stability;
 };
 
 // The expansion at the start from that of another side of the branch.
 Outcome expand_shared(Continuation& w, const SharedStart& shared, Singularity& singularity,
                       End& end) {
-    const double share = w.first / shared.load[1];
+    const double r = w.a_1 / shared.load[1];
     double power = 1;
-    for (Eigen::Index k = 0; k < shared.x.cols(); ++k, power *= share)
+    for (Eigen::Index k = 0; k < shared.x.cols(); ++k, power *= r)
         w.c.x.col(k) = power * shared.x.col(k);
     w.c.load = shared.load;
-    w.c.load[1] = w.first;
+    w.c.load[1] = w.a_1;
     singularity = nearest_singularity(w.s, w.c);
-    return range_of_validity(w, w.at(), singularity, end);
+    return range_of_validity(w, w.parameter_now(), singularity, end);
 }
 
 // Follows the path from an equilibrium, with its factors in s.system, to the end. `known`:
@@ -303,14 +308,16 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
         const State<double> from = s.q;
         Singularity singularity;
         End end;
-        Certificate judged;
+        Certificate certificate;
         if (const Outcome o = has_shared ? expand_shared(w, **shared, singularity, end)
                                          : expand_here(w, singularity, end);
             o != Outcome::converged)
             return o;
         // Crossing a knot must not have changed the sign of the determinant.
-        if (const int side_here = has_shared ? (*shared)->side : side(w, w.to); starts) {
-            w.side = side_here;
+        if (const int sign_here =
+                has_shared ? (*shared)->determinant_sign : determinant_sign(w, w.to);
+            starts) {
+            w.sign_at_start = sign_here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
                 const bool is_known = known != nullptr && pieces_of(w.curves) == pieces;
                 const StartStability start = has_shared ? (*shared)->stability
@@ -323,36 +330,39 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                 if (shared != nullptr && !has_shared)
                     *shared = {s.q,       s.lambda, s.system.held.value,
                                w.c.x,     w.c.load, log_determinant(s.system),
-                               side_here, start};
+                               sign_here, start};
             }
-        } else if (side_here != w.side && !w.by_arc())
+        } else if (sign_here != w.sign_at_start && !w.by_arc()) {
             return Outcome::singular;
+        }
         w.log_begin = has_shared ? (*shared)->log_determinant : log_determinant(s.system);
-        if (const Outcome o = accept_expansion(w, from, end, judged); o != Outcome::converged)
+        if (const Outcome o = accept_expansion(w, from, end, certificate); o != Outcome::converged)
             return o;
-        const auto reversed = reversed_inside(w, from, end.tau);
+        const auto reversed = find_reversal(w, from, end.tau);
         if (reversed) {
             end = {.tau = *reversed};
             w.reversed = true;
         }
         // The polynomial continues past a bifurcation point, and the branch past a
         // loss of stability.
-        bool past = !reversed && is_past(w, rises_ahead(w));
+        bool past = !reversed && is_past(w, parameter_rate_ahead(w));
         if (!past && !reversed)
-            if (const auto lost = lost_inside(w, from, end.tau)) {
+            if (const auto lost = find_instability(w, from, end.tau)) {
                 past = true;
                 end.tau = *lost;
             }
-        if (past) end.tau = divide(w, from, end.tau);
-        if (w.by_arc()) look_for_turns(w, end.tau);
+        if (past) end.tau = locate_bifurcation(w, from, end.tau);
+        if (w.by_arc()) record_limit_points(w, end.tau);
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,
-                                     static_cast<int>(end.over.size()), singularity, judged});
-        knots_crossed += end.over.size();
+                                     static_cast<int>(end.crossings.size()), singularity,
+                                     certificate});
+        knots_crossed += end.crossings.size();
         if (past) return Outcome::bifurcation_point;
         if (reversed) return Outcome::branch_lost;
         if (end.last) return w.end == w.to ? Outcome::converged : Outcome::inconsistent_constraints;
-        if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
-        if (const Outcome o = cross_knots(w, end.over); o != Outcome::converged) return o;
+        if (w.by_arc() && !(std::abs(w.parameter_now()) <= 2 * std::abs(w.to)))
+            return Outcome::branch_lost;
+        if (const Outcome o = cross_knots(w, end.crossings); o != Outcome::converged) return o;
     }
     return Outcome::iteration_limit;
 }
@@ -361,8 +371,10 @@ std::string failure_text(const Continuation& w, Outcome outcome, const Diagnosis
     const bool settles = w.e.drive == Drive::start;
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
     const std::string place =
-        settles ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch, w.at())
-                : fmt::format("{}: at {}", branch, in_unit(w.s.branch.unit, w.at()));
+        settles
+            ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch,
+                          w.parameter_now())
+            : fmt::format("{}: at {}", branch, parameter_text(w.s.branch.unit, w.parameter_now()));
     if (!w.s.start.unstable.empty())
         return fmt::format("{}: the equilibrium that settles at 0 is unstable: {}", branch,
                            w.s.start.unstable);
@@ -376,36 +388,25 @@ std::string failure_text(const Continuation& w, Outcome outcome, const Diagnosis
                            : fmt::format(
                                  "{}: limit point near {}, past it no equilibrium continues "
                                  "the branch",
-                                 branch, in_unit(w.s.branch.unit, w.path.limits.back(), 9));
+                                 branch, parameter_text(w.s.branch.unit, w.path.limits.back(), 9));
         case Outcome::iteration_limit:
             return place + fmt::format(": {} expansions were not enough", w.path.expansions.size());
         case Outcome::singular:
             return place +
                    ": the matrix is or was singular: the branch bifurcates or loses its stability" +
-                   (diagnosis.null_space.cols() > 0 ? ", or an idle mode or redundant constraint "
-                                                      "of the design position no longer is one"
-                                                    : "");
-        case Outcome::bifurcation_point:
-            return place +
-                   ": another curve of equilibria crosses the branch, which is unstable past this "
-                   "point";
+                   end_by_diagnosis(outcome, diagnosis);
         case Outcome::inconsistent_constraints:
-            if (const auto gone = vanishing_length(w.s.model, w.s.branch);
-                gone && std::abs(w.at()) >= 0.99 * std::abs(w.end))
-                return fmt::format("{}: {}", branch, no_length(w.s.model, w.s.branch, *gone));
-            return place + ": redundant joints are inconsistent";
-        case Outcome::loaded_idle_mode:
-            return place +
-                   ": the load acts on a motion that no joint or element resists at the design "
-                   "position: " +
-                   idle_modes(diagnosis);
+            if (const auto vanishing = vanishing_length(w.s.model, w.s.branch);
+                vanishing && std::abs(w.parameter_now()) >= 0.99 * std::abs(w.end))
+                return fmt::format("{}: {}", branch, no_length(w.s.model, w.s.branch, *vanishing));
+            return place + end_by_diagnosis(outcome, diagnosis);
         case Outcome::branch_lost:
             if (w.reversed)
                 return place +
                        ": a spring passes through zero length or a bushing through half a turn, "
                        "where its force jumps";
             return place;
-        default: return place;
+        default: return place + end_by_diagnosis(outcome, diagnosis);
     }
 }
 
@@ -416,8 +417,8 @@ SteppingState series_state(const Model& model, const Branch& branch, const Analy
     return s;
 }
 
-// From the design position to the start, with the constraint error of the analysis in s.start.Phi_d: the
-// closing tolerance is no exact equilibrium.
+// Settles from the design position. Pre: s.start.Phi_d is the constraint error of the analysis,
+// also where SteppingState has set it to zero as closed: t = 0 is then exact.
 Outcome settle(Continuation& settling, const Analysis& analysis) {
     SteppingState& s = settling.s;
     if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged) return o;
@@ -426,7 +427,7 @@ Outcome settle(Continuation& settling, const Analysis& analysis) {
     return settled(s, outcome, 0.0);
 }
 
-void place_at_start(SteppingState& s, std::vector<Followed>& curves, const Start& start) {
+void place_at_start(SteppingState& s, std::vector<CurvePiece>& curves, const Start& start) {
     s.q = start.q;
     s.lambda = start.lambda;
     s.start.Phi_d = start.Phi_d;
@@ -434,11 +435,11 @@ void place_at_start(SteppingState& s, std::vector<Followed>& curves, const Start
     for (std::size_t k = 0; k < curves.size(); ++k) curves[k].piece = start.pieces[k];
 }
 
-// Newton's method from the start of another branch, for the equilibrium next to it: within a
-// hundredth of L, on the same pieces of the curves, and met to the tolerance. Idle motions would
-// depend on the way there.
-bool settle_near(SteppingState& s, std::vector<Followed>& curves, const recursive::Series& options,
-                 const Start& other) {
+// Newton's method from the start of another branch. Returns whether it converges to the tolerance,
+// within a hundredth of L and on the same pieces of the curves. Not with idle modes, whose
+// positions depend on the path.
+bool settle_near(SteppingState& s, std::vector<CurvePiece>& curves,
+                 const recursive::Series& options, const Start& other) {
     constexpr double near = 1e-2;
     if (s.system.held.idle > 0) return false;
     place_at_start(s, curves, other);
@@ -449,9 +450,9 @@ bool settle_near(SteppingState& s, std::vector<Followed>& curves, const recursiv
         if (correct_at_end(w, nullptr, correction) != Outcome::converged || !(correction <= limit))
             return false;
     }
-    begin(w.e, s.q, s.lambda, w.at());
+    begin(w.e, s.q, s.lambda, w.parameter_now());
     evaluate(w.e, {0, Pass::known});
-    return std::ranges::all_of(curves, [&](Followed curve) {
+    return std::ranges::all_of(curves, [&](CurvePiece curve) {
         const Piece piece = curve.piece;
         find_piece(w.e, curve);
         return curve.piece == piece;
@@ -501,7 +502,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
         return none;
     }
     SteppingState s = series_state(model, branch, analysis);
-    std::vector<Followed> curves = curves_of(model);
+    std::vector<CurvePiece> curves = curves_of(model);
     const auto finish = [&](Continuation& w, Outcome outcome) {
         w.path.outcome = outcome;
         if (outcome != Outcome::converged)
@@ -561,7 +562,7 @@ void keep_start(const Model& model, const Branch& branch, const recursive::Serie
     const auto last = std::move(analysis.settled);
     const bool as_drawn = analysis.at_rest && starts_as_drawn(branch);
     if (as_drawn || std::isnan(analysis.diagnosis.constraint_error)) return;
-    const auto keep = [&](SteppingState& s, const std::vector<Followed>& curves) {
+    const auto keep = [&](SteppingState& s, const std::vector<CurvePiece>& curves) {
         go_to(s, {1, 0});
         analysis.settled =
             std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.start.Phi_d,
@@ -569,11 +570,11 @@ void keep_start(const Model& model, const Branch& branch, const recursive::Serie
     };
     if (last) {
         SteppingState s = series_state(model, branch, analysis);
-        std::vector<Followed> curves = curves_of(model);
+        std::vector<CurvePiece> curves = curves_of(model);
         if (settle_near(s, curves, options, *last)) return keep(s, curves);
     }
     SteppingState s = series_state(model, branch, analysis);
-    std::vector<Followed> curves = curves_of(model);
+    std::vector<CurvePiece> curves = curves_of(model);
     s.start.Phi_d = analysis.Phi_d;
     Continuation settling(s, curves, options, Drive::start);
     if (settle(settling, analysis) == Outcome::converged) keep(s, curves);

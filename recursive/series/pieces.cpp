@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "recursive/series/polynomial.hpp"
+
 namespace elastocheck::recursive::series {
 namespace {
 
 using Polynomial = Eigen::VectorXd;  // c_0 + c_1 τ + ...
-
-double value(const Polynomial& c, double tau) {
-    double sum = 0;
-    for (Eigen::Index k = c.size(); k-- > 0;) sum = sum * tau + c[k];
-    return sum;
-}
 
 // Coefficients of the polynomial in the Bernstein basis of [0, h]; its values lie between the
 // smallest and the largest of them.
@@ -47,44 +43,39 @@ std::optional<double> first_below(Polynomial b, double level, double from, doubl
     return first_below(b, level, middle, to, halvings - 1);
 }
 
-bool has_knot(const Followed& f, int direction) {
+bool has_knot(const CurvePiece& f, int direction) {
     return direction > 0 ? f.piece < static_cast<Piece>(f.curve->knots.size()) : f.piece > 0;
 }
-double knot(const Followed& f, int direction) {
+double knot(const CurvePiece& f, int direction) {
     return f.curve->knots[static_cast<std::size_t>(direction > 0 ? f.piece : f.piece - 1)];
 }
 // Distance of the deformation x from that knot, positive inside the piece.
-Polynomial inside(const Polynomial& x, const Followed& f, int direction) {
+Polynomial inside(const Polynomial& x, const CurvePiece& f, int direction) {
     Polynomial c = -direction * x;
     c[0] += direction * knot(f, direction);
     return c;
 }
-Polynomial series_of(const Equations<double>& e, const Followed& f) {
-    Polynomial x(e.order() + 1);
-    for (int k = 0; k <= e.order(); ++k) x[k] = deformation(e, f.elastic, f.axis, k);
-    return x;
-}
-
-std::optional<Leaving> leaving(const Polynomial& f, int direction, double reach, double touch,
-                               double arrived) {
-    if (f[0] < -arrived) return Leaving{0, direction, true};
+std::optional<PieceExit> exit_from_piece(const Polynomial& f, int direction, double reach,
+                                         double overshoot, double start) {
+    if (f[0] < -start) return PieceExit{0, direction, true};
     // A start slightly beyond the knot, within its tolerance, counts as on the knot.
     Polynomial g = f;
     g[0] = std::max(g[0], 0.0);
     constexpr int halvings = 50;
-    const auto out = first_below(bernstein(g, reach), -touch, 0, reach, halvings);
+    const auto out = first_below(bernstein(g, reach), -overshoot, 0, reach, halvings);
     if (!out) return std::nullopt;
     // The zero before `out`: step back until g is positive, then bisect.
     double from = *out, to = *out;
-    for (double back = std::ldexp(reach, -halvings); from > 0 && !(value(g, from) > 0); back *= 2)
+    for (double back = std::ldexp(reach, -halvings); from > 0 && !(polynomial(g, from) > 0);
+         back *= 2)
         from = std::max(0.0, *out - back);
-    if (!(value(g, from) > 0)) from = to = 0;
+    if (!(polynomial(g, from) > 0)) from = to = 0;
     while (from != to) {
         const double middle = from + (to - from) / 2;
         if (middle == from || middle == to) break;
-        (value(g, middle) > 0 ? from : to) = middle;
+        (polynomial(g, middle) > 0 ? from : to) = middle;
     }
-    return Leaving{to, direction, bernstein(g, to).maxCoeff() <= touch};
+    return PieceExit{to, direction, bernstein(g, to).maxCoeff() <= overshoot};
 }
 
 double slope(const Curve& curve, Piece piece, double x) {
@@ -93,8 +84,8 @@ double slope(const Curve& curve, Piece piece, double x) {
 
 }  // namespace
 
-std::vector<Followed> curves_of(const Model& model) {
-    std::vector<Followed> curves;
+std::vector<CurvePiece> curves_of(const Model& model) {
+    std::vector<CurvePiece> curves;
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         each_curve(model.elastics[k].kind, [&](std::size_t axis, const Curve& curve) {
             curves.push_back({k, static_cast<int>(axis), &curve, 0});
@@ -103,26 +94,27 @@ std::vector<Followed> curves_of(const Model& model) {
     return curves;
 }
 
-void find_piece(const Equations<double>& e, Followed& f) {
+void find_piece(const Equations<double>& e, CurvePiece& f) {
     f.piece = piece_at<double>(*f.curve, deformation(e, f.elastic, f.axis, 0));
 }
 
-void follow_on(const Followed& f, Equations<double>& e) {
+void set_piece(const CurvePiece& f, Equations<double>& e) {
     const auto piece = static_cast<std::size_t>(f.piece);
     CubicSeries<double>& cubic = cubic_of(e, f.elastic, f.axis);
     cubic.c = f.curve->pieces[piece];
     cubic.about = f.curve->knots[piece == 0 ? 0 : piece - 1];
 }
-void follow_on(const Followed& f, Inputs<double>& inputs) {
+void set_piece(const CurvePiece& f, Inputs<double>& inputs) {
     inputs.rest[f.elastic].piece[static_cast<std::size_t>(f.axis)] = f.piece;
 }
 
-std::optional<double> to_knot(const Equations<double>& e, const Followed& f, int direction) {
+std::optional<double> distance_to_knot(const Equations<double>& e, const CurvePiece& f,
+                                       int direction) {
     if (!has_knot(f, direction)) return std::nullopt;
     return direction * (knot(f, direction) - deformation(e, f.elastic, f.axis, 0));
 }
 
-bool step_over(Followed& f, int direction) {
+bool cross_knot(CurvePiece& f, int direction) {
     const double x = knot(f, direction);
     const double before = slope(*f.curve, f.piece, x);
     f.piece += direction;
@@ -130,31 +122,29 @@ bool step_over(Followed& f, int direction) {
     return std::abs(behind - before) > 1e-12 * std::max(std::abs(before), std::abs(behind));
 }
 
-std::optional<Leaving> leaving(const Equations<double>& e, const Followed& f, double reach,
-                               const Near& near) {
-    return leaving(series_of(e, f), f, reach, near);
+Eigen::VectorXd deformation_series(const Equations<double>& e, const CurvePiece& f) {
+    Eigen::VectorXd x(e.order() + 1);
+    for (int k = 0; k <= e.order(); ++k) x[k] = deformation(e, f.elastic, f.axis, k);
+    return x;
 }
-std::optional<Leaving> leaving(const Eigen::VectorXd& x, const Followed& f, double reach,
-                               const Near& near) {
-    const double unit = f.turns() ? near.length : 1;
-    std::optional<Leaving> first;
+
+std::optional<PieceExit> exit_from_piece(const Eigen::VectorXd& x, const CurvePiece& f,
+                                         double reach, const KnotTolerance& near) {
+    const double unit = f.is_angle() ? near.length : 1;
+    std::optional<PieceExit> first;
     for (const int direction : {+1, -1}) {
         if (!has_knot(f, direction)) continue;
-        const auto there = leaving(inside(x, f, direction), direction, reach, near.touch / unit,
-                                   near.arrived / unit);
+        const auto there = exit_from_piece(inside(x, f, direction), direction, reach,
+                                           near.overshoot / unit, near.start / unit);
         if (there && (!first || there->tau < first->tau)) first = there;
     }
     return first;
 }
 
-bool meets(const Eigen::VectorXd& x, const Followed& f, int direction, double tau,
-           const Near& near) {
-    return std::abs(value(inside(x, f, direction), tau)) <=
-           near.touch / (f.turns() ? near.length : 1);
-}
-bool meets(const Equations<double>& e, const Followed& f, int direction, double tau,
-           const Near& near) {
-    return meets(series_of(e, f), f, direction, tau, near);
+bool is_at_knot(const Eigen::VectorXd& x, const CurvePiece& f, int direction, double tau,
+                const KnotTolerance& near) {
+    return std::abs(polynomial(inside(x, f, direction), tau)) <=
+           near.overshoot / (f.is_angle() ? near.length : 1);
 }
 
 }  // namespace elastocheck::recursive::series

@@ -1,5 +1,5 @@
-// The terms of the equations in power series, as templates over their arithmetic: memory, numbers of
-// the elements, driven inputs, values at τ = 0.
+// The terms of the equations in power series, as templates over their arithmetic: memory, numbers
+// of the elements, driven inputs, values at τ = 0.
 #pragma once
 
 #include <algorithm>
@@ -298,7 +298,7 @@ void add(Driven<T>& driven, Drive drive, const Driver& driver, const Value& dire
         }
     };
     if (drive == Drive::rate) add_to(driven.start, driver.start);
-    add_to(driven.rate, speed<double>(driver, drive));
+    add_to(driven.rate, amplitude<double>(driver, drive));
 }
 template <class Real>
 void move(CoincidentSeries<Real>&, Drive, const Driver&, int) {
