@@ -13,8 +13,8 @@
 namespace elastocheck::recursive {
 namespace {
 
-constexpr double longest = 1. / 4, min_step = 1. / 64;  // step, as a fraction of the branch
-constexpr double tolerance = 1e-4;                      // of L, or rad: tolerance of the corrector
+constexpr double max_step = 1. / 4, min_step = 1. / 64;  // as fractions of the branch
+constexpr double tolerance = 1e-4;                       // of L, or rad: tolerance of the corrector
 
 // Whether the outcome means the end of the branch and not a numerical failure.
 bool ends(Outcome outcome) {
@@ -24,7 +24,7 @@ bool ends(Outcome outcome) {
 }
 
 // Settles to the equilibrium at a = 0 and leaves its factors in the system.
-Outcome settles(SteppingState& s, const Branch& branch, const Analysis& analysis) {
+Outcome settle_start(SteppingState& s, const Branch& branch, const Analysis& analysis) {
     const bool as_drawn = analysis.at_rest && starts_as_drawn(branch) && s.kinks.curves.empty();
     if (as_drawn) go_to(s, {1, 0});
     const Outcome outcome = as_drawn ? check_factors(s, s.q, analysis.pivot_ratio) : settle(s);
@@ -47,11 +47,11 @@ struct Stability {
 };
 
 // Parameter at which stability is lost between a stable node and p = far, by bisection with
-// accepted steps; none if `far` is reached and stable, or if the steps do not decide.
+// accepted steps; none if `far` is reached and stable, or if no step decides.
 std::optional<double> lost_between(SteppingState& s, const ContinuationSettings& settings,
                                    Node node, double far) {
-    constexpr double resolution = 1e-6;  // of the way from the node
-    constexpr int most = 100;  // steps tried: bisection takes 20, the rest is for short ones
+    constexpr double resolution = 1e-6;   // of the way from the node
+    constexpr int max_steps_tried = 100;  // bisection takes 20, the rest is for rejected ones
     const Vector<double> none = Vector<double>::Zero(s.n()),
                          lambda_none = Vector<double>::Zero(s.m());
     const double finest = resolution * std::abs(far - node.p);
@@ -59,7 +59,7 @@ std::optional<double> lost_between(SteppingState& s, const ContinuationSettings&
     Stability stability;
     bool lost = false;
     double h = far - node.p;
-    for (int tried = 0; tried < most && std::abs(h) > finest / 2; ++tried) {
+    for (int tried = 0; tried < max_steps_tried && std::abs(h) > finest / 2; ++tried) {
         next.p = node.p + h;
         const Trial trial = try_step(s, settings, node, none, lambda_none, next);
         if (stability.is_lost(s, trial)) {
@@ -88,19 +88,19 @@ std::optional<double> suspect_between(SteppingState& s, const ContinuationSettin
     constexpr double nearly = 0.01;
     State<double> q = from.q;
     Vector<double> lambda = from.lambda;
-    const auto place = [&](double t) { return from.p + t * (to.p - from.p); };
-    const auto at = [&](double t) {
-        between(from, to, t, q, lambda);
-        go_to(s, settings.at(place(t)));
+    const auto parameter = [&](double t) { return from.p + t * (to.p - from.p); };
+    const auto determinant = [&](double t) {
+        interpolate(from, to, t, q, lambda);
+        go_to(s, settings.at(parameter(t)));
         const bool regular = factorise_at(s, q, lambda) == Outcome::converged;
         return regular && s.system.lu.orientation == from.orientation
                    ? std::exp2(log_determinant(s.system) - log_from)
                    : -1;
     };
     const double end = std::exp2(log_to - log_from);
-    const Dip lowest = lowest_determinant({1, at(0.5), end}, at);
+    const Dip lowest = lowest_determinant({1, determinant(0.5), end}, determinant);
     return lowest.t > 0 && lowest.t < 1 && lowest.value < nearly * std::max(1., end)
-               ? std::optional(place(lowest.t))
+               ? std::optional(parameter(lowest.t))
                : std::nullopt;
 }
 
@@ -122,31 +122,33 @@ Traversal follow_by_long_steps(SteppingState& s, double to) {
     // interior was examined.
     Node before = node;
     double log_before = log_here, rise_before = 0;
-    bool looked_before = true;
+    bool examined_before = true;
     Vector<double> curvature = Vector<double>::Zero(s.n()),
                    lambda_curvature = Vector<double>::Zero(s.m());
     State<double> q = s.q;
     Vector<double> lambda = s.lambda;
     Stability stability;
-    double h = longest;  // fraction of the branch
-    for (double gone = 0; gone < 1;) {
-        const double ahead = gone + h < 1 - h / 8 ? gone + h : 1;
+    double h = max_step;
+    for (double done = 0; done < 1;) {  // fraction of the branch
+        const double ahead = done + h < 1 - h / 8 ? done + h : 1;
         next.p = to * ahead;
         const Trial trial = try_step(s, settings, node, curvature, lambda_curvature, next);
         const bool accepted = trial.verdict == Verdict::accepted;
         if (accepted && is_inconsistent_at(s, next, q, lambda)) return {false, {}, node.p};
         if (accepted && negative_idle_stiffness(s, next.q, next.lambda) < 0) return {};
-        const bool first = gone == 0, last = ahead == 1;
+        const bool first = done == 0, last = ahead == 1;
         if (trial.verdict == Verdict::past_singular_point ||
             (last && stability.is_lost(s, trial))) {
             if (const auto lost = lost_between(s, settings, node, next.p)) return {false, lost};
         } else if (accepted && is_straight(s, settings, node, next)) {
             if (ahead == 1 && is_unstable(s)) return {};
             const double log_next = log_determinant(s.system),
-                         rise = (log_next - log_here) / (ahead - gone);
-            const bool turns = !first && rise_before < 0 && rise > 0;
+                         rise = (log_next - log_here) / (ahead - done);
+            const bool has_minimum = !first && rise_before < 0 && rise > 0;
             for (const bool this_step : {true, false}) {
-                if (this_step ? !(first || last || turns) : !(turns && !looked_before)) continue;
+                if (this_step ? !(first || last || has_minimum)
+                              : !(has_minimum && !examined_before))
+                    continue;
                 const Node &from = this_step ? node : before, &to_node = this_step ? next : node;
                 const auto suspect =
                     suspect_between(s, settings, from, to_node, this_step ? log_here : log_before,
@@ -158,16 +160,16 @@ Traversal follow_by_long_steps(SteppingState& s, double to) {
             before = node;
             log_before = log_here;
             rise_before = rise;
-            looked_before = first || turns;
+            examined_before = first || has_minimum;
             curvature = (next.dq - node.dq) / (next.p - node.p);
             lambda_curvature = (next.dlambda - node.dlambda) / (next.p - node.p);
             std::swap(node, next);
             log_here = log_next;
-            h = std::min(2 * (ahead - gone), longest);
-            gone = ahead;
+            h = std::min(2 * (ahead - done), max_step);
+            done = ahead;
             continue;
         }
-        if (h = (ahead - gone) / 4; h < min_step) return {};
+        if (h = (ahead - done) / 4; h < min_step) return {};
     }
     return {true};
 }
@@ -187,9 +189,11 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
     if (branch.to == 0 || model.bodies.empty()) return std::nullopt;
     SteppingState s(model, branch, analysis);
     s.setup.consistent = true;
-    // Newton corrections at every node restore accuracy, and a pivot order costs ten factorisations.
+    // Newton corrections at every node restore accuracy, and a pivot order costs ten
+    // factorisations.
     s.system.lu.largest_multiplier = 1e4;
-    if (const Outcome o = settles(s, branch, analysis); ends(o) || o == Outcome::loaded_idle_mode)
+    if (const Outcome o = settle_start(s, branch, analysis);
+        ends(o) || o == Outcome::loaded_idle_mode)
         return Event{o, std::numeric_limits<double>::quiet_NaN(), s.start.unstable};
     else if (o != Outcome::converged)
         return std::nullopt;  // the method reports this failure itself

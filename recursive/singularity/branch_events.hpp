@@ -8,10 +8,11 @@
 // branch (stiffness.hpp, stability.hpp).
 //
 // These tests do not detect stability that is lost inside a step and regained before its end. The
-// determinant is therefore evaluated at the midpoint of the first and the last step, and of the two
-// steps at a node where it has a minimum, and from there to its lowest value (stability.hpp). Where it changes its sign or nearly vanishes, and where a
-// tried step ends unstable, bisection locates the point. An unstable interval is missed if it is so
-// short that these values of the determinant show no dip; no minimum length is guaranteed.
+// determinant is therefore evaluated at the midpoint of the first and the last step and of the two
+// steps at a node where it has a minimum, and from there to its lowest value (stability.hpp). Where
+// it changes its sign or nearly vanishes, and where a tried step ends unstable, bisection locates
+// the point. An unstable interval is missed if it is so short that these values of the determinant
+// show no dip; no minimum length is guaranteed.
 //
 // The cost is about fifteen factorisations. If a step is rejected at every length, or stability is
 // lost, `adaptive` follows the same branch. The method then ends where `adaptive` ends, or where

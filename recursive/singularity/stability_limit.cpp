@@ -46,7 +46,7 @@ Vector<double> times(const SaddleMatrix<double>& G, const Vector<double>& u) {
 
 // Largest eigenvalue of T K_G by subspace iteration on three vectors.
 double largest(SteppingState& s, const SaddleMatrix<double>& G) {
-    constexpr int vectors = 3, turns = 12;
+    constexpr int vectors = 3, iterations = 12;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     Matrix<double> U(n, std::min(vectors, s.setup.free));
@@ -54,7 +54,7 @@ double largest(SteppingState& s, const SaddleMatrix<double>& G) {
         for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / s.system.weight[k];
     Eigen::MatrixXd H;
     s.work.lower.setZero();
-    for (int turn = 0; turn < turns; ++turn) {
+    for (int k = 0; k < iterations; ++k) {
         detail::orthonormalise(s.system.weight, U);
         Matrix<double> V(n, U.cols());
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
@@ -102,9 +102,8 @@ std::optional<double> stability_limit(const Model& model, const Branch& branch,
         const EquilibriumPath path =
             solve(model, searched, {.method = find_method("adaptive").value(), .steps = points},
                   analysis);
-        double before = 0, at = 0;
-        const Equilibrium* beyond = nullptr;
-        double now = 0;
+        double before = 0, before_load = 0, now = 0;  // eigenvalues below and at `beyond`
+        const Equilibrium* beyond = nullptr;          // the first point with an eigenvalue of one
         for (const Equilibrium& point : path.points) {
             now = delayed_stiffness(model, branch, method, analysis, point);
             if (now >= 1) {
@@ -112,12 +111,12 @@ std::optional<double> stability_limit(const Model& model, const Branch& branch,
                 break;
             }
             before = now;
-            at = point.load;
+            before_load = point.load;
         }
         if (beyond == nullptr || beyond->load == 0)
             return beyond ? std::optional(0.) : std::nullopt;
-        if (std::abs(beyond->load - at) <= near * std::abs(beyond->load))
-            return at + (1 - before) / (now - before) * (beyond->load - at);
+        if (std::abs(beyond->load - before_load) <= near * std::abs(beyond->load))
+            return before_load + (1 - before) / (now - before) * (beyond->load - before_load);
         searched.to = beyond->load;
     }
     return std::nullopt;

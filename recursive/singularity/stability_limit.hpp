@@ -1,9 +1,10 @@
 // Stability limit of the methods that rotate stored forces with a delay of one step.
 //
-// With K of (19) on the left, the forces that rotate with the bodies are on the right-hand side,
-// as they were one step before. Let K_G be the part of the tangent of these forces of (28)
-// (recursive_method.hpp) that K lacks: of the reactions Σ λ_k ∂²Φ_k, of the loads, and of the element forces
-// as far as their levers or axes follow the bodies. The difference of two steps of (28) is
+// With K of (19) on the left, the forces that rotate with the bodies are on the right-hand side, as
+// they were one step before. Let K_G be the part of the tangent of these forces of (28)
+// (recursive_method.hpp) that K lacks: of the reactions Σ λ_k ∂²Φ_k, of the loads, and of the
+// element forces as far as their levers or axes follow the bodies. The difference of two steps of
+// (28) is
 //
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δqⁿ ⎫   ⎧ Δf - K_G Δqⁿ⁻¹ ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ δλ  ⎭ = ⎩       0        ⎭      Δqⁿ = T Δf - T K_G Δqⁿ⁻¹,   T = Z (ZᵀKZ)⁻¹ Zᵀ

@@ -11,19 +11,20 @@
 namespace elastocheck::recursive {
 namespace {
 
-// Change of the reactions by the correction in s.work.x, over the allowed change. Allowed are the larger
-// reactions of the two nodes `one` and `other` times length_tolerance / L, and the rounding of all
-// forces at q and of stiffness times position, since the reactions may be zero. The correction of
-// the motion does not detect this error: in a driven mechanism the drivers prescribe the whole
-// motion, and all forces are in λ.
+// Change of the reactions by the correction in s.work.x, over the allowed change: the larger
+// reactions of the two nodes times length_tolerance / L, and, since the reactions may be zero, the
+// rounding of all forces at q and of stiffness times position. The correction of the motion does
+// not detect this error: in a driven mechanism the drivers prescribe the whole motion, and all
+// forces are in λ.
 double share_of_reactions(SteppingState& s, const ContinuationSettings& settings,
-                          const State<double>& q, const Vector<double>& one,
-                          const Vector<double>& other) {
+                          const State<double>& q, const Vector<double>& lambda_from,
+                          const Vector<double>& lambda_to) {
     const auto force = [&](const auto& lambda) {
         constraint_force(s.system.M, lambda, s.work.force);
         return size_of_force(s, s.work.force);
     };
-    const double largest = std::max(force(one), force(other)), change = force(s.work.x.tail(s.m()));
+    const double largest = std::max(force(lambda_from), force(lambda_to)),
+                 change = force(s.work.x.tail(s.m()));
     elastic_force<double>(s.model, s.inputs, q, s.work.force);
     const double acts =
         std::max({largest, size_of_force(s, s.work.applied), size_of_force(s, s.work.force)});
@@ -34,12 +35,12 @@ double share_of_reactions(SteppingState& s, const ContinuationSettings& settings
     return allowed > 0 ? change / allowed : 0;
 }
 
-// A bend of the path may be sharper than a short step: an imperfect column turns aside within 1e-9
-// of its load.
-constexpr double short_step = 1e-7,  // of the branch
-    shortest_step = 1e-12;
+// Steps as fractions of the branch: a short one, whose refusal shows why the branch ends, and the
+// shortest that is tried. The path may bend more sharply than a short step: an imperfect column
+// buckles within 1e-9 of its load.
+constexpr double short_step = 1e-7, shortest_step = 1e-12;
 
-// A sweep with steps of its own choice, from the state, which has just settled.
+// A sweep with step-size control, from the state, which has just settled.
 struct Sweep {
     SteppingState& s;
     ContinuationSettings settings;
@@ -50,10 +51,10 @@ struct Sweep {
     double h;             // of the next step
     double log_here = 0;  // log₂ |determinant| at the node
     Matrix<double> softest = {};
-    int changes = 0;       // of pieces since the last accepted step
-    bool refused = false;  // a short step at refused_at, past which the path has not gone on
-    double refused_at = 0;
-    Outcome ended = Outcome::branch_lost;  // why
+    int changes = 0;        // of pieces since the last accepted step
+    bool refused = false;   // a short step at refused_at; reset once the path is past it
+    double refused_at = 0;  // parameter
+    Outcome ended = Outcome::branch_lost;  // the reason, if the branch ends there
     bool by_error = false;                 // refused only for its interpolation error
 
     bool is_done() const { return recording.reached >= recording.points; }
@@ -91,12 +92,12 @@ Outcome judge_step(Sweep& w, Trial& trial, double log_next, double& error) {
     auto& [node, next, curvature, lambda_curvature, q, lambda] = w.stride;
     if (is_unstable(w)) trial.verdict = Verdict::past_singular_point;
     if (is_inconsistent_at(w.s, next, q, lambda)) return Outcome::inconsistent_constraints;
-    between(node, next, 0.5, q, lambda);
+    interpolate(node, next, 0.5, q, lambda);
     double size = 0;
     trial.outcome = correct(w.s, w.settings, q, lambda, node.p + (next.p - node.p) / 2, size);
     if (trial.outcome != Outcome::converged) return Outcome::converged;
     error = std::max(
-        {trial.left, size, share_of_reactions(w.s, w.settings, q, node.lambda, next.lambda)});
+        {trial.error, size, share_of_reactions(w.s, w.settings, q, node.lambda, next.lambda)});
     const bool turned = w.s.system.lu.orientation != node.orientation;
     const bool dips = determinant_dips(w.log_here, log_determinant(w.s.system), log_next);
     if (trial.verdict == Verdict::accepted && (turned || dips))
@@ -104,7 +105,7 @@ Outcome judge_step(Sweep& w, Trial& trial, double log_next, double& error) {
     return Outcome::converged;
 }
 
-// Records the points of the step and goes on to its end.
+// Records the points of the step and moves the node to its end.
 void take_step(Sweep& w, double log_next) {
     auto& [node, next, curvature, lambda_curvature, q, lambda] = w.stride;
     const double step = next.p - node.p, last = static_cast<double>(w.recording.points - 1);
@@ -112,7 +113,7 @@ void take_step(Sweep& w, double log_next) {
         const double at = w.to * static_cast<double>(w.recording.reached) / last;
         const double t = (at - node.p) / step;
         if (t > 1 && next.p != w.to) break;
-        between(node, next, std::min(t, 1.0), q, lambda);
+        interpolate(node, next, std::min(t, 1.0), q, lambda);
         keep(w, q, lambda, at);
     }
     curvature = (next.dq - node.dq) / step;
@@ -124,9 +125,9 @@ void take_step(Sweep& w, double log_next) {
     if (std::abs(node.p - w.refused_at) > std::abs(w.to) * short_step) w.refused = false;
 }
 
-// Whether the branch ends after a step that was refused or is followed by a short one. The reason is
-// judged at the first short step that is refused; a later one overrides it if the first was refused
-// only for its interpolation error.
+// Whether the branch ends after a step that was refused or is followed by a short one. The reason
+// is judged at the first short step that is refused; a later one overrides it if the first was
+// refused only for its interpolation error.
 bool ends(Sweep& w, const Trial& trial, double step, bool judged) {
     if (std::abs(w.h) > std::abs(w.to) * short_step || w.is_done()) return false;
     const Outcome reason =
@@ -162,7 +163,7 @@ Outcome try_next(Sweep& w) {
             return o;
         if (trial.verdict == Verdict::accepted && error <= 1) {
             take_step(w, log_next);
-            if (met.curve && !w.is_done()) {  // on with the step size that the knot shortened
+            if (met.curve && !w.is_done()) {
                 take_pieces(w.s, w.settings, node, w.h * 1e-3, w.stride.q);
                 return begin_anew(w);
             }

@@ -18,7 +18,7 @@ Outcome correct(SteppingState& s, const ContinuationSettings& settings, State<do
     if (const Outcome outcome = check_idle_load(s, q, std::sqrt(size_of_solution(s)));
         outcome != Outcome::converged)
         return outcome;
-    size = share(settings, s.work.x.head(s.n()));
+    size = size_in_tolerances(settings, s.work.x.head(s.n()));
     s.step.dq = s.work.x.head(s.n());
     advance(q, s.step.dq);
     lambda += s.work.x.tail(s.m());
@@ -36,20 +36,20 @@ Trial try_step(SteppingState& s, const ContinuationSettings& settings, const Nod
     // The linearisation of a rotation is invalid beyond one radian.
     for (int b = 0; b < s.n() / 6; ++b)
         if (!(s.step.dq.segment<3>(6 * b + 3).norm() <= guard::largest_turn)) return trial;
-    const double forecast = share(settings, s.step.dq);
+    const double forecast = size_in_tolerances(settings, s.step.dq);
     advance(next.q, s.step.dq);
     double before = std::numeric_limits<double>::infinity(), size = 0, corrected = 0;
-    for (int k = 0; k < 6 && trial.left > 0.01; ++k) {
+    for (int k = 0; k < 6 && trial.error > 0.01; ++k) {
         trial.outcome = correct(s, settings, next.q, next.lambda, next.p, size);
         if (trial.outcome != Outcome::converged) return trial;
         if (!(size < before)) break;  // not falling: the step is too long
         // The first correction has no ratio yet. A correction far below the tolerance may be
         // rounding, whose ratio means nothing.
-        trial.left = k == 0 || size <= 1e-3 ? size : size * (size / before);
+        trial.error = k == 0 || size <= 1e-3 ? size : size * (size / before);
         before = size;
         corrected += size;
     }
-    if (!(trial.left <= 0.01)) return trial;
+    if (!(trial.error <= 0.01)) return trial;
     differentiate(s, settings, next);
     // The predictor is of second order: corrections of half its step mean that it
     // predicted another branch.
@@ -107,7 +107,8 @@ bool is_straight(const SteppingState& s, const ContinuationSettings& settings, c
     const Vector<double> mean = (to.p - from.p) / 2 * (from.dq + to.dq);
     // allowed distance of the chord from the mean tangent, as a fraction
     constexpr double straight = 0.25;
-    return share(settings, chord - mean) <= straight * share(settings, chord) + 1 &&
+    return size_in_tolerances(settings, chord - mean) <=
+               straight * size_in_tolerances(settings, chord) + 1 &&
            !any_reversed(s.model, from.q, to.q);
 }
 

@@ -47,9 +47,9 @@ inline void differentiate(SteppingState& s, const ContinuationSettings& settings
     node.orientation = s.system.lu.orientation;
 }
 
-// Size of the motion dq in units of the tolerances: the largest over all bodies.
+// Size of the motion dq over the tolerances: the largest of all bodies [-].
 template <class Motion>
-double share(const ContinuationSettings& settings, const Motion& dq) {
+double size_in_tolerances(const ContinuationSettings& settings, const Motion& dq) {
     double worst = 0;
     for (Eigen::Index b = 0; b < dq.size() / 6; ++b) {
         worst = std::max(worst, dq.template segment<3>(6 * b).norm() / settings.length_tolerance);
@@ -63,8 +63,8 @@ double share(const ContinuationSettings& settings, const Motion& dq) {
 Outcome correct(SteppingState& s, const ContinuationSettings& settings, State<double>& q,
                 Vector<double>& lambda, double p, double& size);
 
-// Result of a step. |δ_k| is the k-th correction and |h z' + ½ h² z''| the predictor step, both in units
-// of the tolerance; det the determinant of the consistent tangent.
+// Result of a step. |δ_k| is the k-th correction and |h z' + ½ h² z''| the predictor step, both in
+// units of the tolerance; det the determinant of the consistent tangent.
 enum class Verdict {
     accepted,        // none of the following
     unsolved,        // |δ_k| ≥ |δ_k-1|, or |δ_k|² / |δ_k-1| > 0.01 after the last correction
@@ -76,8 +76,8 @@ enum class Verdict {
 struct Trial {
     Outcome outcome = Outcome::converged;  // of the linear algebra
     Verdict verdict = Verdict::unsolved;
-    // remaining error of the corrector, in units of the tolerance
-    double left = std::numeric_limits<double>::infinity();
+    // remaining error of the corrector, over the tolerance
+    double error = std::numeric_limits<double>::infinity();
 };
 
 // Tries a step from `node` to next.p; `curvature` and `lambda_curvature` estimate z''. Fills

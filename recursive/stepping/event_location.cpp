@@ -2,8 +2,10 @@
 
 namespace elastocheck::recursive {
 
-void between(const Node& from, const Node& to, double t, State<double>& q, Vector<double>& lambda) {
+void interpolate(const Node& from, const Node& to, double t, State<double>& q,
+                 Vector<double>& lambda) {
     const double h = to.p - from.p;
+    // Hermite basis; h00 = 1 - h01 acts on no difference from the start
     const double h01 = t * t * (3 - 2 * t), h10 = t * (1 - t) * (1 - t) * h,
                  h11 = t * t * (t - 1) * h;
     lambda = from.lambda + h01 * (to.lambda - from.lambda) + h10 * from.dlambda + h11 * to.dlambda;
@@ -37,14 +39,14 @@ double cubic(const std::array<double, 4>& x, double t) {
 // First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t
 // of the step.
 template <class At>
-KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& settings, double from,
-                           double h, State<double>& q, At&& at) {
+KnotCrossing first_crossing(SteppingState& s, const ContinuationSettings& settings, double from,
+                            double h, State<double>& q, At&& at) {
     for (int k = 0; k < 4; ++k) {
         const double t = static_cast<double>(k) / 3;
         at(t, q);
         go_to(s, settings.at(from + t * h));
         for (std::size_t c = 0; c < s.kinks.curves.size(); ++c)
-            s.kinks.along[c][static_cast<std::size_t>(k)] =
+            s.kinks.deflections[c][static_cast<std::size_t>(k)] =
                 deflection(s.model, s.inputs, q, s.kinks.curves[c]);
     }
     constexpr int samples = 24;
@@ -53,8 +55,8 @@ KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& setting
         const CurvePlace& place = s.kinks.curves[c];
         const auto& knots = place.curve->knots;
         const auto piece = static_cast<std::size_t>(piece_of(s, place));
-        const auto& x = s.kinks.along[c];
-        const auto look = [&](double knot, int side) {
+        const auto& x = s.kinks.deflections[c];
+        const auto search = [&](double knot, int side) {
             const auto beyond = [&](double t) { return side * (cubic(x, t) - knot); };
             double before = 0;
             for (int k = 1; k <= samples; ++k) {
@@ -73,8 +75,8 @@ KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& setting
                 return;
             }
         };
-        if (piece > 0) look(knots[piece - 1], -1);
-        if (piece < knots.size()) look(knots[piece], +1);
+        if (piece > 0) search(knots[piece - 1], -1);
+        if (piece < knots.size()) search(knots[piece], +1);
     }
     return first;
 }
@@ -82,8 +84,8 @@ KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& setting
 // Moves `next`, an equilibrium near the knot with its derivative, onto the knot. Returns false
 // where the iteration leaves the interval between the node and `limit`. The factors are those of
 // `next`.
-bool land(SteppingState& s, const ContinuationSettings& settings, const KnotCrossing& knot,
-          double limit, Stride& stride) {
+bool move_to_knot(SteppingState& s, const ContinuationSettings& settings, const KnotCrossing& knot,
+                  double limit, Stride& stride) {
     const CurvePlace& place = *knot.curve;
     Node& next = stride.next;
     const double p = stride.node.p, step = next.p - p;
@@ -124,13 +126,13 @@ Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Strid
     if (s.kinks.curves.empty())
         return try_step(s, settings, node, curvature, lambda_curvature, next);
     const double whole = next.p;
-    KnotCrossing expected = first_meeting(s, settings, node.p, whole - node.p, stride.q,
-                                          [&](double t, State<double>& at) {
-                                              const double h = t * (whole - node.p);
-                                              s.step.dq = h * node.dq + h * h / 2 * curvature;
-                                              at = node.q;
-                                              advance(at, s.step.dq);
-                                          });
+    KnotCrossing expected = first_crossing(s, settings, node.p, whole - node.p, stride.q,
+                                           [&](double t, State<double>& at) {
+                                               const double h = t * (whole - node.p);
+                                               s.step.dq = h * node.dq + h * h / 2 * curvature;
+                                               at = node.q;
+                                               advance(at, s.step.dq);
+                                           });
     double h = whole - node.p;
     Trial trial;
     for (int k = 0; k < 4; ++k) {
@@ -141,17 +143,17 @@ Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Strid
         }
         trial = try_step(s, settings, node, curvature, lambda_curvature, next);
         if (trial.verdict != Verdict::accepted) return trial;
-        const bool landed = expected.curve && land(s, settings, expected, whole, stride);
-        if (expected.curve && !landed && k == 0) {  // the path misses the knot of the predictor
+        const bool at_knot = expected.curve && move_to_knot(s, settings, expected, whole, stride);
+        if (expected.curve && !at_knot && k == 0) {  // the path misses the knot of the predictor
             expected = {};
             continue;
         }
         h = next.p - node.p;
-        const KnotCrossing earlier = first_meeting(
+        const KnotCrossing earlier = first_crossing(
             s, settings, node.p, h, stride.q,
-            [&](double t, State<double>& at) { between(node, next, t, at, stride.lambda); });
+            [&](double t, State<double>& at) { interpolate(node, next, t, at, stride.lambda); });
         if (!earlier.curve) {
-            if (landed) met = expected;
+            if (at_knot) met = expected;
             return trial;
         }
         expected = earlier;

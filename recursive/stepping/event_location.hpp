@@ -5,8 +5,8 @@
 // deflection x(p) reaches the end of its piece within the step, the step is shortened to end there:
 //
 //   location   x is interpolated by a cubic through four points of the step, first of the
-//              predictor, then of the accepted step; its first root is the starting value for
-//   landing    p ← p + (knot - x) / x', with the node corrected along z', until x equals the knot
+//              predictor, then of the accepted step; its first root is the start of
+//   iteration  p ← p + (knot - x) / x', with the node corrected along z', until x equals the knot
 //              to a millionth of the tolerance
 //
 // The next step uses the adjacent piece and the derivative of the path on that side.
@@ -18,7 +18,8 @@ namespace elastocheck::recursive {
 
 // Cubic Hermite interpolation at the fraction t between two nodes, rotations as vectors π:
 // π(0) = 0, π'(0) = ω, π(h) = log(A⁺Aᵀ), π'(h) = J(π)⁻¹ ω⁺.
-void between(const Node& from, const Node& to, double t, State<double>& q, Vector<double>& lambda);
+void interpolate(const Node& from, const Node& to, double t, State<double>& q,
+                 Vector<double>& lambda);
 
 inline Piece& piece_of(SteppingState& s, const CurvePlace& at) {
     return s.inputs.rest[at.element].piece[at.axis];

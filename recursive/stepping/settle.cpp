@@ -3,8 +3,8 @@
 namespace elastocheck::recursive {
 namespace {
 
-// Whether joints that are open at the design position are still open after settling. An angle
-// counts as closed on one side only (u_i·w = 0 has two solutions).
+// Whether joints that are open at the design position are still open after settling, by more than
+// `share` of their gap. An angle counts as closed on one side only (u_i·w = 0 has two solutions).
 bool remains_open(const SteppingState& s, double share) {
     const double open = s.start.Phi_d.norm();
     const double rounding =
@@ -26,9 +26,9 @@ bool loads_idle_mode(const SteppingState& s) {
     elastic_force<double>(s.model, s.inputs, s.q, f_elast);
     const double whole = size_of_force(s, f_ext) + size_of_force(s, f_elast);
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
-    const double blur = s.start.Phi_d.norm() / std::min(1.0, s.setup.length);
+    const double uncertainty = s.start.Phi_d.norm() / std::min(1.0, s.setup.length);
     return !(load_on_idle_modes(s, f_ext - f_elast, whole) <=
-             rounding + guard::share_per_error * blur);
+             rounding + guard::share_per_error * uncertainty);
 }
 
 Outcome settled(const SteppingState& s, Outcome outcome, double share) {
@@ -44,7 +44,7 @@ Outcome settled(const SteppingState& s, Outcome outcome, double share) {
 
 Outcome settle(SteppingState& s, const Linear& method, int steps) {
     // The error of one linear step is the square of its size: below rounding for this size.
-    const double at_rest = 1e-6 * s.setup.length;
+    const double at_rest = 1e-6 * s.setup.length;  // |W Δq| [m]
     for (const int N : {1, steps}) {
         s.setup.consistent = false;
         s.q = s.step.before = design_state<double>(s.model);
@@ -114,8 +114,8 @@ Outcome settle_consistently(SteppingState& s) {
     // Corrections fall quadratically down to round-off. From a stiff start they need not fall at
     // once. If they do not become small, the outcome is branch_lost.
     constexpr int max_corrections = 24;
-    const double enough = 100 * std::numeric_limits<double>::epsilon() * length;
-    const double rest = std::max(1e-6 * length, 1000 * enough);
+    const double round_off = 100 * std::numeric_limits<double>::epsilon() * length;
+    const double small = std::max(1e-6 * length, 1000 * round_off);
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0;; ++k) {
         double unused = 0;
@@ -124,7 +124,7 @@ Outcome settle_consistently(SteppingState& s) {
             outcome != Outcome::converged)
             return outcome;
         const double size = std::sqrt(size_of_solution(s));
-        if (size <= enough || (size <= rest && !(size < before))) break;
+        if (size <= round_off || (size <= small && !(size < before))) break;
         if (k == max_corrections) return Outcome::branch_lost;
         before = size;
     }

@@ -18,7 +18,9 @@ inline bool starts_as_drawn(const Branch& branch) {
 // are most accurate.
 bool loads_idle_mode(const SteppingState& s);
 
-// Outcome of settling: joints that were open and cannot be closed explain other failures.
+// Outcome of settling that ended with `outcome`: inconsistent_constraints where joints that were
+// open at the design position still have more than `share` of their gap, since that explains other
+// failures.
 Outcome settled(const SteppingState& s, Outcome outcome, double share);
 
 // Settles with the stiffness of (19): in one step where the design position is an equilibrium,

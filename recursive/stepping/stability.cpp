@@ -36,9 +36,9 @@ bool has_negative_eigenvalue(const Eigen::SparseMatrix<double>& saddle,
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     // bound on |K - Kᵀ| / |K|: the residual asymmetry after Newton's method
     constexpr double symmetric = 1e-6;
-    // ρ over the largest stiffness: too small leaves motions that the joints forbid negative, too
-    // large hides K in round-off.
-    constexpr double strengths[] = {1, 1e3, 1e6};
+    // ρ over the largest stiffness: if it is too small, motions that the joints forbid may have
+    // negative pivots; if it is too large, K is lost in round-off.
+    constexpr double penalties[] = {1, 1e3, 1e6};
     const Eigen::Index n = weight.size(), m = saddle.rows() - n;
     const auto scale = weight.cwiseInverse().asDiagonal();
     const Sparse K = scale * Sparse(saddle.topLeftCorner(n, n)) * scale, K_T = K.transpose();
@@ -51,15 +51,15 @@ bool has_negative_eigenvalue(const Eigen::SparseMatrix<double>& saddle,
     const Sparse forbidden = Phi_T * Sparse(Phi_T.transpose());
     std::vector<Eigen::Triplet<double>> diagonal;
     for (const int k : held) diagonal.emplace_back(k, k, stiffest);
-    Sparse held_too(n, n);
-    held_too.setFromTriplets(diagonal.begin(), diagonal.end());
-    Sparse one(n, n);
-    one.setIdentity();
-    const Sparse S = (K + K_T) / 2 + held_too;
-    return std::ranges::all_of(strengths, [&](double rho) {
+    Sparse fixed(n, n);
+    fixed.setFromTriplets(diagonal.begin(), diagonal.end());
+    Sparse identity(n, n);
+    identity.setIdentity();
+    const Sparse S = (K + K_T) / 2 + fixed;
+    return std::ranges::all_of(penalties, [&](double rho) {
         const double rounding = 16 * epsilon * static_cast<double>(n) * rho;
         const Eigen::SimplicialLDLT<Sparse> factors(
-            Sparse(S + rho * stiffest * forbidden + rounding * stiffest * one));
+            Sparse(S + rho * stiffest * forbidden + rounding * stiffest * identity));
         return factors.info() == Eigen::Success && (factors.vectorD().array() < 0).any();
     });
 }
@@ -143,8 +143,8 @@ std::string softest_motion(const SteppingState& s) {
     return moving_bodies(s.model, at.Z * solver.eigenvectors().col(0));
 }
 
-// Whether ZᵀKZ has a negative real eigenvalue where a dead moment makes it unsymmetric. Statics does
-// not decide on complex ones.
+// Whether ZᵀKZ has a negative real eigenvalue where a dead moment makes it unsymmetric. Statics
+// does not decide on complex ones.
 bool is_unstable_under_moments(const SteppingState& s) {
     constexpr double rounding = 1e-12;  // of the largest eigenvalue
     if (s.setup.free <= 0 || s.n() > max_reduced || s.system.held.idle > 0) return false;
@@ -182,9 +182,12 @@ namespace {
 // How far beside a step a predicted minimum counts, as a fraction of the step.
 constexpr double outside_step = 0.1;
 
-// Minimum of the parabola through d(t) at three t, in units of their interval: none if it has none
-// within the interval or `outside` of it. It dips below half of the least of the three, or below
-// 2 % of their range, which is the error of the parabola.
+// Minimum of the parabola through d(t) at three t, if it dips below half of the least of the three
+// or below 2 % of their range, which is the error of the parabola. The minimum may lie outside the
+// interval of t by at most `outside` of its length. In Newton's form, with the slopes `before` and
+// `behind`,
+//
+//   d_0 + (t - t_0) (before + bend (t - t_1)),   bend = (behind - before) / (t_2 - t_0)
 std::optional<Dip> parabola_dips(const std::array<double, 3>& t, const std::array<double, 3>& d,
                                  double outside) {
     constexpr double deep = 0.5, curved = 0.02;
@@ -219,9 +222,9 @@ Dip lowest_determinant(std::array<double, 3> d,
                        const std::function<double(double)>& determinant_at) {
     // Smallest distance of a new point from the others, as a fraction of their interval.
     constexpr double separation = 0.05;
-    constexpr int looks = 20;
+    constexpr int max_evaluations = 20;
     std::array<double, 3> t{0, 0.5, 1};
-    for (int look = 0; look < looks && d[1] >= 0; ++look) {
+    for (int k = 0; k < max_evaluations && d[1] >= 0; ++k) {
         const auto dip = parabola_dips(t, d, outside_step);
         if (!dip) break;
         const double nearest = separation * (t[2] - t[0]);
@@ -252,7 +255,7 @@ double min_eigenvalue(const Eigen::MatrixXd& Q) {
 }
 
 double min_of_idle(const SteppingState& s) {
-    constexpr double several = 256;  // multiple of the rounding of a sum
+    constexpr double operations = 256;  // bound on the rounding of a sum, in units of round-off
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const Held<double>& held = s.system.held;
     const SaddleMatrix<double>& M = s.system.M;
@@ -260,17 +263,17 @@ double min_of_idle(const SteppingState& s) {
     for (int first = 0, end = 0; first < held.idle; first = end) {
         for (end = first + 1; end < held.idle && held.with[static_cast<std::size_t>(end)] == first;)
             ++end;
-        const int modes = end - first, places = held.end(first) - held.begin(first);
-        const auto z = [&](int mode, int place) {
+        const int modes = end - first, entries = held.end(first) - held.begin(first);
+        const auto z = [&](int mode, int entry) {
             return Eigen::Map<const Vector6<double>>(held.value.data() + held.begin(first + mode) +
-                                                     place);
+                                                     entry);
         };
-        const auto body = [&](int place) {
-            return held.row[static_cast<std::size_t>(held.begin(first) + place)] / 6;
+        const auto body = [&](int entry) {
+            return held.row[static_cast<std::size_t>(held.begin(first) + entry)] / 6;
         };
         Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(modes, modes), sizes = Q;
-        for (int i = 0; i < places; i += 6)
-            for (int j = 0; j < places; j += 6) {
+        for (int i = 0; i < entries; i += 6)
+            for (int j = 0; j < entries; j += 6) {
                 const int at = M.block_at(body(i), body(j));
                 if (at < 0) continue;
                 const Eigen::Map<const Matrix6<double>> K(M.values.data() + at);
@@ -282,7 +285,7 @@ double min_of_idle(const SteppingState& s) {
                     }
             }
         if (!Q.allFinite()) continue;
-        if (const double lowest = min_eigenvalue(Q); lowest < -several * epsilon * sizes.norm())
+        if (const double lowest = min_eigenvalue(Q); lowest < -operations * epsilon * sizes.norm())
             min_stiffness = std::min(min_stiffness, lowest);
     }
     return min_stiffness;
@@ -291,15 +294,15 @@ double min_of_idle(const SteppingState& s) {
 double negative_idle_stiffness(SteppingState& s, const State<double>& near,
                                const Vector<double>& lambda_near) {
     constexpr int corrections = 3;
-    constexpr double noticed = 1e-6;
+    constexpr double significant = 1e-6;
     if (s.system.held.idle == 0 || !has_energy(s.model, s.branch)) return 0;
     const auto least = [&](const State<double>& q) {
         const double stiffness = min_of_idle(s);
         if (!(stiffness < 0)) return 0.;
         external_force<double>(s.model, s.branch, s.inputs, q, s.work.upper);
         elastic_force<double>(s.model, s.inputs, q, s.work.force);
-        const double acts = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
-        return stiffness < -noticed * acts / s.setup.length ? stiffness : 0.;
+        const double forces = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
+        return stiffness < -significant * forces / s.setup.length ? stiffness : 0.;
     };
     if (!(least(near) < 0)) return 0;
     const Counts counts = s.counts;  // a check only: not counted

@@ -35,8 +35,8 @@ bool has_energy(const Model& model, const Branch& branch);
 bool is_unstable(const SteppingState& s);
 
 // Stability of the start, whose matrix is in the system. Settling from a drawing far from rest may
-// lead to an unstable equilibrium, and a drawing at rest may be one. The result for the latter is in
-// the analysis: it is the same for all branches, apart from the energy of their loads.
+// lead to an unstable equilibrium, and a drawing at rest may be one. The result for the latter is
+// in the analysis: it is the same for all branches, apart from the energy of their loads.
 StartStability start_stability(SteppingState& s);
 // `singular` if the start of the branch is unstable.
 Outcome check_start_stability(SteppingState& s, const StartStability& start);
@@ -46,14 +46,16 @@ Outcome check_start_stability(SteppingState& s, const StartStability& start);
 bool determinant_dips(double log_from, double log_middle, double log_to);
 
 // The lowest determinant found within a step, given its values at t = 0, ½ and 1, both ends
-// positive. `at` evaluates it: first where the parabola through these three has its minimum, then
-// with that value in the place of one of them, until a value is negative or the parabola no longer
-// dips. A minimum predicted a little outside the step counts too: the next step begins past it.
+// positive. `determinant_at(t)` evaluates it: first where the parabola through these three has its
+// minimum, then with that value in place of one of them, until a value is negative or the parabola
+// no longer dips. A minimum predicted a little outside the step counts too: the next step begins
+// past it.
 struct Dip {
     double t = 0, value = 0;
 };
-Dip lowest_determinant(std::array<double, 3> values, const std::function<double(double)>& at);
-// Whether it evaluates the determinant a first time, given the same values.
+Dip lowest_determinant(std::array<double, 3> values,
+                       const std::function<double(double)>& determinant_at);
+// Whether lowest_determinant() would evaluate the determinant, given the same values.
 bool may_reach_zero(const std::array<double, 3>& values);
 
 // The smallest eigenvalue of the symmetric part of Q.

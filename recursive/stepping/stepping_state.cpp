@@ -81,11 +81,11 @@ double strain_of_held(SteppingState& s, const State<double>& q) {
                               held.value[static_cast<std::size_t>(e)]);
             }
         };
-        double left = 0, whole = 0;
+        double sum = 0, whole = 0;  // |Φ_qᵀ y|², Σ |y_k| |row k|
         each_end([](int, int, auto&& f, double) { f.setZero(); });
         each_end([&](int row, int end, auto&& f, double y) { f += y * M.part(row, end); });
         each_end([&](int, int, auto&& f, double) {
-            left += f.squaredNorm();
+            sum += f.squaredNorm();
             f.setZero();
         });
         for (int e = held.begin(c); e < held.end(c); ++e) {
@@ -93,7 +93,7 @@ double strain_of_held(SteppingState& s, const State<double>& q) {
             whole += std::abs(held.value[static_cast<std::size_t>(e)]) *
                      std::sqrt(M.part(row, 0).squaredNorm() + M.part(row, 1).squaredNorm());
         }
-        if (whole > 0) worst = std::max(worst, std::sqrt(left) / whole);
+        if (whole > 0) worst = std::max(worst, std::sqrt(sum) / whole);
     }
     return worst;
 }
@@ -120,18 +120,18 @@ bool has_diverged(SteppingState& s) {
 Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_ratio) {
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!is_regular(s, pivot_ratio)) return Outcome::singular;
-    // A strain above the blur is a real stiffness; holding that mode would give a
-    // wrong result silently.
+    // A larger strain is a real stiffness; holding that mode would give a wrong result silently.
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
-    const double blur = s.work.Phi.norm() / std::min(1.0, s.setup.length);
-    if (!(strain_of_held(s, q) <= rounding + guard::idle_strain + guard::strain_per_error * blur))
+    const double uncertainty = s.work.Phi.norm() / std::min(1.0, s.setup.length);
+    if (!(strain_of_held(s, q) <=
+          rounding + guard::idle_strain + guard::strain_per_error * uncertainty))
         return Outcome::singular;
     return Outcome::converged;
 }
 
 Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed) {
     if (s.system.held.idle == 0) return Outcome::converged;
-    double blur = s.work.Phi.norm(), whole = size_of_force(s, s.work.applied), share = 0;
+    double uncertainty = s.work.Phi.norm(), whole = size_of_force(s, s.work.applied), share = 0;
     if (s.setup.consistent ? s.idle.elements.empty() : s.idle.pushing.empty()) {
         share = load_on_idle_modes(s, s.work.applied, whole);
     } else {
@@ -145,12 +145,12 @@ Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed)
         whole += size_of_force(s, s.work.force);
         s.work.force = s.work.applied - s.work.force;
         share = load_on_idle_modes(s, s.work.force, whole);
-        blur += missed;
+        uncertainty += missed;
     }
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
-    blur /= std::min(1.0, s.setup.length);
-    return share <= rounding + guard::share_per_error * blur ? Outcome::converged
-                                                             : Outcome::loaded_idle_mode;
+    uncertainty /= std::min(1.0, s.setup.length);
+    return share <= rounding + guard::share_per_error * uncertainty ? Outcome::converged
+                                                                    : Outcome::loaded_idle_mode;
 }
 
 Outcome check_idle_load_here(SteppingState& s, double missed) {

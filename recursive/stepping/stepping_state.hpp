@@ -32,11 +32,11 @@ namespace guard {
 // A mode counts as idle while its strain, as a fraction of the strain if only one end of each
 // element moved, is less than this; a real mode has a fraction near one.
 inline constexpr double idle_strain = 1e-3;
-// The constraint error blurs which modes are idle and which constraints redundant: the strain and
-// the load fraction allowed for each unit of |Φ| / L.
+// The constraint error makes it uncertain which modes are idle and which constraints redundant: the
+// strain and the load fraction allowed for each unit of |Φ| / L.
 inline constexpr double strain_per_error = 100, share_per_error = 10;
-// Rounding blurs it too: in multiples of the unit round-off, since the load fraction is a small
-// difference of forces, amplified by the condition number.
+// So does rounding: the allowance in multiples of the unit round-off, since the load fraction is a
+// small difference of forces, amplified by the condition number.
 inline constexpr double rounding = 1e7;
 // Joints that are open by less than this [m, rad] at the design position count as closed: their
 // points are given with nine digits.
@@ -63,10 +63,10 @@ struct Moved {
 // For every idle mode, in the order of the elements.
 std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<double>& held);
 
-// Whether the element may exert a force along a motion that its stiffness does not see: by its
-// preload, where a curve has force and no rate, or where its forces have no energy. For other
-// elements K Δq does no such work. Their true forces may, once their two attachment points have
-// drifted apart.
+// Whether the element may exert a force along a motion in which it has no stiffness: by its
+// preload, where a curve has force and no rate, or where its forces have no energy. The forces K Δq
+// of other elements do no work in such a motion; their true forces may, once their two attachment
+// points have drifted apart.
 inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
     const bool driven = std::ranges::any_of(branch.drivers, [k](const Driver& driver) {
         return preload(driver.what) != nullptr && driven_element(driver.what) == k;
@@ -82,7 +82,7 @@ inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
     return driven || pushes;
 }
 
-// State and workspace of a march; allocated once.
+// State and workspace of the stepping along a branch; allocated once.
 struct SteppingState {
     const Model& model;
     const Branch& branch;
@@ -139,8 +139,8 @@ struct SteppingState {
 
     struct Kinks {
         std::vector<CurvePlace> curves;
-        std::vector<int> sides, sides_ahead;       // at q and at another configuration
-        std::vector<std::array<double, 4>> along;  // deflections at four points of a step
+        std::vector<int> sides, sides_ahead;             // at q and at another configuration
+        std::vector<std::array<double, 4>> deflections;  // at four points of a step
         int uncompared = 0;  // number of coming steps that are not compared with the step before
     } kinks;
 
@@ -180,7 +180,7 @@ struct SteppingState {
         kinks.curves = curves_of(model);
         kinks.sides.assign(kinks.curves.size(), 0);
         kinks.sides_ahead = kinks.sides;
-        kinks.along.resize(kinks.curves.size());
+        kinks.deflections.resize(kinks.curves.size());
         check_followers(analysis.system.lu.order->pattern);
     }
     int n() const { return system.n; }
@@ -233,9 +233,9 @@ double strain_of_held(SteppingState& s, const State<double>& q);
 
 // Whether two increments that should agree differ by more than half the larger one and by more than
 // rounding. All three arguments are |W Δq|² [m²].
-inline bool disagree(const SteppingState& s, double change, double one, double other) {
+inline bool disagree(const SteppingState& s, double change, double first, double second) {
     const double rounding = 100 * std::numeric_limits<double>::epsilon() * s.setup.length;
-    return !(4 * change <= std::max({one, other, rounding * rounding}));
+    return !(4 * change <= std::max({first, second, rounding * rounding}));
 }
 
 // |W Δq|² of the solution now in s.work.x.
@@ -253,8 +253,8 @@ inline double size_of_solution(const SteppingState& s) {
 // (6) is invalid for a rotation of a radian in one step.
 bool has_diverged(SteppingState& s);
 
-// Whether the smallest pivot is above rounding, relative to the largest. False for NaN. It holds of a
-// matrix scaled to entries near one: factorise_at() scales anew before it reports a singular one.
+// Whether the smallest pivot is above rounding, relative to the largest. False for NaN. It holds of
+// a matrix scaled to entries near one: factorise_at() scales anew before it reports a singular one.
 inline bool is_regular(const SteppingState& s, double pivot_ratio) {
     return pivot_ratio > std::numeric_limits<double>::epsilon() * (s.n() + s.m());
 }
@@ -262,9 +262,9 @@ inline bool is_regular(const SteppingState& s, double pivot_ratio) {
 // Checks the factors in the system, of its matrix at q: finite, regular, and held modes still idle.
 Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_ratio);
 
-// Whether s.work.applied and the elements at q load an idle mode. The border of (24) would carry that
-// load like a joint, and the result would be a false equilibrium. `missed` is the distance of q
-// from equilibrium [m], which blurs the decision as |Φ| does.
+// Whether s.work.applied and the elements at q load an idle mode. The border of (24) would carry
+// that load like a joint, and the result would be a false equilibrium. `missed` is the distance of
+// q from equilibrium [m], which adds to the uncertainty as |Φ| does.
 Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed);
 
 // The same for the forces at the present configuration.
@@ -288,8 +288,8 @@ inline double reach(const State<double>& q) {
     for (BodyId b = 0; b < q.bodies(); ++b) farthest = std::max(farthest, q[b].r.norm());
     return farthest;
 }
-// Relative precision of the input coordinates at q: 64 units of round-off of the largest coordinate,
-// as a fraction of L or of a unit direction.
+// Relative precision of the input coordinates at q: 64 units of round-off of the largest
+// coordinate, as a fraction of L or of a unit direction.
 inline double input_precision(const SteppingState& s, const State<double>& q) {
     return 64 * std::numeric_limits<double>::epsilon() * (1 + reach(q) / s.setup.length);
 }

@@ -22,7 +22,7 @@ void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amou
 //             hand side f_ext - f_elast is that of (29), and by induction that of (28)
 //   lever     each element's sum of K_T Δr', K_R Δπ, at the current attachment points
 //   axis      each element's true force, its increments added at the levers of their step
-//   both      the law itself, evaluated by store_driven() at the inputs of the next step
+//   both      the law itself, which store_driven() evaluates at the inputs of the next step
 void store(SteppingState& s, const Follow& follow) {
     if (follow.lever && follow.axis) return;
     if (!follow.lever && !follow.axis) {
@@ -79,7 +79,7 @@ bool turns_too_far(const SteppingState& s, Drive drive, double amount) {
     for (const auto& driver : s.branch.drivers) {
         const int joint = driven_joint(driver.what);
         if (joint >= 0 && is_angle(s.model.constraints[constraint_of(s.model, {joint})].kind) &&
-            !(std::abs(amount * speed<double>(driver, drive)) <= guard::largest_turn))
+            !(std::abs(amount * amplitude<double>(driver, drive)) <= guard::largest_turn))
             return true;
     }
     return false;

@@ -15,9 +15,9 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next);
 
 // The same step with the consistent tangent ∂G/∂q in place of K, and the true forces.
 //
-// A matrix is valid on its own side of a kink. Across a kink the step uses the matrix of qⁿ alone.
-// With the matrix of the other side (midpoint, or second solve) each step would be thrown back
-// before the kink.
+// A matrix is valid on its own side of a kink only. Across a kink the step uses the matrix of qⁿ
+// alone: with that of the other side (midpoint, or second solve) each step would return to before
+// the kink.
 Outcome step(SteppingState& s, const Consistent& method, Parameters next);
 
 // Checks the held modes at the end of the last step, as each next step does for the one before it:

@@ -18,8 +18,8 @@ void orthonormalise(const Vector<double>& weight, Matrix<double>& U) {
                 const double part = (U.col(k).array() * W2 * u.array()).sum();
                 u -= part * U.col(k);
             }
-        const double left = std::sqrt((u.array().square() * W2).sum());
-        if (left > zero_tolerance * whole) U.col(kept++) = u / left;
+        const double size = std::sqrt((u.array().square() * W2).sum());
+        if (size > zero_tolerance * whole) U.col(kept++) = u / size;
     }
     U.conservativeResize(Eigen::NoChange, kept);
 }
@@ -43,7 +43,7 @@ LeastStiffness min_of(const Eigen::MatrixXd& H) {
 namespace elastocheck::recursive {
 
 LeastStiffness min_stiffness(SteppingState& s, Matrix<double>& U) {
-    constexpr int vectors = 3, first_turns = 5, turns = 2;
+    constexpr int vectors = 3, first_iterations = 5, iterations = 2;
     if (s.setup.free <= 0) return {};
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
@@ -57,7 +57,7 @@ LeastStiffness min_stiffness(SteppingState& s, Matrix<double>& U) {
     }
     Eigen::MatrixXd H;
     s.work.lower.setZero();
-    for (int turn = first ? first_turns : turns; turn > 0; --turn) {
+    for (int iteration = first ? first_iterations : iterations; iteration > 0; --iteration) {
         Matrix<double> V(n, U.cols());
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
             s.work.upper = U.col(c).array() * W2;

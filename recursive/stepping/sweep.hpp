@@ -35,8 +35,8 @@ inline EquilibriumPath sweep(const Model& model, const Branch& branch, const Opt
     stop = {};
     if (const auto* method = std::get_if<Linear>(&options.method.kind)) {
         const bool follows = method->follow.lever || method->follow.axis;
-        const bool truth = method->follow == everything;
-        path.outcome = truth ? settle(s) : settle(s, *method, N);
+        const bool true_forces = method->follow == everything;
+        path.outcome = true_forces ? settle(s) : settle(s, *method, N);
         s.setup.consistent = false;
         if (path.outcome == Outcome::converged)
             path.outcome = equal_steps(*method, follows ? s.q : s.step.before);
