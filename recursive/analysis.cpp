@@ -38,14 +38,8 @@ Analysis analyse(const Model& model, const EliminationOrder& like) {
     external_force<double>(model, undriven, inputs, q, result.R_d);
     result.R_d -= elastic_force<double>(model, inputs, q);
     result.Phi_d = Phi;
-    // A residual that is rounding of stiffness times length counts as zero.
-    const double rounding = 10 * std::numeric_limits<double>::epsilon() * L;
-    const auto largest = [](const Vector<double>& v) {
-        return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
-    };
     result.at_rest =
-        largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest(system.M) &&
-        largest(Phi) <= rounding;
+        is_at_rest(system, result.R_d, Phi, 10 * std::numeric_limits<double>::epsilon() * L);
     if (result.at_rest && curves_of(model).empty() && result.pivot_ratio > 0) {
         SteppingState s(model, undriven, result);
         s.setup.consistent = true;

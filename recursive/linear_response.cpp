@@ -8,27 +8,6 @@
 namespace elastocheck::recursive {
 namespace {
 
-void check(const Model& model, const Equilibrium& state,
-           std::span<const Disturbance> disturbances) {
-    const auto require = [](bool met, const char* what) {
-        if (!met) throw std::invalid_argument(what);
-    };
-    require(state.poses.size() == model.bodies.size(), "the state belongs to another model");
-    for (const Disturbance& disturbance : disturbances)
-        std::visit(overloaded{
-                       [&](const UnitWrench& wrench) {
-                           require(static_cast<std::size_t>(wrench.at.body) < model.bodies.size(),
-                                   "a disturbance acts on no body of the model");
-                       },
-                       [&](const Motion& motion) {
-                           const auto at = static_cast<std::size_t>(motion.joint);
-                           require(at < model.joints.size() && model.joints[at].driven >= 0,
-                                   "a disturbance drives a joint without offset, length or angle");
-                       },
-                   },
-                   disturbance);
-}
-
 // Right-hand side of one disturbance. A wrench enters the upper rows. A motion of a joint enters
 // the lower row as -∂Φ/∂c and the upper rows as the change of its reaction, -∂(Φ_qᵀ λ)/∂c.
 void disturb(SteppingState& s, const Disturbance& disturbance) {
@@ -53,19 +32,9 @@ void disturb(SteppingState& s, const Disturbance& disturbance) {
         disturbance);
 }
 
-std::string words(Outcome outcome, const Disturbance& disturbance, const Model& model,
-                  const Diagnosis& diagnosis) {
-    const std::string cause = std::visit(
-        overloaded{
-            [&](const UnitWrench& wrench) {
-                return fmt::format("a wrench on '{}'",
-                                   model.bodies[static_cast<std::size_t>(wrench.at.body)].name);
-            },
-            [&](const Motion& motion) {
-                return fmt::format("moving '{}'",
-                                   model.joints[static_cast<std::size_t>(motion.joint)].name);
-            }},
-        disturbance);
+std::string failure_text(Outcome outcome, const Disturbance& disturbance, const Model& model,
+                         const Diagnosis& diagnosis) {
+    const std::string cause = name_of(model, disturbance);
     if (outcome == Outcome::loaded_idle_mode)
         return cause +
                " acts on a motion that no joint or element resists at the design position: " +
@@ -90,10 +59,11 @@ Response responses(SteppingState& s, const Branch& branch, const Analysis& analy
     for (const Disturbance& disturbance : disturbances) {
         disturb(s, disturbance);
         // Redundant joints carry a wrench, in an undetermined distribution; they may not open.
-        const Outcome outcome = solve_response(
-            s, std::holds_alternative<Motion>(disturbance) ? Judged::all : Judged::idle_motions);
+        const Outcome outcome = solve_response(s, std::holds_alternative<Motion>(disturbance)
+                                                      ? CheckedDirections::all
+                                                      : CheckedDirections::idle_motions);
         if (outcome != Outcome::converged)
-            return fail(outcome, words(outcome, disturbance, model, analysis.diagnosis));
+            return fail(outcome, failure_text(outcome, disturbance, model, analysis.diagnosis));
         auto& increments = response.increments.emplace_back(model.bodies.size());
         for (std::size_t b = 0; b < increments.size(); ++b) {
             const auto at = static_cast<Eigen::Index>(6 * b);
@@ -107,10 +77,12 @@ Response responses(SteppingState& s, const Branch& branch, const Analysis& analy
 
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances, const Method& method,
-                         ResponseAnalysis& of) {
-    const Analysis& analysis = of.analysis;
+                         ResponseAnalysis& shared) {
+    const Analysis& analysis = shared.analysis;
     check(model, branch);
-    check(model, state, disturbances);
+    elastocheck::check(model, disturbances);
+    if (state.poses.size() != model.bodies.size())
+        throw std::invalid_argument("the state belongs to another model");
     if (std::isnan(analysis.diagnosis.constraint_error))
         return {Outcome::not_finite,
                 fmt::format("branch '{}': {}", branch.name, not_finite(model)),
@@ -118,8 +90,8 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     SteppingState s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
-    return responses(s, branch, analysis, of.orders, !std::holds_alternative<Linear>(method.kind),
-                     disturbances);
+    return responses(s, branch, analysis, shared.orders,
+                     !std::holds_alternative<Linear>(method.kind), disturbances);
 }
 
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,

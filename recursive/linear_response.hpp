@@ -11,13 +11,13 @@
 namespace elastocheck::recursive {
 
 // Elimination orders of both matrices at one state; null for those of the analysis. Neighbouring
-// states have similar matrices: with the orders of one the other needs no search for its own, which
-// costs more than the factorisation.
+// states have similar matrices, and the search for an order costs more than a factorisation: with
+// the orders of one state the next one needs no search.
 struct ResponseOrders {
     EliminationOrder with_K, with_tangent;
 };
 
-// Of a model for its responses at many states; the orders are those of the last state.
+// What the responses of a model at many states share; the orders are those of the last state.
 struct ResponseAnalysis {
     Analysis analysis;
     ResponseOrders orders = {};
@@ -30,13 +30,9 @@ struct ResponseAnalysis {
 // ⎣ Φ_q   0   ⎦ ⎩ dλ ⎭ = ⎩       0        ⎭   or   ⎩ -∂Φ/∂c  ⎭ ,   c the offset that moves    (24)
 //
 // with K of (19) for the methods that use it and ignore stored forces: published, closed, balanced.
-// Else the consistent tangent ∂G/∂q(q, λ) replaces K (tangent.hpp), with λ from one solve with K:
-//
-// ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f_ext - f_elast ⎫
-// ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      where Δq = 0 if q is an equilibrium      (24)
-//
-// One factorisation (two with the tangent), one back-substitution per disturbance;
-// in double precision.
+// Else the consistent tangent ∂G/∂q(q, λ) replaces K (tangent.hpp), with λ from one solve with K
+// (response_system.hpp). One factorisation (two with the tangent), one back-substitution per
+// disturbance.
 //
 // Outcomes: singular and not_finite refer to the matrix. loaded_idle_mode: the disturbance loads an
 // idle mode. inconsistent_constraints: redundant joints do not allow the offset to move. Throws

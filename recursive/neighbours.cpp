@@ -32,7 +32,7 @@ Residual residual_of(const Model& model, const Branch& branch, double a, const S
     return at;
 }
 
-std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
+std::string failure_text(Outcome outcome, const Diagnosis& diagnosis) {
     switch (outcome) {
         case Outcome::loaded_idle_mode:
             return "the number loads a motion that no joint or element resists: " +
@@ -76,7 +76,8 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                               ? Outcome::not_finite
                               : factorise_response(s, true, orders);
     if (ready != Outcome::converged)
-        return {stencils.size(), NeighbourStates{ready, why_not(ready, analysis.diagnosis), {}}};
+        return {stencils.size(),
+                NeighbourStates{ready, failure_text(ready, analysis.diagnosis), {}}};
     const Residual residual = residual_of(model, branch, state.load, s.q, s.lambda);
     const double stiffest = *std::ranges::max_element(s.system.M.values, {},
                                                       [](double x) { return std::abs(x); }),
@@ -85,23 +86,26 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     for (const Neighbours& stencil : stencils) {
         NeighbourStates& result = neighbours.emplace_back();
         difference(s, state.load, residual, stencil);
-        result.outcome = solve_response(s, Judged::all, rounding * amplification(stencil));
+        result.outcome =
+            solve_response(s, CheckedDirections::all, rounding * amplification(stencil));
         if (result.outcome != Outcome::converged) {
-            result.detail = why_not(result.outcome, analysis.diagnosis);
+            result.detail = failure_text(result.outcome, analysis.diagnosis);
             continue;
         }
+        // Chord method: Newton steps for the equations of the neighbour with the factors of the
+        // state, and one more step once they are small.
         for (const Neighbour& k : stencil) {
             State<double> q = s.q;
             Vector<double> lambda = s.lambda;
             double first = 0, first_reactions = 0;
-            bool met = false, last = false;
+            bool converged = false, last = false;
             for (int step = 0; step < chord_steps && !last; ++step) {
-                last = met;
+                last = converged;
                 const Residual there =
                     residual_of(*k.model, k.model->branches.front(), state.load, q, lambda);
                 s.work.upper = there.upper - residual.upper;
                 s.work.lower = there.lower - residual.lower;
-                (void)solve_response(s, Judged::none);
+                (void)solve_response(s, CheckedDirections::none);
                 advance(q, s.work.x.head(s.n()));
                 lambda += s.work.x.tail(s.m());
                 const double size = std::sqrt(size_of_solution(s)),
@@ -110,8 +114,9 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                     first = size;
                     first_reactions = reactions;
                 }
-                met = size <= chord_met * first &&
-                      reactions <= chord_met * first_reactions + chord_reactions * lambda.norm();
+                converged =
+                    size <= chord_met * first &&
+                    reactions <= chord_met * first_reactions + chord_reactions * lambda.norm();
             }
             Equilibrium& there = result.states.emplace_back(state);
             const auto inputs = inputs_at<double>(*k.model, k.model->branches.front(), state.load);

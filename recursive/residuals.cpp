@@ -38,7 +38,7 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     for_each_row<double>(model, inputs, q, [&](int, const Row<double>& row) {
         worse(row.length ? result.length : result.direction, row.Phi);
     });
-    // Both rows are also zero on the mirrored side.
+    // Two kinds of rows have a second solution: a negative length, and an angle plus half a turn.
     for (std::size_t c = 0; c < model.constraints.size(); ++c) {
         const ConstraintKind& kind = model.constraints[c].kind;
         const double length = inputs.offset[c];

@@ -1,9 +1,9 @@
 #include "recursive/response_system.hpp"
 
-#include "recursive/linear_response.hpp"
-
 #include <cmath>
 #include <limits>
+
+#include "recursive/linear_response.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -11,34 +11,34 @@ namespace {
 // Load carried by the border of a held direction in the last back-substitution, b μ of
 // saddle_point.hpp without the scaling: a force on an idle mode, as |W⁻¹ f|, or the gap of
 // redundant constraints.
-double taken_by_border(const SaddlePoint<double>& system, int c) {
+double load_on_border(const SaddlePoint<double>& system, int c) {
     const Held<double>& held = system.held;
     const double mu = system.solution[system.n + system.m + c];
     double sum = 0;
     for (int e = held.begin(c); e < held.end(c); ++e) {
         const auto at = static_cast<std::size_t>(e);
-        const double taken =
+        const double load =
             mu * system.border()[e] / (system.scale[held.row[at]] * system.weight[held.row[at]]);
-        sum += taken * taken;
+        sum += load * load;
     }
     return std::sqrt(sum);
 }
 
 // A held direction does not respond, so its border must carry no load. μ detects a force on an idle
 // mode, and a mode that is idle in K but not in the tangent.
-Outcome check_border(SteppingState& s, Judged which, double rounding) {
+Outcome check_border(SteppingState& s, CheckedDirections checked, double rounding) {
     const Held<double>& held = s.system.held;
-    if (held.size() == 0 || which == Judged::none) return Outcome::converged;
+    if (held.size() == 0 || checked == CheckedDirections::none) return Outcome::converged;
     constraint_force(s.system.M, s.work.x.tail(s.m()), s.work.force);
     const double force = size_of_force(s, s.work.upper) + size_of_force(s, s.work.force);
     const double opening =
         s.work.lower.norm() + std::sqrt(size_of_solution(s)) / std::min(1.0, s.setup.length);
     const double limit = guard::rounding * std::numeric_limits<double>::epsilon() +
                          guard::share_per_error * s.work.Phi.norm() / std::min(1.0, s.setup.length);
-    const int judged = which == Judged::all ? held.size() : held.idle;
-    for (int c = 0; c < judged; ++c) {
+    const int count = checked == CheckedDirections::all ? held.size() : held.idle;
+    for (int c = 0; c < count; ++c) {
         const bool idle = c < held.idle;
-        if (!(taken_by_border(s.system, c) <=
+        if (!(load_on_border(s.system, c) <=
               limit * (idle ? force : opening) + (idle ? rounding : 0)))
             return idle ? Outcome::loaded_idle_mode : Outcome::inconsistent_constraints;
     }
@@ -85,10 +85,10 @@ Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& or
     return factorise_in(s, orders.with_tangent);
 }
 
-Outcome solve_response(SteppingState& s, Judged judged, double rounding) {
+Outcome solve_response(SteppingState& s, CheckedDirections checked, double rounding) {
     back_substitute(s);
     if (!s.work.x.allFinite()) return Outcome::not_finite;
-    const Outcome outcome = check_border(s, judged, rounding);
+    const Outcome outcome = check_border(s, checked, rounding);
     if (outcome == Outcome::converged) leave_out_idle_motion(s);
     return outcome;
 }

@@ -1,4 +1,4 @@
-// The linear system (24) of a state and its answers: common part of the response to disturbances
+// The linear system (24) of a state and its solutions: common part of the response to disturbances
 // and of the states of neighbouring models.
 #pragma once
 
@@ -8,25 +8,26 @@ namespace elastocheck::recursive {
 
 struct ResponseOrders;  // linear_response.hpp
 
-// Assembles and factorises the matrix of (24) at s.q and the present inputs: with K of (19), or with
-// the consistent tangent in its place, for which λ is computed first with K:
+// Assembles and factorises the matrix of (24) at s.q and the present inputs: with K of (19), or
+// with the consistent tangent in its place, for which λ is computed first with K:
 //
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f_ext - f_elast ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      where Δq = 0 if q is an equilibrium      (24)
 //
-// Begins with `orders`, and leaves there those that were used.
+// Starts with the elimination orders in `orders`, and stores there those that were used.
 Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& orders);
 
 // Which held directions of the border must carry no load.
-enum class Judged {
+enum class CheckedDirections {
     none,
     idle_motions,  // else loaded_idle_mode
     all            // idle motions and redundant rows; for a loaded row inconsistent_constraints
 };
 
-// Solves for the right-hand side in s.work.upper, s.work.lower: s.work.x = (dq, dλ), without idle motion (minimum
-// norm). loaded_idle_mode, inconsistent_constraints where a held direction would carry load,
-// not_finite. `rounding` of the forces, as size_of_force(), where that is more than their last digits.
-Outcome solve_response(SteppingState& s, Judged judged, double rounding = 0);
+// Solves for the right-hand side in s.work.upper, s.work.lower: s.work.x = (dq, dλ), without idle
+// motion (minimum norm). Outcomes: not_finite; loaded_idle_mode or inconsistent_constraints where a
+// checked direction carries load. `rounding`: of the forces, as size_of_force(), where that is more
+// than their last digits.
+Outcome solve_response(SteppingState& s, CheckedDirections checked, double rounding = 0);
 
 }  // namespace elastocheck::recursive

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "recursive/diagnosis/analysis.hpp"
-#include "recursive/diagnosis/motion.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/linear_response.hpp"
 #include "recursive/response_system.hpp"
 #include "recursive/stepping/stepping_state.hpp"
@@ -17,11 +17,11 @@
 namespace elastocheck::recursive {
 namespace {
 
-// The matrix above at the state, dense; empty where it is too large or not finite.
+// The matrix of soft_motion.hpp at the state, dense; empty where it is too large or not finite.
 Eigen::MatrixXd scaled_matrix(SteppingState& s, const Equilibrium& state) {
-    constexpr Eigen::Index most = 1200;
+    constexpr Eigen::Index max_unknowns = 1200;
     const Eigen::Index n = s.n(), m = s.m();
-    if (n + m > most) return {};
+    if (n + m > max_unknowns) return {};
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     ResponseOrders orders;
@@ -68,7 +68,8 @@ std::string softest_motion(const Model& model, const Branch& branch, const Equil
     std::vector<Eigen::Index> order(static_cast<std::size_t>(M.rows()));
     std::iota(order.begin(), order.end(), Eigen::Index{0});
     std::ranges::sort(order, {}, [&](Eigen::Index k) { return std::abs(solver.eigenvalues()[k]); });
-    // idle motions and redundant rows come first; a motion that is idle as drawn may be soft here
+    // Idle motions and redundant rows come first and are left out; a motion that is idle at the
+    // design position may be soft here.
     const auto held = static_cast<std::size_t>(analysis.diagnosis.null_space.cols());
     const double zero = rounding * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (std::size_t k = 0; k < order.size(); ++k) {

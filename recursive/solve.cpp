@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "models/parameter_unit.hpp"
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/formula/load_growth.hpp"
-#include "recursive/formula/parameter.hpp"
 #include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/singularity/branch_events.hpp"
@@ -33,22 +33,15 @@ std::string reason_of_end(const Model& model, const Diagnosis& diagnosis, const 
                           const Method& method, Outcome outcome, const Stop& stop) {
     if (!stop.unstable_start.empty())
         return fmt::format("the equilibrium that settles at {} is unstable: {}",
-                           in_unit(branch.unit, 0), stop.unstable_start);
+                           parameter_text(branch.unit, 0), stop.unstable_start);
     std::string detail = std::isnan(stop.at) ? std::string("while the start settles")
-                                             : "at " + in_unit(branch.unit, stop.at);
+                                             : "at " + parameter_text(branch.unit, stop.at);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
-            detail +=
-                ": the load acts on a motion that no joint or element resists at the design "
-                "position: " +
-                idle_modes(diagnosis);
-            break;
+        case Outcome::bifurcation_point: detail += end_by_diagnosis(outcome, diagnosis); break;
         case Outcome::singular:
-            detail += ": the branch bifurcates, turns back or loses its stability before";
-            if (diagnosis.null_space.cols() > 0)
-                detail +=
-                    ", or an idle mode or redundant constraint of the design position no longer is "
-                    "one";
+            detail += ": the branch bifurcates, turns back or loses its stability before" +
+                      end_by_diagnosis(outcome, diagnosis);
             break;
         case Outcome::inconsistent_constraints:
             if (const auto vanished = vanishing_length(model, branch);
@@ -56,7 +49,7 @@ std::string reason_of_end(const Model& model, const Diagnosis& diagnosis, const 
                 std::abs(stop.at) >= 0.99 * std::abs(vanished->at))
                 detail = no_length(model, branch, *vanished);
             else if (!std::isnan(stop.at))
-                detail += ": redundant joints are inconsistent";
+                detail += end_by_diagnosis(outcome, diagnosis);
             else
                 detail = fmt::format(
                     "the joints{} cannot be closed; at the design position their gap is up to "
@@ -65,11 +58,6 @@ std::string reason_of_end(const Model& model, const Diagnosis& diagnosis, const 
             break;
         case Outcome::limit_point:
             detail += ": a limit point, past it no equilibrium continues the branch";
-            break;
-        case Outcome::bifurcation_point:
-            detail +=
-                ": another curve of equilibria crosses the branch, which is unstable past this "
-                "point";
             break;
         case Outcome::diverged:
             detail += std::holds_alternative<Linear>(method.kind)
@@ -140,7 +128,7 @@ EquilibriumPath solve_by_method(const Model& model, const Branch& branch, const 
     if (path.outcome == Outcome::diverged && linear) {
         const auto limit = stability_limit(model, branch, options.method, analysis);
         path.detail +=
-            limit ? "; by the model the method is stable to " + in_unit(branch.unit, *limit)
+            limit ? "; by the model the method is stable to " + parameter_text(branch.unit, *limit)
                   : std::string("; the model sets no stability limit on this branch");
     }
     return path;
@@ -151,9 +139,9 @@ void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
     for (Pose& pose : point.poses) pose.r += c;
 }
 
-// Whether a start that did not settle, with this outcome, may settle by another homotopy
-// (load_growth.hpp). The linear methods that store forces settle step by step as a part
-// of their path.
+// Whether a start that did not settle, with this outcome, may settle by the second homotopy
+// (load_growth.hpp). The linear methods that store forces have no second one: their settling is a
+// part of their path.
 bool settles_otherwise(const Method& method, Outcome outcome) {
     const auto* linear = std::get_if<Linear>(&method.kind);
     return (!linear || linear->follow == everything) &&
@@ -198,9 +186,9 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
         solve_by_method(model, branch, options, analysis, visit ? counted : Visit{});
     if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
         return path;
-    // Where a drawing far from rest has several equilibria, homotopies may settle
-    // at different ones.
-    if (const auto other = grown(model, branch)) {
+    // Where a design position far from equilibrium has several equilibria nearby, the two
+    // homotopies may settle at different ones.
+    if (const auto other = with_growing_forces(model, branch)) {
         EquilibriumPath again = solve_by_method(other->model, other->branch, options,
                                                 analyse(other->model), visit ? counted : Visit{});
         if (begun || !again.points.empty()) return again;
