@@ -20,18 +20,11 @@
 //
 // Across a knot of a curve F has no second derivative. Pieces shrink towards the knot until one is
 // short enough to use the slopes of both sides: F(ȳ(s)) ∈ F(ȳ(0)) + s [slopes], and F' is one
-// interval matrix M ± R. At a corner, where the slope itself jumps, R has one nonzero entry, ½ Δk,
-// because the law is separated (system.hpp). With c ≥ 0 the compliance at the law, so that without
-// the law x changes by -c per unit force, and Y the inverse of M, at the mean slope,
-//
-//   ρ(|Y| R) = ½ Δk c / (1 + k c + ½ Δk c) < 1
-//
-// for any stiffness of the stop: the piece contracts. r is then (I - |Y| R)⁻¹ times the part
-// to be covered.
+// interval matrix M ± R, which contracts at a corner of any stiffness because the law is separated
+// (derivation.md, "Curves of laws"). r is then (I - |Y| R)⁻¹ times the part to be covered.
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "models/parameter_unit.hpp"
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/krawczyk.hpp"
 #include "reference/certificate/state.hpp"
@@ -42,6 +35,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+constexpr int digits = 12;  // of the parameter in messages
 
 // ---- Interpolation of the states: start of Newton's method, and position of idle motions
 
@@ -151,6 +146,7 @@ struct Piece {
     VectorXd r;  // of the tube
 };
 
+// The values and the slopes h dy/da of the three nodes determine q(-1), q(0), q'(0) and q(1).
 Piece quintic(const Node& from, const Node& middle, const Node& to) {
     const double h = to.a / 2 - from.a / 2;
     const VectorXd d = (to.y - from.y) / 2, q_from = (h * from.rate - d) / 2,
@@ -167,7 +163,7 @@ Piece straight(const Node& from, const Node& to) {
     return {from.a, to.a, from.y, to.y, {none, none, none, none}, {}};
 }
 
-// Coefficients of component i of ȳ in powers of s.
+// Coefficients of component i of ȳ in powers of s: the terms of ȳ above, expanded.
 std::array<Interval, 6> powers(const Piece& piece, Index i) {
     const Interval y0 = piece.y0[i], y1 = piece.y1[i], half = 0.5;
     const auto q = [&](std::size_t k) { return Interval(piece.q[k][i]); };
@@ -202,7 +198,7 @@ Jet<n> parameter(const Piece& piece, const Interval& S) {
     return expanded<n>({(a0 + a1) * half, (a1 - a0) * half, 0., 0., 0., 0.}, S);
 }
 
-// The coefficient k of each entry.
+// Coefficient k of each entry.
 template <int n>
 SparseRows<Interval> coefficient(const SparseRows<Jet<n>>& J, std::size_t k) {
     SparseRows<Interval> part{{}, J.start};
@@ -210,8 +206,8 @@ SparseRows<Interval> coefficient(const SparseRows<Jet<n>>& J, std::size_t k) {
         part.entries.push_back({row, column, value.c[k]});
     return part;
 }
-// Taylor coefficients of F about s = 0, the last one over all s; the laws with the first. The gauge
-// is zero along the piece by definition.
+// Taylor coefficients of F about s = 0, the last one over all s; the first one also has the laws.
+// The gauge is zero along the piece by definition.
 template <int n>
 std::vector<Values<Interval>> coefficients(const Problem& problem, const Piece& piece) {
     const Interval middle = 0, all{-1, 1};
@@ -265,8 +261,8 @@ RestAlong rest_along(const std::vector<MatrixXd>& Y, std::vector<Split> J) {
         result.rest.push_back(sum.cwiseAbs());
     }
     for (Split& part : J) {
-        result.gamma =
-            std::max(result.gamma, 2 * part.gamma);  // a coefficient is a sum of two products
+        // twice, since Σ_{i+j=k} Y_i M_j adds two products
+        result.gamma = std::max(result.gamma, 2 * part.gamma);
         part.M = part.M.cwiseAbs();
     }
     result.J = std::move(J);
@@ -296,7 +292,7 @@ VectorXd tube(const VectorXd& first, const RestAlong& rest) {
     return {};
 }
 
-// Computes the box at a joint of two pieces; the gauge there is the joint's own position.
+// Computes the box at the common end of two pieces, which is also its gauge.
 void enclose(const NodeSolver& solver, Node& node) {
     if (node.box.size() > 0) return;
     const Problem problem = solver.problem(node.y.head(solver.system.n()));
@@ -327,7 +323,7 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
     const auto F = coefficients<order<Along>>(problem, piece);
     const VectorXd first = step({Y0}, F);
     if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
-    // Range of the tube over which F' is evaluated: larger where components depend on others.
+    // Radii over which F' is evaluated; at least those of the tube to be proved.
     VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
     const auto slopes = [&](const Interval& S) {
         return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
@@ -352,16 +348,21 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
     return false;
 }
 
+// Values of component i of ȳ along the piece.
+Interval range_along(const Piece& piece, Index i) {
+    return expanded<0>(powers(piece, i), Interval(-1, 1)).c[0];
+}
+
 // Whether the piece crosses a knot of a separated curve.
 bool crosses_a_knot(const System& system, const Piece& piece) {
     for (std::size_t k = 0; k < system.separated.size(); ++k)
         if (over_a_knot(std::get<Curve>(law_of(system, system.separated[k])),
-                        expanded<0>(powers(piece, system.deformation(k)), Interval(-1, 1)).c[0]))
+                        range_along(piece, system.deformation(k))))
             return true;
     return false;
 }
 
-// The same for a short piece across a knot of a law, with the slopes of both sides.
+// prove() for a short piece across a knot of a law, with the slopes of both sides.
 bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& joint,
                      const Tolerance& tolerance) {
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
@@ -415,32 +416,18 @@ Extent distance(const Piece& piece, const StateAt& at) {
 Held held_over(const NodeSolver& solver, const Piece& piece) {
     const Index k = solver.border.count(), n = solver.system.n();
     VectorXd mu = piece.r.tail(k);
-    for (Index i = 0; i < k; ++i)
-        mu[i] += mag(expanded<0>(powers(piece, n + i), Interval(-1, 1)).c[0]);
+    for (Index i = 0; i < k; ++i) mu[i] += mag(range_along(piece, n + i));
     return held_by(solver.system, solver.border, mu);
 }
 
-std::string in_unit_of(ParameterUnit unit, double a) {
-    switch (unit) {
-        case ParameterUnit::newton: return fmt::format("{:.12g} N", a);
-        case ParameterUnit::newton_metre: return fmt::format("{:.12g} N·m", a);
-        case ParameterUnit::metre: return fmt::format("{:.12g} mm", 1e3 * a);
-        case ParameterUnit::radian: return fmt::format("{:.12g} deg", a * 180 / std::numbers::pi);
-        case ParameterUnit::none: break;
-    }
-    return fmt::format("{:.12g}", a);
-}
-
-// Two neighbouring nodes of the path, with the one halfway between them.
-struct Section {
+struct Section {  // two neighbouring nodes of the path, and the one halfway between them
     Node from, middle, to;
 };
-
 struct ProvedPiece {
     Piece piece;
     bool proved = false, over_knot = false;
     Held held = {};
-    bool pushed = false;  // proved, but `held` exceeds the tolerance
+    bool pushed = false;  // `held` or its gap exceeds the tolerance
 };
 
 // Proves one curve of equilibria from `from` to `to`, whose ends lie within the tube of the piece.
@@ -476,7 +463,7 @@ ProvedPiece prove_section(const NodeSolver& solver, Section& s, bool over_knots,
     return result;
 }
 
-// Why no piece is proved past a place.
+// Why no piece is proved past `place`.
 std::string why_it_ends(const NodeSolver& solver, const Held& pushed, const Tolerance& tolerance,
                         const std::string& place) {
     if (pushed.held > tolerance.held)
@@ -497,7 +484,7 @@ std::string why_not_a_path(const std::vector<StateAt>& at, std::span<const Equil
         if (!at[k].z.allFinite() || !std::isfinite(states[k].load)) return "a state is not finite";
         if (k > 0 && !((states[k].load - states[k - 1].load) * range > 0))
             return fmt::format("the states turn back at {}",
-                               in_unit_of(branch.unit, states[k].load));
+                               parameter_text(branch.unit, states[k].load, digits));
     }
     return {};
 }
@@ -519,7 +506,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
                     const Tolerance& tolerance) {
     Tube tube;
     tube.width = {0, 0, 0, 0};
-    const auto place = [&](double a) { return in_unit_of(branch.unit, a); };
+    const auto place = [&](double a) { return parameter_text(branch.unit, a, digits); };
     const auto open = [&](const std::string& why) {
         tube.state = ProofState::open;
         tube.detail = why;

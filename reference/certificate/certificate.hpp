@@ -15,8 +15,9 @@
 
 namespace elastocheck::reference::certificate {
 
-// Up to this size matrices are kept as a whole: the time of a proof grows with the cube of the number
-// of unknowns (7 per body, 1 per row of a joint). Beyond it a point is proved row by row, with the square.
+// Up to max_unknowns_of_curves (7 per body, 1 per row of a joint) dense matrices are kept, and the
+// time of a proof grows with the cube of the unknowns. Beyond it a point is proved row by row, with
+// the square.
 inline constexpr int max_unknowns_of_curves = 500, max_unknowns_of_points = 40000;
 
 // Accuracy that is to be proved, fixed before the proof: a true equilibrium within these distances
@@ -34,8 +35,8 @@ struct Tolerance {
 // State of a proof, for a point z_s, in the letters of krawczyk.hpp: F the bordered equations, Y an
 // approximate inverse of their Jacobian, [y] = ỹ ± r a box, δ the tolerance.
 enum class ProofState {
-    // |Y F(ỹ)| + |I - Y F'([y])| r < r, so one equilibrium is in [y]; and |z - z_s| ≤ δ for all z of
-    // [y], with |μ| at most `held` and `gap`
+    // |Y F(ỹ)| + |I - Y F'([y])| r < r, so one equilibrium is in [y]; and |z - z_s| ≤ δ for all z
+    // of [y], with |μ| at most `held` and `gap`
     proved,
     // |y E(z_s)| > |y E'([z])| δ + |y| |ε| for some row y, so no equilibrium has |z - z_s| ≤ δ
     excluded,
@@ -77,8 +78,8 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
 
 // Certifies the path between states: one connected, locally unique curve of equilibria from the
 // first state to the last, within a tube around an interpolating polynomial. `proved` if the
-// inequality of a point holds over every piece with a as a coefficient, and neighbouring pieces share
-// their zero; else `open`. Up to max_unknowns_of_curves.
+// inequality of a point holds over every piece with a as a coefficient, and neighbouring pieces
+// share their zero; else `open`. Up to max_unknowns_of_curves.
 struct Tube {
     ProofState state = ProofState::open;
     std::string detail;

@@ -91,17 +91,12 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
 
 // ---- Large box for uniqueness
 
-// Let y* be the zero in the small box [y*], and y another one whose poses p are in [p] ∋ p*, with
-// any reactions. F is affine in the reactions and μ, so
+// No other zero has poses in a large box [p] where |I - Y S| v < v for some v > 0, S ∈ F'([p], R*)
+// with the reactions of the small box (derivation.md, "Unique").
 //
-//   0 = F(y) - F(y*) = S (y - y*),    S ∈ F'([p], R*)
-//
-// with the reactions of [y*] in the columns of the poses, and y = y* where I - Y S is a
-// contraction: |I - Y S| v < v for some v > 0.
-//
-// Smallest max_i (|I - Y S| v)_i / v_i found by power iteration from v on, which it leaves behind:
-// where I - Y S is another multiple of about the same matrix, it is a start as good. Below 1 the box
-// contracts.
+// Smallest max_i (|I - Y S| v)_i / v_i found by power iteration, which starts at v and leaves its
+// last vector there: over a box of another size I - Y S is about a multiple of this one, so that v
+// is a good start for it too. Below 1 the box contracts.
 double shrinks(const Contraction& rest, VectorXd& v) {
     constexpr int iterations = 12;
     double least = std::numeric_limits<double>::infinity();
@@ -144,8 +139,8 @@ LargeBox large_box(const Problem& problem, const VectorXd& centre, double a, con
     return large;
 }
 
-// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes; 0
-// if none does. Any Y will do: that of ỹ first, and where it fails the inverse at the middle of the
+// Largest t found for which the box of origins within t L and quaternions within t of ỹ contracts;
+// 0 if none does. Y is the inverse at ỹ, and where that fails the inverse at the middle of the
 // Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a ratio of
 // 0.85.
 double alone(const Problem& problem, const VectorXd& centre, double a, const Box& smallest) {
@@ -180,8 +175,9 @@ double alone(const Problem& problem, const VectorXd& centre, double a, const Box
 
 // ---- A system too large to keep its inverse
 
-// A radius that should pass, from solutions alone: |Y F| is not known before Y is. Y times random
-// signs of the rounding of F is about its root mean square.
+// Estimate of a radius that passes, from solutions with the factors alone, since |Y F| needs all
+// rows of Y: the solution for the middle of F, and the root mean square of solutions for its radii
+// with random signs.
 VectorXd foreseen(const Factors& factors, const Values<Interval>& F) {
     constexpr int samples = 8;
     constexpr double larger = 256;
@@ -200,7 +196,8 @@ VectorXd foreseen(const Factors& factors, const Values<Interval>& F) {
     return larger * (factors.solve(f).cwiseAbs() + (squares / samples).cwiseSqrt());
 }
 
-// v > 0 for large boxes: poses alike, and reactions that 1e-4 of a pose needs.
+// v > 0 for large boxes: 1 for each pose (L for its origin), and for the reactions and μ 1e-4 of
+// the largest slope of a balance, so that no unknown dominates |I - Y S| v < v.
 VectorXd alike(const System& system, const SparseMatrix& M, Index size) {
     const Index poses = 7 * system.bodies;
     double stiffest = 0;
@@ -213,8 +210,8 @@ VectorXd alike(const System& system, const SparseMatrix& M, Index size) {
     return v;
 }
 
-// Both boxes in one pass over the rows of Y: the smaller one by the inequality, and of many larger
-// ones the largest that contracts.
+// The smallest box and the large one in one pass over the rows of Y: the inequality for the first,
+// and of many larger boxes the largest that contracts.
 Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 5, larger_boxes = 14;
     constexpr double least = 1e-20, largest = 2e-3, shorter = 0.25;
@@ -253,7 +250,7 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
     return result;
 }
 
-// The part of that box around the state.
+// The part around the state of the large box of size t about y; empty for t = 0.
 Extent unique_around(const StateAt& mapped, const VectorXd& y, double t) {
     const System& system = mapped.system;
     Extent unique;
@@ -282,7 +279,7 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     const System& system = mapped.system;
     const double load = mapped.state.load;
     const Index n = system.n();
-    // Any y will do, so a large system goes without a border.
+    // The inequality holds for any y, so a large system needs no border.
     Border border = n > max_unknowns_of_curves
                         ? Border{Eigen::MatrixXd(n, 0), Eigen::MatrixXd(n, 0)}
                         : border_at(system, mapped.z, load, loose_zero_tolerance);
@@ -324,7 +321,7 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
         const Eigen::MatrixXd Y =
             jacobian.rows_of_inverse(from, std::min(at_a_time, n + k - from)).leftCols(n);
         if (!Y.allFinite()) return false;
-        // Rounded, for the rows that are worth the intervals.
+        // The inequality in doubles selects the rows for which it is evaluated in intervals.
         const VectorXd left = (Y * middle_of_E).cwiseAbs(),
                        right = product(Y, slopes_of_E).cwiseAbs() * finite_delta;
         for (Index row = 0; row < Y.rows(); ++row)
@@ -376,6 +373,7 @@ void say(std::string& detail, const std::string& more) {
 
 // ---- A state near a known box
 
+// The known box at a; null where there is none.
 const ProvedBox* box_at(const std::vector<ProvedBox>& known, const System& system, double a) {
     const auto at = std::ranges::find_if(known, [&](const ProvedBox& one) {
         return one.a == a && one.separated == !system.separated.empty();
@@ -383,7 +381,7 @@ const ProvedBox* box_at(const std::vector<ProvedBox>& known, const System& syste
     return at == known.end() ? nullptr : &*at;
 }
 
-// Nothing where the box decides nothing about the state.
+// The certificate of a state from a known box; none where the box does not decide about the state.
 std::optional<Certificate> by_known_box(const ProvedBox& known, const StateAt& mapped,
                                         const Tolerance& tolerance) {
     const auto y = box(known.y, known.r);

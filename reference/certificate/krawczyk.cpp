@@ -19,8 +19,8 @@ constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 // operations around it; underflow loses less than the least normal number per term.
 template <class X = VectorXd>
 X raised(const X& sum, Index n) {
-    const double by = 1 + 4 * static_cast<double>(n + 8) * unit;
-    return (sum * by).array() + static_cast<double>(n + 1) * std::numeric_limits<double>::min();
+    const double factor = 1 + 4 * static_cast<double>(n + 8) * unit;
+    return (sum * factor).array() + static_cast<double>(n + 1) * std::numeric_limits<double>::min();
 }
 
 double gamma(Index p) {
@@ -107,7 +107,8 @@ VectorXd passing(const VectorXd& first, const Contraction& rest) {
 
 namespace {
 
-// Everything of F that |Y F| needs: |Y f| + |Y D| ρ + |Y| lost.
+// F as |Y F| uses it, |Y F| ≤ |Y f| + |Y D| ρ + |Y| lost: the middles f and D, the radii ρ of the
+// laws, and the other radii and rounding `lost`.
 struct Parts {
     VectorXd f, rho, lost;
     SparseMatrix D;

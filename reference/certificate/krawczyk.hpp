@@ -54,8 +54,8 @@ Eigen::VectorXd passing(const Eigen::VectorXd& first, const Contraction& rest);
 // Upper bound of |Y F|.
 Eigen::VectorXd step(const Eigen::MatrixXd& Y, const Values<Interval>& F);
 
-// All of this for a system too large to keep Y. Each row of the inequality needs the same row of Y
-// alone, which is solved for and discarded.
+// The terms of the inequality for a system too large to keep Y. Each row of the inequality needs
+// the same row of Y alone, which is solved for and discarded.
 struct OverRows {
     Eigen::VectorXd defect;  // |Y F|
     Eigen::MatrixXd rest;    // |I - Y F'| r for each box, in columns
@@ -63,7 +63,7 @@ struct OverRows {
 // J [box]: over each box, all with the M of the first; r [n × boxes].
 OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std::vector<Split>& J,
                    const Eigen::MatrixXd& r);
-// M ± R within of.M ± R.
+// An interval matrix with the given middle M that contains `of`.
 Split recentred(const Split& of, const SparseMatrix& M);
 
 inline bool all_less(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {

@@ -23,8 +23,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// σ measures origins over the model's size, and quaternions: the part of y along v, tᵀ v = 1 with
-// t = W v.
+// Tangent v and gauge t = W v with tᵀ v = 1, W the weights of origins (1/L²) and quaternions (1).
+// The length along v, in origins over L and quaternions, is σ = tᵀ (y - ỹ).
 struct Tangent {
     VectorXd v, t;
 };
@@ -106,7 +106,8 @@ Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, do
     const VectorXd defect = step(Y, F);
     Segment result;
     if (!defect.allFinite()) return result;
-    // The box of a point must fit into that of a segment, even where both are only rounding.
+    // The box of a point (δ = 0) must fit into that of a segment, even where both are only
+    // rounding.
     const double least = delta > 0 ? 1e-22 : 1e-25, wider = delta > 0 ? 1.3 : 1.01;
     VectorXd r = (defect * 1.5).cwiseMax(least);
     for (int trial = 0; trial < 8; ++trial) {

@@ -14,13 +14,13 @@ struct ProvedBox {
     double a = 0;
     bool separated = false;   // of the equations with separated curves
     Eigen::VectorXd y, r;     // ỹ and r
-    double alone = 0;         // t of the large box without another equilibrium
-    Certificate certificate;  // `error` and `unique` are of a state
+    double alone = 0;         // t of the large box without another equilibrium (certify.cpp)
+    Certificate certificate;  // `error` and `unique` are those of the state that it was proved for
 };
 
-// certify(), with known boxes of the same model and branch, to which a new one is added. Where a
-// known box is within the tolerance of the state, it proves the state as well; else it is the
-// equilibrium nearby when none can be within the tolerance.
+// certify(), with known boxes of the same model and branch, to which a new one is added. A known
+// box at the load of the state proves the state if it is within the tolerance; else it is reported
+// as the nearest equilibrium where the state is excluded.
 Certificate certify(const Model& model, const Branch& branch, const Equilibrium& state,
                     const Tolerance& tolerance, std::vector<ProvedBox>& known);
 

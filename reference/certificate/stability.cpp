@@ -10,8 +10,8 @@
 //
 // Test (Rump 2006): scaled by powers of two to a diagonal of about one, which allows stiff and soft
 // directions together, M ± R is M̂ ± R̂. With the row sums C = diag(R̂ 1), C - R̂ has no negative
-// eigenvalue. If Cholesky's method in doubles ends for M̂ - C - c I, with at most p entries in a row of
-// L, then L Lᵀ = M̂ - C - c I + Δ with |Δ_ij| ≤ γ (m_ii m_jj)^½, γ = γ_{p+2}, so
+// eigenvalue. If Cholesky's method in doubles ends for M̂ - C - c I, with at most p entries in a row
+// of L, then L Lᵀ = M̂ - C - c I + Δ with |Δ_ij| ≤ γ (m_ii m_jj)^½, γ = γ_{p+2}, so
 //
 //   xᵀ (M̂ ± R̂) x ≥ xᵀ (M̂ - C) x ≥ (c - γ tr M̂) xᵀ x > 0     for a larger c
 #include "reference/certificate/stability.hpp"
@@ -32,7 +32,8 @@ double power_of_two(double x) { return std::exp2(std::nearbyint(std::log2(x))); 
 using Sparse = std::vector<std::pair<Index, Interval>>;  // one row: its nonzero entries
 using Entries = std::vector<Slope<Interval>>;
 
-// A row of the Jacobian with respect to (δr, L δπ) of each body.
+// A row of the Jacobian with respect to (δr, L δπ) of each body, from that by r and the quaternion
+// p: δp = ½ (0, δπ) p.
 Sparse turned_row(const System& system, const std::vector<Interval>& z,
                   std::span<const Slope<Interval>> J, double length) {
     std::vector<std::pair<BodyId, std::array<Interval, 7>>> by_body;
@@ -70,7 +71,7 @@ bool positive_definite(const SparseMatrix& M, const SparseMatrix& R) {
         return false;
     const VectorXd D = diagonal.unaryExpr([](double m) { return power_of_two(1 / std::sqrt(m)); });
     SparseMatrix scaled = D.asDiagonal() * M * D.asDiagonal();
-    // of the triangle that is decomposed
+    // of the lower triangle, which is the one that is factorised
     const SparseMatrix radius =
         SparseMatrix(D.asDiagonal() * R * D.asDiagonal()).selfadjointView<Eigen::Lower>();
     Eigen::SimplicialLLT<SparseMatrix> cholesky(scaled);
@@ -103,9 +104,9 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const Sparse
     Entries H;
     const Interval half = 0.5;
     for (Index i = 0; i < n; ++i) {
-        const double by = i % 6 < 3 ? 1 : 1 / length;
+        const double scale = i % 6 < 3 ? 1 : 1 / length;
         for (const auto& [j, entry] : row_of(i)) {
-            const Interval part = -(entry * Interval(by) * half);
+            const Interval part = -(entry * Interval(scale) * half);
             H.push_back({static_cast<int>(i), static_cast<int>(j), part});
             H.push_back({static_cast<int>(j), static_cast<int>(i), part});
         }

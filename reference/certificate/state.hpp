@@ -24,9 +24,10 @@ StateAt state_at(const System& system, const Equilibrium& state);
 // of the state; infinite for reactions that the wrench of their joint does not determine.
 Eigen::VectorXd radii(const StateAt& mapped, const Tolerance& near);
 
-// Upper bound of the distance of any point of the box z from the state. And whether some joint
-// wrench is farther from that of the state than `near` at every point of the box.
+// Upper bound of the distance of any point of the box z from the state.
 Extent distance(const StateAt& mapped, const std::vector<Interval>& z);
+// Whether some joint wrench is farther from that of the state than `near` at every point of the
+// box.
 bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near);
 
 bool within(const Extent& far, const Tolerance& tolerance);

@@ -6,7 +6,7 @@
 // does not depend on the compiler's code motion, and threads do not interfere.
 // `arithmetic_is_as_proved()` checks the two assumptions of this argument.
 //
-// An unbounded interval carries no information, and neither does any result of it. It represents
+// An unbounded interval carries no information, and neither does any result of it. It stands for
 // "not defined here" (a quotient by zero, a root of a negative number) and for "too large". NaN
 // counts as unbounded.
 #pragma once

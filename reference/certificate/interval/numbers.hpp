@@ -78,7 +78,7 @@ T constant(const Interval& x) {
         return dual;
     }
 }
-// "Not defined here."
+// Value of a function outside its domain: NaN, or the whole line.
 template <class T>
 T undefined() {
     if constexpr (std::is_same_v<T, double>)
@@ -163,8 +163,8 @@ Jet<n> operator*(Jet<n> a, const Interval& b) {
     return a;
 }
 
-// x(s) for |s| ≤ 1, without the last coefficient, which `take_radius` leaves too: it replaces x by
-// doubles and returns the radius they leave.
+// along_curve: the range of x(s) for |s| ≤ 1. take_radius: replaces the coefficients of x by their
+// middles and returns the sum of their radii. Neither includes the last coefficient of a jet.
 inline Interval along_curve(const Interval& x) { return x; }
 inline double take_radius(Interval& x) {
     const double radius = rad(x);

@@ -84,8 +84,8 @@ template <class T>
 Quat<T> half_of(const Quat<T>& q) {
     using std::sqrt;
     const T w = sqrt((q.w + whole<T>(1)) * whole<T>(0.5));
-    const T by = w + w;
-    return {w, {{q.v[0] / by, q.v[1] / by, q.v[2] / by}}};
+    const T divisor = w + w;
+    return {w, {{q.v[0] / divisor, q.v[1] / divisor, q.v[2] / divisor}}};
 }
 // Of the two quaternions of a rotation, the one with w > 0; undefined where the sign of w is not
 // certain, near half a turn.

@@ -442,10 +442,10 @@ double size_of(const Problem& problem, const VectorXd& step) {
 
 }  // namespace
 
-// Newton's method until its steps are rounding, near the state: a divergent one along an idle motion
-// also ends in small steps, at coordinates of 1e7 and more. The last two steps share their factors, unless they do
-// not decrease: then a knot may lie between, and the factors belong to its other side. Near a limit
-// point this is rounding.
+// Newton's method until its steps are rounding. The end must be near the start: iterations that
+// diverge along an idle motion also end in small steps, at coordinates of 1e7 and more. The last
+// two steps share their factors, unless they do not decrease: then a knot may lie in between, with
+// the factors from its other side (near a limit point it is only rounding).
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     constexpr int max_steps = 12, max_shared = 2, max_anew = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
@@ -503,7 +503,8 @@ NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double
         BorderCheck there;
         if (found.settled && found.y.allFinite()) {
             const Border& border = problem.border;
-            // A state that is pushed by its own rounding is asked again where that is gone.
+            // A state that is loaded or open by its own rounding is checked again at the
+            // equilibrium.
             const bool is_there = zero_tolerance == rounding && !border.too_large &&
                                   !border.pushed && !border.open &&
                                   size_of(problem, found.y - y) <= rounding;

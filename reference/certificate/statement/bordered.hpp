@@ -22,10 +22,10 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 struct Border {
     Eigen::MatrixXd U, g;  // [n × k]: redundant rows first, then idle motions
     int redundant = 0;
-    // at z: the redundant rows by more, an idle motion by more than rounding
+    // at z, beyond rounding: redundant rows have a gap, an idle motion is loaded
     bool open = false, pushed = false;
-    bool too_large =
-        false;  // to be looked for where the Jacobian may be singular: nothing is known
+    // the Jacobian may be singular and is too large for dense null spaces: nothing is known
+    bool too_large = false;
     int count() const { return static_cast<int>(U.cols()); }
 };
 
@@ -63,8 +63,7 @@ struct Problem {
     int size() const { return n() + border.count() + (a_is_unknown ? 1 : 0); }
 };
 
-// The equations and their Jacobian [size × size]. A parameter that is no unknown is the
-// given `a`.
+// The equations and their Jacobian [size × size]. A parameter that is no unknown is the given `a`.
 template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes);
 template <class S>

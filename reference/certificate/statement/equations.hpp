@@ -70,11 +70,6 @@ OnBoth<T> pulling(const AxialSpring& spring, const T& free_length, const Frame<T
     const Vec<T> none = constant<T>(Eigen::Vector3d::Zero());
     return opposed(F, none, p_i, i, j);
 }
-template <class T>
-OnBoth<T> acting(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
-                 const Frame<T>& j) {
-    return pulling(spring, free_length, i, j, [&](const T& x) { return force(spring.law, x); });
-}
 
 // Deformation of a bushing. Where it does not depend on the relative rotation of its markers
 // (`rotational` is false) the angles are not computed, and may be arbitrary.
@@ -127,9 +122,9 @@ std::array<T, 6> deformation(const Bushing& bushing, const T& raised, const Meas
 // on i, F at p_i with D × F, which equals F at p_j, and A_i G g.
 //
 // Frame in the middle: with C² = B and δB = w̃ B, w = A_iᵀ (δπ_j - δπ_i), C rotates by c where
-// c + C c = w, and (I + C)⁻¹ = ½ (I - t̃), t = tan(|θ|/4) θ/|θ| = v_C / w_C. So δπ_f = δπ_i + ½ A_i
-// (I - t̃) w. Of the moment D × F that is conjugate to the rotation of the frame, j has ½
-// (D × F + t × (D × F)), t in ground axes, and i the rest.
+// c + C c = w, and (I + C)⁻¹ = ½ (I - t̃), t = tan(|θ|/4) θ/|θ| = v_C / w_C. So
+// δπ_f = δπ_i + ½ A_i (I - t̃) w. Of the moment D × F that is conjugate to the rotation of the
+// frame, j has ½ (D × F + t × (D × F)), t in ground axes, and i the rest.
 //
 // Not conjugate: A_i g, or A_f g, which are equal for a frame on i. Without the offset moment, F
 // acts on i at p_i, and D × F on neither body.
@@ -241,7 +236,7 @@ template <class T>
 Acting<T> acting(const FollowerMoment& load, const Frame<T>& body) {
     return {constant<T>(Eigen::Vector3d::Zero()), lever(body, load.m_local)};
 }
-// Moment (p - r) x f on the carrier, p a point of the wheel.
+// Moment (p - r) × f on the carrier, p a point of the wheel.
 template <class T>
 Acting<T> acting(const BrakeForce& load, const Frame<T>& carrier, const Frame<T>& wheel) {
     const Vec<T> f = constant<T>(load.f);

@@ -15,7 +15,7 @@ struct Slots {
     bool two() const { return i != ground && j != ground; }
 };
 
-// A number with its derivatives by the forces of an element.
+// A number with its derivatives with respect to the six forces of an element's laws.
 template <class S>
 using InForces = Dual<S, 6>;
 
@@ -104,7 +104,7 @@ struct Assembly {
     }
 
     template <class T>
-    void count(BodyId body, const Acting<T>& on, double times = 1) {
+    void add_to_acts(BodyId body, const Acting<T>& on, double times = 1) {
         if (acts.empty()) return;
         double force = 0, moment = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -116,7 +116,7 @@ struct Assembly {
     template <class T>
     void add(const Slots& slots, BodyId body, const Acting<T>& on) {
         if (body == ground) return;
-        count(body, on);
+        add_to_acts(body, on);
         const int row = system.balance(body);
         for (int k = 0; k < 3; ++k) {
             add(slots, row + k, on.force[static_cast<std::size_t>(k)]);
@@ -127,7 +127,7 @@ struct Assembly {
     template <class T>
     void add_times(const Slots& slots, BodyId body, const Acting<T>& on, const S& R, int column) {
         if (body == ground) return;
-        count(body, on, mag(range(R)));
+        add_to_acts(body, on, mag(range(R)));
         const int row = system.balance(body);
         const auto add_row = [&](int to, const T& x) {
             add(slots, to, T(x * R));
@@ -156,12 +156,12 @@ struct Assembly {
             },
             system.model->elastics[e].kind);
     }
-    // Whether the only law of an element is separated. The deformations of an element, `back`:
-    // turned back about the axes of path.turns_freely.
+    // Whether the only law of an element is separated.
     static bool has_no_more(const AxialSpring&, const ElementPath& path) {
         return path.separated[0];
     }
     static bool has_no_more(const Bushing&, const ElementPath&) { return false; }
+    // Deformations of an element; `back`: with the slopes of turned_back().
     template <class T>
     std::array<T, 6> deformations_at(const AxialSpring& spring, const ElementPath& path,
                                      const Frame<T>& i, const Frame<T>& j, bool = false) const {
@@ -201,7 +201,8 @@ struct Assembly {
         return acting(bushing, u, m, path.rotational, i, j);
     }
 
-    // The force k of an element as one number for all equations.
+    // The force k of an element as one number in all equations: its middle, with a derivative of
+    // one by itself; the radius is in laws.rho (Laws in system.hpp).
     template <class T>
     T as_one(const T& f, std::size_t k) {
         T one = f;
@@ -246,7 +247,7 @@ struct Assembly {
         return x;
     }
 
-    // Deformation of a separated law, and the actions of its unit force.
+    // Deformation of one separated law, and the actions of its unit force.
     template <class T>
     struct OfOne {
         T x;

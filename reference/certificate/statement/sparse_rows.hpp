@@ -8,12 +8,12 @@
 
 namespace elastocheck::reference::certificate {
 
-// A sparse matrix by rows: entries start[i] ... start[i + 1] are those of row i, in any order.
 template <class S>
-struct Slope {
+struct Slope {  // an entry
     int row = 0, column = 0;
     S value{};
 };
+// A sparse matrix by rows: entries start[i] ... start[i + 1] are those of row i, in any order.
 template <class S>
 struct SparseRows {
     std::vector<Slope<S>> entries;

@@ -8,13 +8,10 @@
 //                 per curve   x(r, p; a) - x, f - ∂u/∂x
 //                 per body    |p|² - 1
 //
-// A law of cubic pieces is separated where that helps: its deformation x and force f become
-// unknowns, so that its slope is in one entry of ∂E/∂z. Across a corner, where the slope jumps, that
-// entry is an interval, and the rest of the matrix is numbers. Inside its element the interval would
-// be in each of the twelve rows and fourteen columns and vary in each independently, which fails for
-// any stop much stiffer than its surroundings. Along a branch, x as a polynomial of s has a narrow
-// range; computed from the poses over a piece, x would be far wider, and reach knots that the piece
-// does not. The solutions are the same: x and f are functions of (r, p).
+// A law of cubic pieces is separated along a branch, and at points that are not proved otherwise:
+// its deformation x and force f become unknowns, so that its slope, an interval across a corner, is
+// in one entry of ∂E/∂z (derivation.md, "Curves of laws"). The solutions are the same: x and f are
+// functions of (r, p).
 //
 // c is a double near the model, the origin of all positions, so that the origin of the ground frame
 // does not matter. Every quantity that a driver may move is start + rate·a in intervals: stored
@@ -81,32 +78,33 @@ struct System {
     int norm(BodyId body) const { return 6 * bodies + rows + curves() + body; }
 };
 
-// Throws std::invalid_argument where model and branch do not fit, or a driver moves a quantity that
-// does not exist.
 enum class Curves {
     in_place,  // a curve is evaluated inside its element
-    separated  // its deformation and its force are unknowns of their own
+    separated  // its deformation and its force are unknowns
 };
+// Throws std::invalid_argument where model and branch do not fit, or a driver moves a quantity that
+// does not exist.
 System make_system(const Model& model, const Branch& branch, Curves curves = Curves::in_place);
-// Reason why no proof is tried, the size or the arithmetic of the thread; empty where one is.
+// Reason why no proof is tried: the size, or the arithmetic of the thread. Empty where one is
+// tried.
 std::string why_not_tried(const System& system, int max_unknowns);
 const ScalarLaw& law_of(const System& system, const SeparatedCurve& curve);
 // Sets x and f of the separated curves from the poses of z.
 void set_separated(const System& system, Eigen::VectorXd& z, double a);
 
-// A law's force is evaluated to f̂ ± ρ and acts on two bodies at least: as one number in all
-// equations, which leaves far less to be proved than as independent ones,
+// A law's force is evaluated to f̂ ± ρ and acts on its two bodies. As one number in all equations it
+// leaves a far smaller |Y F| than as independent ones:
 //
-//   E ∈ E(f̂) + D [-ρ, ρ]     D: the actions of its unit, six columns per element, one entry a place
+//   E ∈ E(f̂) + D [-ρ, ρ]     D: the actions of unit forces, six columns per element, by entries
 //
 // Along a curve, E_k the Taylor coefficients below the last, Σ E_k sᵏ ∈ Σ E_k(f̂) sᵏ + D [-ρ, ρ] for
 // |s| ≤ 1: with f_j ∈ f̂_j ± ρ_j and the coefficients D_i, ρ = Σ ρ_j and D = D_0 + Σ D_i [-1, 1].
 struct Laws {
     std::vector<Slope<Interval>> D;
     Eigen::VectorXd rho;
-    int column = 0;  // while assembling: the first of the element
+    int column = 0;  // of D, first one of the element that is being assembled
 };
-// E, and if requested ∂E/∂z [n × n] and ∂E/∂a, or the laws.
+// E [n], with slopes ∂E/∂z = J [n × n] and ∂E/∂a = E_a [n], or with the laws.
 template <class S>
 struct Values {
     std::vector<S> E, E_a;
