@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-
 #include "models/overloaded.hpp"
 #include "reference/energy/state_tangent.hpp"
 
@@ -11,24 +9,6 @@ namespace elastocheck::reference::energy {
 namespace {
 
 using Eigen::VectorXd;
-
-void check(const Model& model, std::span<const Disturbance> disturbances) {
-    const auto require = [](bool met, const char* what) {
-        if (!met) throw std::invalid_argument(what);
-    };
-    for (const auto& disturbance : disturbances)
-        std::visit(
-            overloaded{[&](const UnitWrench& wrench) {
-                           require(static_cast<std::size_t>(wrench.at.body) < model.bodies.size(),
-                                   "a disturbance acts on no body of the model");
-                       },
-                       [&](const Motion& motion) {
-                           const auto joint = static_cast<std::size_t>(motion.joint);
-                           require(joint < model.joints.size() && model.joints[joint].driven >= 0,
-                                   "a disturbance drives a joint without offset");
-                       }},
-            disturbance);
-}
 
 // The prescribed quantities grow with s as along a branch that drives only this disturbance.
 Prescribed rate_of(const Model& model, const Disturbance& disturbance) {
@@ -41,20 +21,6 @@ Prescribed rate_of(const Model& model, const Disturbance& disturbance) {
                           [&](const Motion& motion) { drive(motion); }},
                disturbance);
     return course_of(model, branch).rate;
-}
-
-std::string name_of(const Model& model, const Disturbance& disturbance) {
-    return std::visit(
-        overloaded{
-            [&](const UnitWrench& wrench) {
-                return fmt::format("a wrench on '{}'",
-                                   model.bodies[static_cast<std::size_t>(wrench.at.body)].name);
-            },
-            [&](const Motion& motion) {
-                return fmt::format("moving '{}'",
-                                   model.joints[static_cast<std::size_t>(motion.joint)].name);
-            }},
-        disturbance);
 }
 
 }  // namespace

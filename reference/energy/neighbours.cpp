@@ -34,15 +34,16 @@ Conditions conditions(const Model& model, const StateTangent& at, const VectorXd
             values.Phi};
 }
 
-// The state of a neighbour by the chord method.
+// The state of a neighbour by the chord method: Newton steps with the factors of the state, and one
+// more step once they are small.
 Equilibrium solved(const Model& model, const StateTangent& tangent, const Conditions& own) {
     constexpr double not_judged = std::numeric_limits<double>::infinity();
     std::vector<Pose> centre = tangent.state.poses;
     VectorXd lambda = tangent.lambda;
     double first = 0, first_reactions = 0;
-    bool has_met = false, last = false;
+    bool converged = false, last = false;
     for (int step = 0; step < chord_steps && !last; ++step) {
-        last = has_met;
+        last = converged;
         Chart chart = chart_about(centre);
         const Conditions there = conditions(model, tangent, lambda, chart);
         const TangentSolution solution =
@@ -56,8 +57,8 @@ Equilibrium solved(const Model& model, const StateTangent& tangent, const Condit
             first = solution.x.norm();
             first_reactions = dlambda.norm();
         }
-        has_met = solution.x.norm() <= chord_met * first &&
-                  dlambda.norm() <= chord_met * first_reactions + chord_reactions * lambda.norm();
+        converged = solution.x.norm() <= chord_met * first &&
+                    dlambda.norm() <= chord_met * first_reactions + chord_reactions * lambda.norm();
     }
     const Chart chart = chart_about(centre);
     const ConstraintValues values = constraints(

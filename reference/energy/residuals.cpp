@@ -41,9 +41,10 @@ Residuals residuals(const Model& given_model, const Branch& branch,
     const Scales scales = lengths_of(model, course);
     const ConstraintValues values = constraints(model, prescribed, chart);
     const VectorXd S = scales.coordinates(coordinates(model));
-    const VectorXd left = left_over(scaled(values.Phi_q, scales.rows(model), S),
-                                    S.cwiseProduct(potential(model, prescribed, chart).gradient))
-                              .left;
+    const VectorXd gradient =
+        project_gradient(scaled(values.Phi_q, scales.rows(model), S),
+                         S.cwiseProduct(potential(model, prescribed, chart).gradient))
+            .gradient;
 
     Residuals worst;
     int row = 0;
@@ -57,8 +58,8 @@ Residuals residuals(const Model& given_model, const Branch& branch,
             error = max_or_nan(
                 error, std::abs(is_angle(kind) ? std::remainder(off, 2 * std::numbers::pi) : off));
         }
-        double& of_kind = is_direction(kind) ? worst.direction : worst.length;
-        of_kind = max_or_nan(of_kind, error);
+        double& worst_of_kind = is_direction(kind) ? worst.direction : worst.length;
+        worst_of_kind = max_or_nan(worst_of_kind, error);
         row += rows(kind);
     }
     // An orientation counts as a direction too: it must be a unit quaternion.
@@ -69,8 +70,8 @@ Residuals residuals(const Model& given_model, const Branch& branch,
         worst.force = worst.moment = unknown;
     for (std::size_t b = 0; b < state.poses.size(); ++b) {
         const int at = 6 * static_cast<int>(b);
-        worst.force = max_or_nan(worst.force, largest(left.segment<3>(at)) / scales.length);
-        worst.moment = max_or_nan(worst.moment, largest(left.segment<3>(at + 3)));
+        worst.force = max_or_nan(worst.force, largest(gradient.segment<3>(at)) / scales.length);
+        worst.moment = max_or_nan(worst.moment, largest(gradient.segment<3>(at + 3)));
     }
     return worst;
 }

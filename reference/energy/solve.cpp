@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "models/branch.hpp"
+#include "models/parameter_unit.hpp"
 #include "reference/energy/constraints/reactions.hpp"
 #include "reference/energy/minimise/cost.hpp"
 #include "reference/energy/minimise/settle.hpp"
@@ -22,19 +22,8 @@ Equilibrium equilibrium(const Path& path, const State& state) {
     const Chart chart = chart_about(state.poses);
     const ConstraintValues values = constraints(path.model, at(path.course, state.a), chart);
     const VectorXd lambda =
-        path.scales.energy() * path.scales.rows(path.model).cwiseProduct(state.at.lambda);
+        path.scales.energy() * path.scales.rows(path.model).cwiseProduct(state.balance.lambda);
     return {state.a, state.poses, reactions(path.model, chart, values, lambda), values.Phi.norm()};
-}
-
-std::string in_units_of(ParameterUnit unit, double a) {
-    switch (unit) {
-        case ParameterUnit::newton: return fmt::format("{:.10g} N", a);
-        case ParameterUnit::newton_metre: return fmt::format("{:.10g} N·m", a);
-        case ParameterUnit::metre: return fmt::format("{:.10g} mm", 1e3 * a);
-        case ParameterUnit::radian: return fmt::format("{:.10g} deg", a * 180 / std::numbers::pi);
-        case ParameterUnit::none: break;
-    }
-    return fmt::format("{:.10g}", a);
 }
 
 // Detects a link whose length would not be positive.
@@ -98,7 +87,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
             fmt::format("branch '{}', {}: {}{}", branch.name, where, failure.what, reached);
         return result;
     };
-    const auto in_units = [&](double a) { return in_units_of(branch.unit, a); };
+    const auto in_units = [&](double a) { return parameter_text(branch.unit, a, 10); };
 
     std::vector<double> ends(values.begin(), values.end());
     ends.push_back(branch.to);

@@ -52,7 +52,8 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
         model, options, t.scales, t.course, turning_bushings(model, t.course), std::abs(state.load),
         unused};
     t.state = dense_state_at(path, state.load, state.poses);
-    if (!t.state.at.left.allFinite() || !t.state.at.Phi.allFinite() || !t.state.H.allFinite()) {
+    if (!t.state.balance.projected_gradient.allFinite() || !t.state.balance.Phi.allFinite() ||
+        !t.state.H.allFinite()) {
         t.failure = {Outcome::not_finite, "the state has no finite potential"};
         return t;
     }
@@ -64,7 +65,7 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     t.prescribed = at(t.course, state.load);
     t.S = t.scales.coordinates(n);
     t.D = t.scales.rows(model);
-    t.lambda = t.scales.energy() * t.D.cwiseProduct(t.state.at.lambda);
+    t.lambda = t.scales.energy() * t.D.cwiseProduct(t.state.balance.lambda);
     t.K = t.state.H + load_stiffness(t.prescribed, t.scales, state.poses);
     t.Z = t.state.modes.Z(Eigen::all, t.state.modes.resisting());
     t.idle = t.state.modes.idle_motions();
@@ -77,9 +78,9 @@ TangentSolution solve_tangent(const StateTangent& tangent, const VectorXd& b_SI,
     VectorXd t = VectorXd::Zero(b_SI.size());
     if (Phi_rate.size() > 0) {
         const VectorXd driven_rate = -tangent.D.cwiseProduct(Phi_rate);
-        t = shortest(tangent.state.at, driven_rate);
+        t = shortest(tangent.state.balance, driven_rate);
         if (std::isfinite(rounding) &&
-            !((tangent.state.at.J_t.transpose() * t - driven_rate).norm() <=
+            !((tangent.state.balance.J_t.transpose() * t - driven_rate).norm() <=
               open * driven_rate.norm()))
             return {
                 Outcome::inconsistent_constraints, "redundant joints prevent this motion", {}, {}};
@@ -87,30 +88,31 @@ TangentSolution solve_tangent(const StateTangent& tangent, const VectorXd& b_SI,
     const double energy = tangent.scales.energy();
     const VectorXd b = tangent.S.cwiseProduct(b_SI) / energy;
 
-    VectorXd left = Phi_rate.size() > 0 ? VectorXd(b + tangent.K * t) : b;
-    const double size = largest(b) + largest(left - b);
+    VectorXd rest = Phi_rate.size() > 0 ? VectorXd(b + tangent.K * t) : b;
+    const double size = largest(b) + largest(rest - b);
     const auto correct = [&] {
         if (tangent.Z.cols() == 0) return;
-        const VectorXd along = tangent.Z.transpose() * left;
+        const VectorXd along = tangent.Z.transpose() * rest;
         t -= tangent.Z * VectorXd(tangent.W.solve(along));
-        left = b + tangent.K * t;
+        rest = b + tangent.K * t;
     };
     correct();
-    const double remainder = tangent.Z.cols() > 0 ? largest(tangent.Z.transpose() * left) : 0;
+    const double remainder = tangent.Z.cols() > 0 ? largest(tangent.Z.transpose() * rest) : 0;
     correct();
     if (!t.allFinite()) return {Outcome::not_finite, "the response is not finite", {}, {}};
     // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
     if (!(remainder <= unanswered * size))
         return {Outcome::singular, "the stiffness of a motion vanishes", {}, {}};
-    if (!(largest(tangent.idle.transpose() * left) <= rest_on_idle * size + rounding))
+    if (!(largest(tangent.idle.transpose() * rest) <= rest_on_idle * size + rounding))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}, {}};
-    return {Outcome::converged, "", tangent.S.cwiseProduct(t), std::move(left)};
+    return {Outcome::converged, "", tangent.S.cwiseProduct(t), std::move(rest)};
 }
 
 VectorXd multiplier_rates(const StateTangent& tangent, const TangentSolution& solution) {
-    if (tangent.lambda.size() == 0 || solution.left.size() == 0)
+    if (tangent.lambda.size() == 0 || solution.rest.size() == 0)
         return VectorXd::Zero(tangent.lambda.size());
-    const VectorXd minus_left = -solution.left, dlambda = tangent.state.at.qr.solve(minus_left);
+    const VectorXd minus_rest = -solution.rest,
+                   dlambda = tangent.state.balance.qr.solve(minus_rest);
     return tangent.scales.energy() * tangent.D.cwiseProduct(dlambda);
 }
 

@@ -57,7 +57,7 @@ struct TangentSolution {
     Outcome outcome = Outcome::converged;
     std::string what;      // half a sentence on the failure
     Eigen::VectorXd x;     // dx [6nb], SI
-    Eigen::VectorXd left;  // rest [6nb]: of ∂V/∂ξ, units of F·L
+    Eigen::VectorXd rest;  // [6nb], units of F·L
 };
 TangentSolution solve_tangent(const StateTangent& tangent, const Eigen::VectorXd& b,
                               const Eigen::VectorXd& Phi_rate, double rounding = 0);

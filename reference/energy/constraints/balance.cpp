@@ -16,7 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double idle_stiffness = 1e-9;  // F would move such a mode by 10⁹ L
+constexpr double idle_stiffness = 1e-9;  // [F L]: a force F would move such a mode by 10⁹ L
 
 }  // namespace
 
@@ -31,10 +31,10 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     const VectorXd S = scales.coordinates(n), D = scales.rows(model);
     const VectorXd g = S.cwiseProduct(gradient) / scales.energy();
     Balance result{.lambda = VectorXd::Zero(m),
-                   .left = g,
+                   .projected_gradient = g,
                    .Phi = D.cwiseProduct(values.Phi),
                    .J_t = transposed(scaled(values.Phi_q, D, S)),
-                   .along = MatrixXd::Identity(n, n),
+                   .null_space = MatrixXd::Identity(n, n),
                    .independent = {},
                    .qr = {}};
     if (m == 0 || n == 0 || !result.J_t.allFinite() || !g.allFinite()) return result;
@@ -45,15 +45,16 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     const int rank = static_cast<int>(qr.rank());
     const VectorXd minus_g = -g;
     result.lambda = qr.solve(minus_g);
-    result.left = g + result.J_t * result.lambda;
-    result.along = times_matrix(qr.householderQ(), MatrixXd::Identity(n, n).rightCols(n - rank));
+    result.projected_gradient = g + result.J_t * result.lambda;
+    result.null_space =
+        times_matrix(qr.householderQ(), MatrixXd::Identity(n, n).rightCols(n - rank));
     for (int i = 0; i < rank; ++i) result.independent.push_back(qr.colsPermutation().indices()[i]);
     return result;
 }
 
 MatrixXd row_space(const Balance& conditions) {
     const MatrixXd first =
-        MatrixXd::Identity(conditions.along.rows(), std::ssize(conditions.independent));
+        MatrixXd::Identity(conditions.null_space.rows(), std::ssize(conditions.independent));
     return first.cols() > 0 ? times_matrix(conditions.qr.householderQ(), first) : first;
 }
 
@@ -74,11 +75,11 @@ Balance sparse_balance(const Model& model, const Prescribed& prescribed, const S
     const Jacobian J = scaled(values.Phi_q, D, S);
     const VectorXd g =
         S.cwiseProduct(potential(model, prescribed, chart).gradient) / scales.energy();
-    LeftOver rest =
-        lambda.size() > 0 ? LeftOver{g + transposed_times(J, lambda), lambda} : left_over(J, g);
+    Projection projection = lambda.size() > 0 ? Projection{g + transposed_times(J, lambda), lambda}
+                                              : project_gradient(J, g);
     Balance result;
-    result.lambda = std::move(rest.lambda);
-    result.left = std::move(rest.left);
+    result.lambda = std::move(projection.lambda);
+    result.projected_gradient = std::move(projection.gradient);
     result.Phi = D.cwiseProduct(values.Phi);
     return result;
 }
@@ -123,8 +124,7 @@ Blocks hessian_blocks(const Model& model, const Prescribed& prescribed, const Sc
 // (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m at equilibrium.
 //
 // Brake force f. The lever to the patch p = r_w + u_w, whereas the chart's lever s turns with the
-// carrier: the balance -(p - r) × f changes by f × (δp - δr - φ × s) more,
-// δp = δr_w - ũ_w φ_w.
+// carrier: the balance -(p - r) × f changes by f × (δp - δr - φ × s) more, δp = δr_w - ũ_w φ_w.
 Blocks load_blocks(const Prescribed& prescribed, const std::vector<Pose>& centre) {
     Blocks A{static_cast<int>(6 * centre.size())};
     const auto add = [&](int row, int column, const Eigen::Matrix3d& M) {
@@ -162,18 +162,19 @@ double idle_limit(double stiffest) {
 
 Modes modes_of(const Balance& conditions, const MatrixXd& H) {
     Modes modes;
-    if (conditions.along.cols() == 0) return {conditions.along, VectorXd(0), 0};
-    const bool free = conditions.independent.empty();  // `along` is then the unit matrix
-    const MatrixXd reduced = free ? H : congruence(H, conditions.along);
+    if (conditions.null_space.cols() == 0) return {conditions.null_space, VectorXd(0), 0};
+    const bool free = conditions.independent.empty();  // `null_space` is then the unit matrix
+    const MatrixXd reduced = free ? H : congruence(H, conditions.null_space);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
-    modes.Z = free ? eigen.eigenvectors() : matrix_product(conditions.along, eigen.eigenvectors());
+    modes.Z =
+        free ? eigen.eigenvectors() : matrix_product(conditions.null_space, eigen.eigenvectors());
     modes.stiffness = eigen.eigenvalues();
     modes.idle_limit = idle_limit(modes.stiffness.cwiseAbs().maxCoeff());
     return modes;
 }
 
 bool Modes::unstable() const {
-    return (count() > 0 && !(stiffness[0] >= -idle_limit)) || falling_besides > 0;
+    return (count() > 0 && !(stiffness[0] >= -idle_limit)) || other_falling_modes > 0;
 }
 
 std::vector<int> Modes::resisting() const {
@@ -201,19 +202,19 @@ double allowed(const Scales& scales, double stiffness, double tolerance) {
 double excess(const Balance& conditions, const VectorXd& stiffness, const Scales& scales,
               double tolerance) {
     double worst = largest(conditions.Phi);
-    if (!std::isfinite(worst) || !conditions.left.allFinite())
+    if (!std::isfinite(worst) || !conditions.projected_gradient.allFinite())
         return std::numeric_limits<double>::quiet_NaN();
-    for (Eigen::Index i = 0; i < conditions.left.size(); ++i)
-        worst = std::max(worst,
-                         std::abs(conditions.left[i]) / allowed(scales, stiffness[i], tolerance));
+    for (Eigen::Index i = 0; i < conditions.projected_gradient.size(); ++i)
+        worst = std::max(worst, std::abs(conditions.projected_gradient[i]) /
+                                    allowed(scales, stiffness[i], tolerance));
     return worst;
 }
 
-double excess(const VectorXd& left, const VectorXd& Phi, const Modes& modes, const Scales& scales,
-              double tolerance) {
-    if (!left.allFinite() || !Phi.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+double excess(const VectorXd& gradient, const VectorXd& Phi, const Modes& modes,
+              const Scales& scales, double tolerance) {
+    if (!gradient.allFinite() || !Phi.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     double worst = largest(Phi);
-    const VectorXd g = modes.Z.transpose() * left;
+    const VectorXd g = modes.Z.transpose() * gradient;
     for (int i = 0; i < modes.count(); ++i)
         worst = std::max(worst, std::abs(g[i]) / allowed(scales, modes.stiffness[i], tolerance));
     return worst;

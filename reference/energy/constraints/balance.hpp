@@ -15,12 +15,12 @@ namespace elastocheck::reference::energy {
 // Stationarity of V + λᵀΦ. The multipliers are the least-squares ones, of minimum norm where not
 // unique. A sparse one has only λ, the projected gradient and Φ.
 struct Balance {
-    Eigen::VectorXd lambda;  // [m], of D Φ
-    Eigen::VectorXd left;    // ∂V/∂ξ + (∂DΦ/∂ξ)ᵀ λ, the projected gradient [6nb]
-    Eigen::VectorXd Phi;     // D Φ [m]
-    Eigen::MatrixXd J_t;     // (∂DΦ/∂ξ)ᵀ [6nb × m]
-    // orthonormal basis of the null space of ∂DΦ/∂ξ: the motions that the constraints allow [6nb × f]
-    Eigen::MatrixXd along;
+    Eigen::VectorXd lambda;              // [m], of D Φ
+    Eigen::VectorXd projected_gradient;  // ∂V/∂ξ + (∂DΦ/∂ξ)ᵀ λ [6nb]
+    Eigen::VectorXd Phi;                 // D Φ [m]
+    Eigen::MatrixXd J_t;                 // (∂DΦ/∂ξ)ᵀ [6nb × m]
+    // of ∂DΦ/∂ξ, an orthonormal basis: the motions that the constraints allow [6nb × f]
+    Eigen::MatrixXd null_space;
     // linearly independent rows of Φ, by column-pivoted QR of (∂DΦ/∂ξ)ᵀ [rank]
     std::vector<int> independent;
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr;  // of J_t
@@ -29,7 +29,8 @@ Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd&
                 const ConstraintValues& values);
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart);
-// Of these multipliers, at the cost of a product; of the least-squares ones where there are none.
+// The sparse one, with the given multipliers at the cost of a product; with the least-squares ones
+// if `lambda` is empty.
 Balance sparse_balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                        const Chart& chart, const Eigen::VectorXd& lambda = {});
 // Orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank].
@@ -50,19 +51,19 @@ Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const 
 Eigen::MatrixXd load_stiffness(const Prescribed& prescribed, const Scales& scales,
                                const std::vector<Pose>& centre);
 
-// The sums of both before they are scaled, SI.
+// hessian() and load_stiffness() as sums of blocks, not scaled (SI).
 Blocks hessian_blocks(const Model& model, const Prescribed& prescribed, const Scales& scales,
                       const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
 Blocks load_blocks(const Prescribed& prescribed, const std::vector<Pose>& centre);
 
-// Modes of motion that the constraints allow: eigenvectors of the Hessian reduced to `along`.
+// Modes of motion that the constraints allow: eigenvectors of the Hessian reduced to `null_space`.
 struct Modes {
     Eigen::MatrixXd Z;          // orthonormal [6nb × f]
     Eigen::VectorXd stiffness;  // ascending [f]
     double idle_limit = 0;      // a stiffness up to this is indistinguishable from zero
 
-    // where only the softest modes are known: how many others let the energy fall
-    int falling_besides = 0;
+    // where only the softest modes are known: number of the others along which the energy falls
+    int other_falling_modes = 0;
 
     int count() const { return static_cast<int>(stiffness.size()); }
     bool idle(int mode) const { return std::abs(stiffness[mode]) <= idle_limit; }
@@ -70,16 +71,17 @@ struct Modes {
     Eigen::MatrixXd idle_motions() const;  // [6nb × idle modes]
     bool unstable() const;
 };
-double idle_limit(double stiffest);
+double idle_limit(double stiffest);  // for modes of which the stiffest is given
 Modes modes_of(const Balance& conditions, const Eigen::MatrixXd& H);
 
 // Acceptance measure, to be ≤ tolerance: the largest of the constraints and of the projected
 // gradient in each mode. In a stiff mode the rounding of a position is allowed for:
 // |Zᵀg| ≤ tolerance + roundoff · stiffness.
-double excess(const Eigen::VectorXd& left, const Eigen::VectorXd& Phi, const Modes& modes,
+double excess(const Eigen::VectorXd& gradient, const Eigen::VectorXd& Phi, const Modes& modes,
               const Scales& scales, double tolerance);
 
-// The same where only the softest modes are known: coordinate by coordinate, with `stiffness` of each.
+// The same where only the softest modes are known: coordinate by coordinate, with `stiffness` of
+// each.
 double excess(const Balance& conditions, const Eigen::VectorXd& stiffness, const Scales& scales,
               double tolerance);
 

@@ -83,7 +83,7 @@ MatrixXd transposed(const Jacobian& Phi_q) {
     return J_t;
 }
 
-LeftOver left_over(const Jacobian& Phi_q, const VectorXd& g) {
+Projection project_gradient(const Jacobian& Phi_q, const VectorXd& g) {
     if (Phi_q.slopes.empty()) return {g, VectorXd::Zero(Phi_q.rows)};
     const Long J_t = sparse_transposed(Phi_q).cast<double>();
     if (!g.allFinite() || !J_t.coeffs().allFinite()) {

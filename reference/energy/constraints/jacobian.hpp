@@ -35,13 +35,13 @@ Eigen::MatrixXd transposed(const Jacobian& Phi_q);  // Φ_qᵀ [6nb × m]
 using Sparse = Eigen::SparseMatrix<double>;
 Sparse sparse_transposed(const Jacobian& Phi_q);  // likewise
 
-// The projection of g onto the orthogonal complement of the row space of Φ_q, and the least-squares
-// multipliers that leave it, of minimum norm where not unique: left = g + Φ_qᵀ λ. By Householder
-// transformations of Φ_qᵀ, of a large one as a sparse matrix at the cost of its fill-in, which for
-// chains and trees is proportional to the number of bodies. Rows of Φ_q are of order one.
-struct LeftOver {
-    Eigen::VectorXd left, lambda;
+// Projection of g onto the orthogonal complement of the row space of Φ_q, g + Φ_qᵀ λ, with λ the
+// least-squares multipliers, of minimum norm where not unique. By Householder transformations of
+// Φ_qᵀ; of a large one as a sparse matrix at the cost of its fill-in, which for chains and trees is
+// proportional to the number of bodies. Rows of Φ_q are of order one.
+struct Projection {
+    Eigen::VectorXd gradient, lambda;  // [6nb], [m]
 };
-LeftOver left_over(const Jacobian& Phi_q, const Eigen::VectorXd& g);
+Projection project_gradient(const Jacobian& Phi_q, const Eigen::VectorXd& g);
 
 }  // namespace elastocheck::reference::energy

@@ -47,22 +47,21 @@ Quadratic::Quadratic(const Blocks& H, const Blocks& A, const Jacobian& J)
     factor_.compute(H_ + rho_ * Sparse(J_t * J_));
 }
 
-Quadratic::Least Quadratic::least(const VectorXd& b, const VectorXd& Phi,
-                                  const MatrixXd& idle) const {
-    // One inverse iteration turns idle motions of a pose nearby into those of this one.
+Quadratic::Minimum Quadratic::minimum(const VectorXd& b, const VectorXd& Phi,
+                                      const MatrixXd& idle) const {
+    // One inverse iteration turns the idle motions of a nearby pose into those of this pose.
     const MatrixXd Z = idle.cols() > 0 ? orthonormal(factor_.solve(idle)) : idle;
-    const auto take_out = [&](VectorXd& x) { x -= Z * (Z.transpose() * x).eval(); };
+    const auto remove_idle = [&](VectorXd& x) { x -= Z * (Z.transpose() * x).eval(); };
     const VectorXd gap = Phi.size() > 0 ? VectorXd(-Phi) : VectorXd::Zero(J_.rows());
-    Least result{.x = VectorXd::Zero(H_.rows()), .lambda = VectorXd::Zero(J_.rows())};
+    Minimum result{.x = VectorXd::Zero(H_.rows()), .lambda = VectorXd::Zero(J_.rows())};
     VectorXd r = -b, c = gap;
     double last = std::numeric_limits<double>::infinity();
     for (int i = 0; i < refinements; ++i) {
-        take_out(r);
+        remove_idle(r);
         VectorXd dx = factor_.solve(VectorXd(r + rho_ * (J_.transpose() * c)));
-        take_out(dx);
+        remove_idle(dx);
         const double size = largest(dx);
         if (!(size < last)) break;  // rounding, or a motion that nothing resists
-        result.remains = largest(r);
         result.x += dx;
         result.lambda += rho_ * (J_ * dx - c);
         if (size <= refined * largest(result.x)) break;
@@ -73,9 +72,9 @@ Quadratic::Least Quadratic::least(const VectorXd& b, const VectorXd& Phi,
     return result;
 }
 
-// With eigenvectors X of S the motions are not exactly along the constraints, which a mode without
-// stiffness would feel: X ← X - S⁻¹ ρ JᵀJ X moves them there at the least cost of energy.
-MatrixXd Quadratic::along(MatrixXd X) const {
+// The eigenvectors X of S violate the constraints slightly, which falsifies the stiffness of soft
+// modes: X ← X - S⁻¹ ρ JᵀJ X moves them onto the constraints at the least cost of energy.
+MatrixXd Quadratic::onto_constraints(MatrixXd X) const {
     for (int i = 0; i < closings; ++i)
         X -= factor_.solve(MatrixXd(rho_ * (J_.transpose() * (J_ * X))));
     return orthonormal(X);
@@ -102,12 +101,12 @@ Modes Quadratic::softest(const Modes& near) const {
             w = eigen.eigenvalues().head(known);
             if (((w - before).array().abs() <= settled * w.array().abs() + mu_).all()) break;
         }
-        const MatrixXd Q = along(X.leftCols(known));
+        const MatrixXd Q = onto_constraints(X.leftCols(known));
         const MatrixXd reduced = transposed_product(Q, H_ * Q);
         const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
         modes.Z = matrix_product(Q, eigen.eigenvectors());
         modes.stiffness = eigen.eigenvalues();
-        modes.falling_besides = static_cast<int>(falling - (w.array() < 0).count());
+        modes.other_falling_modes = static_cast<int>(falling - (w.array() < 0).count());
         if (known == n || !modes.idle(static_cast<int>(known) - 1)) return modes;
     }
 }

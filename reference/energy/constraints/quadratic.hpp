@@ -30,13 +30,13 @@ class Quadratic {
     // All scaled: H and A [n × n], J [m × n].
     Quadratic(const Blocks& H, const Blocks& A, const Jacobian& J);
 
-    // The minimum, without idle motions: those that are near the columns of `idle`. Empty Φ: zero.
-    struct Least {
+    // The minimum, without the idle motions, which are near the columns of `idle` [n × k]. Empty Φ:
+    // zero.
+    struct Minimum {
         Eigen::VectorXd x, lambda;
-        double remains = 0;  // largest entry of r before the last step
     };
-    Least least(const Eigen::VectorXd& b, const Eigen::VectorXd& Phi,
-                const Eigen::MatrixXd& idle) const;
+    Minimum minimum(const Eigen::VectorXd& b, const Eigen::VectorXd& Phi,
+                    const Eigen::MatrixXd& idle) const;
 
     // The softest modes, at least one of them resisting, by inverse iteration of a subspace that
     // starts with those of `near`.
@@ -48,7 +48,7 @@ class Quadratic {
     const Eigen::VectorXd& stiffness() const { return stiffness_; }
 
   private:
-    Eigen::MatrixXd along(Eigen::MatrixXd X) const;
+    Eigen::MatrixXd onto_constraints(Eigen::MatrixXd X) const;
 
     Sparse H_, A_, J_;
     Eigen::VectorXd stiffness_;

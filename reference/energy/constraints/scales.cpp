@@ -50,7 +50,7 @@ double extent_of(const std::vector<Vector3d>& points) {
     if (!box.isEmpty()) centre = box.center();
     std::vector<std::pair<double, Vector3d>> outermost;
     for (const auto& p : points) outermost.emplace_back((p - centre).norm() * (1 + rounding), p);
-    std::ranges::sort(outermost, std::greater{}, [](const auto& one) { return one.first; });
+    std::ranges::sort(outermost, std::greater{}, [](const auto& entry) { return entry.first; });
     double extent = 0;
     for (std::size_t i = 0; i < outermost.size(); ++i)
         for (std::size_t j = 0; j < i && outermost[i].first + outermost[j].first > extent; ++j)
@@ -95,9 +95,9 @@ double dense_drive_size(const Model& model, const Prescribed& prescribed, const 
         compliance.compute(reduced);
         dxi -= Z * VectorXd(compliance.solve(force));
     }
-    const double way = dxi.norm();
-    if (!(way > scales.roundoff)) return 0;
-    return dxi.dot(K * dxi) / (scales.length * way) * std::min(1.0, linear_reach / way);
+    const double distance = dxi.norm();
+    if (!(distance > scales.roundoff)) return 0;
+    return dxi.dot(K * dxi) / (scales.length * distance) * std::min(1.0, linear_reach / distance);
 }
 
 double drive_size(const Model& model, const Prescribed& prescribed, const Chart& design,
@@ -109,13 +109,14 @@ double drive_size(const Model& model, const Prescribed& prescribed, const Chart&
     if (values.Phi.size() == 0 || !values.Phi.allFinite() || !K.finite()) return 0;
     const Quadratic elastic(K, Blocks{K.size}, scaled(values.Phi_q, D, S));
     const VectorXd dxi =
-        elastic.least(VectorXd::Zero(K.size), D.cwiseProduct(values.Phi), MatrixXd(K.size, 0)).x;
-    const double way = dxi.norm();
-    if (!(way > scales.roundoff)) return 0;
-    return scales.force * dxi.dot(elastic.gradient(dxi)) / way * std::min(1.0, linear_reach / way);
+        elastic.minimum(VectorXd::Zero(K.size), D.cwiseProduct(values.Phi), MatrixXd(K.size, 0)).x;
+    const double distance = dxi.norm();
+    if (!(distance > scales.roundoff)) return 0;
+    return scales.force * dxi.dot(elastic.gradient(dxi)) / distance *
+           std::min(1.0, linear_reach / distance);
 }
 
-// Whether anything but loads moves: neither stress nor the place of a joint depends on those.
+// Whether anything but loads changes; stresses and gaps of joints do not depend on loads.
 bool moves_parts(const Prescribed& rate) {
     return !(rate.offset.isZero(0) && rate.gap.isZero(0) && rate.free_length.isZero(0) &&
              rate.preload.isZero(0) && rate.strength.isZero(0));

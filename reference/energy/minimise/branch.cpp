@@ -50,18 +50,18 @@ constexpr double resolution = 1e-9;  // of the parameter: smallest step
 constexpr double finest = 1e-12;
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 // of the span: instabilities that appear and vanish within this length are not searched for
-constexpr double look = 1e-3;
+constexpr double min_guarded_step = 1e-3;
 constexpr int internal_points = 2000;  // between two requested values
 constexpr double largest_step = 0.1;   // of L or 1 rad, by the tangent
 constexpr double negligible = 1e-6;    // of L or 1 rad
 constexpr double idle_push = 1e-8;     // of F or F·L: smallest load on an idle mode
-constexpr double spent = 0.01;         // of its first stiffness: the mode will soon be unstable
+constexpr double spent = 0.01;  // of its first stiffness: a mode with less is about to be unstable
 
 // A small gradient does not bound the error along a soft mode. Newton corrections are applied
-// until the last one is at most `last_correction`; after `corrections` of them at most
-// `known` is accepted.
-constexpr double last_correction = 1e-10, known = 1e-9;  // of L or 1 rad
-constexpr int corrections = 4;
+// until the last one is at most `last_correction`; after `max_corrections` of them a last one of
+// at most `accepted_correction` suffices.
+constexpr double last_correction = 1e-10, accepted_correction = 1e-9;  // of L or 1 rad
+constexpr int max_corrections = 4;
 
 constexpr const char* not_finite = "a number is not finite";
 constexpr const char* jumped = "the nearest minimum is not a continuation of the branch";
@@ -131,7 +131,7 @@ bool bushings_continue(const Path& path, const State& from, const State& to) {
 bool idle_mode_loaded(const Path& path, const State& from, double a) {
     const Balance then =
         sparse_balance(path.model, at(path.course, a), path.scales, chart_about(from.poses));
-    const VectorXd push = from.modes.Z.transpose() * then.left;
+    const VectorXd push = from.modes.Z.transpose() * then.projected_gradient;
     for (int i = 0; i < from.modes.count(); ++i)
         if (from.modes.idle(i) && std::abs(push[i]) > idle_push) return true;
     return false;
@@ -151,24 +151,24 @@ bool is_spent(const Modes& first, const Modes& now) {
 // without potential w is that of the minimum and does not classify the branch.
 Failure spent_mode(const Path& path, const Continuation& continuation, const VectorXd& t) {
     if (without_potential(path)) return Failure{Outcome::branch_lost, unstable};
-    constexpr double still_there = 0.02;
+    constexpr double kept = 0.02;  // of w |t| at the start
     const auto softest = path.first.idle_motions().cols();
-    const double left =
+    const double share =
         std::abs(continuation.state.modes.stiffness[softest] / path.first.stiffness[softest]);
-    return left * largest(t) >= still_there * continuation.first_tangent && largest(t) > 0
+    return share * largest(t) >= kept * continuation.first_tangent && largest(t) > 0
                ? Failure{Outcome::limit_point, turns_back}
                : Failure{Outcome::bifurcation_point, divides};
 }
 
 // Whether a law has a nonzero slope below a thousandth of its steepest.
-bool hardly_rises(const Model& model) {
-    constexpr double hardly = 1e-3;
+bool has_small_slope(const Model& model) {
+    constexpr double small = 1e-3;
     bool any = false;
     const auto note = [&](std::size_t, const Curve& curve) {
         double steepest = 0;
         for (const auto& piece : curve.pieces) steepest = std::max(steepest, piece[1]);
         any |= std::ranges::any_of(curve.pieces, [&](const auto& piece) {
-            return piece[1] > 0 && piece[1] < hardly * steepest;
+            return piece[1] > 0 && piece[1] < small * steepest;
         });
     };
     for (const auto& element : model.elastics) each_curve(element.kind, note);
@@ -181,8 +181,8 @@ Attempt lost(Attempt attempt, const char* why) {
 }
 
 // Start of the minimisation. Without an equilibrium before the last, t h. With it, ξ is the cubic
-// t h + c h² + d h³ through both equilibria and their tangents t_0 and t, without idle motions. With
-// D from the one before to the last and ξ_0 the increment back,
+// t h + c h² + d h³ through both equilibria and their tangents t_0 and t, without idle motions.
+// With D from the one before to the last and ξ_0 the increment back,
 //
 //   A = ξ_0 + D t,   B = D (t_0 - t),   D² c = 3 A + B,   D³ d = 2 A + B
 //
@@ -222,7 +222,8 @@ Attempt step(const Path& path, const Continuation& continuation, double a, const
     if (!within_laws(path.model, path.turning, to.poses)) return lost(attempt, law_ended);
     if (!bushings_continue(path, from, to)) return lost(attempt, law_ended);
     if (to.modes.unstable()) return lost(attempt, unstable);
-    if (std::abs(a - from.a) > look * path.span && !as_foreseen(continuation.record, a, to.modes))
+    if (std::abs(a - from.a) > min_guarded_step * path.span &&
+        !meets_prediction(continuation.record, a, to.modes))
         return lost(attempt, sudden);
     return attempt;
 }
@@ -235,8 +236,9 @@ double next_value(const Path& path, const Continuation& continuation, const Vect
     double h = std::copysign(std::min(std::abs(rest), continuation.next_step), rest);
     const double size = largest(t) * std::abs(h);
     if (size > largest_step) h *= largest_step / size;
-    const double seen = std::abs(foreseen_step(continuation.record, h));
-    h = std::copysign(std::min(std::abs(h), std::max(seen, look * path.span)), rest);
+    const double guarded =
+        std::max(std::abs(limited_step(continuation.record, h)), min_guarded_step * path.span);
+    h = std::copysign(std::min(std::abs(h), guarded), rest);
     return std::abs(rest) <= std::abs(h) ? to : continuation.state.a + h;
 }
 
@@ -272,7 +274,7 @@ State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses
         a, poses, sparse_balance(path.model, prescribed, path.scales, chart, lambda), {}, {}};
     const Jacobian Phi_q = constraints(path.model, prescribed, chart).Phi_q;
     state.quadratic = std::make_shared<Quadratic>(
-        scaled(hessian_blocks(path.model, prescribed, path.scales, poses, state.at.lambda),
+        scaled(hessian_blocks(path.model, prescribed, path.scales, poses, state.balance.lambda),
                path.scales),
         scaled(load_blocks(prescribed, poses), path.scales),
         scaled(Phi_q, path.scales.rows(path.model), coordinate_scales(path)));
@@ -290,21 +292,22 @@ State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
 
 State dense_state_at(const Path& path, double a, const std::vector<Pose>& poses) {
     count_state(path);
-    const Prescribed prescribed = energy::at(path.course, a);
-    Balance at = balance(path.model, prescribed, path.scales, chart_about(poses));
-    MatrixXd H = hessian(path.model, prescribed, path.scales, poses, at.lambda);
-    Modes modes = modes_of(at, H);
-    return {a, poses, std::move(at), std::move(H), std::move(modes)};
+    const Prescribed prescribed = at(path.course, a);
+    Balance conditions = balance(path.model, prescribed, path.scales, chart_about(poses));
+    MatrixXd H = hessian(path.model, prescribed, path.scales, poses, conditions.lambda);
+    Modes modes = modes_of(conditions, H);
+    return {a, poses, std::move(conditions), std::move(H), std::move(modes)};
 }
 
-// p = -J⁺ Φ,   y = -W⁻¹ Zᵀ (left + H p)
-VectorXd correction(const Path& path, const State& state, const VectorXd& left,
+// p = -J⁺ Φ,   y = -W⁻¹ Zᵀ (gradient + H p)
+VectorXd correction(const Path& path, const State& state, const VectorXd& gradient,
                     const VectorXd& Phi) {
-    if (state.quadratic) return state.quadratic->least(left, Phi, state.modes.idle_motions()).x;
+    if (state.quadratic)
+        return state.quadratic->minimum(gradient, Phi, state.modes.idle_motions()).x;
     const auto A = unsymmetric_stiffness(path, state);
-    if (Phi.isZero(0)) return newton_increment(state, A, left);
-    const VectorXd p = shortest(state.at, -Phi);
-    VectorXd b = left + state.H * p;
+    if (Phi.isZero(0)) return newton_increment(state, A, gradient);
+    const VectorXd p = shortest(state.balance, -Phi);
+    VectorXd b = gradient + state.H * p;
     if (A) b += *A * p;
     return p + newton_increment(state, A, b);
 }
@@ -318,16 +321,16 @@ VectorXd tangent(const Path& path, const State& state) {
         S.cwiseProduct(gradient_rate(path.model, prescribed, rate, chart)) / path.scales.energy();
     if (rate.offset.isZero(0) && rate.gap.isZero(0)) return correction(path, state, b, VectorXd());
     const ConstraintRates rates = constraint_rates(path.model, prescribed, rate, chart);
-    b += S.cwiseProduct(transposed_times(rates.Phi_qa, D.cwiseProduct(state.at.lambda)));
+    b += S.cwiseProduct(transposed_times(rates.Phi_qa, D.cwiseProduct(state.balance.lambda)));
     return correction(path, state, b, D.cwiseProduct(rates.Phi_a));
 }
 
 bool is_stationary(const Path& path, const State& state) {
     if (state.quadratic)
-        return excess(state.at, state.quadratic->stiffness(), path.scales,
+        return excess(state.balance, state.quadratic->stiffness(), path.scales,
                       path.options.tolerance) <= path.options.tolerance;
-    const double e =
-        excess(state.at.left, state.at.Phi, state.modes, path.scales, path.options.tolerance);
+    const double e = excess(state.balance.projected_gradient, state.balance.Phi, state.modes,
+                            path.scales, path.options.tolerance);
     return std::isfinite(e) && e <= path.options.tolerance;
 }
 
@@ -336,21 +339,21 @@ namespace {
 // Newton corrections of a stationary state along its soft modes.
 Attempt corrected(const Path& path, State state) {
     for (int k = 0;; ++k) {
-        const VectorXd ahead =
-            newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
-        const double far = largest(ahead);
-        if (far <= last_correction) {
+        const VectorXd ahead = newton_increment(state, unsymmetric_stiffness(path, state),
+                                                state.balance.projected_gradient);
+        const double size = largest(ahead);
+        if (size <= last_correction) {
             // The balance stays that of the poses before: its change is of second order.
             state.poses = moved(path, state.poses, ahead);
             return {std::move(state), {}};
         }
-        if (k == corrections && far <= known) return {std::move(state), {}};
-        if (k == corrections || !(far <= largest_step))
+        if (k == max_corrections && size <= accepted_correction) return {std::move(state), {}};
+        if (k == max_corrections || !(size <= largest_step))
             return {std::move(state),
                     Failure{Outcome::iteration_limit,
                             fmt::format("beside stiff elements the minimum along a soft motion is "
                                         "determined only to {:.1g} of the model's size",
-                                        far)}};
+                                        size)}};
         state = state_at(path, state.a, moved(path, state.poses, ahead));
     }
 }
@@ -383,11 +386,10 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
         }
         if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same
         if (!prescribed.without_potential()) continue;
-        // A new centre rotates the moments relative to the bodies, and moves the patches. Without this
-        // Newton increment
-        // the charts converge only linearly.
-        const VectorXd ahead =
-            newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
+        // A new centre rotates the moments relative to the bodies, and moves the patches. Without
+        // this Newton increment the charts converge only linearly.
+        const VectorXd ahead = newton_increment(state, unsymmetric_stiffness(path, state),
+                                                state.balance.projected_gradient);
         if (largest(ahead) <= largest_step)
             state = state_at(path, a, moved(path, state.poses, ahead));
     }
@@ -421,9 +423,9 @@ std::optional<Failure> advance(const Path& path, Continuation& continuation, dou
                            "the load acts on a motion that nothing resists"};
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
         continuation.next_step = 0.5 * std::abs(h);
-        if (++halved <= halvings &&
-            (continuation.next_step > smallest ||
-             (continuation.next_step > finest / resolution * smallest && hardly_rises(path.model))))
+        if (++halved <= halvings && (continuation.next_step > smallest ||
+                                     (continuation.next_step > finest / resolution * smallest &&
+                                      has_small_slope(path.model))))
             continue;
         // The end of a bushing's law takes precedence as the reason.
         const bool may_be_spent = attempt.failure->outcome == Outcome::iteration_limit ||

@@ -27,7 +27,7 @@ struct Failure {
 struct State {
     double a = 0;  // parameter of the branch
     std::vector<Pose> poses;
-    Balance at;
+    Balance balance;
     Eigen::MatrixXd H;
     Modes modes;
     // of a large model (cost.hpp), instead of H and of all modes but the softest
@@ -65,8 +65,8 @@ State state_at(const Path& path, double a, const std::vector<Pose>& poses);
 // minimum, to options.tolerance.
 bool is_stationary(const Path& path, const State& state);
 
-// Minimises at parameter a from `start`, chart after chart, until stationary. Idle motions of `near`,
-// the last equilibrium, are held (minimise.hpp).
+// Minimises at parameter a from `start`, chart after chart, until stationary. Idle motions of
+// `near`, the last equilibrium, are held (minimise.hpp).
 struct Attempt {
     State state;
     std::optional<Failure> failure;
@@ -81,9 +81,9 @@ State dense_state_at(const Path& path, double a, const std::vector<Pose>& poses)
 State sparse_state_at(const Path& path, double a, const std::vector<Pose>& poses,
                       const Eigen::VectorXd& lambda = {});
 
-// Newton correction ξ for a projected gradient `left` and a constraint residual Φ [6nb], without
+// Newton correction ξ [6nb] for a projected gradient [6nb] and a constraint residual Φ [m], without
 // idle motion.
-Eigen::VectorXd correction(const Path& path, const State& state, const Eigen::VectorXd& left,
+Eigen::VectorXd correction(const Path& path, const State& state, const Eigen::VectorXd& gradient,
                            const Eigen::VectorXd& Phi);
 
 // Tangent dξ/da of the branch at the equilibrium `state` [6nb].

@@ -42,8 +42,8 @@ using Eigen::VectorXd;
 
 constexpr double aim = 0.01;   // of the tolerance: stop at once below it
 constexpr double holding = 1;  // stiffness given to idle motions, in units of F·L
-constexpr int same_point =
-    20;  // consecutive calls at one point: SLSQP's step has vanished and it would loop for ever
+// consecutive calls at one point: SLSQP's step has vanished and it would not end
+constexpr int same_point = 20;
 constexpr int patience = 5;        // evaluations without improvement, once within the tolerance
 constexpr int long_patience = 20;  // before that: a chart of large steps ends at their roundoff
 // A chart that has reduced its residual by this factor and needs more evaluations than this is
@@ -52,11 +52,12 @@ constexpr int long_patience = 20;  // before that: a chart of large steps ends a
 constexpr double closer = 1e-3;
 constexpr int long_enough = 8;
 
-MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& modes) {
+// The matrix T of item 1.
+MatrixXd well_scaled_coordinates(const Balance& centre, const MatrixXd& H, const Modes& modes) {
     const auto resisting = modes.resisting();
     const MatrixXd Z = modes.Z(Eigen::all, resisting);
     const VectorXd W = modes.stiffness(resisting);
-    const MatrixXd Y = row_space(at);
+    const MatrixXd Y = row_space(centre);
     const auto rank = Y.cols();
     MatrixXd T(H.rows(), rank + Z.cols());
     const MatrixXd coupling = transposed_product(matrix_product(H, Z), Y);
@@ -74,7 +75,7 @@ struct Problem {
     const Model& model;
     const Prescribed& prescribed;
     const Scales& scales;
-    const Balance& at;
+    const Balance& balance;
     double tolerance;
     int evaluation_limit;
     const Modes& modes;
@@ -97,15 +98,16 @@ struct Problem {
     int repeats = 0;  // calls at the same y
 };
 
+// Acceptance measure for the gradient g and the independent rows J_t: g projected by their QR.
 double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorXd& Phi) {
-    VectorXd left = g;
+    VectorXd projected = g;
     if (J_t.cols() > 0) {
         const Eigen::HouseholderQR<MatrixXd> qr(J_t);
-        left = transposed_times_vector(qr.householderQ(), left);
-        left.head(J_t.cols()).setZero();
-        left = times_vector(qr.householderQ(), left);
+        projected = transposed_times_vector(qr.householderQ(), projected);
+        projected.head(J_t.cols()).setZero();
+        projected = times_vector(qr.householderQ(), projected);
     }
-    return excess(left, Phi, p.modes, p.scales, p.tolerance);
+    return excess(projected, Phi, p.modes, p.scales, p.tolerance);
 }
 
 // Evaluates f, c and their derivatives at y, and the stop criteria.
@@ -127,17 +129,19 @@ void evaluate(Problem& p, const VectorXd& y) {
     const MatrixXd J_t = transposed(J);
     const VectorXd g = S.cwiseProduct(V.gradient) / energy + J_t * p.lambda;
 
-    p.c = p.row_scale.cwiseProduct(DPhi(p.at.independent));
+    p.c = p.row_scale.cwiseProduct(DPhi(p.balance.independent));
     const VectorXd idle = p.idle.transpose() * xi;
     p.f = V.change / energy + p.lambda.dot(p.D.cwiseProduct(Phi.dPhi)) +
           0.5 * holding * idle.squaredNorm();
     p.f_y = p.T_t * (g + holding * p.idle * idle);
-    p.c_y_t = times_transposed(p.T_t, J)(Eigen::all, p.at.independent) * p.row_scale.asDiagonal();
+    p.c_y_t =
+        times_transposed(p.T_t, J)(Eigen::all, p.balance.independent) * p.row_scale.asDiagonal();
 
     // SLSQP begins at the centre, whose projected gradient is known.
-    const double e = p.best.evaluations++ == 0
-                         ? excess(p.at.left, DPhi, p.modes, p.scales, p.tolerance)
-                         : measure(p, g, J_t(Eigen::all, p.at.independent), DPhi);
+    const double e =
+        p.best.evaluations++ == 0
+            ? excess(p.balance.projected_gradient, DPhi, p.modes, p.scales, p.tolerance)
+            : measure(p, g, J_t(Eigen::all, p.balance.independent), DPhi);
     if (!std::isfinite(e) || !std::isfinite(p.f)) p.f = HUGE_VAL;  // SLSQP then shortens its step
     if (std::isfinite(e) && !(p.best.excess <= e)) {
         p.best.excess = e;
@@ -147,11 +151,11 @@ void evaluate(Problem& p, const VectorXd& y) {
         ++p.since_best;
     }
     if (p.best.evaluations == 1) p.excess_at_centre = e;
-    const bool good = p.best.excess <= p.tolerance;
-    const bool left =
-        p.best.evaluations >= long_enough && p.best.excess <= closer * p.excess_at_centre && !good;
-    if (left || p.best.excess <= aim * p.tolerance ||
-        p.since_best >= (good ? patience : long_patience) ||
+    const bool accepted = p.best.excess <= p.tolerance;
+    const bool ends_chart = p.best.evaluations >= long_enough &&
+                            p.best.excess <= closer * p.excess_at_centre && !accepted;
+    if (ends_chart || p.best.excess <= aim * p.tolerance ||
+        p.since_best >= (accepted ? patience : long_patience) ||
         p.best.evaluations >= p.evaluation_limit || !std::isfinite(p.best.excess))
         if (p.opt) nlopt_force_stop(p.opt);
 }
@@ -179,17 +183,17 @@ Minimisation minimise(const Path& path, const State& centre, const MatrixXd& idl
                       int evaluation_limit) {
     const Model& model = path.model;
     const Scales& scales = path.scales;
-    const Balance& balance_at_centre = centre.at;
-    const Prescribed prescribed = elastocheck::reference::energy::at(path.course, centre.a);
+    const Balance& balance_at_centre = centre.balance;
+    const Prescribed prescribed = at(path.course, centre.a);
     const int rank = static_cast<int>(balance_at_centre.independent.size());
     const MatrixXd H_held = centre.H + holding * idle * idle.transpose();
     const Modes modes = idle.cols() > 0 ? modes_of(balance_at_centre, H_held) : centre.modes;
-    const MatrixXd T = round_coordinates(balance_at_centre, H_held, modes);
+    const MatrixXd T = well_scaled_coordinates(balance_at_centre, H_held, modes);
     const int n = static_cast<int>(T.cols());
     Problem p{.model = model,
               .prescribed = prescribed,
               .scales = scales,
-              .at = balance_at_centre,
+              .balance = balance_at_centre,
               .tolerance = path.options.tolerance,
               .evaluation_limit = evaluation_limit,
               .modes = modes,

@@ -122,7 +122,7 @@ std::optional<std::string> contradicting_joint(const Path& path, double a,
         const Blocks none{coordinates(path.model)};
         VectorXd x =
             S.cwiseProduct(Quadratic(none, none, scaled(values.Phi_q, D, S))
-                               .least(VectorXd::Zero(none.size), Phi, MatrixXd(none.size, 0))
+                               .minimum(VectorXd::Zero(none.size), Phi, MatrixXd(none.size, 0))
                                .x);
         double after = INFINITY;
         for (int halved = 0; halved <= closing_halvings && !(after <= stagnant * Phi.norm());
@@ -143,22 +143,24 @@ std::optional<std::string> contradicting_joint(const Path& path, double a,
 
 std::optional<Failure> settle(const Path& path, State& state) {
     state = state_at(path, 0, design_poses(path.model));
-    if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite() ||
-        !state.modes.stiffness.allFinite())
+    if (!state.balance.projected_gradient.allFinite() || !state.balance.Phi.allFinite() ||
+        !state.H.allFinite() || !state.modes.stiffness.allFinite())
         return Failure{Outcome::not_finite, "the design pose has no finite potential"};
     if (!within_laws(path.model, path.turning, state.poses))
         return Failure{Outcome::branch_lost, law_ended};
     if (is_stationary(path, state) && !state.modes.unstable()) return {};
 
     const Prescribed held = at(path.course, 0);
-    const auto along = [&](const Model& model, const Course& course) {
+    const auto settling_path = [&](const Model& model, const Course& course) {
         return Path{model, path.options, path.scales, course, turning_bushings(model, course),
                     1,     path.counts};
     };
-    const auto failure = follow(along(path.model, settling_course(path.model, held)), state);
+    const auto failure =
+        follow(settling_path(path.model, settling_course(path.model, held)), state);
     if (!failure) return {};
-    const Model on = on_springs(path.model, path.scales);
-    if (State settled; !follow(along(on, with_springs(on, held)), settled)) {
+    const Model held_model = on_springs(path.model, path.scales);
+    if (State settled;
+        !follow(settling_path(held_model, with_springs(held_model, held)), settled)) {
         state = state_at(path, 0, settled.poses);
         return {};
     }

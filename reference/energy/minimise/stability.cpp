@@ -10,7 +10,7 @@ using Eigen::VectorXd;
 // of a stiffness: largest predicted fall in a step, and largest misfit of a prediction
 constexpr double share = 0.5;
 // of the step: a slope is taken over at least this length, to limit its noise
-constexpr double lever = 0.25;
+constexpr double min_length = 0.25;
 constexpr double unguarded = 100;  // times the noise: a smaller stiffness has no significant slope
 
 StiffnessRecord::Sample sample(double a, const Modes& modes) {
@@ -33,10 +33,10 @@ VectorXd slope(const StiffnessRecord& record, double distance) {
 
 void StiffnessRecord::add(double a, const Modes& modes) { samples.push_back(sample(a, modes)); }
 
-double foreseen_step(const StiffnessRecord& record, double h) {
+double limited_step(const StiffnessRecord& record, double h) {
     if (record.samples.empty()) return h;
     const auto& last = record.samples.back();
-    const VectorXd fall = -slope(record, lever * std::abs(h)) * h;
+    const VectorXd fall = -slope(record, min_length * std::abs(h)) * h;
     double part = 1;
     for (int i = 0; i < last.w.size(); ++i)
         if (last.w[i] > unguarded * last.noise && fall[i] > share * last.w[i])
@@ -44,13 +44,13 @@ double foreseen_step(const StiffnessRecord& record, double h) {
     return part * h;
 }
 
-bool as_foreseen(const StiffnessRecord& record, double a, const Modes& modes) {
+bool meets_prediction(const StiffnessRecord& record, double a, const Modes& modes) {
     if (record.samples.empty()) return true;
     const auto& last = record.samples.back();
     const auto now = sample(a, modes);
     if (now.w.size() != last.w.size()) return true;
     const double h = a - last.a;
-    const VectorXd miss = now.w - last.w - slope(record, lever * std::abs(h)) * h;
+    const VectorXd miss = now.w - last.w - slope(record, min_length * std::abs(h)) * h;
     for (int i = 0; i < miss.size(); ++i)
         if (last.w[i] > unguarded * last.noise && !(std::abs(miss[i]) <= share * last.w[i]))
             return false;

@@ -26,9 +26,9 @@ struct StiffnessRecord {
 
 // The longest step with the sign of h, at most |h|, on which no stiffness is predicted to fall by
 // more than half.
-double foreseen_step(const StiffnessRecord& record, double h);
+double limited_step(const StiffnessRecord& record, double h);
 
 // Whether the stiffnesses at a agree with the prediction from the record.
-bool as_foreseen(const StiffnessRecord& record, double a, const Modes& modes);
+bool meets_prediction(const StiffnessRecord& record, double a, const Modes& modes);
 
 }  // namespace elastocheck::reference::energy

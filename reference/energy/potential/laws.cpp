@@ -41,7 +41,7 @@ Piece piece(const Curve& curve, std::size_t k) {
 
 // Integrates from x_c to x_c + δ piece by piece: the exact energy change across any knots, without
 // a difference of two energies. A NaN ends the loop.
-LawValues<1> along(const Curve& curve, double x_c, double delta) {
+LawValues<1> integrated(const Curve& curve, double x_c, double delta) {
     const auto& x = curve.knots;
     std::size_t k = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), x_c) - x.begin());
     double t = x_c - piece(curve, k).knot, rest = delta;
@@ -81,7 +81,7 @@ bool resists(const ScalarLaw& law) {
 LawValues<1> values(const ScalarLaw& law, const Vector1& x_c, const Vector1& delta) {
     return std::visit(
         overloaded{[&](const LinearRate& u) { return quadratic<1>(Vector1(u.k), x_c, delta); },
-                   [&](const Curve& u) { return along(u, x_c[0], delta[0]); }},
+                   [&](const Curve& u) { return integrated(u, x_c[0], delta[0]); }},
         law);
 }
 
@@ -92,12 +92,12 @@ LawValues<6> values(const SpatialLaw& law, const Vector6& x_c, const Vector6& de
                        LawValues<6> all;
                        all.stiffness.setZero();
                        for (int k = 0; k < 6; ++k) {
-                           const LawValues<1> one = values(u.axis[static_cast<std::size_t>(k)],
-                                                           Vector1(x_c[k]), Vector1(delta[k]));
-                           all.change += one.change;
-                           all.stress_c[k] = one.stress_c[0];
-                           all.stress[k] = one.stress[0];
-                           all.stiffness(k, k) = one.stiffness(0, 0);
+                           const LawValues<1> axis = values(u.axis[static_cast<std::size_t>(k)],
+                                                            Vector1(x_c[k]), Vector1(delta[k]));
+                           all.change += axis.change;
+                           all.stress_c[k] = axis.stress_c[0];
+                           all.stress[k] = axis.stress[0];
+                           all.stiffness(k, k) = axis.stiffness(0, 0);
                        }
                        return all;
                    }},

@@ -15,9 +15,9 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Margin [rad] to the end of a law within which rounding decides the side of a rotation: for a
-// rotation by π - this, the sign of the axis, on which the logarithm depends.
-constexpr double closest_to_the_end = 1e-3;
+// Smallest distance from a singularity of the angles [rad]. Closer to it rounding decides the
+// branch of the angles: near half a turn the sign of the axis, on which the logarithm depends.
+constexpr double singularity_margin = 1e-3;
 
 // Geometry of one element in its chart: its deformation and the derivatives with respect
 // to the poses.
@@ -401,7 +401,7 @@ bool within_laws(const Model& model, const std::vector<int>& bushings,
                  const std::vector<Pose>& poses) {
     bool within = true;
     for_each_rotation(model, bushings, poses, [&](const Bushing& b, const Quaterniond& q) {
-        within = within && way_to_the_end(b.formulation, q) >= closest_to_the_end;
+        within = within && distance_to_singularity(b.formulation, q) >= singularity_margin;
     });
     return within;
 }

@@ -61,7 +61,7 @@ Eigen::Matrix3Xd rotations(const Model& model, const std::vector<int>& bushings,
                            const std::vector<Pose>& poses);
 
 // Whether all bushings are within the range where their formulation is differentiable
-// (way_to_the_end in relative_rotation.hpp).
+// (distance_to_singularity in relative_rotation.hpp).
 bool within_laws(const Model& model, const std::vector<int>& bushings,
                  const std::vector<Pose>& poses);
 

@@ -31,6 +31,7 @@ using Eigen::Quaterniond;
 using Eigen::RowVector3d;
 using Eigen::Vector3d;
 
+// Value c at the centre, its change, and slope in β.
 struct Varying {
     double c, change;
     RowVector3d slope;  // at c + change
@@ -58,7 +59,7 @@ Varying atan2(const Varying& y, const Varying& x) {
 }
 
 // Value, slope and curvature in β at the centre.
-struct Bent {
+struct SecondOrder {
     double value;
     Vector3d slope;
     Matrix3d curvature;
@@ -66,14 +67,14 @@ struct Bent {
 
 Matrix3d symmetric(const Matrix3d& M) { return 0.5 * (M + M.transpose()); }
 
-Bent operator-(const Bent& x) { return {-x.value, -x.slope, -x.curvature}; }
+SecondOrder operator-(const SecondOrder& x) { return {-x.value, -x.slope, -x.curvature}; }
 
-Bent bent_entry(const Matrix3d& B, int r, int c) {
+SecondOrder second_order_entry(const Matrix3d& B, int r, int c) {
     const Vector3d e = Vector3d::Unit(r), b = B.col(c);
     return {b[r], b.cross(e), turn_curvature(e, b)};
 }
 
-Bent hypot(const Bent& x, const Bent& y) {
+SecondOrder hypot(const SecondOrder& x, const SecondOrder& y) {
     const double h = std::hypot(x.value, y.value);
     const Vector3d slope = (x.value * x.slope + y.value * y.slope) / h;
     return {h, slope,
@@ -82,7 +83,7 @@ Bent hypot(const Bent& x, const Bent& y) {
                 h};
 }
 
-Bent atan2(const Bent& y, const Bent& x) {
+SecondOrder atan2(const SecondOrder& y, const SecondOrder& x) {
     const double square = x.value * x.value + y.value * y.value;
     const Vector3d slope = (x.value * y.slope - y.value * x.slope) / square,
                    along = x.value * x.slope + y.value * y.slope;
@@ -92,7 +93,7 @@ Bent atan2(const Bent& y, const Bent& x) {
             square};
 }
 
-AngleChange together(const std::array<Varying, 3>& theta) {
+AngleChange angle_change(const std::array<Varying, 3>& theta) {
     const auto& [x, y, z] = theta;
     AngleChange angles;
     angles.theta_c << x.c, y.c, z.c;
@@ -143,7 +144,7 @@ Matrix3d rotation_vector_curvature(const Vector3d& theta, const Vector3d& sigma)
     return symmetric(turned * inverse_turn_jacobian(theta));
 }
 
-RelativeRotation at_rest(Quaterniond q) {
+RelativeRotation at_centre(Quaterniond q) {
     if (q.w() < 0) q.coeffs() *= -1;
     return {q, Quaterniond(0, 0, 0, 0), q.toRotationMatrix(), Matrix3d::Zero()};
 }
@@ -154,16 +155,16 @@ AngleChange angles(Formulation::Angles kind, const RelativeRotation& rotation) {
     const auto B = [&](int r, int c) { return entry(rotation, r, c); };
     switch (kind) {
         case Formulation::Angles::rotation_vector: return rotation_vector_of(rotation);
-        case Formulation::Angles::cardan: return together(cardan(B));
-        case Formulation::Angles::projected: return together(projected(B));
+        case Formulation::Angles::cardan: return angle_change(cardan(B));
+        case Formulation::Angles::projected: return angle_change(projected(B));
     }
     return {};
 }
 
 Matrix3d angle_curvature(Formulation::Angles kind, const Quaterniond& q, const Vector3d& sigma) {
     const Matrix3d B_matrix = q.toRotationMatrix();
-    const auto B = [&](int r, int c) { return bent_entry(B_matrix, r, c); };
-    const auto sum = [&](const std::array<Bent, 3>& theta) -> Matrix3d {
+    const auto B = [&](int r, int c) { return second_order_entry(B_matrix, r, c); };
+    const auto sum = [&](const std::array<SecondOrder, 3>& theta) -> Matrix3d {
         return sigma[0] * theta[0].curvature + sigma[1] * theta[1].curvature +
                sigma[2] * theta[2].curvature;
     };
@@ -214,25 +215,25 @@ Matrix3d half_way_curvature(const Quaterniond& q, const Vector3d& m) {
 }
 
 Vector3d angles_of(Formulation::Angles kind, const Quaterniond& q) {
-    return angles(kind, at_rest(q.normalized())).theta_c;
+    return angles(kind, at_centre(q.normalized())).theta_c;
 }
 
-double way_to_the_end(const Formulation& formulation, const Quaterniond& q) {
+double distance_to_singularity(const Formulation& formulation, const Quaterniond& q) {
     using Angles = Formulation::Angles;
     const Vector3d theta = angles_of(formulation.angles, q);
     const Matrix3d B = q.normalized().toRotationMatrix();
     const double half_turn = std::numbers::pi;
-    double way =
+    double distance =
         half_turn - (formulation.angles == Angles::rotation_vector ? theta.norm()
                                                                    : theta.cwiseAbs().maxCoeff());
     if (formulation.angles == Angles::cardan)
-        way = std::min(way, half_turn / 2 - std::abs(theta.y()));
+        distance = std::min(distance, half_turn / 2 - std::abs(theta.y()));
     if (formulation.angles == Angles::projected)
-        way = std::min({way, std::hypot(B(1, 2), B(2, 2)), std::hypot(B(0, 2), B(2, 2)),
-                        std::hypot(B(1, 0), B(0, 0))});
+        distance = std::min({distance, std::hypot(B(1, 2), B(2, 2)), std::hypot(B(0, 2), B(2, 2)),
+                             std::hypot(B(1, 0), B(0, 0))});
     if (formulation.frame == Formulation::Frame::middle)
-        way = std::min(way, half_turn - rotation_vector(q).norm());
-    return way;
+        distance = std::min(distance, half_turn - rotation_vector(q).norm());
+    return distance;
 }
 
 }  // namespace elastocheck::reference::energy

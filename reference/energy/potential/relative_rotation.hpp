@@ -35,14 +35,15 @@ HalfWay half_way(const RelativeRotation& rotation);
 // m·∂²γ/∂β² of C → exp(γ) C, q as above.
 Eigen::Matrix3d half_way_curvature(const Eigen::Quaterniond& q, const Eigen::Vector3d& m);
 
-// The same angles, principal values, of B as a quaternion; and the distance to the nearest point
-// where they (and B^½ if used by the formulation) are not differentiable, zero or negative beyond
-// [rad]:
+// The same angles, principal values, of B as a quaternion.
+Eigen::Vector3d angles_of(Formulation::Angles kind, const Eigen::Quaterniond& q);
+
+// Distance [rad] to the nearest point where the angles (and B^½ if the formulation uses it) are not
+// differentiable; zero or negative beyond it:
 //   rotation vector, B^½   half a turn
 //   cardan                 θ_y = ± π/2, gimbal lock; half a turn of the others
 //   projected              half a turn, or both sides of a projection vanish: an axis of j along
 //                          an axis of i
-Eigen::Vector3d angles_of(Formulation::Angles kind, const Eigen::Quaterniond& q);
-double way_to_the_end(const Formulation& formulation, const Eigen::Quaterniond& q);
+double distance_to_singularity(const Formulation& formulation, const Eigen::Quaterniond& q);
 
 }  // namespace elastocheck::reference::energy
