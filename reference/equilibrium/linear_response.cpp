@@ -2,46 +2,26 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-
 #include "reference/equilibrium/state_tangent.hpp"
 
 namespace elastocheck::reference::equilibrium {
 namespace {
 
-// Drives the system, which has no driver, by the disturbance alone: of rate one and value zero at a.
+// Drives the system, which has no driver, by the disturbance alone, of rate 1 and value 0 at a.
 void disturb(System& system, const Disturbance& disturbance, double a) {
     const Model& model = *system.model;
-    std::visit(
-        overloaded{
-            [&](const UnitWrench& wrench) {
-                if (static_cast<std::size_t>(wrench.at.body) >= model.bodies.size())
-                    throw std::invalid_argument("a disturbance acts on no body of the model");
-                const Affine growing{-a, 1};
-                system.loads = {{DeadForce{wrench.at, wrench.force}, growing},
-                                {DeadMoment{wrench.at.body, wrench.moment}, growing}};
-            },
-            [&](const Motion& motion) {
-                const auto joint = static_cast<std::size_t>(motion.joint);
-                if (joint >= model.joints.size() || model.joints[joint].driven < 0)
-                    throw std::invalid_argument("a disturbance drives a joint without offset");
-                Affine& value = system.values[static_cast<std::size_t>(model.joints[joint].driven)];
-                value = {value.start - a, 1};
-            }},
-        disturbance);
-}
-
-std::string name_of(const Model& model, const Disturbance& disturbance) {
-    return std::visit(
-        overloaded{[&](const UnitWrench& wrench) {
-                       return "a wrench on '" +
-                              model.bodies[static_cast<std::size_t>(wrench.at.body)].name + "'";
-                   },
-                   [&](const Motion& motion) {
-                       return "moving '" +
-                              model.joints[static_cast<std::size_t>(motion.joint)].name + "'";
-                   }},
-        disturbance);
+    std::visit(overloaded{[&](const UnitWrench& wrench) {
+                              const Affine growing{-a, 1};
+                              system.loads = {{DeadForce{wrench.at, wrench.force}, growing},
+                                              {DeadMoment{wrench.at.body, wrench.moment}, growing}};
+                          },
+                          [&](const Motion& motion) {
+                              const int driven =
+                                  model.joints[static_cast<std::size_t>(motion.joint)].driven;
+                              Affine& value = system.values[static_cast<std::size_t>(driven)];
+                              value = {value.start - a, 1};
+                          }},
+               disturbance);
 }
 
 std::vector<Increment> increments_of(const System& system, const Eigen::VectorXd& dx) {
@@ -57,6 +37,7 @@ std::vector<Increment> increments_of(const System& system, const Eigen::VectorXd
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances,
                          std::shared_ptr<const Orders>* orders) {
+    check(model, disturbances);
     const double a = state.load;
     const auto fail = [&](Outcome outcome, const std::string& what) {
         return Response{outcome,

@@ -25,8 +25,8 @@ namespace elastocheck::reference::equilibrium {
 // does, and where a wrench acts on no body, a moved joint has no offset, or `state` does not have
 // one pose per body.
 //
-// `orders`: kept over states of models of one structure (models/structure.hpp), made where empty. They save
-// time and change no digit.
+// `orders`: elimination orders, kept for the states of models of one structure
+// (models/structure.hpp); made where empty. They save time and change no digit.
 struct Orders;
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances,

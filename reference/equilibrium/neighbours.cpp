@@ -48,14 +48,16 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             result.detail = solved.what;
             continue;
         }
-        // what is of second order need not be in the range of J
+        // Chord method: Newton steps for the equations of the neighbour with the factors of the
+        // state, and one more step once they are small. Second-order terms need not be in the range
+        // of J.
         constexpr double not_judged = std::numeric_limits<double>::infinity();
         for (const System& system : systems) {
             Eigen::VectorXd x = tangent.x;
             double first = 0, first_reactions = 0, size = 0;
-            bool met = false, last = false;
+            bool converged = false, last = false;
             for (int step = 0; step < chord_steps && !last; ++step) {
-                last = met;
+                last = converged;
                 const Solved by = solve_at_state(
                     tangent, residual(system, tangent.loading, x) - own_residual, not_judged);
                 if (by.outcome != Outcome::converged) break;
@@ -67,10 +69,11 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
                     first = size;
                     first_reactions = reactions;
                 }
-                met = size <= chord_met * first &&
-                      reactions <= chord_met * first_reactions + chord_reactions * x.tail(m).norm();
+                converged =
+                    size <= chord_met * first &&
+                    reactions <= chord_met * first_reactions + chord_reactions * x.tail(m).norm();
             }
-            result.settled = result.settled && (met || size <= chord_rounding);
+            result.settled = result.settled && (converged || size <= chord_rounding);
             result.states.push_back(state_of(system, tangent.loading, x));
         }
     }

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Frames = std::vector<Frame<double>>;
 
-// Maximum of two sizes; NaN counts as largest.
+// Raises `size` to at least `to`; NaN counts as largest.
 void raise(double& size, double to) {
     if (std::isnan(size)) return;
     if (!(to <= size)) size = to;
@@ -131,16 +131,16 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
         // A frictionless joint cannot transmit every wrench: the part outside the span of its
         // constraints is a residual.
         const MatrixXd C = transmitted_by(judge, n, on_i.at);
-        Vector6 left_over;
-        left_over << on_i.force, on_i.moment / system.length;
+        Vector6 remainder;
+        remainder << on_i.force, on_i.moment / system.length;
         if (C.cols() > 0 && C.allFinite()) {
             Eigen::ColPivHouseholderQR<MatrixXd> qr;
             qr.setThreshold(1e-9);  // for columns of size one: dependent rows
-            const VectorXd whole = left_over, along = qr.compute(C).solve(whole);
-            left_over -= C * along;
+            const VectorXd whole = remainder, along = qr.compute(C).solve(whole);
+            remainder -= C * along;
         }
-        raise(worst.force, Vector3d(left_over.head<3>()));
-        raise(worst.moment, Vector3d(system.length * left_over.tail<3>()));
+        raise(worst.force, Vector3d(remainder.head<3>()));
+        raise(worst.moment, Vector3d(system.length * remainder.tail<3>()));
     }
     for (const auto& balance : judge.balances) {
         raise(worst.force, balance.force);

@@ -48,9 +48,9 @@ VectorXd with_shortest_motion(const System& system, const Linearisation& at, con
     if (at.modes.count() == 0) return dx;
     const Eigen::Index n = 6 * system.bodies;
     const Sparse V = at.modes.right.topRows(n), V_T = V.transpose();
-    Sparse one(V.cols(), V.cols());
-    one.setIdentity();
-    const Eigen::SimplicialLDLT<Sparse> gram(Sparse(V_T * V + zero_tolerance * one));
+    Sparse identity(V.cols(), V.cols());
+    identity.setIdentity();
+    const Eigen::SimplicialLDLT<Sparse> gram(Sparse(V_T * V + zero_tolerance * identity));
     return dx - at.modes.right * gram.solve(VectorXd(V_T * dx.head(n)));
 }
 

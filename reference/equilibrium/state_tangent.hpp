@@ -1,4 +1,4 @@
-// Linearised system at a given state and its answers: common part of the response to disturbances
+// Linearised system at a given state and its solutions: common part of the response to disturbances
 // and of the states of neighbouring models.
 #pragma once
 
@@ -17,8 +17,8 @@ struct StateTangent {
     Outcome outcome = Outcome::converged;
     std::string what = {};
 };
-// Places of the terms in J, and the orders of elimination of J and of the system of its reactions: of the
-// last state of a model of this structure.
+// What states of models of one structure share, from the last of them: the positions of the terms
+// in J, and the elimination orders of J and of the least-squares system of the reactions.
 struct Orders {
     std::shared_ptr<const Pattern> pattern = {};
     Factors of_J = {}, of_reactions = {};
@@ -27,9 +27,9 @@ struct Orders {
 StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state,
                         Orders& orders);
 
-// J dx = -E_rate, with minimum-norm motion in the idle modes. `rounding`: of the entries of E_rate,
-// where that is more than their own last digits; a part outside the range of J that is smaller does
-// not count.
+// Solves J dx = -E_rate, with minimum-norm motion in the idle modes. `rounding`: of the entries of
+// E_rate, where that is more than their own last digits; a part outside the range of J up to this
+// is ignored.
 struct Solved {
     Outcome outcome = Outcome::converged;
     std::string what;  // half a sentence on the failure

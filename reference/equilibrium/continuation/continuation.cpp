@@ -60,15 +60,15 @@ Station station_at(Continuation& continuation, double t, VectorXd x, const Linea
     Station station;
     station.t = t;
     station.x = std::move(x);
-    Derivatives by = derivatives(continuation.system, loading_at(continuation, t), station.x,
-                                 continuation.counts);
-    station.linearised = linearise(std::move(by.J), last, continuation.counts);
+    Derivatives slopes = derivatives(continuation.system, loading_at(continuation, t), station.x,
+                                     continuation.counts);
+    station.linearised = linearise(std::move(slopes.J), last, continuation.counts);
     if (station.linearised.modes_are_new)
-        free_what_is_resisted(continuation.system, loading_at(continuation, t), station.x,
+        remove_resisted_modes(continuation.system, loading_at(continuation, t), station.x,
                               station.linearised, continuation.counts);
     station.stiffness = stiffness(continuation.system, station.linearised);
-    station.E = std::move(by.E);
-    station.E_rate = std::move(by.E_rate);
+    station.E = std::move(slopes.E);
+    station.E_rate = std::move(slopes.E_rate);
     const Rate rate = solve_bordered(station.linearised.bordered, station.E_rate);
     station.tangent = rate.dx;
     station.mu = rate.mu;
@@ -84,14 +84,15 @@ std::optional<VectorXd> bend(const Continuation& continuation, double h) {
            (continuation.here.t - continuation.before->t);
 }
 
-// Predictor: tangent and second-order term; or, where it hardly differs, the cubic h x' + c h² + d h³
-// with the state before and its tangent as well, with error O(h⁴). With D from there to here, x the
-// step back and x₀' its tangent as a rate of that step,
+// Predictor: tangent and second-order term; or, where it hardly differs, the cubic
+// h x' + c h² + d h³ with the state before and its tangent as well, with error O(h⁴). With D from
+// there to here, x the step back and x₀' its tangent as a rate of that step,
 //
 //   A = x + D x',   B = D (x₀' - x'),   D² c = 3 A + B,   D³ d = 2 A + B
 //
-// For a rotation θ the rate is J⁻¹(θ) ω = ω - ½ θ × ω + O(θ²) ω. A and B are without idle motion and
-// self-stress, which no equation corrects: the cubic would take five times the last one each step.
+// For a rotation θ the rate is J⁻¹(θ) ω = ω - ½ θ × ω + O(θ²) ω. Idle motion and self-stress are
+// removed from A and B: their tangents are zero and no equation corrects them, so that the cubic
+// would multiply them by -5 in each step (h = D, x' = x₀' = 0).
 VectorXd predicted_step(const Continuation& continuation, double h) {
     const Station& here = continuation.here;
     VectorXd dx = h * here.tangent;
@@ -113,7 +114,7 @@ VectorXd predicted_step(const Continuation& continuation, double h) {
         return v - V * (V.transpose() * v);
     };
     const VectorXd A = resisted(back + D * here.tangent), B = resisted(D * (rate - here.tangent));
-    VectorXd cubic = h * here.tangent + share * share * (3 * A + B + share * (2 * A + B));
+    const VectorXd cubic = h * here.tangent + share * share * (3 * A + B + share * (2 * A + B));
     return (cubic - dx).norm() < 0.5 * more->norm() ? cubic : dx;
 }
 
@@ -144,17 +145,19 @@ Stability stability_between(Continuation& continuation, const Station& from, con
     const double h = to.t - from.t;
     const VectorXd dx =
         step_between(continuation.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
-    auto by = derivatives(continuation.system, loading_at(continuation, from.t + h / 2),
-                          moved(continuation.system, from.x, dx), continuation.counts);
+    auto at_middle = derivatives(continuation.system, loading_at(continuation, from.t + h / 2),
+                                 moved(continuation.system, from.x, dx), continuation.counts);
     const Eigen::Index redundant = from.stiffness.redundant;
     const auto formed = [](const Stiffness& of) { return !std::isnan(of.log_determinant); };
     if (formed(from.stiffness) && formed(to.stiffness))
-        if (const auto few = stiffness_of_few(continuation.system, by.J,
-                                              from.linearised.modes.count() - redundant, redundant))
-            return over_step(from.stiffness, *few, to.stiffness,
-                             {from.stiffness.log_determinant, few->log_determinant,
+        if (const auto formed_at_middle =
+                stiffness_of_few(continuation.system, at_middle.J,
+                                 from.linearised.modes.count() - redundant, redundant))
+            return over_step(from.stiffness, *formed_at_middle, to.stiffness,
+                             {from.stiffness.log_determinant, formed_at_middle->log_determinant,
                               to.stiffness.log_determinant});
-    const Linearisation middle = linearise(std::move(by.J), &from.linearised, continuation.counts);
+    const Linearisation middle =
+        linearise(std::move(at_middle.J), &from.linearised, continuation.counts);
     return over_step(from.stiffness, stiffness(continuation.system, middle), to.stiffness,
                      {from.linearised.bordered.log_determinant(), middle.bordered.log_determinant(),
                       to.linearised.bordered.log_determinant()});
@@ -221,8 +224,8 @@ double moved_by_rounding(const Continuation& continuation, const Station& statio
            pose_size(continuation.system, solve_bordered(station.linearised.bordered, E).dx);
 }
 
-// Whether the correction of a predicted state, with the matrix of the last one, is much smaller than
-// a last correction has to be.
+// Whether the correction of a predicted state, with the matrix of the last one, is much smaller
+// than a last correction has to be.
 bool is_foreseen(Continuation& continuation, const Loading& loading, const VectorXd& x) {
     constexpr double much_smaller = 0.1;
     ++continuation.counts.evaluations;
@@ -313,7 +316,7 @@ Failure diagnose_end(Continuation& continuation, double h, double t, Trial refus
 // Switches to the next piece wherever a deformation is at the end of its piece and leaves it. The
 // state stays, its tangent changes.
 std::optional<Failure> change_pieces(Continuation& continuation, double direction) {
-    const auto where = [&] {
+    const auto place = [&] {
         const std::string a =
             parameter(*continuation.system.branch, loading_at(continuation, continuation.here.t).a);
         return continuation.stage == Stage::settling
@@ -335,7 +338,7 @@ std::optional<Failure> change_pieces(Continuation& continuation, double directio
                 return Failure{
                     Outcome::limit_point,
                     fmt::format("the branch turns back where the law of '{}' has a knot, {}",
-                                continuation.system.model->elastics[at.element].name, where())};
+                                continuation.system.model->elastics[at.element].name, place())};
             tried.push_back(continuation.pieces);
             piece += side;
             at_end = true;
@@ -351,7 +354,7 @@ std::optional<Failure> change_pieces(Continuation& continuation, double directio
         over_step(now, now, now) != Stability::kept)
         return Failure{
             Outcome::singular,
-            fmt::format("the equilibrium loses its stability where a law has a knot, {}", where())};
+            fmt::format("the equilibrium loses its stability where a law has a knot, {}", place())};
     return std::nullopt;
 }
 

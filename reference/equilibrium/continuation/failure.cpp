@@ -71,17 +71,17 @@ constexpr double closed = 1e-9;
 // of J and another curve crosses this one. So at a limit point μ |x'| keeps its value, at a
 // bifurcation it goes to zero with μ.
 bool turns_back(const Continuation& continuation) {
-    constexpr double gone = 0.15, still_there = 0.02;  // relative to their values at a = 0
-    const double left = continuation.here.stiffness.least / continuation.first_stiffness;
-    return continuation.stage == Stage::branch && std::abs(left) <= gone &&
-           std::abs(left) * pose_size(continuation.system, continuation.here.tangent) >=
-               still_there * continuation.first_tangent;
+    constexpr double spent = 0.15, kept = 0.02;  // relative to their values at a = 0
+    const double share = continuation.here.stiffness.least / continuation.first_stiffness;
+    return continuation.stage == Stage::branch && std::abs(share) <= spent &&
+           std::abs(share) * pose_size(continuation.system, continuation.here.tangent) >=
+               kept * continuation.first_tangent;
 }
 
 // Whether a bifurcation was passed: beyond the singular point the same curve continues
 // with a negative eigenvalue of M, so another curve crosses it. M does not show a
 // bifurcation of the constraints.
-bool has_divided(const Continuation& continuation, const Trial& trial) {
+bool has_bifurcated(const Continuation& continuation, const Trial& trial) {
     const Stiffness& past = trial.station.stiffness;
     return trial.verdict == Verdict::past_singular_point && past.least < -past.round_off &&
            constraints_keep_their_side(continuation.system, continuation.here.linearised,
@@ -92,10 +92,10 @@ bool has_divided(const Continuation& continuation, const Trial& trial) {
 
 Failure unsolvable_load(const System& system, const VectorXd& left) {
     // Truly redundant joints balance each other, and leave only round-off on the bodies.
-    constexpr double repeated = 1e-11;
+    constexpr double round_off = 1e-11;
     const double of_joints = left.tail(system.constraint_rows).norm(),
                  of_bodies = left.head(6 * system.bodies).norm();
-    if (of_joints > of_bodies && of_bodies > repeated * of_joints)
+    if (of_joints > of_bodies && of_bodies > round_off * of_joints)
         return {Outcome::iteration_limit,
                 fmt::format("the joints {} are nearly redundant, and the motions that they leave "
                             "free cannot be computed in double precision",
@@ -162,7 +162,7 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
             ? "at " + parameter_at(t)
             : fmt::format("between {} and {}", parameter_at(continuation.here.t), parameter_at(t));
 
-    if (!settling && has_divided(continuation, trial))
+    if (!settling && has_bifurcated(continuation, trial))
         return {Outcome::bifurcation_point,
                 "a bifurcation point: another curve of equilibria crosses the branch, which is "
                 "unstable past this point, " +
@@ -209,22 +209,21 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
     if (trial.verdict == Verdict::unsolved) {
         if (!std::isfinite(attempt.residual))
             return {Outcome::not_finite, "the equations give a number that is not finite " + where};
-        const VectorXd left_over = residual(system, loading_at(continuation, t), attempt.x);
+        const VectorXd remainder = residual(system, loading_at(continuation, t), attempt.x);
         const Sparse& U = continuation.here.linearised.modes.left;
         constexpr double mostly = 0.9;
-        if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())
-            return unsolvable_load(system, U * (U.transpose() * left_over));
+        if (U.cols() > 0 && (U.transpose() * remainder).norm() > mostly * remainder.norm())
+            return unsolvable_load(system, U * (U.transpose() * remainder));
         // At a limit point a large part of the step remains unsolved. A far smaller remainder is
-        // the rounding limit, for poses of the model's own size, or proportionally larger farther
-        // from the origin.
-        constexpr double good_part = 1e-6, at_home = 1e-13;
-        double away = 1;
+        // the rounding limit, in proportion to the largest distance of a body from the centre, over
+        // L.
+        constexpr double good_part = 1e-6, relative_rounding = 1e-13;
+        double distance = 1;
         for (int body = 0; body < system.bodies; ++body)
-            away = std::max(away, continuation.here.x.segment<3>(7 * body).norm());
-        const double end_of_arithmetic = away * at_home;
+            distance = std::max(distance, continuation.here.x.segment<3>(7 * body).norm());
+        const double rounding_limit = distance * relative_rounding;
         const double step = std::abs(t - continuation.here.t) * largest(continuation.here.E_rate);
-        if (attempt.out_of_time ||
-            attempt.residual <= std::max(good_part * step, end_of_arithmetic))
+        if (attempt.out_of_time || attempt.residual <= std::max(good_part * step, rounding_limit))
             return {Outcome::iteration_limit,
                     fmt::format("the scaled residual is {:.1e} after the last iteration {}",
                                 attempt.residual, where)};

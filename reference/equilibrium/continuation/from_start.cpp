@@ -29,20 +29,20 @@ constexpr double one_state = 1e-6;
 constexpr double idle_eigenvalue = 1e-10;
 
 // A state to be excluded. Its idle motions do not count in the distance.
-struct Known {
+struct KnownState {
     VectorXd x;
     MatrixXd idle;  // orthonormal [6 nb × k]
 
     // (to - x) of the bodies [6 nb], without its part along the idle motions.
-    VectorXd from_here(const System& system, const VectorXd& to) const {
+    VectorXd difference(const System& system, const VectorXd& to) const {
         VectorXd d = step_between(system, x, to).head(6 * system.bodies);
         if (idle.cols() > 0) d -= idle * (idle.transpose() * d).eval();
         return d;
     }
 };
 
-Known known_state(const System& system, double a, const Equilibrium& state) {
-    Known known{unknowns_at(system, state.poses), MatrixXd(6 * system.bodies, 0)};
+KnownState known_state(const System& system, double a, const Equilibrium& state) {
+    KnownState known{unknowns_at(system, state.poses), MatrixXd(6 * system.bodies, 0)};
     Counts counts;
     const Sparse J = derivatives(system, {a}, known.x, counts).J;
     if (!is_finite(J)) return known;
@@ -60,11 +60,11 @@ Known known_state(const System& system, double a, const Equilibrium& state) {
 // have the same solutions except these. The Newton step of m E is that of E, scaled or reversed:
 //
 //   δ / (1 - η),     η = ∇m · δ / m = -Σ 2 (x - x_k)·δ / (s (1 + s)),     s = |x - x_k|²
-double stretched(const System& system, const std::vector<Known>& known, const VectorXd& x,
-                 const VectorXd& dx) {
+double deflation_factor(const System& system, const std::vector<KnownState>& known,
+                        const VectorXd& x, const VectorXd& dx) {
     double eta = 0;
     for (const auto& state : known) {
-        const VectorXd d = state.from_here(system, x);
+        const VectorXd d = state.difference(system, x);
         const double s = d.squaredNorm();
         eta -= 2 * d.dot(dx.head(d.size())) / (s * (1 + s));
     }
@@ -77,7 +77,7 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
                      const std::vector<Pose>& start, std::span<const Equilibrium> known,
                      const Options& options) {
     const System system = make_system(model, branch, {&a, 1});
-    std::vector<Known> others;
+    std::vector<KnownState> others;
     for (const auto& state : known) others.push_back(known_state(system, a, state));
     const Loading loading{a};
     VectorXd x = unknowns_at(system, start);
@@ -95,7 +95,7 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
         if (iteration == options.iteration_limit) return {Outcome::iteration_limit};
         VectorXd dx = solve_bordered(linearisation.bordered, slopes.E).dx;
         if (!dx.allFinite()) return {Outcome::singular};
-        dx *= stretched(system, others, x, dx);
+        dx *= deflation_factor(system, others, x, dx);
         const double size = pose_size(system, dx);
         if (!std::isfinite(size)) return {Outcome::singular};
         if (size > longest_correction) dx *= longest_correction / size;
@@ -110,7 +110,7 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
     if (!(attempt.residual <= options.tolerance))
         return {std::isfinite(attempt.residual) ? Outcome::iteration_limit : Outcome::not_finite};
     for (const auto& other : others)
-        if (pose_size(system, other.from_here(system, attempt.x)) <= one_state)
+        if (pose_size(system, other.difference(system, attempt.x)) <= one_state)
             return {Outcome::branch_lost};
     const Stiffness softest = stiffness(
         system, linearise(derivatives(system, loading, attempt.x, counts).J, nullptr, counts));
@@ -148,10 +148,10 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
     const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(M);
     const double idle = idle_eigenvalue * modes.eigenvalues().cwiseAbs().maxCoeff();
     std::vector<std::vector<Pose>> list;
-    int taken = 0;
-    for (Index k = 0; k < Z.cols() && taken < motions; ++k) {
+    int count = 0;
+    for (Index k = 0; k < Z.cols() && count < motions; ++k) {
         if (std::abs(modes.eigenvalues()[k]) <= idle) continue;
-        ++taken;
+        ++count;
         VectorXd dx = VectorXd::Zero(system.equations());
         dx.head(n) = Z * modes.eigenvectors().col(k);
         dx /= pose_size(system, dx);
@@ -168,7 +168,7 @@ double distance(const Model& model, const Branch& branch, const Equilibrium& a,
                 const Equilibrium& b) {
     const System system = make_system(model, branch, {&a.load, 1});
     return pose_size(
-        system, known_state(system, a.load, a).from_here(system, unknowns_at(system, b.poses)));
+        system, known_state(system, a.load, a).difference(system, unknowns_at(system, b.poses)));
 }
 
 }  // namespace elastocheck::reference::equilibrium

@@ -12,11 +12,10 @@
 namespace elastocheck::reference::equilibrium {
 
 struct FromStart {
-    Outcome outcome = Outcome::
-        // else iteration_limit, singular, not_finite; branch_lost: converges to a known state
-        converged;
+    // else iteration_limit, singular, not_finite; branch_lost: converges to a known state
+    Outcome outcome = Outcome::converged;
     Equilibrium state = {};  // valid where it converged
-    // least eigenvalue of what is free and resisted, scaled
+    // Stiffness::least at the state (stability.hpp)
     double stiffness = std::numeric_limits<double>::quiet_NaN();
     // the least eigenvalue is above zero by more than its round-off; without an energy, stability
     // against divergence alone (stability.hpp)
@@ -33,9 +32,9 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
                      const std::vector<Pose>& start, std::span<const Equilibrium> known = {},
                      const Options& options = {});
 
-// Poses beside an equilibrium, on both sides along each of its softest free motions, at distances
-// `lengths`: shares of the model's size [or of a radian]. Excludes idle motions; empty for models
-// of more than a hundred bodies.
+// Poses beside an equilibrium, on both sides along each of its `motions` softest free motions, at
+// the distances `lengths` (shares of the model's size, or radians). Excludes idle motions; empty
+// for models of more than a hundred bodies.
 std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
                                       const Equilibrium& state, int motions,
                                       std::span<const double> lengths);

@@ -30,7 +30,7 @@ struct Cubic {
     }
     double operator()(double s) const { return x_0 + s * (b + s * (c + s * d)); }
     // 0, 1, and the extrema of x in between.
-    std::array<double, 4> turns() const {
+    std::array<double, 4> extrema() const {
         std::array<double, 4> s = {0, 0, 0, 1};
         const double root = std::sqrt(c * c - 3 * b * d), q = -(c + std::copysign(root, c));
         const auto within = [](double at) { return at > 0 && at < 1 ? at : 0; };  // false for NaN
@@ -41,16 +41,17 @@ struct Cubic {
     }
 };
 
-// First s at which sign · x exceeds limit by half of `far`, if it exceeds it by `far` anywhere.
-std::optional<double> first_past(const Cubic& x, double sign, double limit, double far) {
+// First s at which sign · x exceeds limit by half of `tolerance`, if it exceeds it by `tolerance`
+// anywhere.
+std::optional<double> first_past(const Cubic& x, double sign, double limit, double tolerance) {
     const auto past = [&](double s) { return sign * (x(s) - limit); };
-    const auto turns = x.turns();
-    for (std::size_t k = 1; k < turns.size(); ++k) {
-        double in = turns[k - 1], out = turns[k];
-        if (!(past(out) > far)) continue;
+    const auto ends = x.extrema();
+    for (std::size_t k = 1; k < ends.size(); ++k) {
+        double in = ends[k - 1], out = ends[k];
+        if (!(past(out) > tolerance)) continue;
         for (int n = 0; n < 60 && in < out; ++n) {
             const double middle = (in + out) / 2;
-            (past(middle) > far / 2 ? out : in) = middle;
+            (past(middle) > tolerance / 2 ? out : in) = middle;
         }
         return out;
     }
@@ -81,8 +82,9 @@ std::optional<double> first_exit(const std::vector<OnCurve>& from, const std::ve
     for (std::size_t n = 0; n < from.size(); ++n) {
         const auto [lower, upper] = ends(*from[n].curve, pieces[from[n].element][from[n].axis]);
         const Cubic x(from[n], to[n], h);
-        const double far = at_knot * from[n].size;
-        for (const auto& s : {first_past(x, +1, upper, far), first_past(x, -1, lower, far)})
+        const double tolerance = at_knot * from[n].size;
+        for (const auto& s :
+             {first_past(x, +1, upper, tolerance), first_past(x, -1, lower, tolerance)})
             if (s && (!first || *s < *first)) first = s;
     }
     return first;

@@ -4,7 +4,7 @@ namespace elastocheck::reference::equilibrium {
 namespace {
 
 // Reactions of least norm with the least imbalance at the design pose; E is linear in them.
-void let_joints_carry(System& system, Counts& counts) {
+void balance_by_reactions(System& system, Counts& counts) {
     const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
     if (n == 0 || m == 0 || !system.at_design.allFinite()) return;
     const Sparse J = derivatives(system, {0, 1}, design_unknowns(system), counts).J;
@@ -13,7 +13,7 @@ void let_joints_carry(System& system, Counts& counts) {
     system.at_design = held_at_design(system);
 }
 
-void let_forces_grow(System& system) {
+void grow_forces(System& system) {
     for (std::size_t e = 0; e < system.elements.size(); ++e)
         system.elements[e].stored = stored_at_design(system, e);
     system.grows = true;
@@ -36,10 +36,10 @@ std::optional<Failure> settle(Continuation& continuation, System& system, double
     };
     const auto failed = settles();
     if (!failed) return failed;
-    let_joints_carry(system, continuation.counts);
+    balance_by_reactions(system, continuation.counts);
     hold(continuation);
     if (!settles()) return std::nullopt;
-    let_forces_grow(system);
+    grow_forces(system);
     hold(continuation);
     if (!settles()) return std::nullopt;
     put_on_springs(system);

@@ -39,7 +39,7 @@ struct Spectrum {
     double lowest = std::numeric_limits<double>::infinity(), modulus = lowest;
     int negative = 0;
     double log_product = 0;
-    void see(const std::complex<double>& mu) {
+    void add(const std::complex<double>& mu) {
         log_product += std::log2(std::abs(mu));
         const bool real = mu.imag() == 0;
         lowest = std::min(lowest, real ? mu.real() : std::abs(mu));
@@ -59,8 +59,8 @@ struct Spectrum {
 // rounding of M; otherwise, and for more coordinates than `few`, the result is empty.
 std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle, Index redundant) {
     constexpr Index few = 72;
-    // relative to the largest entry: an idle eigenvalue, the least other one; to
-    // that one: asymmetry
+    // of the largest entry: the largest idle eigenvalue, and the smallest other one; of that one:
+    // the largest asymmetry of a symmetric M
     constexpr double zero = 1e-11, enough = 1e-6, may_matter = 1e-3;
     const Index n = 6 * system.bodies, m = system.constraint_rows, d = n - m + redundant;
     if (n > few || d <= idle) return std::nullopt;
@@ -89,7 +89,7 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
     if (idle > 0 && !(std::abs(mu[idle - 1]) <= zero * size)) return std::nullopt;
     if (!(std::abs(mu[idle]) > enough * size)) return std::nullopt;
     Spectrum spectrum;
-    for (Index k = idle; k < d; ++k) spectrum.see(mu[k]);
+    for (Index k = idle; k < d; ++k) spectrum.add(mu[k]);
     return spectrum;
 }
 
@@ -118,7 +118,7 @@ std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
 // may be too small for the negative part of K, or so large that round-off dominates.
 bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle, double size,
                    double round_off) {
-    constexpr double strengths[] = {1e4, 1e7, 1e10};  // ρ over the largest entry of K
+    constexpr double penalties[] = {1e4, 1e7, 1e10};  // ρ over the largest entry of K
     const Index n = K.rows();
     Sparse held(n, n), K_T = K.transpose(), Phi_T = Phi_q.transpose();
     std::vector<Eigen::Triplet<double>> diagonal;
@@ -127,7 +127,7 @@ bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle,
         diagonal.emplace_back(static_cast<int>(k), static_cast<int>(k), size);
     held.setFromTriplets(diagonal.begin(), diagonal.end());
     const Sparse S = (K + K_T) / 2 + held, constraints = Phi_T * Phi_q;
-    for (const double rho : strengths) {
+    for (const double rho : penalties) {
         const Eigen::SimplicialLDLT<Sparse> factors(Sparse(S + rho * size * constraints));
         if (factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all()) return true;
         if (Phi_q.rows() == 0) break;
@@ -146,9 +146,9 @@ struct Inverse {
         if (source.modes.count() == 0) return;
         constexpr double zero_tolerance = 1e-14;
         V = source.modes.right.topRows(n);
-        Sparse one(V.cols(), V.cols());
-        one.setIdentity();
-        gram.compute(Sparse(Sparse(V.transpose()) * V + zero_tolerance * one));
+        Sparse identity(V.cols(), V.cols());
+        identity.setIdentity();
+        gram.compute(Sparse(Sparse(V.transpose()) * V + zero_tolerance * identity));
     }
     VectorXd without_idle(const VectorXd& b) const {
         if (source.modes.count() == 0) return b;
@@ -227,7 +227,7 @@ std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free
             if (theta <= round_off * largest ||
                 (!complete && remainder * values->last[j] > tolerance * theta))
                 break;
-            spectrum.see(1. / values->theta[j]);
+            spectrum.add(1. / values->theta[j]);
             ++seen;
         }
         if (seen > 0) return spectrum;

@@ -41,14 +41,15 @@ struct Stiffness {
 };
 Stiffness stiffness(const System& system, const Linearisation& at);
 
-// The same from J alone with the number of its null vectors; empty for more than a dozen bodies, and
-// where a stiffness is neither rounding nor well above it.
+// The same from J alone, given the number of its idle modes and of redundant constraints; empty for
+// more than a dozen bodies, and where a stiffness is neither rounding nor well above it.
 std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J, Eigen::Index idle,
                                           Eigen::Index redundant);
 
-// For more bodies M is not formed. By Finsler's theorem (Debreu 1952), M is positive definite iff K + ρ Φ_qᵀ Φ_q
-// is for some ρ, with K the symmetric part of -∂(balance)/∂q. The eigenvalues of M next to zero are
-// the largest of its inverse, which is contained in the solution of the linearised system:
+// For more bodies M is not formed. By Finsler's theorem (Debreu 1952), M is positive definite iff
+// K + ρ Φ_qᵀ Φ_q is for some ρ, with K the symmetric part of -∂(balance)/∂q. The eigenvalues of M
+// next to zero are the largest of its inverse, which is contained in the solution of the linearised
+// system:
 //
 //   ⎡ -K   Φ_qᵀ ⎤ ⎧ x ⎫   ⎧ -b ⎫
 //   ⎣ Φ_q   0   ⎦ ⎩ λ ⎭ = ⎩  0 ⎭      x = Z M⁻¹ Zᵀ b

@@ -33,7 +33,7 @@ double derivative(const JetOf<N>& term, int n) {
     return term.v[N == of_two ? n : n % 6];
 }
 
-// A u from the step (δr / L, δπ) that `Seeds` gives the body: δ(A u) = δπ × A u.
+// A u with its derivatives by the step (δr / L, δπ) of the body (`Seeds`): δ(A u) = δπ × A u.
 template <int N>
 Vec3<JetOf<N>> turning(const Frame<JetOf<N>>& body, const Eigen::Vector3d& u_local) {
     const auto& p = body.p;
@@ -52,7 +52,8 @@ Vec3<JetOf<N>> turning(const Frame<JetOf<N>>& body, const Eigen::Vector3d& u_loc
 
 }  // namespace
 
-// Points and directions of a body in closed form.
+// Points and directions of a body with derivatives in closed form, which is faster than Jets
+// through the quaternion.
 template <>
 Vec3<JetOf<of_two>> direction(const Frame<JetOf<of_two>>& body, const Eigen::Vector3d& u_local) {
     return turning(body, u_local);
@@ -149,7 +150,7 @@ struct Rows {
     }
 };
 
-// The terms of the constraints at other reactions.
+// Source of the constraints' terms alone, with the reactions R.
 struct Reacting : Seeds {
     const VectorXd& R;
 

@@ -1,4 +1,5 @@
-// Derivatives of the system by automatic differentiation. Only the source of this header uses Ceres.
+// Derivatives of the system by automatic differentiation. Only the source of this header uses
+// Ceres.
 #pragma once
 
 #include "reference/equilibrium/linear_algebra/factors.hpp"
@@ -23,7 +24,7 @@ void add_reactions(const System& system, const Loading& loading, const Eigen::Ve
 // dE/dt alone [n]: only the terms that depend on t are evaluated.
 Eigen::VectorXd rate_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
-// A deformation that follows a curve, and its rate.
+// A deformation whose law is a curve, and its rate.
 struct OnCurve {
     std::size_t element, axis;
     const Curve* curve;
@@ -41,6 +42,7 @@ struct Deforming {
 Deforming deforming(const System& system, const Loading& loading, const Eigen::VectorXd& x,
                     const Eigen::VectorXd& dx);
 
+// The deformations at x whose laws are curves, with dx/dt = `rate` [n].
 std::vector<OnCurve> on_curves(const System& system, const Loading& loading,
                                const Eigen::VectorXd& x, const Eigen::VectorXd& rate);
 

@@ -95,11 +95,11 @@ double largest_entry(const Sparse& A) {
 }
 
 // KLU form: L U + F = R⁻¹ P A Q with F above the diagonal blocks of U, R > 0.
-Factors::Factors(const Sparse& A, const Factors* of_such) : size_(A.cols()) {
+Factors::Factors(const Sparse& A, const Factors* same_pattern) : size_(A.cols()) {
     if (size_ == 0) return;
-    order_ = of_such != nullptr && of_such->order_ && of_such->order_->is_for(A)
-                 ? of_such->order_
-                 : std::make_shared<const Order>(A);
+    const bool known =
+        same_pattern != nullptr && same_pattern->order_ && same_pattern->order_->is_for(A);
+    order_ = known ? same_pattern->order_ : std::make_shared<const Order>(A);
     pivots_ = std::make_shared<Pivots>(A, *order_);
     const klu_numeric* numeric = pivots_->numeric;
     if (numeric == nullptr) return;

@@ -1,8 +1,7 @@
 // Sparse factorisations: LU (KLU) for regular matrices, QR (SPQR) for matrices that
 // may be singular.
 //
-// The elimination order depends only on the pattern. It is reused when the factors of a matrix with
-// the same pattern are passed in.
+// The elimination order depends only on the pattern.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -21,7 +20,8 @@ struct Pivots;
 class Factors {
   public:
     Factors() = default;
-    explicit Factors(const Sparse& A, const Factors* of_such = nullptr);
+    // `same_pattern`: factors whose elimination order is used again if their pattern is that of A.
+    explicit Factors(const Sparse& A, const Factors* same_pattern = nullptr);
 
     // Sign of the determinant: 0 where a pivot is zero; solve() is then not available.
     int sign() const { return sign_; }

@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 // dependent. Healthy models stay above 1e-6.
 constexpr double null_threshold = 1e-11;
 
-// Exception: constraints that are redundant up to an angle σ do constrain, with a singular value of
-// σ² over a stiffness in J. Such a vector v has an image |A v| larger than `zero_tolerance`, and
+// Exception: constraints that are redundant up to an angle σ are independent, with a singular value
+// of J of σ² over a stiffness. Their vector v has an image |A v| larger than `zero_tolerance`, and
 // consists of reactions except for a part of about σ on bodies, between `min_angle` and
 // `largest_angle`.
 constexpr double zero_tolerance = 1e-13, min_angle = 1e-9, largest_angle = 1e-3;
@@ -92,9 +92,9 @@ Index of_bodies(const Sparse& A) {
     return n;
 }
 
-// Removes columns that are null only by the threshold. If one column is not quite null, all
-// combinations are searched, which takes a dense matrix.
-Sparse without_angles(const Sparse& A, const Sparse& columns) {
+// Removes the vectors of nearly redundant constraints (above) from the columns. If one column is
+// not quite null, all combinations are searched, which takes a dense matrix.
+Sparse without_nearly_redundant(const Sparse& A, const Sparse& columns) {
     const Sparse images = A * columns;
     bool all_null = true;
     for (Index k = 0; k < columns.cols() && all_null; ++k)
@@ -161,7 +161,8 @@ NullSpaces null_spaces(const Sparse& J) {
     if (Factors(A).condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
     const auto [near_right, near_left] = null_bases(A, null_threshold);
     const Sparse A_t = A.transpose();
-    Sparse right = without_angles(A, near_right), left = without_angles(A_t, near_left);
+    Sparse right = without_nearly_redundant(A, near_right),
+           left = without_nearly_redundant(A_t, near_left);
     if (right.cols() != left.cols()) {
         right = near_right;
         left = near_left;

@@ -31,38 +31,38 @@ constexpr double zero_eigenvalue = 1e-12;
 constexpr double entry_rounding = 16 * std::numeric_limits<double>::epsilon();
 
 // Largest allowed ratio of G to |J v|.
-constexpr double few = 4;
+constexpr double max_ratio = 4;
 
-struct Sorted {
+struct SplitModes {
     Sparse idle;       // unresisted modes [n × k]
     double least = 0;  // least stiffness of the others
     Index resisted = 0;
 };
-Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, const Sparse& J,
-              const Sparse& modes) {
+SplitModes split_modes(const System& system, const Loading& loading, const VectorXd& x,
+                       const Sparse& J, const Sparse& modes) {
     const Index n = 6 * system.bodies;
     const double size = largest_entry(J);
     std::vector<Index> idle, resisted;
     std::vector<Deforming> deformations_of;
     for (Index k = 0; k < modes.cols(); ++k) {
         const VectorXd v = modes.col(k);
-        const double motion = v.head(n).norm(), left = (J * v).head(n).norm();
-        Deforming deforming_element = deforming(system, loading, x, v);
-        const double zero_tolerance =
-            std::max(std::pow(no_deformation * motion, 2) * size, left * left / (threshold * size));
+        const double motion = v.head(n).norm(), imbalance = (J * v).head(n).norm();
+        Deforming deformation = deforming(system, loading, x, v);
+        const double zero_tolerance = std::max(std::pow(no_deformation * motion, 2) * size,
+                                               imbalance * imbalance / (threshold * size));
         // The elastic stiffness may be cancelled by the geometric one, as of a loaded bushing that
         // spins: then G exceeds |J v|.
-        const double stored = deforming_element.rate.dot(deforming_element.force_rate),
-                     most = few * left * motion + entry_rounding * size;
+        const double stored = deformation.rate.dot(deformation.force_rate),
+                     most = max_ratio * imbalance * motion + entry_rounding * size;
         if (motion < part_of_bodies * v.norm() || !(stored > zero_tolerance && stored <= most)) {
             idle.push_back(k);
         } else {
             resisted.push_back(k);
-            deformations_of.push_back(std::move(deforming_element));
+            deformations_of.push_back(std::move(deformation));
         }
     }
     const auto count = static_cast<Index>(resisted.size());
-    Sorted result{modes, 0, count};
+    SplitModes result{modes, 0, count};
     if (count == 0) return result;
     MatrixXd G(count, count);
     for (Index a = 0; a < count; ++a)
@@ -90,13 +90,13 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
 
 }  // namespace
 
-void free_what_is_resisted(const System& system, const Loading& loading, const VectorXd& x,
+void remove_resisted_modes(const System& system, const Loading& loading, const VectorXd& x,
                            Linearisation& at, Counts& counts) {
     if (at.modes.count() == 0 || system.elements.empty()) return;
     const double size = largest_entry(at.J);
-    const Sorted right = sorted(system, loading, x, at.J, at.modes.right);
+    const SplitModes right = split_modes(system, loading, x, at.J, at.modes.right);
     if (right.resisted == 0) return;
-    const Sorted left = sorted(system, loading, x, at.J.transpose(), at.modes.left);
+    const SplitModes left = split_modes(system, loading, x, at.J.transpose(), at.modes.left);
     at.modes_are_soft = !(right.least > entry_rounding * size) || left.resisted != right.resisted;
     if (at.modes_are_soft) return;
     at.modes = {right.idle, left.idle};

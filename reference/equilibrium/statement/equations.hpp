@@ -162,7 +162,7 @@ OnBoth<T> interaction(const Bushing& bushing, const Measured<T>& measured_at, co
     return opposed(on_i);
 }
 
-// A spring of unit stiffness, 1 / L and L, that pulls a body back to its design pose:
+// A spring that pulls a body back to its design pose, of stiffness 1 / L and L (unit F):
 //
 //   U = ½ |r - r_0|² / L + 4 L (1 - |cos ½θ|)
 //
@@ -241,8 +241,7 @@ Holding<T> holding(const DistanceBetween& c, const T& value, const Frame<T>& i, 
 }
 
 // u_i is perpendicular to the direction v_j = cos α y_j - sin α x_j, which rotates with α. Then
-// u_i = cos α x_j + sin α y_j, and u_i × v_j is the axis: R is the moment about x_j × y_j
-// on body i.
+// u_i = cos α x_j + sin α y_j, and u_i × v_j is the axis: R is the moment on i about x_j × y_j.
 template <class T>
 Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i, const Frame<T>& j,
                    const T* R) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "models/branch.hpp"
+#include "models/parameter_unit.hpp"
 
 namespace elastocheck::reference::equilibrium {
 namespace {
@@ -78,15 +79,15 @@ void set_formulations(System& system) {
 void set_turns(System& system) {
     const VectorXd x = design_unknowns(system);
     for (std::size_t c = 0; c < system.values.size(); ++c) {
-        system.turns.push_back(0);
+        system.angle_gaps.push_back(0);
         const auto* angle = std::get_if<DirectionAtAngle>(&system.model->constraints[c].kind);
         if (angle == nullptr) continue;
         const auto drawn = [&](const Direction& d) {
             return direction(frame_of(system, x, d.body), d.u_local);
         };
         const Vector3d u_i = drawn(angle->i);
-        system.turns[c] = std::atan2(u_i.dot(drawn(angle->y_j)), u_i.dot(drawn(angle->j))) -
-                          system.values[c].at(0.0);
+        system.angle_gaps[c] = std::atan2(u_i.dot(drawn(angle->y_j)), u_i.dot(drawn(angle->j))) -
+                               system.values[c].at(0.0);
     }
 }
 
@@ -142,7 +143,7 @@ double force_of(const SpatialLaw& law, double length) {
                       law);
 }
 
-// Larger absolute value at either end of the range from a = 0 to ±a.
+// Largest absolute value between -a and a.
 double size_of(const Affine& path, double a) {
     return std::abs(path.start) + std::abs(path.rate * a);
 }
@@ -293,24 +294,24 @@ double largest(const VectorXd& E) {
 namespace {
 
 // Distance of B from the nearest singularity of the angles [rad].
-double short_of_the_end(const Formulation& formulation, bool rotational,
-                        const Eigen::Quaterniond& B) {
+double distance_to_singularity(const Formulation& formulation, bool rotational,
+                               const Eigen::Quaterniond& B) {
     using Kind = Formulation::Angles;
     constexpr double pi = EIGEN_PI;
     const auto plane = [](double y, double x) {
         return std::min(pi - std::abs(std::atan2(y, x)), std::hypot(x, y));
     };
     const Eigen::Matrix3d A = B.toRotationMatrix();
-    double left = pi;
-    if (formulation.frame == Formulation::Frame::middle) left = 2 * std::abs(B.w());
-    if (!rotational) return left;
-    if (formulation.angles == Kind::rotation_vector) left = 2 * std::abs(B.w());
+    double distance = pi;
+    if (formulation.frame == Formulation::Frame::middle) distance = 2 * std::abs(B.w());
+    if (!rotational) return distance;
+    if (formulation.angles == Kind::rotation_vector) distance = 2 * std::abs(B.w());
     if (formulation.angles == Kind::cardan)
-        left = std::min({left, plane(A(1, 2), A(2, 2)), plane(A(0, 1), A(0, 0))});
+        distance = std::min({distance, plane(A(1, 2), A(2, 2)), plane(A(0, 1), A(0, 0))});
     if (formulation.angles == Kind::projected)
-        left = std::min(
-            {left, plane(A(1, 2), A(2, 2)), plane(A(0, 2), A(2, 2)), plane(A(1, 0), A(0, 0))});
-    return left;
+        distance = std::min(
+            {distance, plane(A(1, 2), A(2, 2)), plane(A(0, 2), A(2, 2)), plane(A(1, 0), A(0, 0))});
+    return distance;
 }
 
 }  // namespace
@@ -324,7 +325,7 @@ std::string bushing_without_angles(const System& system, const VectorXd& x) {
         const auto axes_i = product(frame_of(system, x, bushing->i.body).p, bushing->i.A_local);
         const auto axes_j = product(frame_of(system, x, bushing->j.body).p, bushing->j.A_local);
         const Eigen::Quaterniond B = product(conjugate(axes_i), axes_j);
-        if (short_of_the_end(bushing->formulation, system.elements[e].rotational, B) < near)
+        if (distance_to_singularity(bushing->formulation, system.elements[e].rotational, B) < near)
             return fmt::format(
                 "bushing '{}' is rotated {}, where its angles are undefined", elastic.name,
                 2 * std::abs(B.w()) < near ? "by half a turn"
@@ -333,16 +334,7 @@ std::string bushing_without_angles(const System& system, const VectorXd& x) {
     return {};
 }
 
-std::string parameter(const Branch& branch, double a) {
-    switch (branch.unit) {
-        case ParameterUnit::newton: return fmt::format("{:.8g} N", a);
-        case ParameterUnit::newton_metre: return fmt::format("{:.8g} N·m", a);
-        case ParameterUnit::metre: return fmt::format("{:.8g} mm", 1e3 * a);
-        case ParameterUnit::radian: return fmt::format("{:.8g} deg", a * 180 / EIGEN_PI);
-        case ParameterUnit::none: break;
-    }
-    return fmt::format("{:.8g}", a);
-}
+std::string parameter(const Branch& branch, double a) { return parameter_text(branch.unit, a, 8); }
 
 Equilibrium state_of(const System& system, const Loading& loading, const VectorXd& x) {
     const Model& model = *system.model;

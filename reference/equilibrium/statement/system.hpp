@@ -51,7 +51,7 @@ struct System {
     // per Model::constraints: its offset, length or angle [m, rad], if it has one
     std::vector<Affine> values;
     // per Model::constraints: from such an angle to its design value [rad], or 0
-    std::vector<double> turns;
+    std::vector<double> angle_gaps;
     std::vector<ElementPath> elements;                 // per Model::elastics
     std::vector<LoadPath> loads;                       // static and driven
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // [m], ground axes
@@ -114,7 +114,7 @@ double pose_size(const System& system, const Eigen::VectorXd& dx);
 double largest(const Eigen::VectorXd& E);
 
 // Message about a bushing close to the singularity of its angles or of its middle frame: "bushing
-// 'x' is turned by half a turn, where its rotation has no value", or empty.
+// 'x' is rotated by half a turn, where its angles are undefined", or empty.
 std::string bushing_without_angles(const System& system, const Eigen::VectorXd& x);
 
 // "1500 N", "-40 mm": the branch's parameter in display units.
@@ -197,7 +197,7 @@ Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Fram
 template <class T>
 Holding<T> holding(const System& system, std::size_t c, const T& a, const T& held,
                    const FramePair<T>& frames, const T* R) {
-    const T value = system.values[c].at(a) + held * system.turns[c];
+    const T value = system.values[c].at(a) + held * system.angle_gaps[c];
     return std::visit([&](const auto& kind) { return holding(kind, value, frames.i, frames.j, R); },
                       system.model->constraints[c].kind);
 }
@@ -210,18 +210,18 @@ enum class Term { element, load, ground_spring, constraint };
 struct Part {
     BodyId i = ground, j = ground;
     int row = 0, rows = 0;
-    // its rows constrain directions: independent of the positions, with moments only
+    // whether its rows constrain directions: independent of the positions, with moments only
     bool directions = false;
     Term term = Term::element;
     std::size_t number = 0;  // its position among the terms of this kind
 };
 
-// `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)`
-// its scaled reactions; `sink.balance(part, body, force, moment)` and
-// `sink.constraint(part, k, Phi)` take the scaled terms, to be summed. A source may leave out terms:
-// `source.wants(term, k)`, k the position among its kind. It may have another source for elements
-// between a body and the ground, in Jets of fewer derivatives: `source.of_one_body()`, with
-// `narrowed` for the parameters.
+// Assembles the terms of all parts. `source.frame(part, which)` gives the frames of the part's two
+// bodies, `source.reaction(part, k)` its scaled reactions; `sink.balance(part, body, force,
+// moment)` and `sink.constraint(part, k, Phi)` take the scaled terms, to be summed. A source may
+// leave out terms: `source.wants(term, k)`, k the position among its kind. It may have another
+// source for elements between a body and the ground, in Jets of fewer derivatives:
+// `source.of_one_body()`, with `narrowed` for the parameters.
 template <class Source>
 concept LeavesOut = requires(const Source& source) {
     source.wants(Term::element, std::size_t{});
@@ -266,8 +266,8 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         const Part part{.i = i, .j = j, .term = Term::element, .number = e};
         if constexpr (HasOneOfOneBody<Source>)
             if (i == ground || j == ground) {
-                const auto one = source.of_one_body();
-                add_element(part, one, one.narrowed(a), one.narrowed(held));
+                const auto narrow = source.of_one_body();
+                add_element(part, narrow, narrow.narrowed(a), narrow.narrowed(held));
                 continue;
             }
         add_element(part, source, a, held);
