@@ -198,7 +198,7 @@ std::vector<double> evaluate(const Model& model, const BranchSide& side,
     for (auto& stress : recursive::self_stresses(side.model, side.branch, *dependent, state)) {
         stressed.reactions = std::move(stress.wrenches);
         const auto shared = evaluate(model, channels, stressed);
-        const double zero = rounding + per_remainder * stress.left;
+        const double zero = rounding + per_remainder * stress.remainder;
         for (std::size_t c = 0; c < channels.size(); ++c)
             if (!channels[c].joints().empty() && std::abs(shared[c]) > zero) values[c] = undefined;
     }

@@ -55,7 +55,7 @@ struct Dip {
 };
 Dip lowest_determinant(std::array<double, 3> values,
                        const std::function<double(double)>& determinant_at);
-// Whether lowest_determinant() would evaluate the determinant, given the same values.
+// Whether lowest_determinant() would evaluate the determinant for these values, or values[1] < 0.
 bool may_reach_zero(const std::array<double, 3>& values);
 
 // The smallest eigenvalue of the symmetric part of Q.

@@ -9,7 +9,7 @@
 #include "elastocheck/channels.hpp"
 #include "models/kinds.hpp"
 #include "recursive/diagnosis/analysis.hpp"
-#include "recursive/diagnosis/motion.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/elements.hpp"
 

@@ -41,10 +41,10 @@ void expect_same(const Case& c, Random& random, const std::string& what, Drive d
     for (auto& value : e.Phi_d) value = random(-0.1, 0.1);
     begin(e, c.q, lambda, load[0]);
     evaluate(e, {0, Pass::known});
-    std::vector<Followed> curves = curves_of(c.model);
+    std::vector<CurvePiece> curves = curves_of(c.model);
     for (auto& curve : curves) {
         find_piece(e, curve);
-        follow_on(curve, e);
+        set_piece(curve, e);
     }
     evaluate(e, {0, Pass::known});
     Matrix<double> x = Matrix<double>::Zero(n + m, p + 1), left(n + m, p + 1);
@@ -71,7 +71,7 @@ void expect_same(const Case& c, Random& random, const std::string& what, Drive d
             set_inputs<double>(c.model, c.branch, drawn, a[0], 0, inputs);
         else
             set_inputs<double>(c.model, c.branch, drawn, 1, a[0], inputs);
-        for (const auto& curve : curves) follow_on(curve, inputs);
+        for (const auto& curve : curves) set_piece(curve, inputs);
         constraint_force<double>(c.model, inputs, q, at.tail(m), f, Phi);
         elastic_force<double>(c.model, inputs, q, part);
         f += part;

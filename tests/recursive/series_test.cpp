@@ -331,10 +331,10 @@ TEST(Series, LinearPartOfTheEquationsEqualsTheTangentTimesTheCoefficient) {
         s.work.applied = Vector<double>::Zero(s.n());
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);
         Equations<double> e = equations<double>(model, branch, 8);
-        std::vector<Followed> curves = curves_of(model);
+        std::vector<CurvePiece> curves = curves_of(model);
         begin(e, s.q, s.lambda, 0);
         evaluate(e, {0, Pass::known});
-        for (Followed& curve : curves) find_piece(e, curve), follow_on(curve, e);
+        for (CurvePiece& curve : curves) find_piece(e, curve), set_piece(curve, e);
         Coefficients<double> c = reserve_coefficients<double>(s.n() + s.m(), 8);
         expand(s, e, c, branch.to, false, Vector<double>::Zero(s.n() + s.m()));
         // All coefficients are set: a `known` pass then gives G_k and Φ_k.

@@ -120,7 +120,7 @@ Places inside(Random& random, const Case& one, double size) {
             return m.body == ground ? m.A_local
                                     : poses[static_cast<std::size_t>(m.body)].p * m.A_local;
         };
-        return way_to_the_end(b->formulation, axes(b->i).conjugate() * axes(b->j)) >= 0.4;
+        return distance_to_singularity(b->formulation, axes(b->i).conjugate() * axes(b->j)) >= 0.4;
     };
     for (;;) {
         Places places{{random.pose(), random.pose()}, random.many(12, size)};

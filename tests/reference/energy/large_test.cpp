@@ -109,8 +109,8 @@ TEST(LargeScenes, TooLargeSceneIsNotSolvedAndItsWorkIsReported) {
     }
 }
 
-// A cantilever of equal links with torsion springs k under a force P at its tip: with the angle φ of
-// each link, k (φ_i - φ_{i-1}) = Σ_{j >= i} P h cos φ_j. From a tip angle down to the root the
+// A cantilever of equal links with torsion springs k under a force P at its tip: with the angle φ
+// of each link, k (φ_i - φ_{i-1}) = Σ_{j >= i} P h cos φ_j. From a tip angle down to the root the
 // equations give one angle after another; the tip angle is found by bisection.
 double height_of_the_tip(int n, double P) {
     const double h = 1.0 / n, k = 100 / h;
@@ -161,7 +161,7 @@ TEST(LargeScenes, SparseMinimumIsStationaryInTheDenseConditions) {
             EXPECT_LE(largest(dense.Phi), 1e-12);
             const Modes modes =
                 modes_of(dense, hessian(model, prescribed, scales, point.poses, dense.lambda));
-            EXPECT_LE(excess(dense.left, dense.Phi, modes, scales, 1e-12), 1e-11);
+            EXPECT_LE(excess(dense.projected_gradient, dense.Phi, modes, scales, 1e-12), 1e-11);
             EXPECT_GT(modes.stiffness[0], modes.idle_limit);
         }
     }
@@ -181,11 +181,11 @@ TEST(LargeScenes, SoftestModesEqualThoseOfTheDenseHessian) {
         scaled(constraints(model, nothing, chart).Phi_q, scales.rows(model),
                scales.coordinates(coordinates(model))));
     const Modes some = quadratic.softest({});
-    EXPECT_EQ(some.falling_besides, 0);
+    EXPECT_EQ(some.other_falling_modes, 0);
     for (int i = 0; i < 4; ++i) EXPECT_NEAR(some.stiffness[i] / all.stiffness[i], 1, 1e-3) << i;
     Random random;
     const VectorXd b = random.many(coordinates(model));
-    const VectorXd x = quadratic.least(b, {}, Eigen::MatrixXd(b.size(), 0)).x,
+    const VectorXd x = quadratic.minimum(b, {}, Eigen::MatrixXd(b.size(), 0)).x,
                    y = -all.Z * (all.Z.transpose() * b).cwiseQuotient(all.stiffness);
     EXPECT_LE((x - y).norm(), 1e-7 * y.norm());
 }
@@ -221,10 +221,11 @@ TEST(LargeScenes, SparseProjectedGradientEqualsTheDenseOne) {
                        S = scales.coordinates(coordinates(model));
         const Balance dense = balance(model, scales, gradient, values);
         EXPECT_EQ(dense.independent.size(), 100u);
-        const auto [left, lambda] = left_over(scaled(values.Phi_q, scales.rows(model), S),
-                                              S.cwiseProduct(gradient) / scales.energy());
-        EXPECT_LE((left - dense.left).norm(), 1e-13 * gradient.norm());
-        EXPECT_GE(left.norm(), 0.01 * gradient.norm());
+        const auto [projected, lambda] =
+            project_gradient(scaled(values.Phi_q, scales.rows(model), S),
+                             S.cwiseProduct(gradient) / scales.energy());
+        EXPECT_LE((projected - dense.projected_gradient).norm(), 1e-13 * gradient.norm());
+        EXPECT_GE(projected.norm(), 0.01 * gradient.norm());
         // also the multipliers, of minimum norm where the rows are redundant
         EXPECT_LE((lambda - dense.lambda).norm(), 1e-10 * dense.lambda.norm());
     }
