@@ -22,7 +22,8 @@ bool same(const LoadKind& a, const LoadKind& b) {
                 return x.body == y.body && x.m_local == y.m_local;
             },
             [](const BrakeForce& x, const BrakeForce& y) {
-                return x.body == y.body && x.patch.s_local == y.patch.s_local && x.f == y.f;
+                return x.body == y.body && x.patch.body == y.patch.body &&
+                       x.patch.s_local == y.patch.s_local && x.f == y.f;
             },
             [](const auto&, const auto&) { return false; }},
         a, b);
