@@ -17,8 +17,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// of a branch's length: a larger missing part counts as not given
-constexpr double part_left = 1e-6;
+// Share of a branch's length: a larger missing part counts as not given.
+constexpr double min_missing_part = 1e-6;
 
 // Limit of an output on any branch; infinite where the limit is a share of the output's extent
 // on a branch.
@@ -40,10 +40,10 @@ std::string omitted(std::vector<double> places, double low, double high, std::st
             parts += fmt::format("{} from {:.6g} to {:.6g} {}", parts.empty() ? "" : " and",
                                  from + 0.0, to + 0.0, unit);
     };
-    add(low, places.empty() ? high : places.front(), part_left);
+    add(low, places.empty() ? high : places.front(), min_missing_part);
     for (std::size_t k = 1; k < places.size(); ++k)
-        add(places[k - 1], places[k], widest * (1 + part_left));
-    if (!places.empty()) add(places.back(), high, part_left);
+        add(places[k - 1], places[k], widest * (1 + min_missing_part));
+    if (!places.empty()) add(places.back(), high, min_missing_part);
     return parts;
 }
 
@@ -101,10 +101,10 @@ void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) 
     const auto same = std::ranges::find_if(list, [&](const CandidateWorst& w) {
         return w.extent > 0 ? worst.extent > 0 : worst.extent == 0 && w.unit == worst.unit;
     });
-    const auto taken = [](const CandidateWorst& w) { return w.max / w.limit; };
+    const auto share = [](const CandidateWorst& w) { return w.max / w.limit; };
     if (same == list.end())
         list.push_back(worst);
-    else if (worse(taken(worst), taken(*same)) != taken(*same) && !std::isnan(same->max))
+    else if (worse(share(worst), share(*same)) != share(*same) && !std::isnan(same->max))
         *same = worst;
 }
 
@@ -113,7 +113,7 @@ void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) 
 // A reading in which something is compared.
 struct Compared {
     const CandidateBranch& branch;
-    const BranchComparison& of;
+    const BranchComparison& comparison;
     ReadingKind kind;
     const CandidateReading& reading;
 };
@@ -128,16 +128,16 @@ std::vector<Compared> readings_of(const CandidateJudgement& judgement,
     return list;
 }
 
-constexpr double reference_moves_by = 1e-6;  // [mm], [deg], ...: of the reference
-constexpr double candidate_moves = 1e-9;     // of the candidate
+// [unit of the output]: larger changes of the reference or the candidate are movements
+constexpr double reference_moves_by = 1e-6, candidate_moves = 1e-9;
 
 // Whether every point of the candidate is at the start of its branch although the reference moves:
 // then only the design position was compared.
 bool none_has_moved(const std::vector<Compared>& readings, const CandidateJudgement& judgement) {
     bool reference_moves = false;
-    for (const auto& [branch, of, kind, reading] : readings)
+    for (const auto& [branch, of_branch, kind, reading] : readings)
         for (std::size_t c = 0; c < reading.columns.size(); ++c) {
-            const Curve& truth = truth_of(of);
+            const Curve& truth = truth_of(of_branch);
             const double begin = truth.values[truth.start][judgement.columns[c].channel];
             for (const double v : reading.truth[c])
                 if (std::abs(v - begin) > candidate_moves) return false;
@@ -155,7 +155,7 @@ bool nothing_moves(const std::vector<Compared>& readings) {
         return high - low;
     };
     bool reference_moves = false;
-    for (const auto& [branch, of, kind, reading] : readings)
+    for (const auto& [branch, of_branch, kind, reading] : readings)
         for (std::size_t c = 0; c < reading.columns.size(); ++c) {
             if (reading.columns[c].compared < 2) continue;
             if (extent(reading.candidate[c]) > candidate_moves) return false;
@@ -164,7 +164,7 @@ bool nothing_moves(const std::vector<Compared>& readings) {
     return reference_moves;
 }
 
-// The outputs that no branch compares, "its 'ackermann'"; empty where one is compared.
+// Names of the candidate's outputs if no branch compares any of them, "its 'ackermann'"; else empty.
 std::string nowhere_compared(const CandidateJudgement& judgement, const Comparison& comparison) {
     std::vector<std::string> names;
     for (const auto& column : judgement.columns) {
@@ -175,7 +175,7 @@ std::string nowhere_compared(const CandidateJudgement& judgement, const Comparis
     return names.empty() ? "" : fmt::format("its {}", fmt::join(names, ", "));
 }
 
-// What the candidate gives and what is judged of it.
+// The judgement before any comparison: columns, which of them are judged, and other definitions.
 CandidateJudgement outline_of(const Model& model, const Comparison& comparison,
                               const Candidate& candidate, const Tolerance& tolerance) {
     CandidateJudgement result;
@@ -183,7 +183,7 @@ CandidateJudgement outline_of(const Model& model, const Comparison& comparison,
     result.tolerance = tolerance;
     result.state_residuals = candidate.state_residuals;
     result.notes = candidate.notes;
-    result.columns = as_they_stand(model, comparison, candidate.points.columns);
+    result.columns = as_absolute_values(model, comparison, candidate.points.columns);
     const auto& channels = comparison.channels;
     for (const auto& column : result.columns) {
         const Channel& channel = channels[column.channel];
@@ -228,7 +228,8 @@ CandidateBranch read_branch(const Model& model, const Comparison& comparison, st
         given.from = std::isnan(given.from) ? a : std::min(given.from, a);
         given.to = std::isnan(given.to) ? a : std::max(given.to, a);
     }
-    const auto objections = disagreements(model, channels, branch, compared, Of::references);
+    const auto objections =
+        disagreements(model, channels, branch, compared, RequiredLegs::references);
     for (const auto& why : objections.texts())
         result.reasons.push_back(compared.branch + ": " + why);
     if (!objections.empty()) {
@@ -269,10 +270,10 @@ void read_branches(const Model& model, const Comparison& comparison, const Candi
 int judge_columns(const std::vector<Compared>& readings, const std::vector<Channel>& channels,
                   CandidateJudgement& result, bool& within) {
     int judged = 0;
-    for (const auto& [branch, of, kind, reading] : readings) {
+    for (const auto& [branch, of_branch, kind, reading] : readings) {
         const bool by_abscissa = kind == ReadingKind::equal_abscissa;
         if (by_abscissa) {
-            const auto t = truth_of(of).channel(static_cast<std::size_t>(branch.abscissa));
+            const auto t = truth_of(of_branch).channel(static_cast<std::size_t>(branch.abscissa));
             const auto [low, high] = std::ranges::minmax(t);
             if (!(high - low >= min_travel)) continue;  // range too short for a reading
         }
@@ -282,7 +283,7 @@ int judge_columns(const std::vector<Compared>& readings, const std::vector<Chann
             result.compared += d.compared;
             if (!result.judged[c] || d.compared == 0) continue;
             judged += d.compared;
-            const double extent = of.extents[result.columns[c].channel];
+            const double extent = of_branch.extents[result.columns[c].channel];
             CandidateWorst worst;
             worst.branch = branch.branch;
             worst.channel = channel.name;
@@ -307,7 +308,7 @@ int judge_columns(const std::vector<Compared>& readings, const std::vector<Chann
     return judged;
 }
 
-// Whether its states meet the constraints.
+// Judges the states of the candidate by their constraint residuals in the equilibrium leg.
 void judge_states(CandidateJudgement& result, bool& within) {
     for (const auto& left : result.state_residuals) {
         double missed = 0;  // [mm]; NaN is largest
@@ -319,6 +320,7 @@ void judge_states(CandidateJudgement& result, bool& within) {
     }
 }
 
+// Notes which of its reactions are not compared, since redundant joints share them.
 void note_shared(const Comparison& comparison, CandidateJudgement& result) {
     std::vector<std::string> shared;
     std::string why;
@@ -336,10 +338,10 @@ void note_shared(const Comparison& comparison, CandidateJudgement& result) {
         result.notes.push_back(fmt::format("not compared: {}: {}", fmt::join(shared, ", "), why));
 }
 
-// Tries the columns that are off.
+// Explains the columns beyond their limits, by a wrong sign, unit or the like where one fits.
 void explain_columns(const std::vector<Compared>& readings, const Comparison& comparison,
                      const Candidate& candidate, CandidateJudgement& result) {
-    // Of all branches: at equal parameter where available, else at equal abscissa.
+    // Of every branch one reading: at equal parameter where available, else at equal abscissa.
     std::vector<ReadBranch> branches;
     for (const auto& branch : result.branches)
         branches.push_back({&comparison.branch(branch.branch),
@@ -354,7 +356,8 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
                    !(d.max <= (std::isfinite(bound) ? bound : 1e-3 * std::max(d.range, 1e-9)));
         });
         if (!off || (candidate.every_output && !result.judged[c])) continue;
-        Beside b = beside(comparison, result.columns, result.defined, branches, c);
+        ColumnWithReference b =
+            column_with_reference(comparison, result.columns, result.defined, branches, c);
         b.tolerance = bound;
         if (auto found = explain(b)) result.explanations.push_back(*found);
     }
@@ -366,7 +369,7 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
     Points standing = candidate.points;
     standing.columns = result.columns;
     for (auto& one : result.explanations) {
-        bool included = false;  // in the words about the column that it is exchanged with
+        bool included = false;  // in the hint on the column with which it is exchanged
         for (const auto& other : result.explanations)
             if (exchanged(one, other)) {
                 one.mutual = true;
@@ -378,10 +381,11 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
 
 }  // namespace
 
-Beside beside(const Comparison& comparison, std::span<const PointColumn> columns,
-              std::span<const Channel> defined, std::span<const ReadBranch> branches,
-              std::size_t c) {
-    Beside b;
+ColumnWithReference column_with_reference(const Comparison& comparison,
+                                          std::span<const PointColumn> columns,
+                                          std::span<const Channel> defined,
+                                          std::span<const ReadBranch> branches, std::size_t c) {
+    ColumnWithReference b;
     b.column = c;
     b.channel = columns[c].channel;
     const Channel& channel = comparison.channels[b.channel];

@@ -1,4 +1,4 @@
-// Diagnosis and convergence study of a candidate.
+// Readings, diagnosis and convergence study of a candidate, the results of another solver.
 #pragma once
 
 #include <limits>
@@ -14,7 +14,7 @@
 
 namespace elastocheck::compare {
 
-// Channels and branches of a comparison that is not run, for a candidate that is studied alone.
+// Channels and branches of a comparison without runs, for a candidate that is studied alone.
 Comparison outline(const Model& model);
 
 // The curve of the equilibrium leg.
@@ -28,7 +28,8 @@ struct PointsOnBranch {
     std::vector<std::size_t> on_branch;  // points of the candidate
     const Points& points;
     const std::vector<PointColumn>& columns;
-    const std::vector<Channel>& defined;  // other definitions, in the reference after the columns
+    const std::vector<Channel>&
+        defined;  // figures by other definitions, read from the reference too
 };
 // Sets the readings at equal parameter and at equal abscissa: the candidate's points beside the
 // equilibrium leg at the same parameters and at the same abscissae.
@@ -42,8 +43,8 @@ void add_readings(const Model& model, const Branch& branch, const BranchComparis
 std::string describe(const Explanation& explanation, const Comparison& comparison,
                      const Points& points);
 
-// One column beside its reference, the branches concatenated; `tolerance` in the channel's unit.
-struct Beside {
+// One column and its reference values, the branches concatenated; `tolerance` in the channel's unit.
+struct ColumnWithReference {
     std::size_t column = 0;
     std::size_t channel = 0;
     double tolerance = std::numeric_limits<double>::infinity();
@@ -64,13 +65,13 @@ struct ReadBranch {
     const CandidateReading* reading = nullptr;
 };
 // Column `c` of these readings; `defined` are the figures by other definitions in the readings.
-Beside beside(const Comparison& comparison, std::span<const PointColumn> columns,
-              std::span<const Channel> defined, std::span<const ReadBranch> branches,
-              std::size_t c);
-std::optional<Explanation> explain(const Beside& beside);
-// A sign, unit or offset with which a column that explain() does not make right is much nearer, in
-// words; empty: none. measured.hpp says what is much.
-std::string nearer_with(const Beside& beside, const Channel& channel);
+ColumnWithReference column_with_reference(const Comparison& comparison,
+                                          std::span<const PointColumn> columns,
+                                          std::span<const Channel> defined,
+                                          std::span<const ReadBranch> branches, std::size_t c);
+std::optional<Explanation> explain(const ColumnWithReference& column);
+// Sentence on a sign, unit or offset that brings a column much nearer (measured.hpp); empty: none.
+std::string nearer_with(const ColumnWithReference& column, const Channel& channel);
 
 // ---- Convergence study (candidate_study.cpp): order, own limit, step error and formulation gap,
 // as for a method of the recursion (study.hpp).

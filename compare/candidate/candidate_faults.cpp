@@ -46,28 +46,26 @@ namespace {
 using Kind = Explanation::Kind;
 using Values = std::vector<double>;
 
-// Shares that may remain: of the deviation, of the column's own range (see above), of the range of
-// the reference.
-constexpr double explained = 0.05, of_column = 0.05, of_movement = 1e-3;
-// wrong_from(): share of the points of a branch that must be right first, that is to this share of
-// the largest deviation beyond.
-constexpr double first_part = 0.1, right_so_far = 1e-3;
-// The deviation a tenth of the branch further on must be this share of the largest: one that grows
-// as a power up to the sixth is below a hundredth there, and such a column was never right.
-constexpr double at_once = 0.03;
-// a definition takes the place of a simpler explanation where it leaves a hundredth of what that
-// leaves, and that is more than rounding
+// Largest remaining deviation, as a share of the deviation, of the column's own range (see above), of
+// the range of the reference.
+constexpr double share_of_deviation = 0.05, share_of_column = 0.05, share_of_reference = 1e-3;
+// wrong_from(): the first tenth of the points of a branch or more must be right, to a thousandth of the
+// largest deviation. A tenth of the branch further on the deviation must exceed 0.03 of the largest:
+// one that grows as a power up to the sixth is below 0.01 there, and such a column was never right.
+constexpr double min_right_part = 0.1, right_to = 1e-3, min_jump = 0.03;
+// A definition replaces a simpler explanation where it leaves at most a hundredth of the deviation that
+// this leaves, unless this is rounding, a millionth of the range.
 constexpr double much_better = 0.01, rounding_of_range = 1e-6;
 
-constexpr double by_accident = 0.01;  // largest probability
-constexpr int max_coefficients = 5;   // counted per branch
+constexpr double max_accident = 0.01;  // probability
+constexpr int max_coefficients = 5;    // counted per branch
 
 struct UnitConfusion {
     double factor;
     const char* word;
 };
 constexpr double pi = std::numbers::pi;
-// Possible unit confusions, relative to the unit assumed for the column.
+// Possible unit confusions: column in a wrong unit = factor · column in the assumed unit.
 constexpr std::array units{UnitConfusion{1e-3, "metres for millimetres, or the like"},
                            UnitConfusion{1e3, "millimetres for metres, or the like"},
                            UnitConfusion{0.1, "centimetres for millimetres"},
@@ -118,6 +116,7 @@ double rounding(const Values& v) {
             return unit / 2;
     return 0;
 }
+// Largest |value| or the range, if that is larger.
 double level(const Values& v) { return std::max(max_difference(v, Values(v.size(), 0)), span(v)); }
 double dot(const Values& a, const Values& b) {
     double sum = 0;
@@ -127,7 +126,7 @@ double dot(const Values& a, const Values& b) {
 
 // Coefficients of the polynomials that describe a column to within `left`, one polynomial a branch,
 // or its points if these are fewer.
-int coefficients_of(const Beside& b, double left) {
+int coefficients_of(const ColumnWithReference& b, double left) {
     int coefficients = 0;
     for (std::size_t first = 0; first < b.branch.size();) {
         std::size_t last = first;
@@ -156,15 +155,15 @@ int coefficients_of(const Beside& b, double left) {
     return coefficients;
 }
 
-// Whether a transformation that leaves `left`, with `fitted` numbers and one of `tried`, is right by
-// accident too often.
-bool is_accident(const Beside& b, double left, int fitted, int tried) {
+// Whether a transformation that leaves `left`, with `fitted` numbers and one of `tried`, may be right by
+// accident, with a probability of more than `max_accident`.
+bool is_accident(const ColumnWithReference& b, double left, int fitted, int tried) {
     const double range = span(b.candidate);
     if (!(range > 0)) return true;
     const int free = coefficients_of(b, left) - fitted;
     const double each = std::min(1., 2 * left / range);
     const double of_level = fitted == 0 && free > 0 ? range / level(b.candidate) : 1;
-    return !(tried * of_level * std::pow(each, free) <= by_accident);
+    return !(tried * of_level * std::pow(each, free) <= max_accident);
 }
 
 const char* unit_word(double factor) {
@@ -174,7 +173,7 @@ const char* unit_word(double factor) {
 }
 
 // First wrong point of a column that is right before it on its branch.
-std::optional<Explanation> wrong_from(const Beside& b) {
+std::optional<Explanation> wrong_from(const ColumnWithReference& b) {
     for (std::size_t first = 0; first < b.branch.size();) {
         std::size_t last = first;
         while (last < b.branch.size() && b.branch[last] == b.branch[first]) ++last;
@@ -189,17 +188,17 @@ std::optional<Explanation> wrong_from(const Beside& b) {
         std::size_t n = 0;
         for (; n < order.size(); ++n) {
             const double e = std::abs(b.candidate[order[n]] - b.reference[order[n]]);
-            if (e > right_so_far * worst) break;
+            if (e > right_to * worst) break;
             before = std::max(before, e);
         }
         const double limit =
-            std::isfinite(b.tolerance) ? b.tolerance : of_movement * span(b.reference);
-        const std::size_t soon =
+            std::isfinite(b.tolerance) ? b.tolerance : share_of_reference * span(b.reference);
+        const std::size_t ahead =
             std::min(n + std::max<std::size_t>(1, order.size() / 10), order.size() - 1);
-        const double then = std::abs(b.candidate[order[soon]] - b.reference[order[soon]]);
+        const double jump = std::abs(b.candidate[order[ahead]] - b.reference[order[ahead]]);
         if (worst > limit &&
-            static_cast<double>(n) >= first_part * static_cast<double>(order.size()) && n > 1 &&
-            n < order.size() && then >= at_once * worst)
+            static_cast<double>(n) >= min_right_part * static_cast<double>(order.size()) && n > 1 &&
+            n < order.size() && jump >= min_jump * worst)
             return Explanation{.kind = Kind::from_there_on,
                                .column = b.column,
                                .branch = b.branch[first],
@@ -212,7 +211,8 @@ std::optional<Explanation> wrong_from(const Beside& b) {
 
 // All other definitions of the figure that make the column right, within `allowed`, each by the
 // simplest transformation that does.
-std::optional<Explanation> by_definitions(const Beside& b, double allowed, int others) {
+std::optional<Explanation> by_definitions(const ColumnWithReference& b, double allowed,
+                                          int others) {
     struct Fit {
         std::string name;
         double left = 0;
@@ -230,7 +230,7 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed, int o
                                 int fitted) {
             const int tried = as == name ? static_cast<int>(b.definitions.size()) : ++others;
             const double left = max_difference(v, reading);
-            const bool moves = left <= of_column * span(v);
+            const bool moves = left <= share_of_column * span(v);
             if (!fit && left <= allowed && (moves || !needs_movement) &&
                 !is_accident(b, left, fitted, tried))
                 fit = Fit{as, left};
@@ -262,16 +262,16 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed, int o
 
 }  // namespace
 
-std::optional<Explanation> explain(const Beside& b) {
+std::optional<Explanation> explain(const ColumnWithReference& b) {
     const Values &v = b.candidate, &r = b.reference;
     if (v.size() < 2) return std::nullopt;
     const double deviation = max_difference(v, r), movement = span(r);
     if (!(deviation > 0)) return std::nullopt;
     if (!(span(v) > 1e-9) && movement > 1e-6)
         return Explanation{.kind = Kind::still, .column = b.column, .left = deviation};
-    const double allowed =
-        std::min(explained * deviation,
-                 std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, of_movement * movement));
+    const double allowed = std::min(
+        share_of_deviation * deviation,
+        std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, share_of_reference * movement));
     std::optional<Explanation> accepted;
     // A factor alone has to reproduce the column's level; with an offset or from r_0, its range.
     int tests = 0;
@@ -283,7 +283,8 @@ std::optional<Explanation> explain(const Beside& b) {
         explanation.column = b.column;
         const bool scaled =
             explanation.kind == Kind::factor || explanation.kind == Kind::factor_and_offset;
-        if (scaled && !(explanation.left <= of_column * (is_level ? level(v) : span(v)))) return;
+        if (scaled && !(explanation.left <= share_of_column * (is_level ? level(v) : span(v))))
+            return;
         if (!accepted && explanation.left <= allowed &&
             !is_accident(b, explanation.left, fitted, tests))
             accepted = explanation;
@@ -331,11 +332,11 @@ std::optional<Explanation> explain(const Beside& b) {
     if (!accepted || accepted->left > rounding_of_range * movement)
         if (const auto other = by_definitions(
                 b,
-                accepted
-                    ? much_better * accepted->left
-                    // the figure may not move at all where another definition of it does
-                    : std::max(allowed, std::min(explained * deviation,
-                                                 std::max(of_movement * span(v), rounding(v)))),
+                accepted ? much_better * accepted->left
+                         // the figure may not move at all where another definition of it does
+                         : std::max(allowed,
+                                    std::min(share_of_deviation * deviation,
+                                             std::max(share_of_reference * span(v), rounding(v)))),
                 tests))
             accepted = other;
     if (!accepted) accepted = wrong_from(b);
@@ -350,7 +351,7 @@ std::optional<Explanation> explain(const Beside& b) {
 //   v = ± f r   d / 4 and s / 4       f a unit factor > 2.5 or < 1 / 2.5, which no model is off by
 //
 // All units within the last bound are named, since several may be as near.
-std::string nearer_with(const Beside& b, const Channel& channel) {
+std::string nearer_with(const ColumnWithReference& b, const Channel& channel) {
     constexpr double quarter = 0.25, model_is_off = 2.5;
     const Values &v = b.candidate, &r = b.reference;
     const auto rms = [](const Values& x) {

@@ -1,3 +1,4 @@
+// Readings of a candidate's points on a branch: at equal parameter and at equal abscissa.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,8 +18,8 @@ constexpr double end_met = 1e-9;     // of a branch's length: tolerance of a poi
 
 // ---- The equilibrium leg at the points of the candidate.
 
-// Outputs at loads [SI] of a branch, continued over the branch's own grid; empty where the leg does
-// not get there.
+// Outputs of the equilibrium leg at any loads [SI] of a branch, which it solves on the way over the
+// steps of the branch.
 class Reference {
   public:
     Reference(const Model& model, const Branch& branch, int steps, std::vector<Channel> channels)
@@ -29,15 +30,15 @@ class Reference {
         std::ranges::sort(sorted_);
     }
 
-    // Outputs at a load that was visited; null if the leg does not get there.
+    // Outputs at a load given to visit(); null if the leg does not reach it.
     const std::vector<double>* at(double load) const {
         if (std::isnan(load)) return nullptr;
         const auto found = known_.find(load);
         return found == known_.end() ? nullptr : &found->second;
     }
 
-    // Load at which the reference is evaluated: that of a step if equal to rounding, the given load
-    // within the branch side, its end up to `end_met` beyond; else NaN.
+    // Load at which the reference is evaluated for a given one: the load of a step equal to it up to
+    // rounding, else itself within the branch, its end up to `end_met` beyond, NaN farther away.
     double placed(double load) const {
         const double length = sorted_.back() - sorted_.front();
         const auto near = std::ranges::lower_bound(sorted_, load - same_load * length);
@@ -51,7 +52,7 @@ class Reference {
         return nan;
     }
 
-    // Solves the branch at these loads, besides the grid, and keeps the outputs there for at().
+    // Solves the branch at these loads and its steps before them; at() then has the outputs.
     void visit(const std::vector<double>& loads) {
         Analyses analyses;
         for (const auto& side : sides_) {
@@ -81,7 +82,7 @@ class Reference {
   private:
     const Model& model_;
     std::vector<BranchSide> sides_;
-    std::vector<double> sorted_;  // loads of its steps
+    std::vector<double> sorted_;  // loads of the steps, ascending
     std::vector<Channel> channels_;
     std::map<double, std::vector<double>> known_;
 };
@@ -194,7 +195,7 @@ std::vector<double> loads_at(const std::vector<double>& x, Reference& reference,
             better = true;
         }
     }
-    // a knot of a curve, or a branch that ends early
+    // not solved: at a knot of a curve, or on a branch that ends early
     for (std::size_t k = 0; k < x.size(); ++k)
         if (!(std::abs(travel(loads[k]) - x[k]) <= rounding)) loads[k] = nan;
     return loads;

@@ -1,3 +1,4 @@
+// Candidates that are given as states: their outputs, and their residuals by the legs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -96,7 +97,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
         if (!left.a.empty() || !left.why_not.empty())
             result.state_residuals.push_back(std::move(left));
     }
-    // Outputs of a body without a given pose have no values.
+    // Columns without any value are those of bodies whose poses are not given.
     std::erase_if(result.points.columns, [](const PointColumn& column) {
         return std::ranges::all_of(column.values, [](double v) { return std::isnan(v); });
     });

@@ -13,20 +13,17 @@
 namespace elastocheck::compare {
 namespace {
 
-std::string branch_of(const Model& model, const Points& points, std::size_t k) {
-    return points.branch.empty() ? model.branches.front().name : points.branch[k];
-}
-
-// Points of a level (one number of steps) on one branch side, from a = 0 on, in the units of `all`
-// channels; those that the candidate does not give are NaN.
+// Points of a level (one number of steps) on one branch side, from a = 0 on, as a curve of these
+// channels; NaN where the candidate does not give one.
 Curve curve_on(const Model& model, const BranchSide& side, const std::string& branch,
                const std::vector<Channel>& channels, const Comparison& outline,
                const Points& points) {
     const double unit = in_unit(unit_of(side.branch.unit)), to = unit * side.branch.to;
-    const auto columns = as_they_stand(model, outline, points.columns);
+    const auto columns = as_absolute_values(model, outline, points.columns);
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < points.a.size(); ++k)
-        if (branch_of(model, points, k) == branch && points.a[k] * to >= 0) order.push_back(k);
+        if ((points.branch.empty() || points.branch[k] == branch) && points.a[k] * to >= 0)
+            order.push_back(k);
     std::ranges::stable_sort(order, {}, [&](std::size_t k) { return std::abs(points.a[k]); });
     Curve curve;
     curve.unit = unit_of(side.branch.unit);

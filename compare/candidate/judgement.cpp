@@ -6,18 +6,19 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nothing = 1e-9;        // [mm], [deg]: smaller deviations are rounding
-constexpr double nothing_of_it = 1e-6;  // share of an extent: likewise
+// Smaller deviations are rounding: of a position or angle [mm, deg], of others a share of the extent.
+constexpr double rounding = 1e-9, rounding_share = 1e-6;
 
 // Deviation relative to its limit; without a finite limit, relative to its extent.
-double taken(const Worst& worst) {
+double share_of_limit(const Worst& worst) {
     return worst.max / (std::isfinite(worst.limit) ? worst.limit
                         : worst.extent > 0         ? worst.extent
                                                    : 1);
 }
 
-bool is_worse(const Worst& one, const std::optional<Worst>& than) {
-    return !than || (!std::isnan(taken(*than)) && !(taken(one) <= taken(*than)));
+bool is_worse(const Worst& one, const std::optional<Worst>& other) {
+    return !other || (!std::isnan(share_of_limit(*other)) &&
+                      !(share_of_limit(one) <= share_of_limit(*other)));
 }
 
 bool is_within(const Worst& worst) { return std::isfinite(worst.max) && worst.max <= worst.limit; }
@@ -62,30 +63,31 @@ double as_position(const RateError& rate) { return std::abs(rate.off * rate.over
 
 Assessment assess(const Model& model, const Comparison& comparison, const Tolerance& tolerance,
                   bool tolerance_given) {
-    Assessment j;
-    j.tolerance = tolerance;
-    j.tolerance_given = tolerance_given;
+    Assessment result;
+    result.tolerance = tolerance;
+    result.tolerance_given = tolerance_given;
     for (const auto& branch : comparison.branches) {
-        j.method = branch.run(Leg::recursive).method;
+        result.method = branch.run(Leg::recursive).method;
         for (const auto& reason : branch.inconclusive.texts())
-            j.reasons.push_back(branch.branch + ": " + reason);
+            result.reasons.push_back(branch.branch + ": " + reason);
     }
     const auto rates =
         comparison.branches.empty() ? std::vector<RateError>{} : rate_errors(model, comparison);
     for (const auto& rate : rates)
-        if (!j.wheel_rate || std::abs(rate.off) > std::abs(j.wheel_rate->off)) j.wheel_rate = rate;
+        if (!result.wheel_rate || std::abs(rate.off) > std::abs(result.wheel_rate->off))
+            result.wheel_rate = rate;
 
     bool within = true;
-    j.exact = true;
+    result.exact = true;
     std::vector<bool> judged(comparison.channels.size());
     for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
         const bool across = kind == ReadingKind::equal_abscissa;
-        std::optional<Worst>&position = across ? j.position_across : j.position,
-        &angle = across ? j.angle_across : j.angle, &other = across ? j.other_across : j.other;
-        std::optional<Worst> position_otherwise, angle_otherwise;  // of outputs that are not main
-        // of rates that may be undefined: near the zero of a denominator a small error is
-        // a large share
-        std::optional<Worst> quotient;
+        std::optional<Worst>&position = across ? result.position_across : result.position,
+        &angle = across ? result.angle_across : result.angle,
+        &other = across ? result.other_across : result.other;
+        // of outputs that are not main, and of rates that may be undefined: near a zero of their
+        // denominator a small error is a large share
+        std::optional<Worst> other_position, other_angle, quotient;
         for (const auto& branch : comparison.branches)
             for_each_output(
                 comparison, branch, kind, tolerance, [&](std::size_t c, const Worst& found) {
@@ -93,32 +95,31 @@ Assessment assess(const Model& model, const Comparison& comparison, const Tolera
                     const bool motion = is_motion(channel), mm = channel.unit == Unit::mm;
                     judged[c] = judged[c] || std::isfinite(found.limit);
                     within = within && is_within(found);
-                    j.exact =
-                        j.exact && found.max < (motion ? nothing : nothing_of_it * found.extent);
+                    result.exact = result.exact &&
+                                   found.max < (motion ? rounding : rounding_share * found.extent);
                     auto& worst = !motion        ? (channel.may_be_undefined() ? quotient : other)
                                   : channel.main ? (mm ? position : angle)
-                                                 : (mm ? position_otherwise : angle_otherwise);
+                                                 : (mm ? other_position : other_angle);
                     if (is_worse(found, worst)) worst = found;
                 });
-        for (const auto& [main, otherwise] : {std::pair{&position, &position_otherwise},
-                                              {&angle, &angle_otherwise},
-                                              {&other, &quotient}})
-            if (*otherwise && (!*main || (is_within(**main) && is_worse(**otherwise, *main))))
-                *main = *otherwise;
+        for (const auto& [main, secondary] :
+             {std::pair{&position, &other_position}, {&angle, &other_angle}, {&other, &quotient}})
+            if (*secondary && (!*main || (is_within(**main) && is_worse(**secondary, *main))))
+                *main = *secondary;
     }
     for (const auto& rate : rates) {
         within = within && std::isfinite(rate.off) && as_position(rate) <= tolerance.mm;
-        j.exact = j.exact && as_position(rate) < nothing;
+        result.exact = result.exact && as_position(rate) < rounding;
     }
     for (std::size_t c = 0; c < judged.size(); ++c) {
-        j.outputs += judged[c];
-        j.others += judged[c] && !is_motion(comparison.channels[c]);
+        result.outputs += judged[c];
+        result.others += judged[c] && !is_motion(comparison.channels[c]);
     }
-    if (!j.position && !j.angle && !j.other) j.reasons.emplace_back("nothing was compared");
-    if (!comparison.conclusive() && j.reasons.empty())
-        j.reasons.emplace_back("nothing was compared");
-    if (j.reasons.empty()) j.verdict = within ? Grade::pass : Grade::fail;
-    return j;
+    if ((!result.position && !result.angle && !result.other) ||
+        (!comparison.conclusive() && result.reasons.empty()))
+        result.reasons.emplace_back("nothing was compared");
+    if (result.reasons.empty()) result.verdict = within ? Grade::pass : Grade::fail;
+    return result;
 }
 
 }  // namespace elastocheck::compare

@@ -15,7 +15,7 @@ struct Assessment {
     std::string method;                // of the recursion
     Tolerance tolerance = default_tolerance;
     bool tolerance_given = false;  // the tolerance was given, not the default
-    // A verdict is requested, by a method or a tolerance; else only the deviations are given.
+    // The user requests a verdict, by a method or a tolerance; else only deviations are reported.
     bool requested = true;
     // Largest deviations; empty where nothing is compared. They are taken from the main outputs,
     // unless these are within their limits and another position or angle takes a larger share of

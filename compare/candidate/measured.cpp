@@ -18,7 +18,8 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double of_measured = 1e-2;  // of a column's range: resolution of a measurement
+constexpr double min_relative_deviation =
+    1e-2;  // of a column's range: below, a measurement does not resolve it
 
 // ---- Loops: points of a branch that go out and back.
 
@@ -104,20 +105,19 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
 
 struct Given {
     const Comparison& comparison;
-    const Points& points;  // means of both sweeps
+    const Points& points;  // the mean of both sweeps where the points go out and back
     const DefinedCurves& defined;
 };
 
-// The points of branch b, and the values of a leg at their places by interpolation of degree 5;
-// for the equilibrium leg also those of the figures by other definitions. NaN where the leg
-// does not reach.
+// The points of branch b, and the values of a leg at their places by interpolation of degree 5, for the
+// equilibrium leg also of the figures by other definitions; NaN beyond the curve of the leg.
 CandidateReading beside_leg(const Given& given, const std::vector<Place>& places, std::size_t b,
                             Leg leg) {
     const auto& [comparison, points, defined] = given;
     const Curve& curve = comparison.branches[b].run(leg).curve;
     const std::array x_of_leg{
-        points.abscissa ? placed_by(curve, points.abscissa) : std::vector<double>{},
-        placed_by(curve, {})};
+        points.abscissa ? abscissa_values(curve, points.abscissa) : std::vector<double>{},
+        abscissa_values(curve, {})};
     CandidateReading reading;
     for (std::size_t k = 0; k < places.size(); ++k)
         if (places[k].branch == static_cast<int>(b) && std::isfinite(places[k].x)) {
@@ -207,12 +207,13 @@ std::vector<std::string> causes_of(const Given& given, std::vector<Place> places
     for (std::size_t b = 0; b < readings.size(); ++b)
         branches.push_back({&comparison.branches[b], &readings[b]});
     for (std::size_t c = 0; c < points.columns.size(); ++c) {
-        Beside b = beside(comparison, points.columns, defined.channels, branches, c);
+        ColumnWithReference b =
+            column_with_reference(comparison, points.columns, defined.channels, branches, c);
         if (b.candidate.size() < 3) continue;
         const auto [low, high] = std::ranges::minmax(b.candidate);
-        b.tolerance = of_measured * (high - low);
+        b.tolerance = min_relative_deviation * (high - low);
         if (!(deviation_of(b.reference, b.candidate, b.at).max > b.tolerance)) continue;
-        // a point from which on it is wrong says nothing about a measurement
+        // That a column is wrong from some point on does not explain a measurement.
         if (const auto found = explain(b); found && found->kind != Explanation::Kind::from_there_on)
             causes.push_back(describe(*found, comparison, points));
         else if (const auto nearer = nearer_with(b, comparison.channels[b.channel]);
@@ -261,7 +262,7 @@ DefinedCurves defined_curves(const Model& model, const Comparison& comparison) {
 MeasuredComparison compare_measured(const Model& model, const Comparison& comparison,
                                     const Points& measured, const DefinedCurves& defined) {
     MeasuredComparison result;
-    result.columns = as_they_stand(model, comparison, measured.columns);
+    result.columns = as_absolute_values(model, comparison, measured.columns);
     result.places = places_of(model, comparison, measured);
     result.used.assign(result.places.size(), false);
     Points means;

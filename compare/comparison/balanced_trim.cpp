@@ -1,4 +1,4 @@
-// Trims, with bushings that are unloaded as drawn or balanced (elastocheck/trim.hpp).
+// Trims of scenes with unloaded or balanced bushings (Trim::Bushings; elastocheck/trim.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,25 +16,26 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double in_place = 1e-12;  // [m, rad]: of a body that is where it is drawn
-constexpr int max_balances = 30;
+constexpr double drawn_tolerance = 1e-12;  // [m, rad]: distance of a body from its drawn position
+constexpr int max_corrections = 30;        // of the preloads
 
 bool is_balanced(const Elastic& element) {
     return preload(element.kind) != nullptr && element.written_as == WrittenAs::itself &&
            !element.active_only_where_driven;
 }
 
-// Of the body that is farthest from where it is drawn: its origin [m], or its rotation [rad].
-double farthest(const SettledTrim& settled) {
-    double most = 0;
+// Largest displacement [m] or rotation [rad] of a body from its drawn position.
+double largest_displacement(const SettledTrim& settled) {
+    double largest = 0;
     for (std::size_t b = 0; b < settled.state.poses.size(); ++b) {
         const Pose &drawn = settled.held.model.bodies[b].design, &now = settled.state.poses[b];
-        most = std::max({most, (now.r - drawn.r).norm(), now.p.angularDistance(drawn.p)});
+        largest = std::max({largest, (now.r - drawn.r).norm(), now.p.angularDistance(drawn.p)});
     }
-    return most;
+    return largest;
 }
 
-// u'(e(x)) - u'(e(drawn)) of every bushing of the model, by name, in the axes that it is written in.
+// Force that each balanced bushing gains while the model settles from the drawn position to x,
+// u'(e(x)) - u'(e(drawn)) [N, N·m], by name, in the axes in which the scene states the bushing.
 std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
     std::map<std::string, Vector6> loads;
     const Model& model = settled.held.model;
@@ -42,10 +43,11 @@ std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& element = model.elastics[k];
         if (!is_balanced(element)) continue;
-        const auto at = [&](const Equilibrium& state) {
+        const auto force_in = [&](const Equilibrium& state) {
             return force(element.kind, deformation(element.kind, k, settled.held.branch, state));
         };
-        loads[element.name] = (element.markers_swapped ? -1 : 1) * (at(settled.state) - at(drawn));
+        loads[element.name] =
+            (element.markers_swapped ? -1 : 1) * (force_in(settled.state) - force_in(drawn));
     }
     return loads;
 }
@@ -56,8 +58,8 @@ std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
 //
 //   P ← P + r - (dP + dr) γ,   γ minimises |r - dr γ|
 //
-// P + r alone takes hundreds of corrections where springs bear much of what the bushings lose, as
-// in the soft motion of a subframe.
+// P ← P + r alone takes hundreds of corrections where springs take over much of the load of the
+// bushings, as in the soft motion of a subframe.
 struct Corrections {
     Eigen::VectorXd P, r;    // of the last correction, six rows per bushing
     Eigen::MatrixXd dP, dr;  // a column per correction but the first
@@ -102,15 +104,15 @@ void require_drawn_values(const Scene& scene) {
                             scene.trim->until[static_cast<std::size_t>(k)].name));
 }
 
-// What the record says of each balanced bushing.
+// Records the preload of each balanced bushing, and by how much its force changed.
 void record_preloads(const Scene& scene, const Scene& balanced, TrimRecord& record) {
     for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
         if (!is_balanced(scene.elastics[k])) continue;
-        const auto preload_in = [&](const Scene& of) {
-            return std::get<Bushing>(of.elastics[k].kind).preload;
+        const auto preload_in = [&](const Scene& source) {
+            return std::get<Bushing>(source.elastics[k].kind).preload;
         };
-        const Vector6 P = preload_in(balanced), by = P - preload_in(scene);
-        const double force = by.head<3>().norm();
+        const Vector6 P = preload_in(balanced);
+        const double force = (P - preload_in(scene)).head<3>().norm();
         record.adjusted.push_back(
             {"bushings." + scene.elastics[k].name + ".preload", Unit::newton, force,
              fmt::format("force ({:.5g}, {:.5g}, {:.5g}) N, moment ({:.4g}, {:.4g}, {:.4g}) N·m "
@@ -129,12 +131,12 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     if (start != nullptr) last = *start;
     double distance = 0;
     Corrections corrections;
-    for (int balances = 0; balances < max_balances; ++balances) {
+    for (int k = 0; k < max_corrections; ++k) {
         SettledTrim settled;
         Trimmed trimmed = trim_once(loaded, solver, false, &last, &settled);
         if (!trimmed.record->reached()) return {scene, trimmed.record};
-        distance = farthest(settled);
-        if (distance <= in_place) {
+        distance = largest_displacement(settled);
+        if (distance <= drawn_tolerance) {
             if (start != nullptr) *start = last;
             if (confirm) trimmed = trim_once(loaded, solver, true, &last, nullptr);
             if (!trimmed.record->reached()) return {scene, trimmed.record};
@@ -149,7 +151,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     record.detail = fmt::format(
         "the bushings are not balanced after {} corrections: a body still settles {:.3g} mm from "
         "where it is drawn",
-        max_balances, 1e3 * distance);
+        max_corrections, 1e3 * distance);
     return {scene, record};
 }
 

@@ -23,17 +23,17 @@ ByPath by_path(std::span<const Number> numbers) {
 
 std::vector<Change> changes(std::span<const Number> was, std::span<const Number> is) {
     const ByPath before = by_path(was), now = by_path(is);
-    std::vector<Change> found;
+    std::vector<Change> list;
     for (const auto& number : is) {
-        const auto at = before.find(number.path);
-        if (at == before.end())
-            found.push_back({.was = std::nullopt, .is = number});
-        else if (!same(*at->second, number))
-            found.push_back({.was = *at->second, .is = number});
+        const auto old = before.find(number.path);
+        if (old == before.end())
+            list.push_back({.was = std::nullopt, .is = number});
+        else if (!same(*old->second, number))
+            list.push_back({.was = *old->second, .is = number});
     }
     for (const auto& number : was)
-        if (!now.contains(number.path)) found.push_back({.was = number, .is = std::nullopt});
-    return found;
+        if (!now.contains(number.path)) list.push_back({.was = number, .is = std::nullopt});
+    return list;
 }
 
 Table table_of(const std::vector<Change>& changes, const char* was, const char* is) {

@@ -19,7 +19,7 @@ struct Change {
 // paths and compared by value and unit as written in the file.
 std::vector<Change> changes(std::span<const Number> was, std::span<const Number> is);
 
-// A row for each, the old value in the column `was`.
+// Columns: number, old value (headed `was`), new value (headed `is`), unit.
 Table table_of(const std::vector<Change>& changes, const char* was = "was", const char* is = "is");
 
 }  // namespace elastocheck::compare

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compare/comparison/compare_with.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/deviation/proof.hpp"
@@ -27,21 +26,15 @@ Residuals worse(const Residuals& a, const Residuals& b) {
             compare::worse(a.force, b.force), compare::worse(a.moment, b.moment)};
 }
 
-// Processor time [s] of a run whose points are ignored: other work at the points evicts data from
-// the caches, and steps as short as the recursion's then take half as long again.
+// Processor time [s] of a run whose points are ignored. Work at the points evicts data from the
+// caches, after which the short steps of the recursion take half as long again.
 double seconds_alone(const std::vector<BranchSide>& sides, const SolverSettings& solver) {
     const double start = processor_time();
     for (const auto& side : sides) solve_branch(side, solver, [](const Equilibrium&) {});
     return processor_time() - start;
 }
 
-bool has_characteristics(const std::vector<Channel>& channels) {
-    return std::ranges::any_of(
-        channels, [](const Channel& c) { return c.kind() == ChannelKind::characteristic; });
-}
-
-// Responses at the landmarks, kept where outputs were read from them, so that they are
-// not computed again.
+// Responses of the wheels at the landmarks, where outputs have already been read from them.
 struct Responses {
     std::optional<WheelResponse> front, start, back;
 };
@@ -72,29 +65,27 @@ std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side
     return list;
 }
 
-// Proofs at the landmarks, each parameter once: all of them, or the ends only. Landmarks of a path
-// that ended early are proved too, since each is an equilibrium or not.
+// Proofs at the landmarks, also of a path that ended early: all of them, or the ends only.
 Tally proved(const BranchSide& side, const LegRun& run, bool ends_only,
              std::vector<reference::certificate::ProvedBox>& known) {
     Tally tally;
-    std::vector<double> done;
+    std::vector<double> certified;
     const auto& [front, start, middle, back] = run.landmarks;
     std::vector<const std::optional<Equilibrium>*> states{&start, &middle, &front, &back};
     if (ends_only) {
         states = {&front, &back};
-        if (start) done.push_back(start->load);  // a one-sided branch begins there
+        if (start) certified.push_back(start->load);  // a one-sided branch begins there
     }
     for (const auto* state : states) {
-        if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
-        done.push_back((*state)->load);
+        if (!*state || std::ranges::find(certified, (*state)->load) != certified.end()) continue;
+        certified.push_back((*state)->load);
         add(tally, (*state)->load, run.curve.unit,
             reference::certificate::certify(side.model, side.branch, **state, {}, known));
     }
     return tally;
 }
 
-// Parameters of the points whose states are kept: all of up to 17, else 17 of
-// evenly spaced position.
+// Parameters of the points whose states are kept: all if there are up to 17, else 17 evenly spaced.
 std::vector<double> stations_of(const std::vector<double>& requested) {
     constexpr std::size_t max_intervals = 16;
     std::vector<double> stations;
@@ -158,7 +149,8 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
         landmarks.back = landmarks.start;
         responses.back = responses.start;
     }
-    if (!model.wheels.empty() && has_characteristics(channels))
+    if (!model.wheels.empty() &&
+        std::ranges::find(channels, ChannelKind::characteristic, &Channel::kind) != channels.end())
         run.compliance = compliance_of(model, side, solver, run, responses);
     if (!times)
         run.seconds = nan;
@@ -181,14 +173,15 @@ double bound_of(Unit unit, const Bounds& bounds) {
         case Unit::deg: return bounds.angle;
         case Unit::newton: return bounds.force;
         case Unit::newton_metre: return bounds.moment;
-        case Unit::percent:
-            return 6e3 * bounds.angle;  // two cotangents at 2 deg, for a wheelbase of two tracks
-        default: return 0;              // characteristics are bounded separately
+        // Ackermann, 100 (cot δ_o - cot δ_i) l/j: at δ = 2 deg, where it begins to be defined,
+        // |d cot δ/dδ| = 1/sin² δ is 14.3 per deg; twice this for two wheels, times l/j = 2
+        case Unit::percent: return 6e3 * bounds.angle;
+        default: return 0;  // characteristics are bounded separately
     }
 }
 
-// Allowed difference of rates: a share of the largest on the branch, at least of a thousandth of
-// their unit; of a place at least that of positions.
+// Allowed difference of a characteristic: a millionth of its largest |value| on the branch, which
+// counts as at least a thousandth of its unit; of a coordinate at least the bound of positions.
 double bound_of_characteristic(const Channel& channel, const std::vector<double>& values,
                                const Bounds& bounds) {
     constexpr double share = 1e-6;
@@ -204,55 +197,50 @@ int count(const Reading& reading, const std::vector<bool>& determined) {
     return sum;
 }
 
-// Message where the two legs are at two different equilibria, at a landmark where both states are
-// proved and the boxes of the proofs are disjoint: the distance of their outputs then says nothing
-// about the error of either. Bodies with an idle motion are not compared, as their position along
-// it is arbitrary. "the energy leg is on another equilibrium than the equilibrium leg at -120 N,
-// each proved: body 'a' is 160 mm away"; empty if there is none.
-std::string on_two_branches(const Model& model, const Branch& requested, const LegRun& truth,
-                            const LegRun& other) {
+// Message where the two legs are at two different equilibria: at a landmark both states are proved
+// and the boxes of the proofs are disjoint. The distance of their outputs then says nothing about
+// the error of either. Bodies with an idle mode are not compared. "the energy leg is on another
+// equilibrium than the equilibrium leg at -120 N, each proved: body 'a' is 160 mm away"; empty if none.
+std::string at_two_equilibria(const Model& model, const Branch& requested, const LegRun& truth,
+                              const LegRun& other) {
     using namespace reference::certificate;
     const auto sides = sides_of(model, requested);
-    std::vector<bool> idle(model.bodies.size());
-    for (const auto& mode : recursive::diagnose(sides.back().model).idle)
-        for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
-            if (std::abs(entry.value()) > 1e-6)
-                idle[static_cast<std::size_t>(entry.index() / 6)] = true;
+    const auto idle = bodies_with_idle_mode(model, recursive::diagnose(sides.back().model));
     for (const auto landmark :
          {&Landmarks::back, &Landmarks::front, &Landmarks::middle, &Landmarks::start}) {
-        const auto &own = truth.landmarks.*landmark, &others = other.landmarks.*landmark;
-        if (!own || !others || own->load != others->load) continue;
+        const auto &state = truth.landmarks.*landmark, &other_state = other.landmarks.*landmark;
+        if (!state || !other_state || state->load != other_state->load) continue;
         std::size_t farthest = 0;
         double length = 0, angle = 0;
-        for (std::size_t b = 0; b < own->poses.size(); ++b) {
+        for (std::size_t b = 0; b < state->poses.size(); ++b) {
             if (idle[b]) continue;
-            const double distance = (own->poses[b].r - others->poses[b].r).norm();
+            const double distance = (state->poses[b].r - other_state->poses[b].r).norm();
             if (distance > length) {
                 length = distance;
                 farthest = b;
             }
-            angle = std::max(angle, own->poses[b].p.angularDistance(others->poses[b].p));
+            angle = std::max(angle, state->poses[b].p.angularDistance(other_state->poses[b].p));
         }
-        const BranchSide& side = side_at(sides, own->load);
-        const Certificate of_here = certify(side.model, side.branch, *own);
-        if (of_here.state != ProofState::proved) continue;
-        const Certificate of_there = certify(side.model, side.branch, *others);
-        if (of_there.state != ProofState::proved) continue;
-        if (!(length > of_here.error.length + of_there.error.length ||
-              angle > of_here.error.angle + of_there.error.angle))
+        const BranchSide& side = side_at(sides, state->load);
+        const Certificate certificate = certify(side.model, side.branch, *state);
+        if (certificate.state != ProofState::proved) continue;
+        const Certificate other_certificate = certify(side.model, side.branch, *other_state);
+        if (other_certificate.state != ProofState::proved) continue;
+        if (!(length > certificate.error.length + other_certificate.error.length ||
+              angle > certificate.error.angle + other_certificate.error.angle))
             continue;
         const Unit unit = unit_of(requested.unit);
         return fmt::format(
             "the {} leg is on another equilibrium than the {} leg at {:.6g} {}, each proved: body "
             "'{}' is "
             "{:.3g} mm away",
-            name(other.leg), name(truth.leg), in_unit(unit) * own->load, symbol(unit),
+            name(other.leg), name(truth.leg), in_unit(unit) * state->load, symbol(unit),
             model.bodies[farthest].name, 1e3 * length);
     }
     return {};
 }
 
-// Message on the proofs of the other leg, where one leg is disproved; empty if they do not decide.
+// Message on the proofs of the leg beside a disproved one; empty if they do not decide.
 std::string which_is_right(const LegRun& other) {
     const Tally& t = other.proved;
     if (t.excluded > 0 || t.points == 0) return {};
@@ -262,7 +250,7 @@ std::string which_is_right(const LegRun& other) {
                        name(other.leg), t.proved, t.points);
 }
 
-// First point at which only one of the two runs has a value for an output; empty if none.
+// Message on the first point at which only one of two runs has a value of an output; empty if none.
 std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& one,
                            const LegRun& other) {
     for (std::size_t k = 0; k < std::min(one.curve.values.size(), other.curve.values.size()); ++k) {
@@ -337,17 +325,28 @@ void add_ends(const Model& model, const Branch& requested, std::vector<const Leg
 
 }  // namespace
 
+std::vector<bool> bodies_with_idle_mode(const Model& model, const recursive::Diagnosis& diagnosis) {
+    std::vector<bool> moved(model.bodies.size());
+    for (const auto& mode : diagnosis.idle)
+        for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
+            if (std::abs(entry.value()) > 1e-6)
+                moved[static_cast<std::size_t>(entry.index() / 6)] = true;
+    return moved;
+}
+
 bool energy_judges_states(const BranchComparison& branch) {
     return branch.second != Leg::energy && branch.run(Leg::energy).outcome == Outcome::too_large;
 }
 
 Objections disagreements(const Model& model, const std::vector<Channel>& channels,
-                         const Branch& requested, const BranchComparison& branch, Of of) {
+                         const Branch& requested, const BranchComparison& branch,
+                         RequiredLegs required) {
     Objections objections;
     std::vector<const LegRun*> ended;
     for (const Leg leg : {Leg::equilibrium, Leg::series, Leg::energy, Leg::recursive})
         for (const auto& run : branch.runs) {
-            if (run.leg != leg || (leg == Leg::recursive && of == Of::references)) continue;
+            if (run.leg != leg || (leg == Leg::recursive && required == RequiredLegs::references))
+                continue;
             if (leg == Leg::energy && branch.second != Leg::energy)
                 continue;  // does not apply, and is not needed
             if (run.outcome != Outcome::converged) ended.push_back(&run);
@@ -376,11 +375,13 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                 part);
     }
     if (!disagreements.empty())
-        if (const auto two = on_two_branches(model, requested, equilibrium, second); !two.empty()) {
-            objections.add(two);
+        if (const auto message = at_two_equilibria(model, requested, equilibrium, second);
+            !message.empty()) {
+            objections.add(message);
             disagreements = {};
         }
-    for (const auto& one : disagreements.worst) objections.add(one.what, one.share);
+    for (const auto& objection : disagreements.worst)
+        objections.add(objection.what, objection.share);
     objections.count += disagreements.count - static_cast<int>(disagreements.worst.size());
     for (const auto& [run, other] :
          {std::pair(&equilibrium, &second), std::pair(&second, &equilibrium)})
@@ -392,7 +393,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     for (std::size_t c = 0; c < channels.size(); ++c)
         if (const auto where = defined_by_one(channels[c], c, equilibrium, second); !where.empty())
             objections.add(where);
-    // A judge needs no states of its own: the series uses the equations of the recursive leg.
+    // Where the series is the second reference, its equations are those of the recursive leg.
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
     std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge},
                                                           {&second, Leg::equilibrium}};
@@ -424,7 +425,7 @@ struct SolvedBranch {
     std::vector<LegRun> runs;
 };
 
-// Deviations between the runs. `requested_abscissa`: of the channels, or -1.
+// Deviations between the runs. `requested_abscissa`: position in `channels`, or -1 for the default.
 BranchComparison compare_runs(const Model& model, const std::vector<Channel>& channels,
                               SolvedBranch solved, int requested_abscissa, const Options& options) {
     const auto& [branch, sides, runs] = solved;
@@ -506,7 +507,7 @@ Comparison compare(const Model& model, const Options& options, const std::vector
     const auto solve = [&](std::size_t k, const SolverSettings& solver) {
         return run(model, result.channels, model.branches[k], sides[k], solver, options.times);
     };
-    // The references first: the others are near the boxes that are proved for them.
+    // The references first: the points of the other legs lie near the boxes proved for these.
     const auto prove = [&](std::size_t k, std::vector<LegRun>& runs) {
         std::vector<reference::certificate::ProvedBox> known;
         for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive})

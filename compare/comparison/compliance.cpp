@@ -27,11 +27,11 @@ struct ResponseCase {
     Equilibrium state;
 };
 
-// The free model of compliance.hpp: without jacks and tyres, whose forces at this state act as
-// static loads.
+// The free model of compliance.hpp: without jacks and tyres; their forces at this state act as static
+// loads.
 ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
     ResponseCase free{side.model, side.branch, state};
-    const auto push = [&](const Point& at, double force) {
+    const auto add_force = [&](const Point& at, double force) {
         free.model.static_loads.push_back({"held", DeadForce{at, force * Vector3d::UnitZ()}});
     };
     std::erase_if(free.branch.drivers, [&](const Driver& driver) {
@@ -40,14 +40,14 @@ ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
     });
     for (std::size_t k = 0; k < side.model.joints.size(); ++k)
         if (is_jack(side.model, k)) {
-            push(side.model.joints[k].at, state.reactions[k].force.z());
+            add_force(side.model.joints[k].at, state.reactions[k].force.z());
             free.state.reactions[k] = {};
         }
     for (std::size_t k = 0; k < side.model.elastics.size(); ++k)
         if (const Elastic& tyre = side.model.elastics[k]; tyre.written_as == WrittenAs::tyre) {
             const Marker& at = std::get<Bushing>(tyre.kind).j;
             const Vector6 e = deformation(tyre.kind, k, side.branch, state);
-            push({at.body, at.s_local}, -stress(tyre.kind, k, side.branch, state, e).z());
+            add_force({at.body, at.s_local}, -stress(tyre.kind, k, side.branch, state, e).z());
             std::erase_if(free.branch.drivers, [&](const Driver& driver) {
                 return driven_element(driver.what) == static_cast<int>(k);
             });
@@ -77,9 +77,9 @@ ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
 
 // Unit disturbances, per wheel: forces [1 N] along x, y, z and moments [1 N·m] about them at the
 // centre, then forces at the patch. The longitudinal force at the patch of a wheel that rolls
-// brakes: the carrier takes its moment.
-std::vector<Disturbance> causes_at(const Model& model, const Equilibrium& state,
-                                   bool with_patches) {
+// is that of a brake: its moment acts on the carrier.
+std::vector<Disturbance> unit_disturbances(const Model& model, const Equilibrium& state,
+                                           bool with_patches) {
     std::vector<Disturbance> disturbances;
     for (const Wheel& wheel : model.wheels) {
         const Point centre{wheel.body, wheel.centre_local};
@@ -111,8 +111,8 @@ Motions at_patch_of(const std::array<Motions, causes>& solved, const Vector3d& d
     return sum;
 }
 
-// The motions of all bodies, sorted by wheel and cause (order of causes_at()). Where they were
-// solved without patches, those of the forces there are the sums of at_patch_of().
+// The motions of all bodies, sorted by wheel and cause (order of unit_disturbances()). Where they were
+// solved without forces at the patches, those motions are the sums of at_patch_of().
 std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& solved,
                                                   const Model& model, const Equilibrium& state,
                                                   bool with_patches) {
@@ -129,21 +129,21 @@ std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& so
     return list;
 }
 
-// Whether 1 N or 1 N·m moves a wheel by a million kilometres: the stiffness there is rounding.
+// Whether 1 N or 1 N·m moves a body by a million kilometres or 10⁹ rad: its stiffness is rounding.
 bool is_unresisted(const std::vector<std::array<Motions, causes>>& free) {
-    constexpr double nowhere = 1e9;
+    constexpr double unresisted = 1e9;  // [m, rad]
     for (const auto& wheel : free)
         for (const Motions& motions : wheel)
             for (const Increment& body : motions)
-                if (body.dr.norm() > nowhere || body.dpi.norm() > nowhere) return true;
+                if (body.dr.norm() > unresisted || body.dpi.norm() > unresisted) return true;
     return false;
 }
 
 // The responses of the jacked model from those of the free one. Under a disturbance the wheel
 // centres of the free model rise by z; forces F of the jacks, with C the rise per unit force, hold
-// them at the given travel t: z + C F = t. In the order of on_jacks() below; none where C is nearly
-// singular. `free`: responses to the wrenches, `per_wheel` of them a wheel, and perhaps to the
-// steering.
+// them at the given travel t: z + C F = t. `free`: responses to the wrenches, `per_wheel` of them a
+// wheel, and perhaps to the steering; the result has those to a unit travel of each wheel between
+// these. Empty where C is nearly singular.
 std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& free,
                                                   const Model& model, const Equilibrium& state,
                                                   std::size_t per_wheel) {
@@ -198,7 +198,7 @@ recursive::ResponseAnalysis analysis_like(const std::optional<recursive::Respons
 
 }  // namespace
 
-Analyses like(const Analyses& other) {
+Analyses with_orders_of(const Analyses& other) {
     Analyses made;
     made.one_factorisation = other.one_factorisation;
     for (const auto cache : {&Analyses::free, &Analyses::jacked, &Analyses::tied}) {
@@ -239,24 +239,24 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     const bool refines =
         analyses.one_factorisation || solver.leg == Leg::equilibrium || solver.leg == Leg::energy;
     const bool with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);
-    const auto wrenches = causes_at(side.model, state, with_patches);
+    const auto wrenches = unit_disturbances(side.model, state, with_patches);
     const std::size_t first = freed_case.model.joints.size();
     const bool steers =
         steering >= 0 && freed_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
     std::optional<std::vector<Motions>> held;  // by the same factorisation
     if (with_free) {
-        const auto answers_to = [&](std::span<const Disturbance> list) {
+        const auto response_to = [&](std::span<const Disturbance> list) {
             return linear_response(solver, freed_case.model, freed_case.branch, freed_case.state,
                                    list, analyses.free);
         };
         std::vector<Disturbance> with_steering = wrenches;
         if (steers && refines) with_steering.push_back(Motion{steering});
-        Response free = answers_to(with_steering);
+        Response free = response_to(with_steering);
         if (free.outcome == Outcome::converged && refines)
             held =
                 held_by_jacks(free.increments, side.model, state, with_patches ? causes : at_patch);
         else if (with_steering.size() > wrenches.size())
-            free = answers_to(wrenches);
+            free = response_to(wrenches);
         if (free.outcome == Outcome::converged) {
             response.free = by_wheel(free.increments, side.model, state, with_patches);
         } else {
@@ -272,7 +272,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         held.reset();
     }
 
-    const auto on_jacks = [&](std::size_t count, ResponseCache& cache) {
+    const auto jacked_response = [&](std::size_t count, ResponseCache& cache) {
         const ResponseCase up = jacked_up(freed_case, count);
         std::vector<Disturbance> changes = wrenches;
         for (std::size_t w = 0; w < count; ++w)
@@ -281,9 +281,9 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         return linear_response(solver, up.model, up.branch, up.state, changes, cache);
     };
     Response jacked = held ? Response{Outcome::converged, "", std::move(*held)}
-                           : on_jacks(wheels, analyses.jacked);
+                           : jacked_response(wheels, analyses.jacked);
     if (jacked.outcome == Outcome::inconsistent_constraints && wheels > 1)
-        if (Response one = on_jacks(1, analyses.tied); one.outcome == Outcome::converged) {
+        if (Response one = jacked_response(1, analyses.tied); one.outcome == Outcome::converged) {
             jacked = std::move(one);
             response.tied = true;
         }
@@ -319,7 +319,7 @@ Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibri
                 C.block<6, 1>(6 * i, 6 * j + k)
                     << wheel.moved_by(motions, centre ? wheel.centre() : wheel.patch()),
                     wheel.turned_by(motions);
-                // as the longitudinal force, that of a braked wheel
+                // longitudinal: of the point held by the brake, where that force acts
                 if (!centre) C(6 * i, 6 * j + k) = wheel.moved_by(motions, wheel.braked()).x();
             }
         }

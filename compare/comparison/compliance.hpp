@@ -35,28 +35,29 @@ struct Orders;  // linear_response.hpp
 
 namespace elastocheck::compare {
 
-// What a leg keeps of the response models of a branch side, made on first use. It does not depend on the
-// state, but for the elimination orders, which are those of the last one: they change rounding.
+// Data of one response model of a branch side, made on first use. It does not depend on the state, except
+// for the elimination orders, those of the last state, which affect rounding only.
 struct ResponseCache {
     std::optional<recursive::ResponseAnalysis> recursion;
-    std::optional<recursive::ResponseAnalysis> before;  // of a similar model: its orders are tried
+    std::optional<recursive::ResponseAnalysis> before;  // of a similar model, for its orders
     std::shared_ptr<const reference::equilibrium::Orders> equilibrium;
 };
+// All that is kept of a branch side, for a leg.
 struct Analyses {
     ResponseCache free, jacked;
     ResponseCache tied;                              // of the jacked model with one jack
     std::optional<std::vector<int>> dependent_rows;  // recursive/diagnosis/self_stress.hpp
     std::optional<WheelResponse> response;           // at the state of the last row_of()
-    bool one_factorisation = false;                  // for the recursion too, see the head
+    bool one_factorisation = false;  // also for the recursion, as described at the top
 };
-// An empty cache that begins with the elimination orders of a similar model's.
-Analyses like(const Analyses& other);
+// Empty, with the elimination orders of a similar model to begin with.
+Analyses with_orders_of(const Analyses& other);
 
 // Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix
 // that its method factorises. `steering`: position in Model::joints, or -1. `analyses` belong to
 // the branch side and are reused over its states: the two models differ between states only in
-// loads and jack heights, which an analysis does not use. Without `with_free` the wheels are not
-// freed, and WheelResponse::free is empty.
+// loads and jack heights, which an analysis does not use. Without `with_free` WheelResponse::free
+// is not computed and stays empty.
 WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solver, int steering,
                              const Equilibrium& state, Analyses& analyses, bool with_free = true);
 inline WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solver,
@@ -65,7 +66,7 @@ inline WheelResponse wheel_response(const BranchSide& side, const SolverSettings
     return wheel_response(side, solver, steering, state, analyses);
 }
 
-// Response by one leg.
+// Linear response of a model at a state to unit disturbances, by one leg.
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
                          ResponseCache& cache);

@@ -28,7 +28,7 @@ bool is_spring(const Elastic& elastic) { return member<ScalarLaw>(elastic.kind) 
 
 // ---- Evaluation
 
-bool stands(const Elastic& elastic, int k, const Branch& branch) {
+bool is_active(const Elastic& elastic, int k, const Branch& branch) {
     return !elastic.active_only_where_driven ||
            std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
                return driven_element(driver.what) == k;
@@ -54,7 +54,7 @@ struct ElementState {
 
 ElementState state_of(const Model& model, const Branch& branch, const Equilibrium& state, int k) {
     const Elastic& elastic = elastic_of(model, k);
-    ElementState result{&elastic, stands(elastic, k, branch)};
+    ElementState result{&elastic, is_active(elastic, k, branch)};
     if (!result.active) return result;
     result.e = deformation(elastic.kind, static_cast<std::size_t>(k), branch, state);
     result.s = stress(elastic.kind, static_cast<std::size_t>(k), branch, state, result.e);
@@ -166,7 +166,7 @@ std::vector<Channel> element_channels(const Model& model) {
 std::vector<double> evaluate(const Model& model, const Branch& branch,
                              std::span<const Channel> channels, const Equilibrium& state) {
     std::vector<double> values = evaluate(model, channels, state);
-    // The components of an element follow each other.
+    // The state of an element is computed once, since its components follow each other.
     int element = -1;
     ElementState element_state{};
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -188,7 +188,7 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
 std::vector<double> evaluate(const Model& model, const BranchSide& side,
                              std::span<const Channel> channels, const Equilibrium& state,
                              Analyses& analyses) {
-    // Of a self-stress of 1 N. The constraint error of a fast method leaves a remainder.
+    // [N, N·m] of a self-stress of 1 N; above its imbalance, due to the constraint error of the state
     constexpr double rounding = 1e-6, per_remainder = 10;
     std::vector<double> values = evaluate(model, side.branch, channels, state);
     auto& dependent = analyses.dependent_rows;
@@ -223,12 +223,12 @@ std::string why_undefined(const Channel& channel) {
 }
 
 std::vector<bool> active_channels(std::span<const Channel> channels, const Model& standing) {
-    std::vector<bool> stands(standing.joints.size(), false), list;
+    std::vector<bool> active(standing.joints.size(), false), list;
     for (const auto& constraint : standing.constraints)
-        stands[static_cast<std::size_t>(constraint.joint)] = true;
+        active[static_cast<std::size_t>(constraint.joint)] = true;
     for (const auto& channel : channels)
         list.push_back(std::ranges::all_of(
-            channel.joints(), [&](int k) { return stands[static_cast<std::size_t>(k)]; }));
+            channel.joints(), [&](int k) { return active[static_cast<std::size_t>(k)]; }));
     return list;
 }
 

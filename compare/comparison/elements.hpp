@@ -11,11 +11,10 @@
 //
 // ℓ₀ and the preload include the driven part of the branch at state.load. A positive s pulls j
 // back, as a preload does. Force and deformation are work-conjugate at any size of deformation: for
-// large rotations s is conjugate to θ and differs from the components of the moment. Without
-// `conjugate`, s are the components along the axes.
+// large rotations s is conjugate to θ and differs from the components of the moment. For a
+// Formulation that is not `conjugate`, s are the components along the axes.
 //
-// They are not part of channels(model): a scene of a thousand beams would store
-// twelve thousand curves.
+// These outputs are not part of channels(model): a thousand beams would have twelve thousand curves.
 #pragma once
 
 #include <memory>
@@ -37,15 +36,16 @@ namespace elastocheck::compare {
 std::vector<Channel> element_channels(const Model& model);
 std::string element_of(const Channel& channel);  // its element or link: "lower_front"
 
-// [mm], [deg], [N], [N·m]: smaller values are rounding.
+// Smaller values [mm, deg, N, N·m] are rounding.
 inline constexpr double zero_value = 1e-6;
 
-// Values of these and any other channels; NaN for a tyre that is inactive on the branch.
+// Values of element channels and any others, in their units; NaN for an element that is inactive on
+// the branch.
 std::vector<double> evaluate(const Model& model, const Branch& branch,
                              std::span<const Channel> channels, const Equilibrium& state);
 struct Analyses;  // compliance.hpp
-// Likewise; `undefined` for reactions that redundant joints share in a way that the loads do not
-// determine: those that read more than rounding from a self-stress of the joints.
+// Likewise; `undefined` for reactions that the loads do not determine, since redundant joints share
+// them: those that are not zero in a self-stress of the joints (recursive/diagnosis/self_stress.hpp).
 std::vector<double> evaluate(const Model& model, const BranchSide& side,
                              std::span<const Channel> channels, const Equilibrium& state,
                              Analyses& analyses);
@@ -54,7 +54,7 @@ std::vector<double> evaluate(const Model& model, const BranchSide& side,
 bool is_undefined_somewhere(std::size_t channel, const Curve& curve);
 std::string why_undefined(const Channel& channel);
 
-// What redundant joints share, summed up (totals()), on any branch of the model.
+// Sums of the reactions of redundant joints (totals()), on any branch of the model.
 std::vector<Channel> sums(const Model& model);
 
 // Per channel, whether the joints that it reads have constraints in `standing`, the model

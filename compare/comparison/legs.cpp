@@ -49,7 +49,7 @@ EquilibriumPath recursion(const BranchSide& side, recursive::Options options, in
                : recursive::solve(side.model, side.branch, options, requested);
 }
 
-// Runs the leg with extrapolated curves, without a check of their ends.
+// Runs the leg, which extrapolates tabulated curves beyond their ends; solve_branch() checks those.
 EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solver,
                              const Visit& visit) {
     const auto& [model, branch] = std::tie(side.model, side.branch);
@@ -69,9 +69,26 @@ EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solve
     return {};
 }
 
-// Outcome and counts of two sides. Path: EquilibriumPath or PathCurve.
+// Runs solve(visit), and ends the path before the first state at which an element is deformed beyond the
+// end of its tabulated curve.
+template <class Solve>
+EquilibriumPath solve_within_tables(const BranchSide& side, const Visit& visit,
+                                    const Solve& solve) {
+    std::string ended;
+    EquilibriumPath path = solve([&](const Equilibrium& state) {
+        if (ended.empty()) ended = ends_at_table(side.model, side.branch, state);
+        if (ended.empty()) visit(state);
+    });
+    if (!ended.empty()) {
+        path.outcome = Outcome::outside_table;
+        path.detail = ended;
+    }
+    return path;
+}
+
+// Gives `first` the outcome and the counts of both sides. Path: EquilibriumPath or PathCurve.
 template <class Path>
-void end_as_both(const std::vector<BranchSide>& sides, Path& first, const Path& second) {
+void add_outcome(const std::vector<BranchSide>& sides, Path& first, const Path& second) {
     const auto labelled = [](const BranchSide& side, const std::string& detail) {
         return fmt::format("{}: {}", side.name, detail);
     };
@@ -100,8 +117,8 @@ EquilibriumPath join(const std::vector<BranchSide>& sides, const SolverSettings&
     if (sides.size() == 1)
         return solve_branch(sides.front(), solver,
                             [&](const Equilibrium& state) { hand_over(read(state)); });
-    // Both sides start at a = 0 in the same settled state: the second side's start is used, if it
-    // has one.
+    // Both sides start at a = 0 in the same settled state, which is taken from the second side unless
+    // that has no point.
     std::optional<Equilibrium> start;
     std::vector<Row> reversed;
     EquilibriumPath joined = solve_branch(sides.front(), solver, [&](const Equilibrium& state) {
@@ -116,7 +133,7 @@ EquilibriumPath join(const std::vector<BranchSide>& sides, const SolverSettings&
         hand_over(read(state));
     });
     if (start) hand_over(read(*start));
-    end_as_both(sides, joined, second);
+    add_outcome(sides, joined, second);
     return joined;
 }
 
@@ -170,20 +187,10 @@ const BranchSide& side_at(const std::vector<BranchSide>& sides, double a) {
 EquilibriumPath solve_branch(const BranchSide& side, const SolverSettings& solver,
                              const Visit& visit) {
     std::vector<Equilibrium> kept;
-    std::string ended;
-    EquilibriumPath path = solve_by_leg(side, solver, [&](const Equilibrium& state) {
-        if (!ended.empty()) return;
-        ended = ends_at_table(side.model, side.branch, state);
-        if (!ended.empty()) return;
-        if (visit)
-            visit(state);
-        else
-            kept.push_back(state);
-    });
-    if (!ended.empty()) {
-        path.outcome = Outcome::outside_table;
-        path.detail = ended;
-    }
+    const Visit keep = [&](const Equilibrium& state) { kept.push_back(state); };
+    EquilibriumPath path = solve_within_tables(
+        side, visit ? visit : keep,
+        [&](const Visit& checked) { return solve_by_leg(side, solver, checked); });
     path.points = std::move(kept);
     return path;
 }
@@ -244,8 +251,8 @@ EquilibriumPath solve_branch(const std::vector<BranchSide>& sides, const SolverS
 PathCurve solve_branch(const Model& model, std::span<const Channel> channels, const Branch& branch,
                        const std::vector<BranchSide>& sides, const SolverSettings& solver,
                        const VisitResponse& also) {
-    PathCurve walked;
-    walked.curve.unit = unit_of(branch.unit);
+    PathCurve path_curve;
+    path_curve.curve.unit = unit_of(branch.unit);
     double reading = 0;
     Analyses analyses;
     const double start = processor_time();
@@ -259,77 +266,59 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
             return row;
         },
         [&](Row row) {
-            append(walked.curve, row.load, std::move(row.values));
-            walked.constraint_error.push_back(row.constraint_error);
+            append(path_curve.curve, row.load, std::move(row.values));
+            path_curve.constraint_error.push_back(row.constraint_error);
         });
-    walked.seconds = processor_time() - start - reading;
-    walked.outcome = path.outcome;
-    walked.detail = path.detail;
-    walked.counts = path.counts;
-    return walked;
-}
-
-EquilibriumPath rest(const BranchSide& side, Leg leg) {
-    constexpr std::array at_start{0.0};
-    std::optional<Equilibrium> start;
-    const Visit first = [&](const Equilibrium& state) {
-        if (!start) start = state;
-    };
-    EquilibriumPath path;
-    switch (leg) {
-        case Leg::equilibrium:
-            path = reference::equilibrium::solve(side.model, side.branch, at_start, {}, first);
-            break;
-        case Leg::energy:
-            path = reference::energy::solve(side.model, side.branch, at_start, {}, first);
-            break;
-        case Leg::recursive:
-        case Leg::series: path = solve_by_leg(side, {.leg = leg}, first); break;
-    }
-    if (!start) return path;
-    path.detail = ends_at_table(side.model, side.branch, *start);
-    // the outcome beyond this point is irrelevant
-    path.outcome = path.detail.empty() ? Outcome::converged : Outcome::outside_table;
-    if (path.outcome == Outcome::converged) path.points.push_back(std::move(*start));
-    return path;
+    path_curve.seconds = processor_time() - start - reading;
+    path_curve.outcome = path.outcome;
+    path_curve.detail = path.detail;
+    path_curve.counts = path.counts;
+    return path_curve;
 }
 
 EquilibriumPath solve_at(const BranchSide& side, Leg leg, std::span<const double> points,
                          const Visit& visit) {
-    std::string ended;
-    const Visit checked = [&](const Equilibrium& state) {
-        if (ended.empty()) ended = ends_at_table(side.model, side.branch, state);
-        if (ended.empty()) visit(state);
-    };
-    EquilibriumPath path;
-    switch (leg) {
-        case Leg::equilibrium:
-            path = reference::equilibrium::solve(side.model, side.branch, points, {}, checked);
-            break;
-        case Leg::energy:
-            path = reference::energy::solve(side.model, side.branch, points, {}, checked);
-            break;
-        case Leg::recursive:
-        case Leg::series:
-            // Its points are equal increments: one run to each value.
-            for (const double a : points) {
-                BranchSide to = side;
-                if (a != 0) {
-                    to.branch.to = a;
-                    to.branch.steps = 1;
+    EquilibriumPath path = solve_within_tables(side, visit, [&](const Visit& checked) {
+        EquilibriumPath solved;
+        switch (leg) {
+            case Leg::equilibrium:
+                return reference::equilibrium::solve(side.model, side.branch, points, {}, checked);
+            case Leg::energy:
+                return reference::energy::solve(side.model, side.branch, points, {}, checked);
+            case Leg::recursive:
+            case Leg::series:
+                // These solvers record equal increments only: one run to each value.
+                for (const double a : points) {
+                    BranchSide shorter;
+                    if (a != 0) {
+                        shorter = side;
+                        shorter.branch.to = a;
+                        shorter.branch.steps = 1;
+                    }
+                    solved = solve_by_leg(a == 0 ? side : shorter, {.leg = leg},
+                                          [&](const Equilibrium& state) {
+                                              if (state.load == a) checked(state);
+                                          });
+                    if (solved.outcome != Outcome::converged) break;
                 }
-                path = solve_by_leg(to, {.leg = leg}, [&](const Equilibrium& state) {
-                    if (state.load == a) checked(state);
-                });
-                if (path.outcome != Outcome::converged) break;
-            }
-            break;
-    }
-    if (!ended.empty()) {
-        path.outcome = Outcome::outside_table;
-        path.detail = ended;
-    }
+        }
+        return solved;
+    });
     path.points.clear();
+    return path;
+}
+
+EquilibriumPath settle_start(const BranchSide& side, Leg leg) {
+    constexpr std::array at_start{0.0};
+    std::optional<Equilibrium> start;
+    EquilibriumPath path = solve_at(side, leg, at_start, [&](const Equilibrium& state) {
+        if (!start) start = state;
+    });
+    if (!start) return path;
+    // The outcome beyond the start does not matter.
+    path.outcome = Outcome::converged;
+    path.detail.clear();
+    path.points.push_back(std::move(*start));
     return path;
 }
 
@@ -361,8 +350,8 @@ PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCur
     whole.detail = first.detail;
     whole.counts = first.counts;
     whole.seconds += first.seconds;
-    end_as_both(sides, whole, second);
-    // The start is that of the second side, if it has one.
+    add_outcome(sides, whole, second);
+    // As in join(), the start is taken from the second side unless that has no point.
     const std::size_t from = second.curve.a.empty() ? 0 : 1, size = first.curve.a.size();
     const auto before = [&](auto& list, const auto& more) {
         for (std::size_t k = from; k < size; ++k) list.insert(list.begin(), more[k]);
@@ -428,7 +417,7 @@ References references(const Model& model, const std::vector<Channel>& channels,
 
 Settled settled(const Model& model, const std::vector<Channel>& channels, const Branch& branch) {
     const BranchSide side = sides_of(model, branch).front();
-    const auto path = rest(side, Leg::equilibrium);
+    const auto path = settle_start(side, Leg::equilibrium);
     Settled result{branch.name, path.outcome, path.detail,
                    std::vector<double>(channels.size(), nan)};
     if (path.outcome != Outcome::converged || path.points.empty()) return result;

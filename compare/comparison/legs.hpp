@@ -14,24 +14,24 @@
 
 namespace elastocheck::compare {
 
-// Requested values of the parameter, in the order of the points: from a = 0 for one side, from
-// `from` to `to` for two.
+// Requested values of the parameter [SI], every `every`-th step of each side and its end, in the order
+// of the points: from a = 0 for one side, from `from` to `to` for two.
 std::vector<double> requested_parameters(const std::vector<BranchSide>& sides, int every);
 
 // The side that contains a; the last one if none does.
 const BranchSide& side_at(const std::vector<BranchSide>& sides, double a);
 
-// Whether the outcome means that the energy leg does not apply here, in contrast to a failure.
+// Whether the outcome means that the energy leg does not apply (no energy, too large), not a failure.
 bool is_not_applicable(Outcome outcome);
 
-// Requested numbers of a point, in place of all its poses and wrenches.
+// Outputs of a point, kept in place of its poses and wrenches.
 struct Row {
     double load = 0;              // as in Equilibrium
     double constraint_error = 0;  // likewise
     std::vector<double> values;   // per channel, in its unit
 };
 struct Analyses;       // compliance.hpp
-struct WheelResponse;  // compliance.hpp
+struct WheelResponse;  // compare/outputs/wheel_response.hpp
 // Evaluates the channels at one point. Characteristics are read from the response of the wheels,
 // which the leg that found the state computes with these settings and leaves in Analyses::response.
 // `analyses` are reused over the points of a branch side.
@@ -57,12 +57,12 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
 // The runs of the sides of a branch as one, as solve_branch() joins them.
 PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves);
 
-// The path that ends at the start of a branch side, the settled state at a = 0: one point, or none
-// where the leg does not settle.
-EquilibriumPath rest(const BranchSide& side, Leg leg);
+// The settled state at a = 0, where a branch side begins, as a path of one point; of none where the
+// leg does not settle.
+EquilibriumPath settle_start(const BranchSide& side, Leg leg);
 
 // States of a leg at these values of the parameter [SI], of the sign of the side and in ascending
-// size, with the ends of curves as solve_branch() has them.
+// size. As in solve_branch(), the path ends where a tabulated curve ends.
 EquilibriumPath solve_at(const BranchSide& side, Leg leg, std::span<const double> points,
                          const Visit& visit);
 
@@ -81,7 +81,7 @@ struct References {
     // why there is no reference: a leg failed, or nothing drives the branch
     std::vector<std::string> failures;
 };
-// references() runs both references and judges the runs; the other two do one of these each.
+// references() = run_references(), then judge_references().
 References run_references(const Model& model, const std::vector<Channel>& channels,
                           const Branch& branch, const std::vector<BranchSide>& sides);
 void judge_references(const Model& model, const std::vector<Channel>& channels,
@@ -93,7 +93,7 @@ References references(const Model& model, const std::vector<Channel>& channels,
 PathCurve second_reference(const Model& model, const std::vector<Channel>& channels,
                            const Branch& branch, const std::vector<BranchSide>& sides, Leg& leg);
 
-// Message if compile() has left no driver to a branch; else empty.
+// Message if compile() has left a branch without a driver; else empty.
 std::string nothing_drives(const Model& model, const Branch& branch);
 
 // ---- Start of a branch: the state at a = 0, settled under the constant loads.

@@ -12,8 +12,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// Whether two branches lie on different sides of a = 0, so that an unnamed point belongs to
-// at most one.
+// Whether two branches lie on different sides of a = 0, so that a point without the name of its branch
+// belongs to at most one.
 bool on_opposite_sides(const Branch& a, const Branch& b) {
     const auto low = [](const Branch& x) { return std::min(x.from, x.to); };
     const auto high = [](const Branch& x) { return std::max(x.from, x.to); };
@@ -22,8 +22,8 @@ bool on_opposite_sides(const Branch& a, const Branch& b) {
 
 }  // namespace
 
-std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
-                                       std::vector<PointColumn> columns) {
+std::vector<PointColumn> as_absolute_values(const Model& model, const Comparison& comparison,
+                                            std::vector<PointColumn> columns) {
     if (std::ranges::none_of(columns, &PointColumn::change)) return columns;
     const auto drawn = evaluate(model, comparison.channels, design_state(model));
     for (auto& column : columns) {
@@ -34,7 +34,7 @@ std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& com
     return columns;
 }
 
-std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel) {
+std::vector<double> abscissa_values(const Curve& curve, std::optional<std::size_t> channel) {
     auto over = channel ? curve.channel(*channel) : curve.a;
     if (!trend(over).monotonic()) over.clear();
     return over;
@@ -71,7 +71,7 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                                 branches[b].branch, branches[a].branch));
     std::vector<std::vector<double>> x_of_branches;
     for (const auto& branch : branches)
-        x_of_branches.push_back(placed_by(branch.run(Leg::equilibrium).curve, channel));
+        x_of_branches.push_back(abscissa_values(branch.run(Leg::equilibrium).curve, channel));
     for (const double place : x) {
         const auto match = std::ranges::find_if(
             x_of_branches,

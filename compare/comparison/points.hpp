@@ -13,8 +13,8 @@ namespace elastocheck::compare {
 
 // Converts changes from the design position to absolute positions and angles: adds the value of the
 // design position to each value of a column with PointColumn::change.
-std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
-                                       std::vector<PointColumn> columns);
+std::vector<PointColumn> as_absolute_values(const Model& model, const Comparison& comparison,
+                                            std::vector<PointColumn> columns);
 
 // Position in Comparison::branches of each point's branch, or -1 where none reaches it. `names` are
 // the branches of the points, or empty; `x` their places: values of the channel, or without one of
@@ -24,8 +24,8 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                              const std::vector<std::string>& names, const std::vector<double>& x,
                              std::optional<std::size_t> channel);
 
-// Where a point lies: on the branch that it names, or the one that reaches it; by its parameter, or
-// without one by Points::abscissa.
+// Place of a point: its branch, which it names or which reaches it, and the parameter there or, for a
+// point without one, the value of Points::abscissa.
 struct Place {
     int branch = -1;  // position in Comparison::branches; -1: none reaches it
     bool by_parameter = true;
@@ -35,9 +35,9 @@ struct Place {
 std::vector<Place> places_of(const Model& model, const Comparison& comparison,
                              const Points& points);
 
-// Values along the curve by which points are placed: those of the channel, or without one of the
-// parameter. Empty where the channel is not strictly monotonic.
-std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel);
+// Values along the curve of the channel, or without one of the parameter, among which points are
+// placed. Empty where the channel is not strictly monotonic.
+std::vector<double> abscissa_values(const Curve& curve, std::optional<std::size_t> channel);
 // Whether x lies within the range of a monotonic sequence, up to 1e-9 of that range.
 bool reaches(const std::vector<double>& over, double x);
 

@@ -31,18 +31,18 @@ using Eigen::VectorXd;
 
 constexpr int max_iterations = 30;
 constexpr int max_halvings = 10;
-constexpr double met = 1e-12;        // [m, rad]: accuracy of a settled state
-constexpr double moves = 1e-10;      // [m, rad]: a smaller effect of a step counts as none
-constexpr double contraction = 0.5;  // least progress of an iteration with the J of another scene
-constexpr double known = 1e-6;       // of the largest singular value: resolution of the differences
+constexpr double accuracy = 1e-12;     // [m, rad] |c| at convergence: accuracy of a settled state
+constexpr double min_effect = 1e-10;   // [m, rad]: a smaller effect of a step h counts as none
+constexpr double contraction = 0.5;    // required of |c| per iteration with the J of another scene
+constexpr double min_singular = 1e-6;  // of the largest singular value: accuracy of the differences
 
-// The trim equations for any p.
+// The trim equations c(x(p)) = 0 (elastocheck/trim.hpp).
 struct TrimProblem {
     const Trim* trim = nullptr;
     BranchSide side;                                // branch on which the adjustments are held
     std::vector<Channel> channels;                  // read by the conditions
     VectorXd drawn, target;                         // [m, rad]
-    Leg solver = Leg::equilibrium;                  // by which the trim equations are solved
+    Leg solver = Leg::equilibrium;                  // that settles the states x(p)
     std::shared_ptr<recursive::Analysis> analysis;  // of the series, with its last settled state
 };
 
@@ -97,8 +97,8 @@ std::vector<Channel> condition_channels(const Model& model, const Trim& trim) {
 
 namespace {
 
-// The scene on a branch whose drivers are the adjustments. compile() treats them as moving, so that
-// no adjustment is left out because it starts at zero.
+// The scene with one branch whose drivers are the adjustments. They move until compile() is done, which
+// would leave out a driver at rest.
 TrimProblem trim_problem(const Scene& scene) {
     TrimProblem problem;
     problem.trim = &*scene.trim;
@@ -142,26 +142,26 @@ TrimAttempt settle(const TrimProblem& problem, const VectorXd& p, Leg leg) {
         recursive::series::keep_start(held.model, held.branch, {}, *problem.analysis);
         held.analysis = problem.analysis;
     }
-    const EquilibriumPath path = rest(held, leg);
+    const EquilibriumPath path = settle_start(held, leg);
     if (path.points.empty()) return {path.outcome, path.detail, {}, {}};
     return {Outcome::converged, "", path.points.front(),
             values(problem, path.points.front()) - problem.target};
 }
 
-// h, in the unit of the adjustment.
+// Step h of the differences (elastocheck/trim.hpp), in the unit of the adjustment.
 double step(const Trim::Adjustment& adjustment) {
-    const double of_what = std::visit(
-        overloaded{
-            [](const Load&) { return 10.0; },                                            // [N]
-            [](const Motion&) { return 1e-4; },                                          // [m, rad]
-            [](const FreeLength&) { return 1e-4; },                                      // [m]
-            [](const Preload& l) { return 10 / std::max(1e-30, l.direction.norm()); }},  // [N, N·m]
-        adjustment.what);
-    return of_what / std::abs(adjustment.per_unit);
+    const double h = std::visit(overloaded{[](const Load&) { return 10.0; },        // [N]
+                                           [](const Motion&) { return 1e-4; },      // [m, rad]
+                                           [](const FreeLength&) { return 1e-4; },  // [m]
+                                           [](const Preload& l) {
+                                               return 10 / std::max(1e-30, l.direction.norm());
+                                           }},  // [N, N·m]
+                                adjustment.what);
+    return h / std::abs(adjustment.per_unit);
 }
 
-// Changes of the conditions from p - h to p + h, h the step of adjustment k; by a reference along a
-// branch that moves the adjustment, so that the start settles once. Empty where the leg failed.
+// Changes of the conditions from p - h to p + h, h the step of adjustment k. A reference solves both
+// along a branch that moves the adjustment, so that it settles once. Empty where the leg failed.
 std::optional<VectorXd> change_beside(const TrimProblem& problem, const VectorXd& p, Index k,
                                       TrimAttempt& failed) {
     const auto& adjustment = problem.trim->adjust[static_cast<std::size_t>(k)];
@@ -169,8 +169,8 @@ std::optional<VectorXd> change_beside(const TrimProblem& problem, const VectorXd
     std::array<VectorXd, 2> missed;  // at p + h, p - h
     if (problem.solver == Leg::series) {
         for (const int side : {0, 1}) {
-            const double by = side == 0 ? h : -h;
-            failed = settle(problem, p + by * VectorXd::Unit(p.size(), k), problem.solver);
+            const double change = side == 0 ? h : -h;
+            failed = settle(problem, p + change * VectorXd::Unit(p.size(), k), problem.solver);
             if (failed.outcome != Outcome::converged) return std::nullopt;
             missed[static_cast<std::size_t>(side)] = failed.missed;
         }
@@ -208,7 +208,7 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-// Names with a significant part in a combination.
+// Names whose share in a combination exceeds a twentieth of the largest.
 template <class Named>
 std::vector<std::string> taking_part(const std::vector<Named>& all, const VectorXd& share) {
     std::vector<std::string> names;
@@ -223,7 +223,7 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
     MatrixXd scaled = J;
     for (Index k = 0; k < J.cols(); ++k) {
         const double size = J.col(k).norm();
-        if (!(size > moves))
+        if (!(size > min_effect))
             return fmt::format(
                 "'{}' has no influence on {}: adjust another quantity, or choose a condition that "
                 "it changes",
@@ -232,7 +232,7 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
         scaled.col(k) /= size;
     }
     for (Index k = 0; k < J.rows(); ++k) {
-        if (!(J.row(k).norm() > moves))
+        if (!(J.row(k).norm() > min_effect))
             return fmt::format("no adjustment changes '{}': {} does not",
                                trim.until[static_cast<std::size_t>(k)].name,
                                listed(taking_part(trim.adjust, VectorXd::Ones(J.cols()))));
@@ -240,7 +240,7 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
     }
     const Svd svd = svd_of(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const VectorXd& s = svd.values;
-    if (s[s.size() - 1] > known * s[0]) return {};
+    if (s[s.size() - 1] > min_singular * s[0]) return {};
     return fmt::format(
         "ambiguous: {} change only together, whatever {} do; a condition that separates these is "
         "missing",
@@ -275,9 +275,10 @@ void apply(const Trim& trim, const VectorXd& p, Scene& scene) {
     scene.trim.reset();
 }
 
-// Text of the resulting value in the trimmed scene; `driven` is the driver in the model.
-std::string what_it_makes(const Scene& scene, const Driven& adjusted, const TrimProblem& problem,
-                          const Driven& driven, const BranchSide& held, const Equilibrium& state) {
+// TrimRecord::Adjusted::makes of an adjusted quantity; `driven` is its driver in the model.
+std::string resulting_value(const Scene& scene, const Driven& adjusted, const TrimProblem& problem,
+                            const Driven& driven, const BranchSide& held,
+                            const Equilibrium& state) {
     return std::visit(
         overloaded{
             [](const Load&) { return std::string(); },
@@ -317,7 +318,7 @@ std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Trim
         adjusted);
 }
 
-// Newton's method on the trim equations: the present p, and the trim at it.
+// An iterate of the solution of the trim equations.
 struct TrimIteration {
     VectorXd p, h;  // adjustments, and the steps of their differences
     MatrixXd J;     // the last one
@@ -325,18 +326,21 @@ struct TrimIteration {
     int iterations = 0;
     std::string stuck = {};  // why it stopped, "; at the next iterate: ..."
 
-    bool has_met() const { return here.outcome == Outcome::converged && here.missed.norm() <= met; }
-    // The same step as settled at p + h s.
+    bool has_met() const {
+        return here.outcome == Outcome::converged && here.missed.norm() <= accuracy;
+    }
+    // p after a step s in units of h.
     VectorXd moved(const VectorXd& s) const { return p + h.cwiseProduct(s); }
 };
 
-// From p and J of another scene. Broyden (1965): J is corrected along every step,
-// J ← J + (Δc - J s) sᵀ / sᵀs, J s = -c.
+// Broyden's method (1965) from p and J of another scene: with J s = -c and Δc the change of c by the
+// step s, J ← J + (Δc - J s) sᵀ / sᵀs = J + c_next sᵀ / sᵀs.
 void iterate_from(const TrimStart& start, const TrimProblem& problem, TrimIteration& it) {
     it.p = start.p;
     it.J = start.J;
     it.here = settle(problem, it.p, problem.solver);
-    for (; it.here.outcome == Outcome::converged && it.here.missed.norm() > met; ++it.iterations) {
+    for (; it.here.outcome == Outcome::converged && it.here.missed.norm() > accuracy;
+         ++it.iterations) {
         const VectorXd s = solve_by_qr(it.J, -it.here.missed);
         TrimAttempt next = settle(problem, it.moved(s), problem.solver);
         if (next.outcome != Outcome::converged ||
@@ -368,11 +372,11 @@ bool step_nearer(const TrimProblem& problem, const VectorXd& dp, TrimIteration& 
     return false;
 }
 
-// With differences for J. `again`: J is computed even where the conditions are met, since it is
-// checked before convergence is accepted: conditions met by chance may leave p undetermined. Returns
-// a neighbouring state that does not settle at the first iterate.
-std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimIteration& it) {
-    for (bool first = again; first || it.here.missed.norm() > met; first = false) {
+// Newton's method with J by differences. `check_J`: J is computed and checked even where the
+// conditions are met at once, since they may be met by chance with p undetermined. Returns the failed
+// attempt if a neighbour of the first iterate does not settle.
+std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool check_J, TrimIteration& it) {
+    for (bool first = check_J; first || it.here.missed.norm() > accuracy; first = false) {
         TrimAttempt failed;
         const auto J = responses(problem, it.p, failed);
         if (!J && it.iterations == 0) return failed;
@@ -390,7 +394,7 @@ std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool again, TrimI
             it.stuck = "; at that state " + why;
             break;
         }
-        if (!(it.here.missed.norm() > met) || it.iterations == max_iterations) break;
+        if (!(it.here.missed.norm() > accuracy) || it.iterations == max_iterations) break;
         const VectorXd dp = it.h.cwiseProduct(solve_by_qr(*J, -it.here.missed));
         if (!step_nearer(problem, dp, it)) break;
     }
@@ -442,8 +446,8 @@ bool record_conditions(const TrimProblem& problem, const TrimIteration& it, Trim
 }  // namespace
 
 Scene with_adjusted(Scene scene, const VectorXd& p) {
-    const Trim asked = *scene.trim;
-    apply(asked, p, scene);
+    const Trim trim = *scene.trim;  // apply() resets that of the scene
+    apply(trim, p, scene);
     return scene;
 }
 
@@ -518,8 +522,8 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
         const Unit unit = unit_of(adjusted.unit);
         record.adjusted.push_back(
             {adjusted.name, unit, in_unit(unit) * it.p[static_cast<Index>(k)],
-             what_it_makes(result.scene, adjusted.what, problem,
-                           problem.side.branch.drivers[k].what, held, it.here.state)});
+             resulting_value(result.scene, adjusted.what, problem,
+                             problem.side.branch.drivers[k].what, held, it.here.state)});
     }
     return result;
 }

@@ -1,4 +1,4 @@
-// Parts of a trim that its derivative needs (compare/sensitivity/), and trims by other means.
+// Parts of a trim that its derivative needs (compare/sensitivity/), and trims by one leg alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,11 +38,11 @@ struct TrimStart {
 // it: `confirmed` of its conditions is NaN, and `confirmed_by` is the series.
 //
 // With a `start` the equations are solved from there by Broyden's method, to the same accuracy, and
-// every state settles from the last one; where that does not converge, as by trim(). A start of
+// every state settles from the last one; where that does not converge, as without a start. A start of
 // another structure or size, such as an empty one, is not used. A trim that is reached replaces `start`.
 Trimmed trim_by_series(const Scene& scene, TrimStart* start = nullptr);
 
-// The same by the equilibrium leg.
+// The same by the equilibrium leg alone.
 Trimmed trim_not_confirmed(const Scene& scene, TrimStart* start);
 
 }  // namespace elastocheck::compare

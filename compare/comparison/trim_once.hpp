@@ -13,7 +13,7 @@ constexpr double accepted_residual = 1e-9;
 
 // The equilibrium of a trimmed scene at a = 0.
 struct SettledTrim {
-    BranchSide held;  // a branch without motion, whose drivers hold the adjustments that were found
+    BranchSide held;  // a branch without motion, whose drivers hold the adjustments
     Equilibrium state;
 };
 

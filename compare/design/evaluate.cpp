@@ -1,3 +1,4 @@
+// Values of figures from the states of a leg, and their gradient by differences (figures.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,12 +32,11 @@ using Eigen::VectorXd;
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
 
-constexpr int max_shorter_steps = 3;  // how often h is divided by eight
-constexpr double max_kink = 1e-3;     // share of the largest change by 2h: more has no rate
+constexpr int max_shorter_steps = 3;  // divisions of h by eight
+constexpr double max_kink = 1e-3;     // share of the largest change by 2h: beyond, there is no rate
 
-// Outputs of a model by their names. A figure of the catalogue is made without the others. For
-// another output the list of all is made, and only if it is not there the list with the sums, which
-// need an analysis of the model.
+// Outputs of a model by their names: from the catalogue, else from the list of all outputs, and only if
+// that lacks the name from the list with the sums, which need an analysis of the model.
 class NamedOutputs {
   public:
     explicit NamedOutputs(const Model& model) : model_(model) {}
@@ -59,14 +59,14 @@ class NamedOutputs {
     std::vector<Channel> all_;
 };
 
-// The sides of a branch on which figures are read.
-std::vector<BranchSide> read_sides(const Model& model, const ReadStates& of) {
-    const Branch& branch = model.branches[of.branch];
-    return sides_of(model, branch, of.whole ? std::min(branch.steps, interpolated_points) : 1);
+// The sides of the branch of these states, with the steps at which they are solved.
+std::vector<BranchSide> read_sides(const Model& model, const ReadStates& states) {
+    const Branch& branch = model.branches[states.branch];
+    return sides_of(model, branch, states.whole ? std::min(branch.steps, interpolated_points) : 1);
 }
 
-// Figures of one branch, of those at values of the parameter or of those over another output.
-struct OnBranch {
+// Reads the figures of one branch: those at values of the parameter, or those over another output.
+struct BranchReader {
     const Model& model;
     const ReadStates& states;
     Leg leg;
@@ -93,7 +93,7 @@ struct OnBranch {
     std::size_t column(const std::string& name) const {
         return static_cast<std::size_t>(find_channel(read, name));
     }
-    void miss(const std::string& why) const {
+    void set_reason(const std::string& why) const {
         if (!result.why_not.empty()) return;
         result.why_not = why;
         result.not_applicable = is_not_applicable(states.outcome);
@@ -104,7 +104,7 @@ struct OnBranch {
             value -= evaluate(model, std::span(&channel, 1), design_state(model)).front();
         result.value[static_cast<Index>(k)] = finite_or_nan(value);
         if (!std::isfinite(value))
-            miss(fmt::format(
+            set_reason(fmt::format(
                 "{}: {}", channel.name,
                 std::isinf(value) ? why_undefined(channel) : "it could not be computed"));
     }
@@ -124,24 +124,25 @@ struct OnBranch {
                 set(k, curve.values[static_cast<std::size_t>(at - states.states.begin())]
                                    [column(figures[k].name)]);
             else
-                miss(fmt::format("branch '{}': {}: {}", branch().name,
-                                 elastocheck::name(states.outcome), states.detail));
+                set_reason(fmt::format("branch '{}': {}: {}", branch().name,
+                                       elastocheck::name(states.outcome), states.detail));
     }
     // At a value of another output, interpolated on the curve of the branch.
     void set_over_output(std::size_t k, const Curve& curve) const {
         const Figure& figure = figures[k];
-        const auto x = placed_by(curve, column(figure.over));
+        const auto x = abscissa_values(curve, column(figure.over));
         if (reaches(x, figure.at))
             set(k, interpolate(x, curve.channel(column(figure.name)), figure.at, 6));
         else
-            miss(x.empty()
-                     ? fmt::format("branch '{}': {} is not monotonic", branch().name, figure.over)
-                     : fmt::format("branch '{}' does not reach {} = {:g} {}", branch().name,
-                                   figure.over, figure.at, symbol(read[column(figure.over)].unit)));
+            set_reason(
+                x.empty()
+                    ? fmt::format("branch '{}': {} is not monotonic", branch().name, figure.over)
+                    : fmt::format("branch '{}' does not reach {} = {:g} {}", branch().name,
+                                  figure.over, figure.at, symbol(read[column(figure.over)].unit)));
     }
 };
 
-// The states of one branch side at values of the parameter.
+// Adds the states of one branch side at those of the points that lie on it.
 void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, ReadStates& into) {
     std::erase_if(points, [&](double a) { return a * side.branch.to < 0; });
     std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
@@ -157,7 +158,7 @@ void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, Rea
     }
 }
 
-// Whether a model differs from that of the states in its numbers only.
+// Whether a model differs from the model of the states only in its numbers.
 bool same_structure(const Model& model, std::span<const ReadStates> states) {
     std::vector<int> here, there;
     for (const ReadStates& of : states) {
@@ -171,13 +172,13 @@ bool same_structure(const Model& model, std::span<const ReadStates> states) {
     return true;
 }
 
-// Changes of the figures where a number is 2h and h smaller, h and 2h larger.
+// Changes Δy of the figures by changes -2h, -h, h and 2h of a number.
 struct Changes {
     VectorXd far_down, down, up, far_up;
 
-    // dy/dp [figure's unit / number's unit]. With both sides by figures.hpp, error O(h⁴). Where one
+    // dy/dp [figure's unit / number's unit], by the formula of figures.hpp with error O(h⁴); where one
     // side has no value, by the other alone: (4 Δy(h) - Δy(2h)) / 2h, error O(h²). Zero where y
-    // moves no more than its rounding.
+    // changes by no more than its rounding.
     double rate(Index k, double h, double rounding) const {
         const double near = up[k] - down[k], far = far_up[k] - far_down[k];
         if (std::abs(near) <= rounding && std::abs(far) <= rounding) return 0;
@@ -189,8 +190,8 @@ struct Changes {
         const double largest = std::max(std::abs(far_up[k]), std::abs(far_down[k]));
         return std::isfinite(largest) ? largest : 0;
     }
-    // |2 (Δy(h) + Δy(-h)) - ½ (Δy(2h) + Δy(-2h))|: of smooth functions ½ h⁴ |d⁴y/dp⁴|, of
-    // slopes that differ by s to both sides h |s|
+    // |2 (Δy(h) + Δy(-h)) - ½ (Δy(2h) + Δy(-2h))|, by Taylor ½ h⁴ |d⁴y/dp⁴| for a smooth function, and
+    // h |s| for slopes to both sides that differ by s
     double kink(Index k) const {
         return std::abs(2 * (up[k] + down[k]) - (far_up[k] + far_down[k]) / 2);
     }
@@ -239,9 +240,9 @@ FigureValues read_figures(const Model& model, std::span<const ReadStates> states
     FigureValues result{VectorXd::Constant(std::ssize(figures), nan)};
     NamedOutputs outputs(model);
     for (const ReadStates& of_branch : states) {
-        OnBranch on{model, of_branch, leg, figures, result};
-        on.add_figures(outputs);
-        on.read_all();
+        BranchReader reader{model, of_branch, leg, figures, result};
+        reader.add_figures(outputs);
+        reader.read_all();
     }
     return result;
 }
@@ -321,15 +322,15 @@ MatrixXd Figures::gradient(const VectorXd& p) const {
             const Index i = open[k / 4];
             const Changes changes{y[k] - centre, y[k + 1] - centre, y[k + 2] - centre,
                                   y[k + 3] - centre};
-            bool settled = true;
+            bool smooth = true;
             for (Index j = 0; j < centre.size(); ++j) {
                 if (pass == 0) size[j] = std::max(size[j], changes.size(j));
                 if (pass > 0 && !std::isnan(rate(j, i))) continue;
                 const bool kink = changes.kink(j) > max_kink * share * size[j] + rounding[j];
                 rate(j, i) = kink ? nan : changes.rate(j, share * step[i], rounding[j]);
-                settled = settled && !kink;
+                smooth = smooth && !kink;
             }
-            if (!settled) kinked.push_back(i);
+            if (!smooth) kinked.push_back(i);
         }
         open = kinked;
     }

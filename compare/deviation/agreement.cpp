@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "compare/deviation/deviation.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compare.hpp"
@@ -19,15 +20,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double digits = 16;       // c: number of roundings that add up in one stored force
+constexpr double roundings = 16;    // c: number of roundings that add up in one stored force
 constexpr double no_force = 1e-12;  // [N]: smaller forces count as zero
-constexpr double metre = 1;         // least size for the share of a length
-
-double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
+constexpr double metre = 1;         // least size of which lengths are a share
 
 // ---- Elastic laws, one function each: the largest stiffness.
 
-// [N/m]: rotating the lever L by an angle moves its end by L times the angle.
+// [N/m], rotational and coupling entries as forces at a lever L per displacement of its end.
 double stiffness(const LinearStiffness& u, double L) {
     const double K_T = u.K.topLeftCorner<3, 3>().cwiseAbs().maxCoeff(),
                  K_R = u.K.bottomRightCorner<3, 3>().cwiseAbs().maxCoeff(),
@@ -43,10 +42,12 @@ double stiffness(const PerAxis& u, double L) {
 
 double value(const Driver& driver, double a) { return driver.start + driver.rate * a; }
 
+// A wrench as one force [N], the moment as a force at the lever L.
 double as_force(const Vector3d& f, const Vector3d& m, double L) {
-    return larger(f.norm(), m.norm() / L);
+    return worse(f.norm(), m.norm() / L);
 }
 
+// Elastic force of an element, acting load: as a force [N].
 double stored(const ElasticKind& kind, std::size_t k, const Branch& branch,
               const Equilibrium& state, double L) {
     const Vector6 F = stress(kind, k, branch, state, deformation(kind, k, branch, state));
@@ -59,15 +60,12 @@ double acting(const LoadKind& load, double factor, double L) {
 
 // Attachment points in the design position.
 std::vector<Vector3d> attachments(const Model& model) {
-    std::vector<Pose> design;
-    for (const auto& body : model.bodies) design.push_back(body.design);
     std::vector<Vector3d> points;
-    const auto add = [&](const auto& p) { points.push_back(position(design, p.body, p.s_local)); };
+    const auto add = [&](const auto& p) { points.push_back(drawn(model, {p.body, p.s_local})); };
     for (const auto& body : model.bodies) points.push_back(body.design.r);
     for (const auto& joint : model.joints) add(joint.at);
     for (const auto& elastic : model.elastics) each_point(elastic.kind, add);
-    for (const auto& wheel : model.wheels)
-        points.push_back(position(design, wheel.body, wheel.centre_local));
+    for (const auto& wheel : model.wheels) add(Point{wheel.body, wheel.centre_local});
     for (const auto& probe : model.probes) add(probe.at);
     return points;
 }
@@ -80,7 +78,7 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
     double reach = 0;  // X
     for (const auto& p : attachments(model)) {
         box.extend(p);
-        reach = larger(reach, p.norm());
+        reach = worse(reach, p.norm());
     }
     const double size = box.isEmpty() ? 0 : box.diagonal().norm();
     // of the coordinates: only rounding separates the points
@@ -92,33 +90,33 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
     for (const auto& elastic : model.elastics)
         each_member(
             elastic.kind,
-            overloaded{[&](const ScalarLaw& law) { k = larger(k, steepest(law)); },
+            overloaded{[&](const ScalarLaw& law) { k = worse(k, steepest(law)); },
                        [&](const SpatialLaw& law) {
-                           k = larger(
+                           k = worse(
                                k, std::visit([&](const auto& u) { return stiffness(u, L); }, law));
                        }});
     for (const auto& load : model.static_loads)
-        scale.force = larger(scale.force, acting(load.kind, 1, L));
+        scale.force = worse(scale.force, acting(load.kind, 1, L));
     for (const auto& state : states) {
         for (const auto& driver : branch.drivers)
             if (const Load* load = driven_load(driver.what))
-                scale.force = larger(scale.force, acting(load->kind, value(driver, state.load), L));
+                scale.force = worse(scale.force, acting(load->kind, value(driver, state.load), L));
         for (std::size_t e = 0; e < model.elastics.size(); ++e)
-            scale.force = larger(scale.force, stored(model.elastics[e].kind, e, branch, state, L));
+            scale.force = worse(scale.force, stored(model.elastics[e].kind, e, branch, state, L));
         for (const auto& w : state.reactions)
-            scale.force = larger(scale.force, as_force(w.force, w.moment, L));
-        for (const auto& body : state.poses) reach = larger(reach, body.r.norm());
+            scale.force = worse(scale.force, as_force(w.force, w.moment, L));
+        for (const auto& body : state.poses) reach = worse(reach, body.r.norm());
     }
     scale.round_off = epsilon * k * std::max(reach, L);
     return scale;
 }
 
 Scale larger(const Scale& a, const Scale& b) {
-    return {larger(a.force, b.force), larger(a.length, b.length), larger(a.round_off, b.round_off)};
+    return {worse(a.force, b.force), worse(a.length, b.length), worse(a.round_off, b.round_off)};
 }
 
 Bounds bounds_of(const Agreement& agreement, const Scale& scale) {
-    const double F = std::max(scale.force, no_force), rounding = digits * scale.round_off;
+    const double F = std::max(scale.force, no_force), rounding = roundings * scale.round_off;
     const double lengths = 1e3 * std::max(scale.length, metre);  // [mm]
     Bounds bounds;
     bounds.scale = scale;

@@ -10,8 +10,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// Accumulates the deviation of one channel. A difference that is not finite makes max and rms NaN
-// for good.
+// Accumulates the deviation of one channel. After a difference that is not finite max and rms stay NaN.
 struct Running {
     Deviation deviation;
     double squares = 0;
@@ -23,7 +22,7 @@ struct Running {
         if (!std::isfinite(difference)) {
             deviation.max = deviation.signed_max = nan;
             deviation.at = at;
-        } else if (std::abs(difference) > deviation.max) {  // false for good once max is NaN
+        } else if (std::abs(difference) > deviation.max) {  // false once max is NaN
             deviation.max = std::abs(difference);
             deviation.signed_max = difference;
             deviation.at = at;
@@ -66,10 +65,10 @@ bool same(double a, double b, const Curve& curve) {
     return std::abs(a - b) <= 1e-12 * std::max(std::abs(curve.a.front()), std::abs(curve.a.back()));
 }
 
-// Raises the worst deviation of the channel's unit; of a force or moment with an extent
+// Takes a difference of a channel into the worst of its unit, of a force or moment with an extent into
 // the worst share.
-void raise(const std::vector<Channel>& channels, std::size_t c, double difference, Accuracy& worst,
-           const std::vector<double>& extents = {}) {
+void include(const std::vector<Channel>& channels, std::size_t c, double difference,
+             Accuracy& worst, const std::vector<double>& extents = {}) {
     if (!channels[c].main) {
         if (!extents.empty() && !is_motion(channels[c]) && std::isfinite(extents[c]))
             worst.share = worse(worst.share, std::abs(difference) / extents[c]);
@@ -119,7 +118,7 @@ double interpolate(const std::vector<double>& x, const std::vector<double>& y, d
     const std::ptrdiff_t count = std::min<std::ptrdiff_t>(nodes, n);
     const std::ptrdiff_t first =
         std::clamp<std::ptrdiff_t>(above - x.begin() - count / 2, 0, n - count);
-    double sum = 0;  // Lagrange
+    double sum = 0;  // Lagrange's formula, over `count` samples around `place`
     for (std::ptrdiff_t k = first; k < first + count; ++k) {
         double basis = 1;
         for (std::ptrdiff_t l = first; l < first + count; ++l)
@@ -179,12 +178,12 @@ Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const C
     const std::size_t after = std::min(a.a.size() - a.start, b.a.size() - b.start);
     for (std::size_t k = 0; k < before + after; ++k) {
         const std::size_t i = a.start - before + k, j = b.start - before + k;
-        Accuracy apart{};
+        Accuracy deviation{};
         for (std::size_t c = 0; c < channels.size(); ++c)
-            raise(channels, c, same(a.a[i], b.a[j], a) ? b.values[j][c] - a.values[i][c] : nan,
-                  apart, extents);
+            include(channels, c, same(a.a[i], b.a[j], a) ? b.values[j][c] - a.values[i][c] : nan,
+                    deviation, extents);
         profile.a.push_back(a.a[i]);
-        profile.apart.push_back(apart);
+        profile.deviation.push_back(deviation);
     }
     return profile;
 }
@@ -195,14 +194,14 @@ Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Cu
     if (!abscissa.why_not.empty()) return profile;
     std::vector<bool> reached(a.a.size(), false);
     profile.a = a.a;
-    profile.apart.resize(a.a.size());
+    profile.deviation.resize(a.a.size());
     read_over(a, b, static_cast<std::size_t>(abscissa.channel),
               [&](std::size_t k, std::size_t c, double difference, double) {
                   reached[k] = true;
-                  raise(channels, c, difference, profile.apart[k]);
+                  include(channels, c, difference, profile.deviation[k]);
               });
     for (std::size_t k = 0; k < reached.size(); ++k)
-        if (!reached[k]) profile.apart[k] = {nan, nan};
+        if (!reached[k]) profile.deviation[k] = {nan, nan};
     return profile;
 }
 
@@ -211,8 +210,8 @@ Accuracy distance(const std::vector<Channel>& channels, const Curve& a, const Cu
     if (a.a.empty() || a.a.size() != b.a.size() || a.start != b.start)
         return {nan, nan, extents.empty() ? 0 : nan};
     Accuracy worst{};
-    for (const auto& apart : profile_at_equal_parameter(channels, a, b, extents).apart)
-        worst = worse(worst, apart);
+    for (const auto& deviation : profile_at_equal_parameter(channels, a, b, extents).deviation)
+        worst = worse(worst, deviation);
     return worst;
 }
 
@@ -221,8 +220,8 @@ Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve,
     Accuracy largest{};
     for (const auto& values : curve.values)
         for (std::size_t c = 0; c < channels.size(); ++c)
-            raise(channels, c, 16 * std::numeric_limits<double>::epsilon() * values[c], largest,
-                  extents);
+            include(channels, c, 16 * std::numeric_limits<double>::epsilon() * values[c], largest,
+                    extents);
     return largest;
 }
 

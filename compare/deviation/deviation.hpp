@@ -20,10 +20,10 @@ Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& 
 Reading at_equal_parameter(const Curve& a, const Curve& b);
 
 // b interpolated at the abscissa values of a, within the range of b.
-Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by);
+Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& abscissa);
 
-// Local polynomial interpolation of y over strictly monotonic x through the `nodes`
-// samples around `at`.
+// Local polynomial interpolation at `at` of y over strictly monotonic x, through the `nodes` samples
+// around it.
 double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at,
                    int nodes);
 
@@ -39,17 +39,17 @@ struct Accuracy {
 double worse(double a, double b);  // the larger; NaN counts as larger than any number
 Accuracy worse(const Accuracy& a, const Accuracy& b);
 
-// Point by point along a. NaN where a value is not finite or b has no such point.
+// Deviation of b from a, point by point along a: NaN where a value is not finite or b has no such point.
+// At equal abscissa it is empty without a usable abscissa.
 struct Profile {
     Unit unit = Unit::newton;
     std::vector<double> a;  // parameter [unit]
-    std::vector<Accuracy> apart;
+    std::vector<Accuracy> deviation;
 };
 Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const Curve& a,
                                    const Curve& b, const std::vector<double>& extents = {});
 Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Curve& a,
-                                  const Curve& b,
-                                  const Abscissa& by);  // empty without a usable abscissa
+                                  const Curve& b, const Abscissa& abscissa);
 
 // Worst of the profile at equal parameter; NaN unless both curves have the same parameters. With
 // `extents` (tolerance.hpp; infinite: not judged) also of forces and moments.

@@ -9,7 +9,7 @@ namespace elastocheck::compare {
 using reference::certificate::Certificate;
 using reference::certificate::ProofState;
 
-// Counts one point; `load` in SI.
+// Adds the certificate of one point; `load` in SI, `unit` of the branch parameter for messages.
 void add(Tally& tally, double load, Unit unit, const Certificate& certificate);
 
 }  // namespace elastocheck::compare

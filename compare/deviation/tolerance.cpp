@@ -82,14 +82,14 @@ bool is_motion(const Channel& channel) {
 }
 
 std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve& truth,
-                               const Scale& acts) {
+                               const Scale& scale) {
     constexpr double no_force = 1e-12;  // [N]: lower limit where no force acts
     // The factors of tolerance.hpp: a tenth of the largest |value|; F / 1000 + 1600 ε k X; a
     // thousandth of the unit.
     constexpr double share_of_value = 0.1, share_of_force = 1e-3, multiple_of_rounding = 1.6e3,
                      share_of_unit = 1e-3;
     const double force =
-        share_of_force * std::max(acts.force, no_force) + multiple_of_rounding * acts.round_off;
+        share_of_force * std::max(scale.force, no_force) + multiple_of_rounding * scale.round_off;
     std::vector<double> extents;
     // of the component with the largest one; the force and the moment of a joint are two wrenches
     std::map<std::pair<std::vector<int>, Unit>, double> extents_of_wrenches;
@@ -108,7 +108,7 @@ std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve
                 : std::max(high - low, share_of_largest * std::max(std::abs(low), std::abs(high)));
         switch (channel.unit) {
             case Unit::newton: extent = std::max(extent, force); break;
-            case Unit::newton_metre: extent = std::max(extent, force * acts.length); break;
+            case Unit::newton_metre: extent = std::max(extent, force * scale.length); break;
             default: extent = std::max(extent, share_of_unit);
         }
         extents.push_back(extent);

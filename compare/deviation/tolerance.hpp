@@ -27,7 +27,7 @@ bool is_motion(const Channel& channel);
 //   for a component of a wrench, the extent of the component with the largest one
 //   at least F / 1000 + 1600 ε k X for a force, L times that for a moment, 0.001 otherwise
 std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve& truth,
-                               const Scale& acts);
+                               const Scale& scale);
 
 // Limit of the deviation of the output, in its unit.
 double limit_of(const Channel& channel, double extent, const Tolerance& tolerance);

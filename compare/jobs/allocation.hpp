@@ -3,10 +3,10 @@
 
 namespace elastocheck::compare {
 
-// Lets SuiteSparse allocate at multiples of 64 bytes. BLAS (ATLAS) takes other kernels, which round
-// otherwise, for memory at other multiples of 16 bytes, and on which of these malloc places a block
-// depends on what other threads allocate. It acts once, for the whole process; no other thread may be
-// inside SuiteSparse at the first call.
+// Lets SuiteSparse allocate at multiples of 64 bytes. BLAS (ATLAS) selects its kernels, which round
+// differently, by the alignment of the memory, and the address that malloc returns depends on what
+// other threads allocate. It acts once, for the whole process; no other thread may be inside
+// SuiteSparse at the first call.
 void align_suitesparse();
 
 }  // namespace elastocheck::compare

@@ -11,7 +11,7 @@
 namespace elastocheck::compare {
 
 struct Job {
-    std::string what;  // reported when it begins
+    std::string what;  // name, reported when the job begins
     std::function<void()> run;
 };
 
@@ -20,10 +20,10 @@ struct Job {
 // those that threw, in their order, is thrown again.
 void run_jobs(const std::vector<Job>& jobs, int threads, const Progress& progress);
 
-// Progress of a part that takes a computation from the share `from` to the share `to`.
+// Progress of a part of a computation, that from the share `from` to the share `to` of the whole.
 Progress part(const Progress& whole, double from, double to);
 
-// Processor time of the calling thread [s]: what others run meanwhile is not in it.
+// Processor time of the calling thread [s], without that of other threads and processes.
 double processor_time();
 
 }  // namespace elastocheck::compare

@@ -9,11 +9,11 @@
 
 namespace elastocheck::compare {
 
-// A parameter [SI] in its display unit, rounded to 15 digits: what a scene says in degrees, -60,
-// is not -59.99999999999999 after its way to radians and back.
+// A parameter [SI] in its display unit, rounded to 15 digits: -60 deg in a scene stays -60 after its
+// conversion to radians and back, in place of -59.99999999999999.
 double parameter_in(Unit unit, double load);
 
-// Appends one point; `load` in SI.
+// Appends one point; `load` in SI, `values` in the units of the channels.
 void append(Curve& curve, double load, std::vector<double> values);
 
 Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,

@@ -62,18 +62,19 @@ double end_passed(const elastocheck::Curve& curve, double x) {
     return std::nan("");
 }
 
-constexpr double at_a_knot = 1e-9;    // [m, rad], larger than the error of a state
-constexpr double slopes_jump = 1e-6;  // of the steeper slope: beyond rounding
+constexpr double knot_tolerance = 1e-9;  // [m, rad], larger than the error of a state
+constexpr double min_slope_jump = 1e-6;  // share of the steeper slope, larger than rounding
 
 // The knot near x where the slope jumps.
 std::optional<std::size_t> corner_at(const elastocheck::Curve& curve, double x) {
     const auto& knots = curve.knots;
-    const auto near =
-        static_cast<std::size_t>(std::ranges::lower_bound(knots, x - at_a_knot) - knots.begin());
-    if (near == knots.size() || knots[near] > x + at_a_knot) return std::nullopt;
+    const auto near = static_cast<std::size_t>(std::ranges::lower_bound(knots, x - knot_tolerance) -
+                                               knots.begin());
+    if (near == knots.size() || knots[near] > x + knot_tolerance) return std::nullopt;
     const double h = near == 0 ? 0 : knots[near] - knots[near - 1];
     const double before = slope(curve.pieces[near], h), behind = slope(curve.pieces[near + 1], 0);
-    if (!(std::abs(behind - before) > slopes_jump * std::max(std::abs(before), std::abs(behind))))
+    if (!(std::abs(behind - before) >
+          min_slope_jump * std::max(std::abs(before), std::abs(behind))))
         return std::nullopt;
     return near;
 }

@@ -1,5 +1,5 @@
-// Deformation and force of the elastic elements in a state: compare/'s own evaluation, used for
-// scales and ranges, not for a solution.
+// Deformation and force of the elastic elements in a state, evaluated apart from the legs: for outputs,
+// scales and ranges, never for a solution.
 #pragma once
 
 #include <string>

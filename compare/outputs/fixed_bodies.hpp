@@ -1,5 +1,5 @@
-// Which bodies of a model joints without freedom hold to each other: compile() merges them into one,
-// unless the whole scene is kept. Outputs that ask on which body a point is have the same value either way.
+// Sets of bodies that joints without freedom fix to each other. compile() merges these unless it keeps
+// every part (Detail::everything); outputs that depend on the body of a point are the same either way.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class FixedBodies {
     }
     bool are_one(BodyId a, BodyId b) const { return first(a) == first(b); }
     bool is_first(BodyId body) const { return first(body) == body; }
-    // i is one with a and j with b, or the other way round
+    // whether i is fixed to a and j to b, or i to b and j to a
     bool are_two(BodyId i, BodyId j, BodyId a, BodyId b) const {
         return (are_one(i, a) && are_one(j, b)) || (are_one(i, b) && are_one(j, a));
     }

@@ -24,7 +24,7 @@ inline Eigen::Vector3d position(const std::vector<Pose>& poses, const Point& poi
     return position(poses, point.body, point.s_local);
 }
 
-// At the design position, ground axes [m]; and from the wheel's centre to its patch.
+// In the design position, ground axes [m]: a point; the vector from a wheel's centre to its patch.
 inline Eigen::Vector3d drawn(const Model& model, const Point& point) {
     if (point.body == ground) return point.s_local;
     const Pose& on = model.bodies[static_cast<std::size_t>(point.body)].design;

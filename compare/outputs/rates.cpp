@@ -29,6 +29,7 @@ std::vector<double> channel_rates(const Model& model, std::span<const Channel> c
         motion.push_back({rates.dr[b], rates.omega[b]});
         largest = std::max({largest, rates.dr[b].norm(), rates.omega[b].norm()});
     }
+    // y' = (y(-2h) - 8 y(-h) + 8 y(h) - y(2h)) / 12h, the largest motion by h 1e-4 m or rad
     const double h = 1e-4 / largest;
     constexpr std::array offsets{-2., -1., 1., 2.}, weights{1., -8., 8., -1.};
     std::vector<double> result(channels.size(), 0);

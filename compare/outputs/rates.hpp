@@ -20,7 +20,7 @@ Equilibrium moved_by(Equilibrium state, std::span<const Increment> motion, doubl
 
 // d channel / da of every channel, in its unit per unit of the parameter (unit_of(branch.unit)); NaN
 // of channels that are not kinematic. Four-point differences along the motion of the path, of 1e-4 m
-// or rad. The inverse of the rate of travel over a load is the wheel rate.
+// or rad. The rate of travel over a load is the inverse of the wheel rate.
 std::vector<double> channel_rates(const Model& model, std::span<const Channel> channels,
                                   const Branch& branch, const recursive::series::Path& path,
                                   recursive::series::Place place);

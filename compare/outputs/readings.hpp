@@ -14,8 +14,8 @@ inline std::string parameter_reading(std::string_view unit) {
     return "at equal " + parameter_word(unit);
 }
 
-// An abscissa that moves less than this [mm] is not used: a longitudinal force lifts the wheel by
-// some tenths of a millimetre, over which a camber curve has no meaning.
+// An abscissa that moves less than this [mm] is not used: over the tenths of a millimetre by which a
+// longitudinal force lifts the wheel, a camber curve has no meaning.
 inline constexpr double min_travel = 1;
 
 // "at equal travel"; without such a channel "at equal abscissa".

@@ -15,9 +15,9 @@
 namespace elastocheck::compare {
 namespace {
 
-// From the nearer of a wheel's centre and patch on the point's body, or on one fixed to it, as drawn;
-// infinite if neither is on it.
-struct Away {
+// Distance [m] in the design position of a point from the nearer of a wheel's centre and patch on the
+// same body, or on one fixed to it; infinite if neither is.
+struct WheelDistance {
     const Model& model;
     FixedBodies fixed{model};
 
@@ -33,19 +33,20 @@ struct Away {
 }  // namespace
 
 std::optional<std::size_t> wheel_near(const Model& model, const Point& point) {
-    const Away away{model};
+    const WheelDistance distance{model};
     std::optional<std::size_t> found;
     for (std::size_t w = 0; w < model.wheels.size(); ++w)
-        if (const double here = away(model.wheels[w], point);
-            std::isfinite(here) && (!found || here < away(model.wheels[*found], point)))
+        if (const double here = distance(model.wheels[w], point);
+            std::isfinite(here) && (!found || here < distance(model.wheels[*found], point)))
             found = w;
     return found;
 }
 
 std::optional<std::size_t> wheel_at(const Model& model, const Point& point) {
-    constexpr double same = 1e-6;  // [m]
+    constexpr double same_point = 1e-6;  // [m]
     const auto wheel = wheel_near(model, point);
-    return wheel && Away{model}(model.wheels[*wheel], point) < same ? wheel : std::nullopt;
+    return wheel && WheelDistance{model}(model.wheels[*wheel], point) < same_point ? wheel
+                                                                                   : std::nullopt;
 }
 
 std::optional<std::size_t> wheel_on_jack(const Model& model, int joint) {
@@ -64,11 +65,11 @@ std::optional<std::size_t> wheel_on_tyre(const Model& model, int elastic) {
 double wheel_load(const Model& model, const Branch& branch, const Equilibrium& state,
                   std::size_t wheel) {
     double road = 0;
-    const Away away{model};
+    const WheelDistance distance{model};
     const auto add = [&](const LoadKind& load, double factor) {
         if (is_moment(load)) return;
         const Point& point = *member<Point>(load);
-        if (!std::isfinite(away(model.wheels[wheel], point))) return;
+        if (!std::isfinite(distance(model.wheels[wheel], point))) return;
         const double up = load_vector(load).z();
         const auto at = wheel_at(model, point);
         if (is_follower(load) || (!at && up != 0))

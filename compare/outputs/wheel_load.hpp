@@ -9,7 +9,7 @@
 
 namespace elastocheck::compare {
 
-// The wheel on this body, or on one fixed to it: of several, the one whose centre or patch is nearest to the point.
+// The wheel on the point's body or one fixed to it; of several, that with centre or patch nearest to it.
 std::optional<std::size_t> wheel_near(const Model& model, const Point& point);
 // The wheel whose centre or patch is at this point.
 std::optional<std::size_t> wheel_at(const Model& model, const Point& point);

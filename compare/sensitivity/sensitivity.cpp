@@ -30,10 +30,10 @@ using Eigen::VectorXd;
 
 // Coordinates up to which the energy leg costs less than the two others together.
 constexpr int cheap_for_the_energy_leg = 60;
-// Parts of all models that are held at a time.
+// Number of parts of all models that are in memory at a time.
 constexpr std::size_t held_at_a_time = 100000;
 
-// ---- What changes: the numbers, then the adjustments of the trim.
+// ---- The changing numbers, then the adjustments of the trim.
 
 // Whether the adjustments of a trim follow from its conditions at a fixed state. With balanced bushings
 // a trim is found again for each changed number.
@@ -101,7 +101,7 @@ Changing by_parameter(const BranchSide& side) {
 
 Outputs outputs_of(std::span<const Channel> outputs, const std::vector<bool>& changes) {
     Outputs result{{outputs.begin(), outputs.end()}, {}};
-    // points and numbers of the design position are in channels() alone
+    // only outputs of channels() read points and numbers that differ between the models
     result.placed = [list = result.channels, changes](const Model& model,
                                                       const std::optional<Trim>&) {
         Outputs::Placed placed{{}, VectorXd::Zero(std::ssize(list))};
@@ -148,9 +148,8 @@ BranchSide at_rest(const Model& model) {
     return {"trim", on_branch(model, branch), branch, {}};
 }
 
-// Of a motion that nothing resists, which has no derivative, where it deforms the element at the
-// design position: its description. Then no component in the element's axes is determined, which
-// turn with it. Empty for other outputs.
+// Reason why an output of an element has no derivative: an idle mode deforms the element at the design
+// position and turns its axes, so that no component is determined. Empty for other outputs.
 std::string idle_motion_of(const BranchSide& side, const Channel& output) {
     constexpr double moves = 1e-9, h = 1e-5;  // [m, rad] of a unit motion
     const auto* of = std::get_if<ElementComponent>(&output.reads);
@@ -221,7 +220,7 @@ struct SideWork {
         analyses.resize(used.size());
         for (const Leg leg : used) {
             result.legs.emplace_back().leg = leg;
-            states.push_back(rest(read.side, leg).points);
+            states.push_back(settle_start(read.side, leg).points);
         }
     }
     // Appends the columns of these numbers.
@@ -294,7 +293,7 @@ std::vector<SideWork> sides_to_follow(const Model& model, std::span<const Channe
 
 // ---- The columns of the numbers, from those of numbers and adjustments.
 
-// dx/dp of one leg, SI per unit of the number, with its rounding; NaN where there is none.
+// dx/dp of the adjustments x by one leg, SI per unit of the number, with its rounding; NaN where none.
 struct Adjusting {
     MatrixXd dx, rounding;
 };
@@ -322,7 +321,8 @@ MatrixXd with_adjustments(const MatrixXd& all, Index numbers, const MatrixXd& dx
     return total;
 }
 
-// Derivatives within their rounding are zero.
+// Sets the gradients of a side: the columns of numbers with their part through the trim, zero within
+// rounding.
 void take(SideWork& work, Index numbers, const std::vector<Adjusting>& adjusting) {
     SideGradients& result = work.result;
     for (std::size_t l = 0; l < work.rates.size(); ++l) {

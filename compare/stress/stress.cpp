@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "compare/comparison/compare_with.hpp"
+#include "compare/comparison/compare.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/catalogue/catalogue.hpp"
@@ -41,7 +41,7 @@ struct Output {
 };
 using Vectors = std::map<std::string, Vector3d>;  // by name; SI, in the axes of the unchanged scene
 
-// The output that begins with this channel, if one does.
+// The output whose first channel this is, if any.
 std::optional<Output> output(const Model& model, const Channel& channel, std::size_t c) {
     if (const auto* coordinate = std::get_if<Coordinate>(&channel.reads);
         coordinate != nullptr && channel.name.ends_with("_x"))
@@ -59,15 +59,11 @@ std::optional<Output> output(const Model& model, const Channel& channel, std::si
     return std::nullopt;
 }
 
-// The determined ones that read no body with an idle motion.
+// Outputs of the determined channels that read no body with an idle mode.
 std::vector<Output> outputs_of(const Model& model, const recursive::Diagnosis& diagnosis,
                                const std::vector<Channel>& channels,
                                const std::vector<bool>& determined) {
-    std::vector<bool> idle(model.bodies.size());
-    for (const auto& mode : diagnosis.idle)
-        for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
-            if (std::abs(entry.value()) > 1e-6)
-                idle[static_cast<std::size_t>(entry.index() / 6)] = true;
+    const auto idle = bodies_with_idle_mode(model, diagnosis);
     std::vector<Output> outputs;
     for (std::size_t c = 0; c < channels.size(); ++c)
         if (auto candidate = determined[c] ? output(model, channels[c], c) : std::nullopt)
@@ -154,26 +150,26 @@ struct Run {
     Limits claim = {};
 };
 
-// True outputs of one point: x_T and e.
+// True outputs x_T of one point, known to within e.
 struct Known {
     std::string by = {};  // "proof"; empty: unknown
     Vectors values = {};
     Limits error = {};
-    bool proved = false, stable = false;  // proved to be stable
-    bool idle = false;                    // whether the proof held an idle motion
+    bool proved = false, stable = false;  // by a proof, which includes stability
+    bool idle = false;                    // the proof held an idle mode in its position
 };
 
 struct SideRun {
     BranchSide side;
-    std::string bug = {};  // message of an exception
+    std::string exception = {};  // its message
     std::vector<Output> outputs = {};
     reference::certificate::Tolerance tolerance = {};  // of proofs
-    double size = 1, rounding = 0;  // in the axes of the unchanged scene: L, 4 ε X [m]
+    double size = 1, rounding = 0;  // L and 4 ε X [m], in the lengths of the unchanged scene
     std::vector<Run> runs = {};     // per solver
     std::vector<Known> known = {};  // per requested point
 };
 
-// Message on the output that exceeds claim, e and rounding most; empty where none does.
+// Message on the output that exceeds claim + e + rounding by the largest factor; empty where none does.
 std::string breach(const std::vector<Output>& outputs, const Limits& claim, const Vectors& values,
                    const Known& known, double rounding) {
     const Limits round_off{rounding, 4 * eps, 0, 0};
@@ -193,10 +189,10 @@ std::string breach(const std::vector<Output>& outputs, const Limits& claim, cons
     return why;
 }
 
-// The proof of the k-th point by the first of the accurate solvers' states for which it succeeds.
-Known proved(const SideRun& run, const std::vector<const Run*>& exact, std::size_t k,
+// The k-th point by the first state of the accurate solvers that can be proved; unknown if none can.
+Known proved(const SideRun& run, const std::vector<const Run*>& accurate, std::size_t k,
              bool anything_idle) {
-    for (const Run* path : exact) {
+    for (const Run* path : accurate) {
         if (k >= path->states.size()) continue;
         const auto certificate =
             certify(run.side.model, run.side.branch, path->states[k], run.tolerance);
@@ -214,10 +210,10 @@ Known proved(const SideRun& run, const std::vector<const Run*>& exact, std::size
     return {};
 }
 
-// Two accurate solvers that agree within their claims.
-Known agreed(const SideRun& run, const std::vector<const Run*>& exact, std::size_t k) {
+// The k-th point by two accurate solvers that agree within their claims; unknown if none do.
+Known agreed(const SideRun& run, const std::vector<const Run*>& accurate, std::size_t k) {
     for (const auto& [i, j] : {std::pair{0u, 1u}, {0u, 2u}, {1u, 2u}}) {
-        const Run &one = *exact[i], &other = *exact[j];
+        const Run &one = *accurate[i], &other = *accurate[j];
         if (k < one.points.size() && k < other.points.size() &&
             breach(run.outputs, one.claim, one.points[k],
                    {.values = other.points[k], .error = other.claim}, run.rounding)
@@ -230,16 +226,16 @@ Known agreed(const SideRun& run, const std::vector<const Run*>& exact, std::size
 // The truth of a scene that is not transformed: by construction, by proof, or by agreement.
 void find_truth(SideRun& run, const std::vector<Solver>& solvers, const Variant& variant,
                 const Vectors& design, bool anything_idle) {
-    std::vector<const Run*> exact;
+    std::vector<const Run*> accurate;
     for (const char* name : {"equilibrium", "energy", "series"})
-        exact.push_back(&run.runs[static_cast<std::size_t>(
+        accurate.push_back(&run.runs[static_cast<std::size_t>(
             std::ranges::find(solvers, name, &Solver::name) - solvers.begin())]);
     for (std::size_t k = 0; k < run.known.size(); ++k) {
         if (variant.known == Variant::Construction::nothing_moves)
             run.known[k] = {"construction", design, {run.rounding, eps, inf, inf}};
         else
-            run.known[k] = proved(run, exact, k, anything_idle);
-        if (run.known[k].by.empty()) run.known[k] = agreed(run, exact, k);
+            run.known[k] = proved(run, accurate, k, anything_idle);
+        if (run.known[k].by.empty()) run.known[k] = agreed(run, accurate, k);
     }
 }
 
@@ -312,7 +308,7 @@ std::vector<SideRun> run_trial(const Trial& trial, const std::vector<Solver>& so
             try {
                 run_side(sides.back(), trial.variant, model, solvers);
             } catch (const std::exception& error) {
-                sides.back().bug = error.what();
+                sides.back().exception = error.what();
             }
         }
     return sides;
@@ -320,29 +316,28 @@ std::vector<SideRun> run_trial(const Trial& trial, const std::vector<Solver>& so
 
 // ---- Verdict.
 
-// Outcomes that claim that no equilibrium continues the branch.
-bool says_that_it_ends(Outcome outcome) {
+// Whether the outcome claims that no equilibrium continues the branch.
+bool reports_end(Outcome outcome) {
     constexpr std::array ends{Outcome::singular,          Outcome::limit_point,
                               Outcome::bifurcation_point, Outcome::branch_lost,
                               Outcome::loaded_idle_mode,  Outcome::inconsistent_constraints};
     return std::ranges::find(ends, outcome) != ends.end();
 }
 
-// Whether every point is a proved stable equilibrium. A motion that is idle at one point and held
-// by its load at the next has jumped: these are equilibria, but no branch.
+// Whether the points are proved to be a stable branch. Where a mode is idle at one point and held by its
+// load at the next, the equilibria are not on one branch.
 bool all_proved(const SideRun& run) {
     return std::ranges::all_of(run.known, [&](const Known& known) {
         return known.proved && known.stable && known.idle == run.known.front().idle;
     });
 }
 
-// Reason where both references, which are the last two solvers, report the end of the branch and
-// its points are not all proved; else empty.
-std::string ended(const SideRun& run, const SideRun& truth) {
+// Reason that a reference gives where both references, the last two solvers, report the end of the
+// branch and its points are not all proved; else empty.
+std::string end_by_references(const SideRun& run, const SideRun& truth) {
     if (all_proved(truth)) return {};
     for (std::size_t s = run.runs.size() - 2; s < run.runs.size(); ++s)
-        if (!says_that_it_ends(run.runs[s].outcome) ||
-            run.runs[s].points.size() >= truth.known.size())
+        if (!reports_end(run.runs[s].outcome) || run.runs[s].points.size() >= truth.known.size())
             return {};
     return run.runs.back().detail;
 }
@@ -373,7 +368,7 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
         cell.why = std::move(why);
         return cell;
     };
-    if (!run.bug.empty()) return wrong("ended with an exception: " + run.bug);
+    if (!run.exception.empty()) return wrong("ended with an exception: " + run.exception);
     if (!judged.points.empty()) cell.claim = judged.claim[of_position];
     const bool claims = std::isfinite(judged.claim[of_position]);
     const Run* base_run = base != nullptr ? &base->runs[s] : nullptr;
@@ -398,22 +393,23 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
                                  known.error[of_position]);
         std::string why = breach(run.outputs, judged.claim, judged.points[k], known, rounding);
         if (why.empty()) continue;
-        // Another equilibrium, and of a transformed scene the same one as without the transform.
-        const bool as_there =
+        // Not wrong if it is another proved equilibrium; of a transformed scene it must be the same one
+        // as without the transform.
+        const bool same_as_unchanged =
             base_run == nullptr ||
             (k < base_run->points.size() &&
              breach(run.outputs, judged.claim, judged.points[k],
                     {.values = base_run->points[k], .error = base_run->claim}, rounding)
                  .empty());
         const bool is_another =
-            known.proved && as_there &&
+            known.proved && same_as_unchanged &&
             certify(run.side.model, run.side.branch, judged.states[k], run.tolerance).state ==
                 ProofState::proved;
         (is_another ? elsewhere : breaks) = std::move(why);
     }
     if (!cell.known_by.empty()) cell.error = error;
     if (!breaks.empty()) return wrong(breaks);
-    if (solver.settings.leg != Leg::recursive && says_that_it_ends(judged.outcome)) {
+    if (solver.settings.leg != Leg::recursive && reports_end(judged.outcome)) {
         if (base != nullptr &&
             std::ranges::all_of(base->known, [](const Known& known) { return !known.by.empty(); }))
             return wrong("reports an end of the branch, which is known in the unchanged scene");
@@ -428,7 +424,7 @@ StressCell judge(const Trial& trial, const Solver& solver, std::size_t s, const 
         return wrong("converged, but points are missing");
     if (trial.variant.known == Variant::Construction::no_equilibrium)
         return wrong("converged although by construction no equilibrium exists");
-    if (const auto end = ended(run, truth); !end.empty())
+    if (const auto end = end_by_references(run, truth); !end.empty())
         return wrong("converged where both references report: " + end);
     if (!elsewhere.empty()) {
         cell.verdict = CellVerdict::elsewhere;
@@ -486,7 +482,7 @@ Survival stress(std::span<const Trial> trials, int threads, const Progress& prog
             runs[has_base ? static_cast<std::size_t>(unchanged - trials.begin()) : t];
         for (std::size_t side = 0; side < runs[t].size(); ++side)
             for (std::size_t s = 0; s < all_solvers.size(); ++s)
-                if (runs[t][side].runs[s].requested || !runs[t][side].bug.empty())
+                if (runs[t][side].runs[s].requested || !runs[t][side].exception.empty())
                     survival.cells.push_back(
                         judge(trials[t], all_solvers[s], s, runs[t][side],
                               has_base && side < base.size() ? &base[side] : nullptr));

@@ -17,8 +17,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// [m] of deflection: less is not loaded, as a tyre without preload where the branch starts.
-constexpr double touching = 1e-9;
+// Smaller deflections [m] are neither contact nor lift-off, as of a tyre without preload at the start.
+constexpr double min_deflection = 1e-9;
 
 // An element that only pushes: without force where its deformation exceeds `end`.
 struct Pusher {
@@ -52,28 +52,29 @@ std::vector<Pusher> pushers(const Model& model) {
     return list;
 }
 
-double load_on(const Pusher& of, const BranchSide& side, const Equilibrium& state) {
-    const ElasticKind& kind = side.model.elastics[of.element].kind;
-    return of.end - deformation(kind, of.element, side.branch, state)[of.axis];
+// Deflection [m] of the element, negative where it has lifted off.
+double deflection(const Pusher& pusher, const BranchSide& side, const Equilibrium& state) {
+    const ElasticKind& kind = side.model.elastics[pusher.element].kind;
+    return pusher.end - deformation(kind, pusher.element, side.branch, state)[pusher.axis];
 }
 
-// A parameter and the load there.
-struct LoadAt {
-    double a = 0, load = 0;
+// A parameter of the branch [SI] and the deflection there [m].
+struct DeflectionAt {
+    double a = 0, deflection = 0;
 };
 
-// The zero between two parameters by false position (Illinois), NaN where the leg does
-// not solve there.
-double place(const Pusher& of, const BranchSide& side, Leg leg, LoadAt from, LoadAt to) {
+// Zero of the deflection between two parameters by false position (Illinois); NaN where the leg fails.
+double zero_between(const Pusher& pusher, const BranchSide& side, Leg leg, DeflectionAt from,
+                    DeflectionAt to) {
     auto [a, f_a] = from;
     auto [b, f_b] = to;
     for (int k = 0; k < 60 && std::abs(b - a) > 1e-9 * std::abs(side.branch.to); ++k) {
         const double c = a + f_a / (f_a - f_b) * (b - a);
         double f_c = std::numeric_limits<double>::quiet_NaN();
         solve_at(side, leg, std::span(&c, 1),
-                 [&](const Equilibrium& state) { f_c = load_on(of, side, state); });
+                 [&](const Equilibrium& state) { f_c = deflection(pusher, side, state); });
         if (!std::isfinite(f_c)) return f_c;
-        if (std::abs(f_c) <= 1e-3 * touching) return c;
+        if (std::abs(f_c) <= 1e-3 * min_deflection) return c;
         if ((f_c > 0) != (f_b > 0)) {
             a = b;
             f_a = f_b;
@@ -96,22 +97,22 @@ std::vector<LiftOff> lift_offs(const Model& model, const Branch& branch, Leg leg
     for (const BranchSide& side : sides) {
         const auto pushing = pushers(side.model);
         if (pushing.empty()) continue;
-        std::vector<std::optional<LoadAt>> lasts(pushing.size());  // where it was loaded or off
+        std::vector<std::optional<DeflectionAt>> lasts(pushing.size());  // beyond min_deflection
         const auto note = [&](const std::string& what, double a) {
             const Unit unit = unit_of(branch.unit);
             list.push_back({what, parameter_in(unit, a), unit});
         };
         solve_at(side, leg, requested_parameters({side}, 1), [&](const Equilibrium& state) {
             for (std::size_t p = 0; p < pushing.size(); ++p) {
-                const Pusher& of = pushing[p];
-                const double now = load_on(of, side, state);
-                if (std::abs(now) <= touching) continue;
+                const Pusher& pusher = pushing[p];
+                const double now = deflection(pusher, side, state);
+                if (std::abs(now) <= min_deflection) continue;
                 auto& last = lasts[p];
-                if (last && (last->load > 0) != (now > 0))
-                    note(now > 0 ? of.returns : of.leaves,
-                         place(of, side, leg, *last, {state.load, now}));
+                if (last && (last->deflection > 0) != (now > 0))
+                    note(now > 0 ? pusher.returns : pusher.leaves,
+                         zero_between(pusher, side, leg, *last, {state.load, now}));
                 else if (!last && now < 0 && (state.load != 0 || &side == sides.data()))
-                    note(of.leaves, 0);
+                    note(pusher.leaves, 0);
                 last = {state.load, now};
             }
         });

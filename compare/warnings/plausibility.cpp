@@ -21,13 +21,13 @@ using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// ---- What is plausible of a car at rest, beside the figures of the catalogue, in mm and N.
+// ---- Plausible ranges for a car at rest beside those of the catalogue, in mm and N.
 
 constexpr Plausible movement{0, 50, "is a preload or a trim missing, or a rate in another unit?"};
 constexpr Plausible spring_force{
     -20, infinity, "it is in tension: does a load point down, or is its preload missing?"};
 constexpr Plausible bushing_displacement{0, 20, "is its rate in another unit?"};
-// Caster, mechanical trail and anti-dive or anti-lift are all below this where x points rearward.
+// x points rearward where caster, mechanical trail and anti-dive or anti-lift are all below this.
 constexpr double clearly_negative = -0.5;  // [deg], [mm], [%]
 
 // ---- The state at rest.
@@ -54,7 +54,7 @@ std::optional<AtRest> at_rest(const Model& model) {
     const auto sides = sides_of(model, model.branches.front());
     if (sides.empty()) return std::nullopt;
     const BranchSide& side = sides.front();
-    const EquilibriumPath path = rest(side, Leg::equilibrium);
+    const EquilibriumPath path = settle_start(side, Leg::equilibrium);
     if (path.points.empty()) return std::nullopt;
     AtRest found{model, channels(model), {}, {}};
     std::ranges::move(characteristics(model), std::back_inserter(found.channels));
@@ -91,7 +91,7 @@ std::vector<PrintedValue> movements(const AtRest& state) {
         const Wheel& wheel = state.model.wheels[w];
         Vector3d by;
         for (const Entry& entry : catalogue())
-            if (entry.point != nullptr && entry.is.main)
+            if (entry.point != nullptr && entry.properties.main)
                 by[entry.axis] = state.moved(prefix(wheel.name) + entry.name);
         list.push_back({place_of(wheel), by.norm(), "mm"});
     }
@@ -133,7 +133,7 @@ void judge(const std::vector<PrintedValue>& readings, const std::string& output,
     if (more > 0) list.back().what += fmt::format(" (and {} more)", more);
 }
 
-// Caster, trail and the support under braking of a wheel.
+// Warning where figures of a wheel show that x points rearward.
 std::optional<Implausible> rearward(const AtRest& state, const Wheel& wheel) {
     const auto find = [&](std::string_view name) {
         return state.find(prefix(wheel.name) + std::string(name));
@@ -169,8 +169,8 @@ struct Drawn {
     std::vector<Connection> connections{};
     std::map<BodyId, std::vector<Attached>> points{};
 
-    // Both of the points of a body, without those of the connection `without`: the distance of the
-    // nearest from p, and the largest distance of two of them [m].
+    // Distance [m] from p of the nearest point of a body, and the largest distance of two of its points,
+    // both without the points of the connection `without`.
     double nearest(BodyId body, const Vector3d& p, std::size_t without) const {
         double least = infinity;
         if (const auto of = points.find(body); of != points.end())
@@ -286,10 +286,10 @@ std::vector<Implausible> implausible(const Model& model) {
     const auto state = at_rest(model);
     if (!state) return list;
     for (const Entry& entry : catalogue())
-        if (entry.is.plausible.asks != nullptr) {
+        if (entry.properties.plausible.asks != nullptr) {
             std::string output = entry.name;
             std::ranges::replace(output, '_', ' ');
-            judge(of_wheels(*state, entry), output, entry.is.plausible, list);
+            judge(of_wheels(*state, entry), output, entry.properties.plausible, list);
         }
     judge(movements(*state), "shift", movement, list);
     judge(of_elements(*state, true), "force", spring_force, list);

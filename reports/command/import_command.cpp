@@ -264,7 +264,7 @@ int add_compliance(const ExportRequest& request, KCBlocks& blocks) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Branch& branch = branch_named(loaded.model, request.over, "--over");
     const auto sides = compare::sides_of(loaded.model, branch, 1);
-    const auto path = compare::rest(sides.front(), compare::Leg::equilibrium);
+    const auto path = compare::settle_start(sides.front(), compare::Leg::equilibrium);
     if (path.points.empty()) {
         print_error("no coefficients: {}: {}: {}\n", request.over, name(path.outcome), path.detail);
         return could_not_judge;

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "compare/comparison/compare_with.hpp"
+#include "compare/comparison/compare.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"

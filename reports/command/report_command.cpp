@@ -13,7 +13,6 @@
 #include <string>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/comparison/compare_with.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/loads/loads.hpp"
@@ -196,8 +195,8 @@ KeyOutputs key_outputs(const Model& model) {
     for (const auto& channel : outputs) {
         if (model.wheels.empty() || !is_first(channel)) continue;
         const compare::Entry* entry = compare::find_entry(channel.name);
-        if (entry != nullptr && entry->is.explained) key.at_design.push_back(channel);
-        if (entry != nullptr && entry->is.main && entry->unit == compare::Unit::deg)
+        if (entry != nullptr && entry->properties.explained) key.at_design.push_back(channel);
+        if (entry != nullptr && entry->properties.main && entry->unit == compare::Unit::deg)
             key.at_ends.push_back(channel);
     }
     constexpr std::size_t without_wheel = 3;

@@ -287,7 +287,7 @@ compare::Table recommended_table(const Recommended& recommended) {
     std::vector<Point> points;
     for (const auto& [branch, profile] : recommended.branches)
         for (std::size_t k = 0; k < profile.a.size(); ++k)
-            points.push_back({branch, profile.a[k], profile.apart[k]});
+            points.push_back({branch, profile.a[k], profile.deviation[k]});
     using enum compare::Digits;
     return compare::table<Point>(
         "recommended",

@@ -145,7 +145,7 @@ std::vector<compare::StaticRow> static_rows(const Model& model,
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const auto& channel = comparison.channels[c];
             const auto* output = std::get_if<compare::Catalogued>(&channel.reads);
-            if (output != nullptr && output->of == w && output->entry->is.at_rest &&
+            if (output != nullptr && output->of == w && output->entry->properties.at_rest &&
                 channel.name.starts_with(wheel))  // not of the axle
                 rows.push_back({wheel, channel.name.substr(wheel.empty() ? 0 : wheel.size() + 1),
                                 symbol(channel.unit), compare::finite_or_nan(drawn[c]),

@@ -29,7 +29,7 @@ json compliance(Session& session, const std::vector<Setting>& settings) {
     const Model& model = prepared(session, settings).model;
     if (model.wheels.empty() || model.branches.empty()) return {{"why_not", "there is no wheel"}};
     const compare::BranchSide side = compare::sides_of(model, model.branches.front()).front();
-    const EquilibriumPath start = compare::rest(side, compare::Leg::series);
+    const EquilibriumPath start = compare::settle_start(side, compare::Leg::series);
     if (start.points.empty())
         return {{"why_not", fmt::format("{}: {}", name(start.outcome), start.detail)}};
     const Equilibrium& state = start.points.front();

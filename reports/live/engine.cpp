@@ -177,7 +177,7 @@ struct Sharing {
         if (previous != nullptr) analysis->settled = previous->analysis->settled;
         recursive::series::keep_start(side.model, side.branch, {}, *analysis);
         Shared shared{parts, std::move(analysis)};
-        if (previous != nullptr) shared.responses = compare::like(previous->responses);
+        if (previous != nullptr) shared.responses = compare::with_orders_of(previous->responses);
         shared.responses.one_factorisation = one_factorisation;
         now.push_back(std::make_shared<Shared>(std::move(shared)));
         return *now.back();
@@ -274,13 +274,14 @@ json open(Session& session, std::string_view text, const std::string& name,
     answer["channels"] = json::array();
     for (const Channel& channel : channels_of(model)) {
         const compare::Entry* entry = compare::find_entry(channel.name);
-        const compare::Properties is = entry == nullptr ? compare::Properties{} : entry->is;
+        const compare::Properties properties =
+            entry == nullptr ? compare::Properties{} : entry->properties;
         answer["channels"].push_back({{"name", channel.name},
                                       {"unit", symbol(channel.unit)},
                                       {"kind", compare::name(channel.kind())},
                                       {"main", channel.main},
-                                      {"at_rest", is.at_rest},
-                                      {"cause", is.cause},
+                                      {"at_rest", properties.at_rest},
+                                      {"cause", properties.cause},
                                       {"figure", compare::without_owner(channel.name)},
                                       {"wheel", wheel_of(model, channel)},
                                       {"definition", channel.definition},

@@ -92,11 +92,12 @@ std::string described(const Breakpoints& points, BlockAxes axes) {
 }  // namespace
 
 std::vector<WheelOutput> block_outputs(const Model& model) {
-    return chosen(model, [](const compare::Entry& e) { return e.is.block.name != nullptr; });
+    return chosen(model,
+                  [](const compare::Entry& e) { return e.properties.block.name != nullptr; });
 }
 
 std::vector<WheelOutput> compliance_outputs(const Model& model) {
-    return chosen(model, [](const compare::Entry& e) { return e.is.compliance; });
+    return chosen(model, [](const compare::Entry& e) { return e.properties.compliance; });
 }
 
 std::string blocks_csv(const KCBlocks& blocks, BlockAxes axes) {
@@ -113,7 +114,7 @@ std::string blocks_csv(const KCBlocks& blocks, BlockAxes axes) {
         columns.name.empty() ? std::vector<std::size_t>{0} : ascending(columns);
     for (std::size_t c = 0; c < blocks.outputs.size(); ++c) {
         const auto& [channel, output, wheel, side] = blocks.outputs[c];
-        const compare::Block& quantity = compare::find_entry(output)->is.block;
+        const compare::Block& quantity = compare::find_entry(output)->properties.block;
         // outwards is +y of ISO on the left wheel
         double sign = quantity.outwards && side < 0 ? -1 : 1;
         if (sae && quantity.component != Component::none) sign = -sign;

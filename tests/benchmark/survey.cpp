@@ -49,7 +49,7 @@ Accuracy at_equal_travel(const std::vector<Channel>& channels, const compare::Cu
                          const compare::Curve& other) {
     Accuracy most;
     const auto by = abscissa(channels, default_abscissa(channels, truth), truth, other);
-    for (const auto& apart : profile_at_equal_abscissa(channels, truth, other, by).apart)
+    for (const auto& apart : profile_at_equal_abscissa(channels, truth, other, by).deviation)
         if (std::isfinite(apart.mm)) most = worse(most, apart);  // as far as the recursion goes
     return most;
 }

@@ -42,7 +42,7 @@ class Read {
   public:
     Read(const Model& model, Leg leg, const std::string& branch = "")
         : way_(way(model, branch)), channels_(characteristics(model)) {
-        const auto path = rest(way_, leg);
+        const auto path = settle_start(way_, leg);
         EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
         if (path.points.empty()) return;
         state = path.points.front();

@@ -594,7 +594,7 @@ TEST(Definitions, OtherDefinitionInAColumnIsNamedWithSignUnitAndOffset) {
 
 // A nearly constant column fits every curve with a small factor and an offset, so that it identifies none.
 TEST(Definitions, ColumnThatHardlyMovesIsNotExplainedByADefinitionAndAFactor) {
-    Beside b;
+    ColumnWithReference b;
     for (int k = 0; k <= 20; ++k) {
         const double x = 0.1 * (k - 10);
         b.reference.push_back(14 + 4 * x + x * x);
@@ -631,7 +631,7 @@ std::string table_of_definitions() {
         if (const auto at = definition.find(" '{}'"); at != definition.npos)
             definition.erase(at, 5);
         return fmt::format("| `{}` | {} | {} | {} |\n", entry.name, symbol(entry.unit),
-                           cell(definition), cell(entry.is.elsewhere));
+                           cell(definition), cell(entry.properties.elsewhere));
     };
     std::string text =
         "| output | unit | definition | formula; sources, and what others call it |\n"
@@ -669,8 +669,8 @@ TEST(Definitions, ReadmeOfTheCatalogueHasTheTableOfItsDefinitions) {
 }
 
 // `count` points of output `c` of a branch, evenly spaced, with the figure by other definitions.
-Beside few_points(const Judged& at, std::size_t c, std::size_t count) {
-    Beside b;
+ColumnWithReference few_points(const Judged& at, std::size_t c, std::size_t count) {
+    ColumnWithReference b;
     const auto taken = [&](const std::vector<double>& values) {
         std::vector<double> few;
         for (std::size_t k = 0; k < count; ++k)
@@ -705,7 +705,7 @@ TEST(Definitions, AtMostOnePercentOfWrongColumnsAreExplained) {
             std::string last;
             while (tried < 1000)
                 for (std::size_t c = 0; c < at.comparison.channels.size() && tried < 1000; ++c) {
-                    Beside b = few_points(at, c, count);
+                    ColumnWithReference b = few_points(at, c, count);
                     const auto [low, high] = std::ranges::minmax(b.reference);
                     const double range = high - low;
                     if (b.definitions.empty() || !(range > 1e-9)) continue;
@@ -741,7 +741,7 @@ TEST(Definitions, PlantedTransformationIsFoundInAColumnOfFewPoints) {
     int definitions_found = 0;
     for (const std::size_t count : {3, 4, 5})
         for (std::size_t c = 0; c < at.comparison.channels.size(); ++c) {
-            Beside b = few_points(at, c, count);
+            ColumnWithReference b = few_points(at, c, count);
             const auto [low, high] = std::ranges::minmax(b.reference);
             const double range = high - low;
             if (b.definitions.empty() || !(range > 1e-6)) continue;
@@ -774,7 +774,7 @@ TEST(Definitions, PlantedTransformationIsFoundInAColumnOfFewPoints) {
     EXPECT_GE(definitions_found, 20);
 
     // numbers of a manufacturer's table against the reference, tests/outside
-    Beside b;
+    ColumnWithReference b;
     b.candidate = {145.42, 144.80, 144.19};
     b.reference = {143.92, 143.80, 143.68};
     b.begin = {143.57, 143.57, 143.57};

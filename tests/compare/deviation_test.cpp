@@ -134,7 +134,7 @@ TEST(Deviation, TwoSidedCurvesAreAlignedAtTheirStartIfOneEndsEarly) {
     EXPECT_DOUBLE_EQ(reading.channels[1].max, 0.5);
     EXPECT_DOUBLE_EQ(reading.channels[1].at, a.a[7]);
     EXPECT_TRUE(std::isnan(distance(outputs, a, b).mm));  // not the same branch
-    EXPECT_EQ(profile_at_equal_parameter(outputs, a, b).apart.size(), 34u);
+    EXPECT_EQ(profile_at_equal_parameter(outputs, a, b).deviation.size(), 34u);
 }
 
 TEST(Deviation, ProfileIsTheLargestDeviationOfTheMainOutputsAtEachPoint) {
@@ -143,13 +143,13 @@ TEST(Deviation, ProfileIsTheLargestDeviationOfTheMainOutputsAtEachPoint) {
     b.values[3][0] += 9;  // travel is not a main channel
     b.values[5][1] -= 0.25;
     const auto load = profile_at_equal_parameter(outputs, a, b);
-    EXPECT_EQ(load.apart[3].mm, 0);
-    EXPECT_EQ(load.apart[5].mm, 0.25);
+    EXPECT_EQ(load.deviation[3].mm, 0);
+    EXPECT_EQ(load.deviation[5].mm, 0.25);
     EXPECT_EQ(distance(outputs, a, b).mm, 0.25);
     const Curve c = made(0.9, [](double x) { return x; });
     const auto travel = profile_at_equal_abscissa(outputs, a, c, abscissa(outputs, 0, a, c));
-    EXPECT_LE(travel.apart[30].mm, 1e-12);
-    EXPECT_TRUE(std::isnan(travel.apart[40].mm));  // not reached
+    EXPECT_LE(travel.deviation[30].mm, 1e-12);
+    EXPECT_TRUE(std::isnan(travel.deviation[40].mm));  // not reached
 }
 
 TEST(Abscissa, ReasonForHavingNoneNamesTheOutputThatReversesOrDoesNotMove) {

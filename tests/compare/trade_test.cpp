@@ -594,16 +594,16 @@ TEST(ErrorProfile, EndsWithTheErrorOfItsConfigurationAndIsZeroForTheReference) {
             if (channels[c].main)
                 (channels[c].unit == Unit::deg ? deg : mm) =
                     std::max(channels[c].unit == Unit::deg ? deg : mm, std::abs(v[c] - u[c]));
-        EXPECT_NEAR(found.apart.back().mm, mm, 1e-6);
-        EXPECT_NEAR(found.apart.back().deg, deg, 1e-6);
-        EXPECT_GT(found.apart.back().mm, 1e-4);
-        for (const auto& error : profile(solves, b, {.leg = Leg::equilibrium}).apart)
+        EXPECT_NEAR(found.deviation.back().mm, mm, 1e-6);
+        EXPECT_NEAR(found.deviation.back().deg, deg, 1e-6);
+        EXPECT_GT(found.deviation.back().mm, 1e-4);
+        for (const auto& error : profile(solves, b, {.leg = Leg::equilibrium}).deviation)
             EXPECT_EQ(error.mm, 0);
     }
     for (const char* method : {"adaptive", "series"}) {
         const auto found = profile(solves, 0, {.method = method, .own_tolerance = 1e-6});
         EXPECT_EQ(found.a.size(), 41u) << method;
-        for (const auto& error : found.apart) EXPECT_LE(error.mm, 1e-3) << method;
+        for (const auto& error : found.deviation) EXPECT_LE(error.mm, 1e-3) << method;
     }
 }
 

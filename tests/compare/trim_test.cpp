@@ -239,7 +239,7 @@ TEST(Trim, BalancingBushingPreloadsKeepEveryLegAtTheDesignPosition) {
             still.branches = {
                 {.name = "none", .to = 1, .steps = 1, .unit = ParameterUnit::none, .drivers = {}}};
             const Model model = compile(still);
-            const EquilibriumPath path = rest({"none", model, model.branches[0]}, leg);
+            const EquilibriumPath path = settle_start({"none", model, model.branches[0]}, leg);
             EXPECT_FALSE(path.points.empty()) << path.detail;
             double most = 0;
             for (std::size_t b = 0; b < model.bodies.size() && !path.points.empty(); ++b)

@@ -1,5 +1,5 @@
-// Figures that are read from the state alone: positions, angles, the steering axis, and what holds of two
-// wheels; and the same figures by other definitions.
+// Figures read from the state alone: positions, angles, the steering axis, and figures of two wheels;
+// and the same figures by other definitions.
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -24,10 +24,10 @@ namespace {
 //
 // All four are undefined for an axis within 0.1 rad of the road plane.
 
-constexpr double flattest = 0.1;  // [rad]
+constexpr double min_inclination = 0.1;  // [rad] of the axis to the road plane
 bool is_flat(const Subject& x) {
     const Vector3d u = x.axis();
-    return !(std::abs(u.z()) > std::sin(flattest) * u.norm());
+    return !(std::abs(u.z()) > std::sin(min_inclination) * u.norm());
 }
 template <auto formula>
 double unless_flat(const Subject& x) {
@@ -60,9 +60,10 @@ std::optional<SteerAngles> steer_angles(const Subject& x) {
         return std::nullopt;
     return SteerAngles{left, right};
 }
-// 1 where the perpendiculars to the two wheels meet on the line of the other axle, 0 for parallel wheels:
+// Ackermann's condition cot δ_outer - cot δ_inner = j / l, as a share: 1 where the perpendiculars to the
+// two wheels meet on the line of the other axle, 0 for parallel wheels,
 //
-//   (cot δ_right - cot δ_left) l / j
+//   (cot δ_right - cot δ_left) l / j,   l the wheelbase, j the lateral distance of the pivots
 //
 // Undefined unless both wheels turn the same way by 2 deg or more: 0/0 straight ahead.
 double ackermann(const Subject& x) {
@@ -70,12 +71,12 @@ double ackermann(const Subject& x) {
     return at ? (1 / std::tan(at->right) - 1 / std::tan(at->left)) * wheelbase_by_pivots(x)
               : undefined;
 }
-// Towards the side to which the axle turns; the angle of the outer wheel for the inner one,
-// cot δ_o = cot δ_i + j/l, and the reverse.
+// Steer angles of the inner and the outer wheel of the turn, positive; and by Ackermann's condition
+// cot δ_o = cot δ_i + j/l the outer one for this inner one, and the inner one for this outer one.
 struct Steered {
     double inner = 0, outer = 0, outer_ideal = 0, inner_ideal = 0;
 };
-double of_steered(const Subject& x, double (*formula)(const Steered&)) {
+double evaluate_steered(const Subject& x, double (*formula)(const Steered&)) {
     const auto at = steer_angles(x);
     if (!at) return undefined;
     const bool to_the_left = at->left > 0;
@@ -111,7 +112,8 @@ double roll_centre_by_planes(const Subject& subject) {
         const auto& [a, b] = std::pair(planes[0].normal, planes[1].normal);
         const double p = planes[0].offset - a.x() * x, q = planes[1].offset - b.x() * x,
                      determinant = a.y() * b.z() - a.z() * b.y();
-        // the instant centre (y, z) = (n_y, n_z) / determinant; at infinity for parallel planes
+        // instant centre (y, z) = (n_y, n_z) / determinant by Cramer's rule; at infinity, where only the
+        // slope is defined, for parallel planes
         const double n_y = p * b.z() - q * a.z(), n_z = a.y() * q - b.y() * p;
         const Vector3d patch = wheel.patch().at;
         lines.push_back({patch.y(), patch.z(),
@@ -134,7 +136,7 @@ double compression(const Subject& x, const Point& i, const Point& j) {
     return length(x.drawn()) - length(x);
 }
 
-// Of an axle: the body against the wheels, about x, and the moment that rolls it so.
+// Roll of the body of an axle relative to its wheels, about x, and the moment that causes it.
 double roll_angle(const Subject& x) {
     const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
     const Vector3d from_left = right.centre().at - left.centre().at;
@@ -151,17 +153,16 @@ double roll_moment(const Subject& x) {
                                      : undefined;
 }
 
-// ---- Positions: an entry an axis.
+// ---- Positions: one entry per axis.
 
 void add_position(std::vector<Entry>& entries, Owner owner, const std::string& stem,
                   const std::string& of, Point (*point)(const Wheel&),
-                  std::array<Properties, 3> is = {}) {
+                  std::array<Properties, 3> properties = {}) {
     for (int k = 0; k < 3; ++k) {
         const auto a = static_cast<std::size_t>(k);
-        Entry entry{owner,    stem + "_" + axes[a],
-                    Unit::mm, "position of " + of + ", " + axis_words(k),
-                    "",       {},
-                    is[a]};
+        Entry entry{
+            owner, stem + "_" + axes[a], Unit::mm, "position of " + of + ", " + axis_words(k), "",
+            {},    properties[a]};
         entry.axis = k;
         entry.point = point;
         entries.push_back(std::move(entry));
@@ -344,7 +345,7 @@ const Entry of_patch[] = {
           {.elsewhere = "damper travel", .drawn = {compressed}}),
 };
 
-// Needs the branch, whose drivers move the rack.
+// An entry of its own function since it needs the branch, whose drivers move the rack.
 Entry hand_wheel_entry() {
     Entry entry(Owner::hand_wheel, "hand_wheel_angle", Unit::deg,
                 "angle of the hand wheel, in proportion to the displacement of the rack, with the "
@@ -366,7 +367,7 @@ Entry hand_wheel_entry() {
     return entry;
 }
 
-// Needs the branch, of which it counts the loads and drivers.
+// Likewise: it sums loads and drivers of the branch.
 Entry wheel_load_entry() {
     Entry entry(
         Owner::wheel, std::string(figure::wheel_load), Unit::newton,
@@ -403,7 +404,7 @@ Entry roll_moment_entry() {
 constexpr auto manufacturer = "a manufacturer's table (tests/outside/README.md)";
 constexpr auto nearly_straight = "the wheels are nearly straight ahead";
 
-const Entry angles_otherwise[] = {
+const Entry angle_definitions[] = {
     Entry(Owner::wheel, "toe@lateral", Unit::deg,
           "angle of an axis that is lateral in the design position, plus the drawn toe", "",
           [](const Subject& x) {
@@ -515,14 +516,14 @@ const Entry angles_otherwise[] = {
           "meet on the line of the other axle; positive where the outer wheel steers too much",
           nearly_straight,
           [](const Subject& x) {
-              return of_steered(x, [](const Steered& s) { return s.outer - s.outer_ideal; });
+              return evaluate_steered(x, [](const Steered& s) { return s.outer - s.outer_ideal; });
           },
           {.elsewhere = "ISO 8855: Ackermann error", .set = "iso8855"}),
     Entry(Owner::front_axle, "ackermann@outer", Unit::percent,
           "difference of the steer angles over that with this outer angle for the inner one",
           nearly_straight,
           [](const Subject& x) {
-              return of_steered(x, [](const Steered& s) {
+              return evaluate_steered(x, [](const Steered& s) {
                   return (s.inner - s.outer) / (s.inner - s.outer_ideal);
               });
           },
@@ -531,7 +532,7 @@ const Entry angles_otherwise[] = {
           "difference of the steer angles over that with this inner angle for the outer one",
           nearly_straight,
           [](const Subject& x) {
-              return of_steered(x, [](const Steered& s) {
+              return evaluate_steered(x, [](const Steered& s) {
                   return (s.inner - s.outer) / (s.inner_ideal - s.outer);
               });
           },
@@ -581,10 +582,10 @@ void add_angles(std::vector<Entry>& entries) {
     entries.push_back(roll_moment_entry());
 }
 
-void add_angles_otherwise(std::vector<Entry>& all) {
-    for (const Entry& entry : angles_otherwise) {
+void add_angle_definitions(std::vector<Entry>& all) {
+    for (const Entry& entry : angle_definitions) {
         all.push_back(entry);
-        all.back().is.quotient = true;
+        all.back().properties.quotient = true;
     }
 }
 

@@ -16,20 +16,20 @@ std::vector<Entry> whole_catalogue() {
     add_angles(entries);
     const std::size_t rates = entries.size();
     add_rates(entries);
-    const std::size_t otherwise = entries.size();
-    add_angles_otherwise(entries);
-    const std::size_t rates_otherwise = entries.size();
-    add_rates_otherwise(entries);
+    const std::size_t definitions = entries.size();
+    add_angle_definitions(entries);
+    const std::size_t rate_definitions = entries.size();
+    add_rate_definitions(entries);
     for (std::size_t e = 0; e < entries.size(); ++e) {
-        entries[e].on_request = e >= otherwise;
-        if ((e >= rates && e < otherwise) || e >= rates_otherwise)
+        entries[e].on_request = e >= definitions;
+        if ((e >= rates && e < definitions) || e >= rate_definitions)
             entries[e].kind = ChannelKind::characteristic;
     }
     return entries;
 }
 
-// Whether a model has what figures of this owner need beside it.
-bool has_what_it_needs(const Model& model, Owner owner) {
+// Whether a model has what all owners of the kind need; conditions on one wheel are in is_owner().
+bool has_owners(const Model& model, Owner owner) {
     const auto steers = [&](bool by_angle) {
         const int joint = steering_joint(model);
         return joint >= 0 && drives_an_angle(model, joint) == by_angle;
@@ -52,7 +52,7 @@ bool has_what_it_needs(const Model& model, Owner owner) {
     }
 }
 
-bool is_one(const Wheel& wheel, Owner owner) {
+bool is_owner(const Wheel& wheel, Owner owner) {
     switch (owner) {
         case Owner::rolling_wheel: return wheel.rolls();
         case Owner::wheel_with_fixed_patch: return !wheel.rolls();
@@ -86,7 +86,7 @@ const std::vector<Entry>& catalogue() {
 
 std::vector<Named> owners(const Model& model, Owner owner) {
     std::vector<Named> list;
-    if (!has_what_it_needs(model, owner)) return list;
+    if (!has_owners(model, owner)) return list;
     switch (owner) {
         case Owner::wheels:
         case Owner::hand_wheel:
@@ -106,7 +106,7 @@ std::vector<Named> owners(const Model& model, Owner owner) {
             break;
         default:
             for (std::size_t w = 0; w < model.wheels.size(); ++w)
-                if (is_one(model.wheels[w], owner)) list.push_back({model.wheels[w].name, w});
+                if (is_owner(model.wheels[w], owner)) list.push_back({model.wheels[w].name, w});
     }
     return list;
 }
@@ -116,7 +116,7 @@ Channel channel_of(const Model& model, const Entry& entry, const Named& owner) {
     if (entry.point != nullptr) reads = Coordinate{entry.point(model.wheels[owner.k]), entry.axis};
     return {.name = owner.name + (owner.name.empty() ? "" : ".") + entry.name,
             .unit = entry.unit,
-            .main = entry.is.main,
+            .main = entry.properties.main,
             .reads = std::move(reads),
             .definition = fmt::format(fmt::runtime(entry.definition), owner.name),
             .undefined = entry.undefined};
@@ -124,17 +124,17 @@ Channel channel_of(const Model& model, const Entry& entry, const Named& owner) {
 
 std::vector<const Entry*> definitions() {
     std::vector<const Entry*> list;
-    for (const bool of_states : {true, false})
+    for (const bool from_states : {true, false})
         for (const Entry& entry : catalogue())
             if (entry.name.find('@') != entry.name.npos &&
-                (entry.kind != ChannelKind::characteristic) == of_states)
+                (entry.kind != ChannelKind::characteristic) == from_states)
                 list.push_back(&entry);
     return list;
 }
 
 namespace {
 template <class T>
-std::vector<T> in_places(std::vector<std::pair<int, T>> placed) {
+std::vector<T> sorted_by_place(std::vector<std::pair<int, T>> placed) {
     std::ranges::sort(placed, {}, &std::pair<int, T>::first);
     std::vector<T> list;
     for (auto& [place, entry] : placed) list.push_back(std::move(entry));
@@ -145,12 +145,13 @@ std::vector<T> in_places(std::vector<std::pair<int, T>> placed) {
 std::vector<DrawnFigure> drawn_over(Over over) {
     std::vector<std::pair<int, DrawnFigure>> placed;
     for (const Entry& entry : catalogue())
-        for (const Drawing& drawing : entry.is.drawn)
+        for (const Drawing& drawing : entry.properties.drawn)
             if (drawing.over == over)
                 placed.push_back({drawing.place,
                                   {entry.name, drawing.title, drawing.sign, drawing.shown,
                                    entry.kind != ChannelKind::characteristic}});
-    auto list = in_places(std::move(placed));  // once, of several owners
+    auto list = sorted_by_place(std::move(placed));
+    // a name may have entries of several owners
     const auto again = std::ranges::unique(list, {}, &DrawnFigure::name);
     list.erase(again.begin(), again.end());
     return list;
@@ -159,9 +160,9 @@ std::vector<DrawnFigure> drawn_over(Over over) {
 std::vector<std::string> usual_over(int Usual::*moved) {
     std::vector<std::pair<int, std::string>> placed;
     for (const Entry& entry : catalogue())
-        if (const int place = entry.is.live.*moved; place > 0)
+        if (const int place = entry.properties.live.*moved; place > 0)
             placed.push_back({place, entry.name});
-    return in_places(std::move(placed));
+    return sorted_by_place(std::move(placed));
 }
 
 std::string_view without_owner(std::string_view output) {
@@ -180,7 +181,7 @@ const Entry* find_entry(std::string_view output) {
 
 const Entry* find_by_heading(std::string_view words) {
     for (const Entry& entry : catalogue())
-        for (std::string_view rest = entry.is.rig; !rest.empty();) {
+        for (std::string_view rest = entry.properties.rig; !rest.empty();) {
             const std::string_view heading = rest.substr(0, rest.find(", "));
             if (heading == words) return &entry;
             rest.remove_prefix(std::min(heading.size() + 2, rest.size()));
@@ -196,15 +197,15 @@ bool needs_free(const Channel& channel) {
     const Entry* entry = entry_of(channel);
     return entry != nullptr && entry->kind == ChannelKind::characteristic &&
            (entry->owner == Owner::wheel_on_tyre || entry->unit == Unit::newton_per_mm ||
-            entry->is.reads_free);
+            entry->properties.reads_free);
 }
 bool is_swing_arm(const Channel& channel) {
     const Entry* entry = entry_of(channel);
-    return entry != nullptr && entry->is.swing_arm;
+    return entry != nullptr && entry->properties.swing_arm;
 }
 bool is_place(const Channel& channel) {
     const Entry* entry = entry_of(channel);
-    return entry != nullptr && entry->is.place;
+    return entry != nullptr && entry->properties.place;
 }
 
 bool reads_steering_axis(const Channel& channel) {
@@ -237,17 +238,17 @@ std::vector<Channel> definition_channels(const Model& model) {
 }
 
 std::vector<Channel> definitions_of(std::span<const Channel> defined, const std::string& figure) {
-    std::vector<Channel> list_of_figure;
-    std::string own = figure;  // without the test of an axle
+    std::vector<Channel> list;
+    std::string own = figure;  // without the loading of an axle, "@parallel"
     if (const Entry* entry = find_entry(figure); entry != nullptr && !entry->on_request)
         own.resize(std::min(own.find('@'), own.size()));
     for (const Channel& channel : defined) {
         const std::string base = channel.name.substr(0, channel.name.find('@'));
         // a figure of the axle, "toe@axle", may stand for that of either wheel
         if (channel.name != figure && (base == own || own.ends_with("." + base)))
-            list_of_figure.push_back(channel);
+            list.push_back(channel);
     }
-    return list_of_figure;
+    return list;
 }
 
 std::vector<DefinitionSet> definition_sets() {
@@ -264,7 +265,7 @@ std::vector<DefinitionSet> definition_sets() {
          {}}};
     for (DefinitionSet& set : sets)
         for (const Entry* entry : definitions())
-            if (entry->is.set == set.name) set.members.push_back(entry->name);
+            if (entry->properties.set == set.name) set.members.push_back(entry->name);
     return sets;
 }
 

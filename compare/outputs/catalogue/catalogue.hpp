@@ -1,10 +1,12 @@
-// The catalogue of outputs: every figure of a wheel, an axle, a spring or a damper, once, with all that
-// is known of it. Names from the model (probes, joints, elements) are not in it.
+// The catalogue of outputs: every figure of a wheel, an axle, a spring or a damper, once, with its
+// formula and properties. Outputs of probes, joints and elements, which have names of the model, are
+// not in it.
 //
 // A new figure is one entry in angles.cpp (read from the state alone), rates.cpp (from a response) or
 // force_tests.cpp. Tables, documents, pages and studies choose by the properties of an entry.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <string>
@@ -18,7 +20,7 @@ namespace elastocheck::compare {
 struct Subject;        // subject.hpp
 struct WheelResponse;  // outputs/wheel_response.hpp
 
-// What has such a figure; those of wheels that need more, only where a scene has it.
+// What a figure belongs to. A model without an owner of the kind has no such figure.
 enum class Owner {
     wheel,
     rolling_wheel,
@@ -26,14 +28,14 @@ enum class Owner {
     wheel_with_steering_axis,
     wheel_of_vehicle,
     wheel_on_tyre,
-    steered_wheel,    // some branch drives a joint other than a jack, ...
-    wheel_on_rack,    // ... a translation
-    wheel_on_column,  // ... a rotation
+    steered_wheel,    // some branch drives a steering joint, ...
+    wheel_on_rack,    // ... by a translation
+    wheel_on_column,  // ... by a rotation
     front_wheel,      // of a scene with a `vehicle`
     rear_wheel,
-    wheel_of_axle,       // one of a left and a right one
-    wheel_without_axle,  // of another scene
-    // one figure for all wheels together
+    wheel_of_axle,       // of a scene with one left and one right wheel
+    wheel_without_axle,  // of any other scene
+    // one figure for all wheels together:
     wheels,
     hand_wheel,  // of a scene that moves the rack by its angle
     two_wheels,
@@ -42,8 +44,7 @@ enum class Owner {
     spring,
     damper,
 };
-// An owner in a model: its name, empty where the model has one of the kind without a name; its position
-// in Model::wheels, elastics or dampers.
+// An owner in a model: its name (may be empty), and its position in Model::wheels, elastics or dampers.
 struct Named {
     std::string name;
     std::size_t k = 0;
@@ -52,8 +53,8 @@ std::vector<Named> owners(const Model& model, Owner owner);
 struct Entry;
 Channel channel_of(const Model& model, const Entry& entry, const Named& owner);
 
-// A curve of the report: over what, in which place among the figures there, and how. Springs and dampers
-// are drawn over wheel travel; `if_given`: only where measured or computed.
+// A curve of the report: its abscissa, its place among the figures over it, and how it is drawn. The
+// abscissa of `springs` is wheel travel; `if_given`: only beside measured or computed curves.
 enum class Over { travel, roll, springs, steering, load, if_given };
 enum class Shown {
     as_is,
@@ -69,20 +70,20 @@ struct Drawing {
     Shown shown = Shown::as_is;
 };
 
-// A block of `export --format blocks`: its name there; what the axes of the file turn.
+// A block of `export --format blocks`: its name, and how its values change with the axes of the file.
 struct Block {
     const char* name = nullptr;  // null: none
     enum class Component { none, lateral, yaw } component = Component::none;
-    bool outwards = false;             // of the wheel: +y on the left
+    bool outwards = false;             // the output is positive outwards: along +y on the left only
     const char* definition = nullptr;  // instead of that of the output
 };
-// What is plausible of a car at rest, in the unit of the output.
+// Plausible range for a car at rest, in the unit of the output.
 struct Plausible {
-    double from = -1 / 0.0, to = 1 / 0.0;
-    const char* asks = nullptr;  // null: nothing is known
+    double from = -INFINITY, to = INFINITY;
+    const char* asks = nullptr;  // question to the user beyond the range; null: no range
 };
 
-// Place among the first curves of a live page over a branch that moves this; 0: not among them.
+// Place among the first curves of a live page on a branch of this kind, from 1; 0: not among them.
 struct Usual {
     int heave = 0, roll = 0, steering = 0, lateral = 0, longitudinal = 0, moment = 0;
 };
@@ -90,20 +91,20 @@ struct Usual {
 inline constexpr const char* vertical_cause = "vertical travel and load";
 
 struct Properties {
-    const char* elsewhere = "";  // where it is found; names for it elsewhere
-    const char* set = "";        // of another definition: definition_sets()
+    const char* elsewhere = "";  // sources, and names in other programs
+    const char* set = "";        // the definition set that it belongs to: definition_sets()
     bool main = false;           // judged and compared first
-    bool swing_arm = false;      // endless where two links are parallel: compared by its reciprocal
-    bool place = false;          // of a point, zero by symmetry: references agree as on positions
-    bool reads_free = false;     // WheelResponse::free, beside every rate in N/mm and on tyres
-    bool quotient = false;       // may be undefined without `undefined`
-    bool at_rest = false;        // of the alignment of a car at rest
-    bool key = false;            // shown first in a report
-    bool explained = false;      // a report shows which numbers of the scene move it
-    bool compliance = false;     // a coefficient of compliance at the design position
-    Usual live = {};             // on a live page
+    bool swing_arm = false;   // infinite where two links are parallel: compared by its reciprocal
+    bool place = false;       // a coordinate, zero by symmetry: references agree as on positions
+    bool reads_free = false;  // reads WheelResponse::free, as every rate in N/mm and on tyres does
+    bool quotient = false;    // may be undefined although Entry::undefined is empty
+    bool at_rest = false;     // part of the alignment of a car at rest
+    bool key = false;         // shown first in a report
+    bool explained = false;   // a report shows which numbers of the scene move it
+    bool compliance = false;  // a coefficient of compliance at the design position
+    Usual live = {};          // on a live page
     const char* cause = vertical_cause;  // what a characteristic responds to
-    const char* rig = "";                // headings of measured files, lower case, with commas
+    const char* rig = "";  // headings of measured files, lower case, separated by ", "
     Block block = {};
     Plausible plausible = {};
     std::vector<Drawing> drawn = {};
@@ -117,11 +118,12 @@ struct Entry {
     std::string undefined;   // meaning of an undefined value; empty where it always has one
     // Value in SI; `undefined` where there is none, NaN where the leg failed to compute the response.
     std::function<double(const Subject&)> formula;
-    Properties is = {};
+    Properties properties = {};
     ChannelKind kind = ChannelKind::motion;  // characteristic: reads a response
     bool on_request = false;                 // by another definition than the project's own
-    int axis = -1;                           // of a coordinate of a point
-    Point (*point)(const Wheel&) = nullptr;  // which point
+    // of a coordinate: its axis and its point
+    int axis = -1;
+    Point (*point)(const Wheel&) = nullptr;
 };
 
 // All entries: the project's own, of states, then of responses; then those by other definitions.
@@ -131,7 +133,7 @@ const std::vector<Entry>& catalogue();
 // "lateral_force_steer@parallel": of states, then of responses.
 std::vector<const Entry*> definitions();
 
-// What is drawn over this, in its places; the name of an output with how it is shown.
+// Figures drawn over this abscissa, in the order of their places.
 struct DrawnFigure {
     std::string name, title, sign;
     Shown shown = Shown::as_is;
@@ -141,23 +143,22 @@ std::vector<DrawnFigure> drawn_over(Over over);
 // Figures that a live page shows first over such a branch, in their places.
 std::vector<std::string> usual_over(int Usual::*moved);
 
-// What figures of wheels are read from, as points of a drawing [m]: per wheel the lower and the upper
+// Points of a drawing from which figures of wheels are read [m]: four per wheel, the lower and the upper
 // end of its steering axis, the instant centres of its carrier seen from the front and from the side,
 // all wheels rising alike; then the roll centre of all. Not finite where there is none.
 std::vector<Vector3> points_of_figures(const Model& model, const Equilibrium& state,
                                        const WheelResponse& response);
-inline constexpr std::size_t points_of_wheel = 4;
 
 // The entry of an output of this name, "left.camber@kingpin" or "camber"; null if there is none. Owners
 // of several kinds may have it.
 const Entry* find_entry(std::string_view output);
-// The entry that rigs call so, "wheel toe"; null if there is none.
+// The entry with this heading of a measured file, "wheel toe"; null if there is none.
 const Entry* find_by_heading(std::string_view words);
 // "camber@kingpin" of "left.camber@kingpin"; and "camber" of it and of "left.camber".
 std::string_view without_owner(std::string_view output);
 std::string figure_of(std::string_view output);
 
-// Whether a channel is this figure, "toe", of any owner; and the figure of a wheel.
+// Whether a channel is this figure, "toe", of any owner; and the channel of a figure of a wheel.
 bool is_figure(const Channel& channel, std::string_view figure);
 Channel figure_channel(const Model& model, std::string_view figure, std::size_t wheel);
 
@@ -172,7 +173,7 @@ std::vector<Channel> definition_channels(const Model& model);
 // The outputs among them that define `figure`, "left.camber", otherwise.
 std::vector<Channel> definitions_of(std::span<const Channel> defined, const std::string& figure);
 
-// Definitions by the name of a standard or a way of drawing, for scenes that ask for them.
+// Definitions of one standard or method of drawing, for scenes that request them together.
 struct DefinitionSet {
     std::string name;                  // "sae"
     const char* source;                // what they have in common, and where it is defined
@@ -190,7 +191,7 @@ bool is_swing_arm(const Channel& channel);
 bool is_place(const Channel& channel);
 bool reads_steering_axis(const Channel& channel);
 
-// Names of figures that are read for what they are.
+// Names of figures that code refers to.
 namespace figure {
 inline constexpr std::string_view toe = "toe", camber = "camber", travel = "travel",
                                   caster = "caster", mechanical_trail = "mechanical_trail",

@@ -29,7 +29,7 @@ double read(const Subject& subject, const Coordinate& c) {
     return subject.placed(c.at).at[c.axis] - c.counted_from;
 }
 double read(const Subject& subject, const Catalogued& c) {
-    // without the response
+    // needs the response, which is not known here
     if (c.entry->kind == ChannelKind::characteristic) return nan;
     return c.entry->formula({subject.model, subject.state, c.of, subject.branch});
 }
@@ -78,7 +78,7 @@ double read(const Subject& subject, const Total& c) {
     }
     return sum;
 }
-// Needs more than the state.
+// Needs the branch: comparison/elements.cpp.
 double read(const Subject&, const ElementComponent&) { return nan; }
 
 // ---- Units, in the order of Unit.
@@ -147,7 +147,7 @@ void add_effort(std::vector<Channel>& list, const Model& model, int k) {
                                    turns ? "angle" : "length or displacement")});
 }
 
-// The figures of a state in the order of the list: those that need a branch are last.
+// Parts of the list channels(), in its order; responses are not in it.
 enum class Part { wheel, axle, spring, load, response };
 Part part_of(const Entry& entry) {
     if (entry.kind == ChannelKind::characteristic) return Part::response;
@@ -204,7 +204,7 @@ ChannelKind Channel::kind() const {
 
 bool Channel::may_be_undefined() const {
     const auto* of = std::get_if<Catalogued>(&reads);
-    return !undefined.empty() || (of != nullptr && of->entry->is.quotient);
+    return !undefined.empty() || (of != nullptr && of->entry->properties.quotient);
 }
 
 std::vector<int> Channel::joints() const {
@@ -257,7 +257,7 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
     std::vector<Channel> list;
     std::set<std::vector<int>> done;  // the total on the other body differs only in sign
     for (const auto& group : groups) {
-        std::map<BodyId, std::vector<int>> held;  // by the joints of the group
+        std::map<BodyId, std::vector<int>> held;  // joints of the group on each body
         for (const int k : group)
             for (const BodyId body : std::set{joint_of(model, k).i, joint_of(model, k).j})
                 if (body != ground) held[body].push_back(k);

@@ -1,5 +1,5 @@
-// Compliance under forces and moments in the plane of the road, wheel centres held at their height: of
-// an axle the tests of a rig, which loads both wheels; one wheel alone by a definition.
+// Compliance under horizontal forces and vertical moments, wheel centres held at their height. An axle
+// is tested as on a rig, which loads both wheels; one wheel loaded alone is another definition.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 namespace elastocheck::compare {
 namespace {
 
+// What a test measures.
 enum class Seen { toe, camber, along_the_force };
 struct ForceFigure {
     const char* name;
@@ -20,18 +21,18 @@ struct ForceFigure {
 };
 struct Loading {
     const char* name;  // after "@"
-    double other;      // on the other wheel, per unit on this one, ground axes
+    double other;      // cause on the other wheel per unit on this one, ground axes
     const char* cause;
     const char* rig;  // what rigs call it
 };
 struct ForceTest {
-    int cause;
+    int cause;         // position among the causes of WheelResponse
     double sign;       // of the cause, ground axes; 0: towards the middle of the vehicle, or toe-in
     const char* what;  // "braking force at the contact patch"
     Loading alone;
     std::vector<Loading> on_a_rig;
     std::vector<ForceFigure> figures;
-    int Usual::*moved;  // of a branch that loads so
+    int Usual::*moved;  // kind of a branch with this load
 };
 
 constexpr auto programs = "programs that load one wheel";
@@ -105,9 +106,9 @@ double value(const Subject& x, int cause, double sign, double other, Seen seen) 
     for (std::size_t w = 0; other != 0 && w < x.model.wheels.size(); ++w)
         if (w != x.k) sum += other * by_force_on(w);
     if (seen != Seen::along_the_force) return (sign != 0 ? sign : -x.side()) * sum;
-    // Forces that an axle carries within itself leave their rounding.
-    constexpr double cancelled = 1e5;
-    return ratio(1, sum, std::min(rigid, cancelled / std::abs(alone)));
+    // Where the displacements by both forces cancel, the axle is rigid, and their sum is rounding.
+    constexpr double max_cancellation = 1e5;
+    return ratio(1, sum, std::min(max_stiffness, max_cancellation / std::abs(alone)));
 }
 
 std::string definition(bool axle, const ForceTest& test, const Loading& loading,
@@ -129,7 +130,7 @@ std::string definition(bool axle, const ForceTest& test, const Loading& loading,
     return std::string(figure.stiffness) + (axle ? " in the same test" : at_height);
 }
 
-// `place`: of the loading among those of its owner; -1: of one wheel of an axle alone.
+// `place`: of the loading among those of its owner; -1 for one wheel of an axle loaded alone.
 Entry entry(Owner owner, const ForceTest& test, const Loading& loading, const ForceFigure& figure,
             int place) {
     const bool axle = owner == Owner::wheel_of_axle, usual = place >= 0;

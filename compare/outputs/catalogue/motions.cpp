@@ -28,9 +28,9 @@ double without_free(const Subject& x) { return x.response->nothing_resists ? und
 
 Motions raised(const Subject& x) {
     const auto& travel = x.response->travel;
-    const double whole = x.response->tied ? 1 / x.moved_by(travel.front(), x.centre()).z() : 1;
+    const double scale = x.response->tied ? 1 / x.moved_by(travel.front(), x.centre()).z() : 1;
     std::vector<std::pair<double, const Motions*>> weighted;
-    for (const Motions& motions : travel) weighted.emplace_back(whole, &motions);
+    for (const Motions& motions : travel) weighted.emplace_back(scale, &motions);
     return sum(weighted);
 }
 Motions rolled(const Subject& x) {
@@ -41,7 +41,7 @@ Motions rolled(const Subject& x) {
 }
 double vertical_rate(const Subject& x, int force, const Placed& at, double other) {
     if (x.response->free.empty()) return without_free(x);
-    return ratio(1, x.moved_by(of_axle(x.response->free, x, force, other), at).z(), rigid);
+    return ratio(1, x.moved_by(of_axle(x.response->free, x, force, other), at).z(), max_stiffness);
 }
 
 }  // namespace elastocheck::compare

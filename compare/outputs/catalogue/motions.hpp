@@ -16,20 +16,22 @@ inline constexpr auto no_rate =
 
 using Causes = std::vector<std::array<Motions, causes>>;
 
+// Linear combination of motions, each with its weight.
 Motions sum(const std::vector<std::pair<double, const Motions*>>& weighted);
 // A unit cause on this wheel, and `other` times as much on the others.
 Motions of_axle(const Causes& by, const Subject& x, int cause, double other);
 // A unit cause on this wheel, the wheel centres held at their height.
 const Motions& held(const Subject& x, int cause);
-// The wheel loads stay: jacks and tyres give no more force. Null where the wheel moves freely.
+// A unit cause on this wheel at constant wheel loads. Null where nothing resists the wheel.
 const Motions* unheld(const Subject& x, int cause);
-// The value of a figure without the motions of free wheels: undefined where nothing resists them.
+// Value of a figure where WheelResponse::free is missing: undefined where nothing resists the wheels,
+// NaN where the leg failed.
 double without_free(const Subject& x);
 
 // Heave: all wheels raised by 1 m; with tied wheels, their common motion scaled so that this wheel
 // rises by 1 m.
 Motions raised(const Subject& x);
-// Roll: the wheels of an axle in opposition, the left up by 1 m; not for tied wheels.
+// Roll: the left wheel of an axle raised and the right one lowered by 1 m. Pre: the wheels are not tied.
 Motions rolled(const Subject& x);
 
 // Instant centre of the carrier of a wheel, all wheels rising alike: seen from the front, in the

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double pneumatic_trail = 0.03;  // [m]
 
-constexpr auto never = "";
+// Reasons why a figure may be undefined.
+constexpr auto always_defined = "";
 constexpr auto no_vertical = "the wheel does not rise";
 constexpr auto does_not_steer = "the steering does not turn the wheel about an upright axis here";
 constexpr auto unresisted = "the travel of the wheel is unresisted";
@@ -30,20 +31,20 @@ constexpr auto instant_axis = "virtual steering axis of multi-link suspensions";
 
 // ---- Centres and axes.
 
-// Instant centre of the carrier in side and front view, from the wheel centre, with velocity v and
-// rate ω:
+// Instant centre of the carrier in side and front view, relative to the wheel centre, with v the
+// velocity of that centre and ω the angular velocity of the carrier:
 //   from the side   (x, z): (v_z, -v_x) / ω_y      from the front   (y, z): (-v_z, v_y) / ω_x
 double front_view_arm(const Subject& x) {
     const Motions by = raised(x);
-    return ratio(x.side() * x.moved_by(by, x.centre()).z(), x.turned_by(by).x(), nowhere);
+    return ratio(x.side() * x.moved_by(by, x.centre()).z(), x.turned_by(by).x(), max_distance);
 }
 double side_view_arm(const Subject& x) {
     const Motions by = raised(x);
-    return ratio(x.moved_by(by, x.centre()).z(), x.turned_by(by).y(), nowhere);
+    return ratio(x.moved_by(by, x.centre()).z(), x.turned_by(by).y(), max_distance);
 }
 
 // Virtual steering axis: screw axis of the carrier when the rack moves at constant wheel-centre height.
-// n upward, through  c + ω × v / ω².
+// n: its direction, upward; it passes through c + ω × v / ω², c the wheel centre and v its velocity.
 struct Axis {
     Vector3d n, through;
 };
@@ -52,7 +53,8 @@ std::optional<Axis> steering_axis(const Subject& x) {
     const Vector3d omega = x.turned_by(x.response->steering),
                    v = x.moved_by(x.response->steering, x.centre());
     const double rate = omega.norm();
-    if (!(v.norm() <= nowhere * rate) || !(std::abs(omega.z()) > 1e-6 * rate)) return std::nullopt;
+    if (!(v.norm() <= max_distance * rate) || !(std::abs(omega.z()) > 1e-6 * rate))
+        return std::nullopt;
     return Axis{omega.normalized() * (omega.z() > 0 ? 1 : -1),
                 x.centre().at + omega.cross(v) / omega.squaredNorm()};
 }
@@ -86,7 +88,7 @@ double overall_steering_ratio(const Subject& x) {
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
         to_the_left -= x.of(w).side() * x.of(w).toe(x.response->steering);
     const auto n = static_cast<double>(x.model.wheels.size());
-    return ratio(n / rack_per_hand_wheel(x.model), to_the_left, nowhere);
+    return ratio(n / rack_per_hand_wheel(x.model), to_the_left, max_distance);
 }
 
 // ---- Stiffness and rates.
@@ -97,13 +99,14 @@ double ride_rate(const Subject& x) {
     return std::isinf(k_w) ? undefined : k_w * k_t / (k_w + k_t);
 }
 
-// Longitudinal displacement of a point per wheel travel, all wheels raised together: tangent of the
-// angle at which the links, not the springs, carry a longitudinal force. Milliken & Milliken, Race Car
-// Vehicle Dynamics, 1995, ch. 17: axle share · tan φ · wheelbase / height of the centre of gravity.
+// Share of the load transfer that the links carry instead of the springs, axle share · tan φ · wheelbase /
+// height of the centre of gravity (Milliken & Milliken, Race Car Vehicle Dynamics, 1995, ch. 17): by
+// virtual work the links carry the vertical force tan φ = dx / dz per unit of longitudinal force at a
+// point that all wheels, raised together, move by (dx, dz).
 double anti(const Subject& x, const Placed& at, double share, double sign) {
     const Vector3d d = x.moved_by(raised(x.of(0)), at);
     const Vehicle& vehicle = *x.model.vehicle;
-    return sign * share * ratio(d.x(), d.z(), nowhere) * vehicle.wheelbase / vehicle.cg_height;
+    return sign * share * ratio(d.x(), d.z(), max_distance) * vehicle.wheelbase / vehicle.cg_height;
 }
 // The same with the instant centre of the side view as drawn by hand: the planes of the two wishbones
 // meet the longitudinal plane through the wheel centre in two lines, and these in (x, z).
@@ -118,12 +121,12 @@ double anti_by_planes(const Subject& x, const Vector3d& patch, double share, dou
         A.row(k) << n.x(), n.z();
         b[k] = planes[static_cast<std::size_t>(k)].offset - n.y() * y;
     }
-    // (x, z) = N / determinant; of parallel lines at infinity, in their direction
+    // slope to the instant centre (x, z) = N / determinant by Cramer's rule, also if that is at infinity
     const double determinant = A.determinant(),
                  rise = A(0, 0) * b[1] - A(1, 0) * b[0] - determinant * patch.z(),
                  run = b[0] * A(1, 1) - b[1] * A(0, 1) - determinant * patch.x();
     const Vehicle& vehicle = *x.model.vehicle;
-    return sign * share * ratio(rise, -run, nowhere) * vehicle.wheelbase / vehicle.cg_height;
+    return sign * share * ratio(rise, -run, max_distance) * vehicle.wheelbase / vehicle.cg_height;
 }
 double brake_share(const Subject& x) { return x.model.vehicle->brake_share; }
 double drive_share(const Subject& x) { return x.model.vehicle->drive_share; }
@@ -151,12 +154,12 @@ double damper_ratio(const Subject& x) {
     const Damper& damper = x.model.dampers[x.k];
     return shortening(x, x.placed(damper.i), x.placed(damper.j));
 }
-// Rise of the patches, or length of their path, per travel of the wheel centres, their mean.
-double mean_of_patches(const Subject& x, double (*of)(const Vector3d& displacement)) {
+// Mean over the patches of a function of their displacements per travel of the wheel centres.
+double mean_of_patches(const Subject& x, double (*function)(const Vector3d& displacement)) {
     const Motions motions = raised(x.of(0));
     double mean = 0;
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
-        mean += of(x.moved_by(motions, x.of(w).patch())) / double(x.model.wheels.size());
+        mean += function(x.moved_by(motions, x.of(w).patch())) / double(x.model.wheels.size());
     return mean;
 }
 double mean_rise(const Subject& x) {
@@ -166,7 +169,7 @@ double mean_path(const Subject& x) {
     return mean_of_patches(x, [](const Vector3d& d) { return std::sqrt(d.squaredNorm()); });
 }
 
-// ---- Compliance under a lateral force, otherwise.
+// ---- Compliance under a lateral force by other definitions.
 
 // Sign towards the middle of the vehicle, for equal values of a wheel and its mirror image.
 double inward(const Subject& x) { return -x.side(); }
@@ -174,7 +177,7 @@ double inward(const Subject& x) { return -x.side(); }
 // The wheels stand on tyres, vertical rates at the patches. With z the rise of the patches without
 // tyres and C that by forces f on them:
 //
-//   f = -k (z + C f)      (1 + k C) f = -k z
+//   f = -k (z + C f)      (1 + k C) f = -k z      by Cramer's rule for one or two wheels
 double steer_on_tyres(const Subject& x) {
     const Motions* under_force = unheld(x, at_patch + 1);
     const auto& free = x.response->free;
@@ -214,7 +217,7 @@ const Entry over_travel[] = {
     Entry(Owner::wheel, "bump_steer", Unit::deg_per_m,
           "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
           "positive towards toe-in in jounce",
-          never, [](const Subject& x) { return x.toe(raised(x)); },
+          always_defined, [](const Subject& x) { return x.toe(raised(x)); },
           {.elsewhere = "ride steer, toe gradient",
            .key = true,
            .explained = true,
@@ -222,17 +225,18 @@ const Entry over_travel[] = {
     Entry(Owner::wheel, "bump_camber", Unit::deg_per_100mm,
           "change of camber over travel of the wheel centre, all wheels rising by the same amount; "
           "positive where the top leans out in jounce",
-          never, [](const Subject& x) { return x.camber(raised(x)); },
+          always_defined, [](const Subject& x) { return x.camber(raised(x)); },
           {.elsewhere = "ride camber, camber gain", .key = true, .explained = true}),
     Entry(Owner::wheel, "track_gradient", Unit::mm_per_100mm,
           "lateral displacement of the contact patch over travel, all wheels rising by the same "
           "amount; positive outwards in jounce",
-          never, [](const Subject& x) { return x.side() * x.moved_by(raised(x), x.patch()).y(); },
+          always_defined,
+          [](const Subject& x) { return x.side() * x.moved_by(raised(x), x.patch()).y(); },
           {.elsewhere = "half-track change, lateral scrub"}),
     Entry(Owner::wheel, "recession_gradient", Unit::mm_per_100mm,
           "longitudinal displacement of the wheel centre over travel, all wheels rising by the "
           "same amount; positive to the back in jounce",
-          never, [](const Subject& x) { return -x.moved_by(raised(x), x.centre()).x(); },
+          always_defined, [](const Subject& x) { return -x.moved_by(raised(x), x.centre()).x(); },
           {.elsewhere = "wheel recession"}),
     Entry(Owner::wheel, "front_view_swing_arm", Unit::mm,
           "lateral distance from the wheel centre to the instant centre of the carrier seen from "
@@ -345,25 +349,25 @@ const Entry of_springs[] = {
     Entry(
         Owner::spring, "motion_ratio", Unit::none,
         "shortening of the spring over travel of the wheel centres, all rising by the same amount",
-        never, spring_ratio,
+        always_defined, spring_ratio,
         {.elsewhere = "installation ratio; its inverse has the same name elsewhere",
          .drawn = {installed}}),
     Entry(
         Owner::damper, "motion_ratio", Unit::none,
         "shortening of the damper over travel of the wheel centres, all rising by the same amount",
-        never, damper_ratio,
+        always_defined, damper_ratio,
         {.elsewhere = "installation ratio; its inverse has the same name elsewhere",
          .drawn = {installed}}),
 };
 
-const Entry otherwise[] = {
+const Entry rate_definitions[] = {
     Entry(Owner::wheel, "bump_steer@patch", Unit::deg_per_m,
           "change of toe over the vertical displacement of the contact patch, all wheels rising "
           "alike",
-          never,
+          always_defined,
           [](const Subject& x) {
               const auto by = raised(x);
-              return ratio(x.toe(by), x.moved_by(by, x.patch()).z(), nowhere);
+              return ratio(x.toe(by), x.moved_by(by, x.patch()).z(), max_distance);
           },
           {.elsewhere = "deflection counted at the tyre"}),
     Entry(Owner::wheel_of_axle, "bump_steer@alone", Unit::deg_per_m,
@@ -387,7 +391,7 @@ const Entry otherwise[] = {
           "travel of the wheel centre over change of camber, its sign turned; positive where "
           "jounce leans the top in",
           "camber does not change: the arm is infinite",
-          [](const Subject& x) { return ratio(-1, x.camber(raised(x)), nowhere); },
+          [](const Subject& x) { return ratio(-1, x.camber(raised(x)), max_distance); },
           {.elsewhere = "rigs, which measure camber over travel", .swing_arm = true}),
     Entry(Owner::wheel, "side_view_swing_arm@patch", Unit::mm,
           "longitudinal distance from the contact patch to the instant centre of the carrier seen "
@@ -417,7 +421,7 @@ const Entry otherwise[] = {
           {.elsewhere = "axle rate; ride models of half a car", .reads_free = true}),
 };
 
-// Of a spring or damper.
+// Motion ratios of a spring or damper by other definitions. `inverse`: who uses the inverse.
 std::vector<Entry> motion_ratios(Owner owner, const std::string& word,
                                  double (*motion_ratio)(const Subject&), const char* inverse) {
     const std::string definition = "shortening of the " + word,
@@ -426,25 +430,25 @@ std::vector<Entry> motion_ratios(Owner owner, const std::string& word,
     return {
         Entry(owner, "motion_ratio@inverse", Unit::none,
               "travel of the wheel centres over " + definition, still,
-              [=](const Subject& x) { return ratio(1, motion_ratio(x), nowhere); },
+              [=](const Subject& x) { return ratio(1, motion_ratio(x), max_distance); },
               {.elsewhere = inverse}),
-        Entry(owner, "motion_ratio@patch", Unit::none, definition + " over " + rise, never,
-              [=](const Subject& x) { return ratio(motion_ratio(x), mean_rise(x), nowhere); },
+        Entry(owner, "motion_ratio@patch", Unit::none, definition + " over " + rise, always_defined,
+              [=](const Subject& x) { return ratio(motion_ratio(x), mean_rise(x), max_distance); },
               {.elsewhere = "deflection counted at the tyre"}),
         Entry(owner, "motion_ratio@patch_inverse", Unit::none,
               rise.substr(4) + ", over " + definition, still,
-              [=](const Subject& x) { return ratio(mean_rise(x), motion_ratio(x), nowhere); },
+              [=](const Subject& x) { return ratio(mean_rise(x), motion_ratio(x), max_distance); },
               {.elsewhere = owner == Owner::spring ? "deflection at the tyre over spring travel"
                                                    : "deflection at the tyre over damper travel"}),
         Entry(owner, "motion_ratio@patch_path", Unit::none,
               "path of the contact patches in space, their mean, over " + definition, still,
-              [=](const Subject& x) { return ratio(mean_path(x), motion_ratio(x), nowhere); },
+              [=](const Subject& x) { return ratio(mean_path(x), motion_ratio(x), max_distance); },
               {.elsewhere = owner == Owner::spring
                                 ? "OptimumK: wheel displacement over spring displacement"
                                 : "OptimumK: wheel displacement over damper displacement"})};
 }
 
-const Entry more_otherwise[] = {
+const Entry further_rate_definitions[] = {
     Entry(Owner::front_wheel, "anti_dive@inboard", Unit::percent,
           "brake_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
           "centre: inboard brakes, whose torque the car body carries",
@@ -497,12 +501,13 @@ const Entry more_otherwise[] = {
     Entry(Owner::wheel, "lateral_force_steer@centre", Unit::deg_per_kN,
           "change of toe over a force at the wheel centre of this wheel alone towards the middle "
           "of the vehicle, wheel centres held at their height",
-          never, [](const Subject& x) { return inward(x) * x.toe(held(x, at_centre + 1)); },
+          always_defined,
+          [](const Subject& x) { return inward(x) * x.toe(held(x, at_centre + 1)); },
           {.elsewhere = "programs that load the spindle"}),
     Entry(Owner::wheel, "lateral_force_steer@trail", Unit::deg_per_kN,
           "change of toe over a force towards the middle of the vehicle that acts on the road 30 "
           "mm behind the contact patch of this wheel alone, wheel centres held at their height",
-          never, steer_with_trail, {.elsewhere = "rigs with a pneumatic trail of 30 mm"}),
+          always_defined, steer_with_trail, {.elsewhere = "rigs with a pneumatic trail of 30 mm"}),
     Entry(Owner::wheel, "lateral_force_steer@constant_load", Unit::deg_per_kN,
           "change of toe over a force at the contact patch of this wheel alone towards the middle "
           "of the vehicle, the wheel loads unchanged and the wheels free to rise",
@@ -519,12 +524,12 @@ const Entry more_otherwise[] = {
     Entry(Owner::wheel, "braking_force_steer@inboard", Unit::deg_per_kN,
           "change of toe over a force to the back at the wheel centre of this wheel alone, wheel "
           "centres held at their height: the car body carries the brake torque",
-          never, [](const Subject& x) { return -x.toe(held(x, at_centre)); },
+          always_defined, [](const Subject& x) { return -x.toe(held(x, at_centre)); },
           {.elsewhere = "inboard brakes; wheel free to roll"}),
     Entry(Owner::wheel, "traction_force_steer@patch", Unit::deg_per_kN,
           "change of toe over a force forward at the contact patch of this wheel alone, wheel "
           "centres held at their height: the carrier carries the drive torque",
-          never, [](const Subject& x) { return x.toe(held(x, at_patch)); },
+          always_defined, [](const Subject& x) { return x.toe(held(x, at_patch)); },
           {.elsewhere = "wheel hub motors; rigs with the wheel locked"}),
     Entry(Owner::steered_wheel, "caster@instant_axis", Unit::deg,
           "angle to the vertical seen from the side of the axis about which the carrier turns when "
@@ -569,8 +574,8 @@ void add_rates(std::vector<Entry>& all) {
     std::ranges::copy(of_springs, std::back_inserter(all));
 }
 
-void add_rates_otherwise(std::vector<Entry>& entries) {
-    std::ranges::copy(otherwise, std::back_inserter(entries));
+void add_rate_definitions(std::vector<Entry>& entries) {
+    std::ranges::copy(rate_definitions, std::back_inserter(entries));
     std::ranges::move(
         motion_ratios(
             Owner::spring, "spring", spring_ratio,
@@ -579,8 +584,8 @@ void add_rates_otherwise(std::vector<Entry>& entries) {
     std::ranges::move(
         motion_ratios(Owner::damper, "damper", damper_ratio, "wheel travel over damper travel"),
         std::back_inserter(entries));
-    std::ranges::copy(more_otherwise, std::back_inserter(entries));
-    add_roll_otherwise(entries);
+    std::ranges::copy(further_rate_definitions, std::back_inserter(entries));
+    add_roll_definitions(entries);
     add_force_tests(entries, true);
 }
 

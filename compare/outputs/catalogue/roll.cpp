@@ -4,6 +4,7 @@
 
 #include "compare/outputs/catalogue/motions.hpp"
 #include "compare/outputs/deformation.hpp"
+#include "compare/outputs/rates.hpp"
 #include "models/eigen/dense.hpp"
 #include "models/kinds.hpp"
 
@@ -27,41 +28,43 @@ double in_roll(const Subject& x, double (Subject::*angle)(const Motions&) const)
     return x.response->tied ? undefined : (x.*angle)(rolled_towards(x));
 }
 
-// The solution of A P = b, of coincident lines the nearest; none of parallel ones.
-std::optional<Vector2d> crossing(const Eigen::Matrix2d& A, const Vector2d& b, double track) {
+// Intersection P of the lines A P = b: of coincident lines the point nearest to the origin, of parallel
+// ones none.
+std::optional<Vector2d> intersection(const Eigen::Matrix2d& A, const Vector2d& b, double track) {
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> lines;
     lines.setThreshold(1e-9);
     lines.compute(Eigen::MatrixXd(A));
     const Eigen::VectorXd right = b, P = lines.solve(right);
-    if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= nowhere)) return std::nullopt;
+    if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= max_distance)) return std::nullopt;
     return Vector2d(P);
 }
-// Instant centre in front view: the patch of a wheel moves perpendicularly to the line through its
-// instant centre. The roll centre lies on that line: for an axle in roll at the intersection of both
-// lines; for one wheel at the middle of the vehicle, y = 0.
+// In front view the patch c of a wheel moves by (dy, dz), perpendicular to the line from it to the
+// instant centre of the wheel. The roll centre P lies on that line: for an axle in roll at the
+// intersection of both lines; for one wheel at the middle of the vehicle, y = 0.
 //
-//   (P - c) · (dy, dz) = 0      h = P_z - c_z
+//   (P - c) · (dy, dz) = 0      height P_z - c_z
 //
 // Two coincident lines (arms that guide the wheels vertically) meet halfway between the wheels.
 //
-// `point`: of each wheel, the patch; its motion and its place are those of the line. Returns y, and z
-// above the road; none at infinity.
+// `point`: the patch c, or by another definition the wheel centre. Returns y, and z above the road; none
+// at infinity.
 std::optional<Vector2d> centre_of_axle(const Subject& x, Placed (Subject::*point)() const) {
-    const auto seen = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
+    const auto front_view = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
     if (x.response->tied) return std::nullopt;
     const Motions roll = rolled(x);
     Eigen::Matrix2d A;
     Vector2d c[2], b;
-    double above = 0;  // the road
+    double above = 0;  // mean height of the points above the road
     for (std::size_t w = 0; w < 2; ++w) {
-        const Placed of = (x.of(w).*point)();
-        c[w] = seen(of.at);
-        above += (of.at.z() - x.of(w).patch().at.z()) / 2;
-        A.row(static_cast<Eigen::Index>(w)) = seen(x.moved_by(roll, of)).normalized().transpose();
+        const Placed placed = (x.of(w).*point)();
+        c[w] = front_view(placed.at);
+        above += (placed.at.z() - x.of(w).patch().at.z()) / 2;
+        A.row(static_cast<Eigen::Index>(w)) =
+            front_view(x.moved_by(roll, placed)).normalized().transpose();
     }
     const Vector2d middle = (c[0] + c[1]) / 2;
     for (int w = 0; w < 2; ++w) b[w] = A.row(w).dot(c[w] - middle);
-    const auto P = crossing(A, b, std::abs(c[0].x() - c[1].x()));
+    const auto P = intersection(A, b, std::abs(c[0].x() - c[1].x()));
     if (!P) return std::nullopt;
     return Vector2d(middle.x() + P->x(), P->y() + above);
 }
@@ -72,11 +75,12 @@ double roll_centre(const Subject& x, Placed (Subject::*point)() const) {
     }
     const Placed of = (x.*point)();
     const Vector3d d = x.moved_by(x.response->travel[0], of);
-    return ratio(of.at.y() * d.y(), d.z(), nowhere) + of.at.z() - x.patch().at.z();
+    return ratio(of.at.y() * d.y(), d.z(), max_distance) + of.at.z() - x.patch().at.z();
 }
-// Lateral forces on all patches in one direction, with vertical ones that keep the wheel centres at
-// their height (of an axle: from rolling); the roll centre is where the resultant acts. With C the
-// rise of the centres, of an axle that of the left less that of the right one:
+// Lateral forces f_y on all patches in one direction, with vertical forces f_z that hold the wheel
+// centres at their height (of an axle: opposite ones that prevent roll); the roll centre is where the
+// resultant acts. With C_y, C_z the rise of the centres per unit of these forces, of an axle that of
+// the left less that of the right one:
 //
 //   f_z = -f_y C_y / C_z      h = -(t/2) f_z / f_y      t/2 = y of the patch of one wheel
 double roll_centre_by_forces(const Subject& x) {
@@ -87,17 +91,17 @@ double roll_centre_by_forces(const Subject& x) {
     };
     if (!is_axle(x.model))
         return ratio(x.patch().at.y() * rise(x, free[0][at_patch + 1]),
-                     rise(x, free[0][at_patch + 2]), nowhere);
+                     rise(x, free[0][at_patch + 2]), max_distance);
     if (x.response->tied) return undefined;
     const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
     const auto roll = [&](const Motions& by) { return rise(left, by) - rise(right, by); };
     return ratio((left.patch().at.y() - right.patch().at.y()) / 2 *
                      roll(of_axle(free, left, at_patch + 1, 1)),
-                 roll(of_axle(free, left, at_patch + 2, -1)), nowhere);
+                 roll(of_axle(free, left, at_patch + 2, -1)), max_distance);
 }
 
-// Unit forces on the patches, up on the left and down on the right one, are a moment of the track t, and
-// turn the line through the wheel centres by φ = (z_left - z_right) / t:  t / φ.
+// Unit forces on the patches, up on the left and down on the right one, are the moment t, the track, and
+// turn the line through the wheel centres by φ = (z_left - z_right) / t:  stiffness t / φ.
 double roll_stiffness(const Subject& x) {
     if (x.response->free.empty()) return without_free(x);
     if (x.response->tied) return undefined;
@@ -105,13 +109,12 @@ double roll_stiffness(const Subject& x) {
     const Motions by = of_axle(x.response->free, left, at_patch + 2, -1);
     const double track = left.patch().at.y() - right.patch().at.y();
     const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
-    return ratio(track * track, rise, rigid);
+    return ratio(track * track, rise, max_stiffness);
 }
 
-// The part of the elements of one kind in the roll stiffness. The work of the unit forces equals
-// the rise of their points; Σ Δs·Δe over the elements of the kind is their part of it, with Δe the
-// deformations and Δs the forces under these unit forces. The remainder is the work of preloads,
-// which turn.
+// The part of the elements of one kind in the roll stiffness. The work of the unit forces is the rise of
+// their points; that of the elements is Σ Δs·Δe, Δe and Δs their changes of deformation and force under
+// the unit forces. The remainder of the sum over all kinds is the work of preloads, which rotate.
 enum class Carries { spring, bar, bushing };
 Carries carries(const Elastic& elastic) {
     if (member<ScalarLaw>(elastic.kind) != nullptr) return Carries::spring;
@@ -126,19 +129,10 @@ double roll_stiffness_by(const Subject& x, Carries kind) {
     const Motions by = of_axle(x.response->free, left, at_patch + 2, -1);
     const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
     constexpr double step = 1e-5;  // [m] of the rise, to either side
-    const auto moved = [&](double sign) {
-        Equilibrium state = *x.state;
-        for (std::size_t b = 0; b < by.size(); ++b) {
-            const Vector3d turn = sign * step / rise * by[b].dpi;
-            state.poses[b].r += sign * step / rise * by[b].dr;
-            state.poses[b].p =
-                Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()) * state.poses[b].p;
-        }
-        return state;
-    };
-    const Equilibrium above = moved(1), below = moved(-1);
+    const Equilibrium above = moved_by(*x.state, by, step / rise),
+                      below = moved_by(*x.state, by, -step / rise);
     const Branch none;
-    double work = 0;  // of a rise of 2 step
+    double work = 0;  // over a rise of 2 step, for which the unit forces do (2 step)² / rise
     for (std::size_t k = 0; k < x.model.elastics.size(); ++k) {
         const Elastic& elastic = x.model.elastics[k];
         if (carries(elastic) != kind || elastic.written_as == WrittenAs::tyre) continue;
@@ -219,7 +213,7 @@ const Entry of_roll[] = {
           {.elsewhere = "with the anti-roll bar", .cause = "roll"}),
 };
 
-const Entry of_roll_otherwise[] = {
+const Entry roll_definitions[] = {
     Entry(
         Owner::wheels, "roll_centre_height@centre", Unit::mm,
         "height above the contact patches of the intersection of the lines that are perpendicular, "
@@ -276,8 +270,8 @@ std::vector<Vector3> points_of_figures(const Model& model, const Equilibrium& st
 
 void add_roll(std::vector<Entry>& all) { std::ranges::copy(of_roll, std::back_inserter(all)); }
 
-void add_roll_otherwise(std::vector<Entry>& all) {
-    std::ranges::copy(of_roll_otherwise, std::back_inserter(all));
+void add_roll_definitions(std::vector<Entry>& all) {
+    std::ranges::copy(roll_definitions, std::back_inserter(all));
 }
 
 }  // namespace elastocheck::compare

@@ -15,7 +15,7 @@ namespace elastocheck::compare {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A point or direction of a body: where it is, and from the origin of its body.
+// A point of a body: its position, and its vector from the origin of the body, ground axes [m].
 struct Placed {
     BodyId body;
     Vector3d at, lever;
@@ -25,8 +25,8 @@ struct Subject {
     const Model& model;
     const Equilibrium* state = nullptr;       // null: as drawn
     std::size_t k = 0;                        // position in Model::wheels, elastics or dampers
-    const Branch* branch = nullptr;           // of a wheel load
-    const WheelResponse* response = nullptr;  // of a characteristic
+    const Branch* branch = nullptr;           // needed by wheel loads
+    const WheelResponse* response = nullptr;  // needed by characteristics
 
     Subject drawn() const { return {model, nullptr, k}; }
     Subject of(std::size_t other) const { return {model, state, other, branch, response}; }
@@ -51,7 +51,7 @@ struct Subject {
     }
     Placed centre() const { return placed(wheel().body, wheel().centre_local); }
     Placed patch() const { return placed(wheel().contact); }
-    // The patch as a point of the carrier, to which the brake holds the wheel.
+    // The patch as a point of the carrier: while the wheel is braked it turns with the carrier.
     Placed braked() const {
         if (!wheel().rolls()) return patch();
         const Vector3d at = patch().at;
@@ -69,15 +69,14 @@ struct Subject {
         return Vector3d(e.x(), e.y(), 0).normalized();
     }
     Vector3d along() const { return side() * across().cross(Vector3d::UnitZ()); }
-    // Where a circle of the drawn radius in the wheel's plane is lowest.
+    // The lowest point of a circle of the drawn radius in the wheel's plane.
     Vector3d lowest() const {
         const Vector3d e = spin();
         const double radius = drawn_arm(model, wheel()).norm();
         return centre().at + radius * (e * e.z() - Vector3d::UnitZ()).normalized();
     }
 
-    // Of a wheel with a steering axis, from its lower to its upper end; and from a point to the axis at
-    // the height of the point.
+    // The steering axis, from its lower to its upper end; and the horizontal vector from a point to it.
     Vector3d axis() const {
         const auto& [lower, upper] = *wheel().steering_axis;
         return placed(upper).at - placed(lower).at;
@@ -120,14 +119,15 @@ struct Subject {
     }
 };
 
-// Arms and centres farther than this are at infinity, and joints stiffer than this are rigid: beyond,
-// the quotient is round-off of a part that does not rotate or deform.
-inline constexpr double nowhere = 1e4;  // [m]
-inline constexpr double rigid = 1e12;   // [N/m]
+// A longer arm is infinite and a stiffer joint rigid: the denominator is round-off.
+inline constexpr double max_distance = 1e4;    // [m]
+inline constexpr double max_stiffness = 1e12;  // [N/m]
 
-inline double ratio(double value, double by, double limit) {
-    if (std::isnan(value) || std::isnan(by)) return nan;
-    return std::abs(value) <= limit * std::abs(by) && by != 0 ? value / by : undefined;
+// value / divisor; `undefined` beyond the limit, NaN if either is.
+inline double ratio(double value, double divisor, double limit) {
+    if (std::isnan(value) || std::isnan(divisor)) return nan;
+    return std::abs(value) <= limit * std::abs(divisor) && divisor != 0 ? value / divisor
+                                                                        : undefined;
 }
 
 inline constexpr auto not_steered = "the steering is not driven or held on this branch";
@@ -143,13 +143,14 @@ inline std::size_t left_wheel(const Model& model) { return model.wheels[0].side 
 std::string axis_words(int axis);
 
 // ---- The parts of the catalogue, in its order.
-void add_angles(std::vector<Entry>& all);            // angles.cpp
-void add_rates(std::vector<Entry>& all);             // rates.cpp
-void add_roll(std::vector<Entry>& all);              // roll.cpp, among the rates
-void add_angles_otherwise(std::vector<Entry>& all);  // angles.cpp
-void add_rates_otherwise(std::vector<Entry>& all);   // rates.cpp
-void add_roll_otherwise(std::vector<Entry>& all);    // roll.cpp, among the rates
-// force_tests.cpp; alone: of one wheel of an axle
+void add_angles(std::vector<Entry>& all);  // angles.cpp
+void add_rates(std::vector<Entry>& all);   // rates.cpp
+void add_roll(std::vector<Entry>& all);    // roll.cpp, among the rates
+// by other definitions than the project's own
+void add_angle_definitions(std::vector<Entry>& all);  // angles.cpp
+void add_rate_definitions(std::vector<Entry>& all);   // rates.cpp
+void add_roll_definitions(std::vector<Entry>& all);   // roll.cpp, among the rates
+// force_tests.cpp, among the rates; `alone`: those of an axle under a force on one wheel only
 void add_force_tests(std::vector<Entry>& all, bool alone);
 
 }  // namespace elastocheck::compare

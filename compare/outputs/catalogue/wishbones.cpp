@@ -10,7 +10,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// Points at which a body is held to another, in ground axes.
+// Points at which ball joints or bushings hold a body to another, ground axes [m].
 std::vector<Vector3d> points_between(const Subject& x, const FixedBodies& fixed, BodyId body,
                                      BodyId other) {
     std::vector<Vector3d> points;
@@ -31,7 +31,7 @@ std::vector<Vector3d> points_between(const Subject& x, const FixedBodies& fixed,
     return points;
 }
 
-// The axis of a joint that two of its constraints keep perpendicular to two directions.
+// Axis of a joint between two bodies: the direction that its two perpendicularity constraints share.
 std::optional<Vector3d> axis_between(const Subject& x, const FixedBodies& fixed, BodyId body,
                                      BodyId other) {
     std::optional<Vector3d> axis;

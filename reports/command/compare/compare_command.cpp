@@ -2,7 +2,6 @@
 #include <memory>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/comparison/compare_with.hpp"
 #include "compare/tables/compare_result.hpp"
 #include "elastocheck/recursive.hpp"
 #include "reports/command/delivery.hpp"

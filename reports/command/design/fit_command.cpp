@@ -44,8 +44,8 @@ std::string why_no_figure(const compare::Place& place, const Measurement& data,
     if (!std::isfinite(place.x)) return "without a parameter or travel";
     if (place.branch < 0) return "that no branch reaches";
     const auto& branch = outline.branches[static_cast<std::size_t>(place.branch)];
-    const auto over = compare::placed_by(branch.run(compare::Leg::equilibrium).curve,
-                                         place.by_parameter ? std::nullopt : points.abscissa);
+    const auto over = compare::abscissa_values(branch.run(compare::Leg::equilibrium).curve,
+                                               place.by_parameter ? std::nullopt : points.abscissa);
     if (over.empty())
         return fmt::format("whose travel does not place them on branch '{}'", branch.branch);
     return compare::reaches(over, place.x)

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "compare/comparison/compare_with.hpp"
+#include "compare/comparison/compare.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/subprocess.hpp"
 #include "reports/files/terminal.hpp"

@@ -26,7 +26,7 @@ struct DeviationAt {
 
 std::vector<double> errors_of(const compare::Profile& profile, Unit unit) {
     std::vector<double> values;
-    for (const auto& apart : profile.apart)
+    for (const auto& apart : profile.deviation)
         values.push_back(unit == Unit::mm ? apart.mm : apart.deg);
     return values;
 }

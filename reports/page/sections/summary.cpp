@@ -91,7 +91,7 @@ void add_changes(Table& table, const SceneAnalyses& scene) {
         for (const std::size_t end : {std::size_t{0}, curve.a.size() - 1}) {
             const compare::Entry& entry = *compare::find_entry(quantity.name);
             if (end == curve.start || entry.point != nullptr) continue;  // a position
-            const bool from_drawn = !entry.is.main;
+            const bool from_drawn = !entry.properties.main;
             std::vector<compare::Cell> row{fmt::format(
                 "{}{} at {}{}\u00a0{}", as_words(quantity.name), from_drawn ? "" : " change",
                 curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};

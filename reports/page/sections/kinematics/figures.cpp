@@ -27,7 +27,7 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
     for (const double at : x) farthest = std::max(farthest, std::abs(at));
     const double middle = quantity.shown == Shown::off_centre ? 0.2 * farthest : -1;
     const compare::Entry* entry = compare::find_entry(quantity.name);
-    const bool has_poles = entry != nullptr && entry->is.swing_arm;
+    const bool has_poles = entry != nullptr && entry->properties.swing_arm;
     for (const auto j : thinned(values.size(), 41)) {
         const double y = scale(values[j]);
         const bool shown = std::isfinite(y) && std::isfinite(x[j]) && std::abs(x[j]) > middle;

@@ -21,7 +21,7 @@ using Design = std::vector<CharacteristicRow>;
 // of the axle, the same for all wheels.
 struct Rate {
     std::string name, unit, definition{};
-    compare::Properties is{};
+    compare::Properties properties{};
     std::vector<std::optional<CharacteristicRow>> rows{};  // one a wheel in their order
 };
 
@@ -40,7 +40,7 @@ std::vector<Rate> rates_of(const Design& design, const std::vector<Wheel>& wheel
             const compare::Entry* entry = compare::find_entry(r.output);
             rates.push_back({name, r.unit, r.definition});
             known = rates.end() - 1;
-            if (entry != nullptr) known->is = entry->is;
+            if (entry != nullptr) known->properties = entry->properties;
             known->rows.resize(std::max<std::size_t>(1, wheels.size()));
         }
         if (wheel)
@@ -84,7 +84,7 @@ Table key_rates(const SceneAnalyses& scene) {
     const auto design = design_of(scene);
     if (design.empty()) return {};
     auto rates = rates_of(design, scene.model.wheels);
-    std::erase_if(rates, [](const Rate& rate) { return !rate.is.key; });
+    std::erase_if(rates, [](const Rate& rate) { return !rate.properties.key; });
     return rates_table(
         rates, scene.model.wheels,
         "Key figures at the design position (lateral forces towards the middle of the vehicle, "
@@ -98,7 +98,7 @@ std::optional<Section> rates_section(const SceneAnalyses& scene) {
     const auto rates = rates_of(design, scene.model.wheels);
     std::vector<std::pair<std::string, std::vector<Rate>>> groups;
     for (const auto& rate : rates) {
-        const std::string cause = rate.is.compliance ? "compliance" : rate.is.cause;
+        const std::string cause = rate.properties.compliance ? "compliance" : rate.properties.cause;
         auto known =
             std::ranges::find(groups, cause, [](const auto& group) { return group.first; });
         if (known == groups.end()) known = groups.emplace(known, cause, std::vector<Rate>{});
