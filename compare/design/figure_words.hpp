@@ -1,5 +1,5 @@
-// Words that name a figure: "OUTPUT", "OUTPUT@BRANCH" or "OUTPUT@BRANCH:PARAMETER". Messages of
-// std::invalid_argument say what the scene has not, and the nearest name that it has.
+// Parses names of figures: "OUTPUT", "OUTPUT@BRANCH" or "OUTPUT@BRANCH:PARAMETER". Throws
+// std::invalid_argument for a name that the scene lacks, with the nearest name that it has.
 #pragma once
 
 #include <optional>

@@ -31,22 +31,22 @@ FigureValues of_trimmed(const Trimmed& trimmed, std::span<const Figure> figures,
 }
 
 // Where the trim of a similar scene ended, and by which leg.
-struct NearTrim : TrimStart {
+struct SimilarTrim : TrimStart {
     bool by_equilibrium = false;
 };
 
 // The compiled scene with the numbers p, the states of the equilibrium leg at which its figures are
 // read, and the figures. Without a model there is no such scene (a negative rate, points that
 // coincide), or its trim is not reached.
-struct AtPoint {
-    NearTrim trim = {};
+struct SolvedPoint {
+    SimilarTrim trim = {};
     std::optional<Model> model = {};
     std::vector<ReadStates> states = {};
     FigureValues figures = {};
 };
 
-// Runs a part of the solution; a failure leaves the figures without values, and its reason.
-void guarded(AtPoint& at, std::size_t figures, const std::function<void()>& part) {
+// Runs a part of the solution. Where it fails, the figures have no values, and its reason.
+void run_guarded(SolvedPoint& at, std::size_t figures, const std::function<void()>& part) {
     try {
         part();
     } catch (const std::runtime_error& error) {
@@ -59,8 +59,9 @@ void guarded(AtPoint& at, std::size_t figures, const std::function<void()>& part
 // the series, or by the equilibrium leg where the start settles past a limit point, which the
 // series does not reach: first by the leg that reached the last trim, then by the other one. No
 // second reference confirms it.
-void compile_at(const Varied& varied, const VectorXd& p, std::size_t figures, AtPoint& compiled) {
-    guarded(compiled, figures, [&] {
+void compile_at(const Varied& varied, const VectorXd& p, std::size_t figures,
+                SolvedPoint& compiled) {
+    run_guarded(compiled, figures, [&] {
         const Scene scene = varied.scene(p);
         const auto trim_by = [&](bool by_equilibrium) {
             return (by_equilibrium ? trim_not_confirmed : trim_by_series)(scene, &compiled.trim);
@@ -77,17 +78,17 @@ void compile_at(const Varied& varied, const VectorXd& p, std::size_t figures, At
     });
 }
 
-// Reads the figures at the states, which are solved from the design position if there are none.
-void read_at(std::span<const Figure> figures, AtPoint& at) {
+// Reads the figures at the states of the point, which are first solved if there are none.
+void read_at(std::span<const Figure> figures, SolvedPoint& at) {
     if (!at.model) return;
-    guarded(at, figures.size(), [&] {
+    run_guarded(at, figures.size(), [&] {
         if (at.states.empty()) at.states = states_of(*at.model, figures, Leg::equilibrium);
         at.figures = read_figures(*at.model, at.states, figures, Leg::equilibrium);
     });
 }
 
 FigureValues values_at(const Varied& varied, std::span<const Figure> figures, const VectorXd& p) {
-    AtPoint at;
+    SolvedPoint at;
     compile_at(varied, p, figures.size(), at);
     read_at(figures, at);
     return at.figures;
@@ -101,19 +102,21 @@ struct SolvedFigures {
     std::vector<Figure> figures;
     int threads;
     VectorXd centre = {};
-    AtPoint at_centre = {};
+    SolvedPoint at_centre = {};
 
-    void on_all(std::vector<AtPoint>& points, const std::function<void(std::size_t)>& run) const {
+    void on_all(std::vector<SolvedPoint>& points,
+                const std::function<void(std::size_t)>& run) const {
         std::vector<Job> jobs;
         for (std::size_t k = 0; k < points.size(); ++k) jobs.push_back({"", [&, k] { run(k); }});
         run_jobs(jobs, threads, {});
     }
-    std::vector<AtPoint> near(std::span<const VectorXd> points) const {
-        std::vector<AtPoint> solved(points.size(), AtPoint{at_centre.trim});
+    std::vector<SolvedPoint> near(std::span<const VectorXd> points) const {
+        std::vector<SolvedPoint> solved(points.size(), SolvedPoint{at_centre.trim});
         on_all(solved,
                [&](std::size_t k) { compile_at(varied, points[k], figures.size(), solved[k]); });
         std::vector<const Model*> models;
-        for (const AtPoint& point : solved) models.push_back(point.model ? &*point.model : nullptr);
+        for (const SolvedPoint& point : solved)
+            models.push_back(point.model ? &*point.model : nullptr);
         auto states = neighbouring_states(at_centre.states, models, threads);
         on_all(solved, [&](std::size_t k) {
             solved[k].states = std::move(states[k]);
@@ -123,7 +126,7 @@ struct SolvedFigures {
     }
     std::vector<VectorXd> operator()(const std::vector<VectorXd>& points) {
         if (centre.size() != points[0].size() || centre != points[0]) {
-            AtPoint moved = std::move(near({points.data(), 1}).front());
+            SolvedPoint moved = std::move(near({points.data(), 1}).front());
             centre = points[0];
             if (!moved.model) {
                 moved.trim = at_centre.trim;
@@ -132,7 +135,7 @@ struct SolvedFigures {
             at_centre = std::move(moved);
         }
         std::vector<VectorXd> values{at_centre.figures.value};
-        for (const AtPoint& point : near(std::span(points).subspan(1)))
+        for (const SolvedPoint& point : near(std::span(points).subspan(1)))
             values.push_back(point.figures.value);
         return values;
     }
@@ -175,7 +178,7 @@ std::string why_not_solved(const Varied& varied, std::span<const Figure> figures
 
 std::string why_still(const Varied& varied, const Figure& figure) {
     const Scene scene = varied.scene(varied.start);
-    std::vector<Figure> outputs_there;  // outputs of the state at the same station
+    std::vector<Figure> outputs_there;  // channels() at the station of the figure
     for (const Channel& channel : channels(compile(scene))) {
         outputs_there.push_back(figure);
         outputs_there.back().name = channel.name;

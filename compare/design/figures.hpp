@@ -35,8 +35,7 @@ struct Figure {
 // of what redundant joints share.
 std::vector<Channel> figure_outputs(const Model& model, bool with_sums = true);
 
-// Values of figures by one leg, in their units; NaN where there is none, `why_not` says why for the
-// first of these.
+// Values of figures by one leg, in their units; NaN where there is none, with the reason for the first.
 struct FigureValues {
     Eigen::VectorXd value;
     std::string why_not = {};
@@ -60,15 +59,14 @@ struct ReadStates {
 std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg);
 FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
                           std::span<const Figure> figures, Leg leg);
-// Of each model (null: none) the states by the equilibrium leg at the same places, from the
-// `states` of a similar model by the chord method (models/neighbours.hpp), which factorises once a
-// state for all models. None for a model of another structure, and where the method does not
-// converge since the models are far from each other.
+// States of each model (null: none) by the equilibrium leg at the places of `states`, those of a similar
+// model, solved from these by the chord method (models/neighbours.hpp) with one factorisation per state
+// for all models. Empty for a model of another structure, and where the method does not converge.
 std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
                                                          std::span<const Model* const> models,
                                                          int threads);
 
-// Of the scene with its trim.
+// Values of figures of the trimmed scene.
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures,
                            Leg leg = Leg::equilibrium);
 
@@ -87,7 +85,7 @@ struct Varied : SearchRange {
     std::function<Scene(const Eigen::VectorXd& p)> scene = {};
 };
 
-// The algorithms of this folder know a scene by its figures at points p alone.
+// Figures as functions of the numbers p: all that the algorithms of this folder use of a scene.
 struct Figures {
     // at points near the first one, in the units of the outputs; NaN where there is none
     std::function<std::vector<Eigen::VectorXd>(const std::vector<Eigen::VectorXd>& p)> values;
@@ -124,7 +122,7 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
 // unit where that is zero.
 inline double step_of(const Number& number) { return varied_number(number).step; }
 
-// What moves a figure of this value by less, does not move it: rounding.
+// Smaller changes of a figure of this value are rounding.
 inline double min_movement(double value) { return 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace elastocheck::compare

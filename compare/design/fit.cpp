@@ -15,12 +15,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The letters and formulas are those of fit.hpp.
-
+// Formulas and symbols: fit.hpp.
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double min_singular = 1e-6;  // of the largest: below, a combination is not determined
-constexpr double min_part = 1e-3;      // of a number in an undetermined combination
-constexpr double min_noise = 1e-9;     // of the range of a column: exact data
+constexpr double min_part = 1e-3;      // a number with a smaller part in it is determined
+constexpr double min_noise = 1e-9;     // of the range of a column, for exact data
 constexpr int noise_updates = 2;       // estimates of s_c after the first fit
 constexpr int max_robust_passes = 60;
 constexpr double numbers_stay = 1e-6;     // in steps, from one robust pass to the next
@@ -120,9 +119,9 @@ Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& 
                    measured.step.asDiagonal();
         },
         {range.low.cwiseQuotient(measured.step), range.high.cwiseQuotient(measured.step)}};
-    problem.about = within(problem.box, range.start.cwiseQuotient(measured.step));
+    problem.centre = within(problem.box, range.start.cwiseQuotient(measured.step));
     Fitted fitted{.p = range.start};
-    const VectorXd before = figures.value(number_at(problem.about));
+    const VectorXd before = figures.value(number_at(problem.centre));
     if (!before.allFinite()) {
         fitted.why_not = "the start";
         return fitted;
@@ -139,7 +138,7 @@ Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& 
             std::min(fitted.freedom, static_cast<int>(share * static_cast<double>(rows.size())));
     }
 
-    Minimum nearest{.x = problem.about};
+    Minimum nearest{.x = problem.centre};
     // Robust: until the numbers stay. Else: fits with s_c from the range, and two with estimates.
     bool stays = !measured.robust || N <= n;
     for (int pass = 0; pass <= (measured.robust ? max_robust_passes : noise_updates); ++pass) {

@@ -35,7 +35,7 @@ namespace elastocheck::compare {
 
 struct Measured {
     Eigen::VectorXd value;    // per figure, in its unit
-    std::vector<int> column;  // per figure: 0, 1, ...
+    std::vector<int> column;  // per figure: its column, 0, 1, ...
     Eigen::VectorXd step;     // per number (step_of)
     bool robust = false;
 };
@@ -66,8 +66,8 @@ double student_95(int freedom);
 
 Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& range);
 
-// Of these figures the one that tells an undetermined combination apart from its opposite: the one
-// that moves most with it, as a share of its extent.
+// The figure whose measurement would best determine an undetermined combination: the one that moves
+// most with it, as a share of its extent.
 struct Proposal {
     Eigen::Index figure = -1;  // -1: none moves with the combination
     double movement = 0;       // with the combination whose largest change is one step; in its unit

@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 // The search has converged below these relative changes of |r|² and of the scaled x.
 constexpr double min_decrease = 1e-14, min_change = 1e-10;
-// It has not where it ends at most this |Δx| from a point at which the residuals are not finite.
+// It has not converged within this |Δx| of a point at which the residuals are not finite.
 constexpr double undefined_within = 1e-6;
 
 // The bound at which x_i is held, -1 the lower or 1 the upper, beyond which the sum of squares
@@ -21,8 +21,8 @@ int held(const Box& box, const VectorXd& x, Index i, double descent) {
     return descent < 0 && x[i] <= box.low[i] ? -1 : descent > 0 && x[i] >= box.high[i] ? 1 : 0;
 }
 
-// [r; w (x - about)] at P(x), and its Jacobian `df` without the columns of held numbers: names and
-// return values are those that Eigen's method calls; a negative one ends the search.
+// [r; w (x - c)] at P(x), and its Jacobian `df` without the columns of held numbers, with the names and
+// return values that Eigen's method requires; a negative one ends the search.
 struct Stacked {
     const LeastSquares& problem;
     MatrixXd first;                // ∂r/∂x at the start, for the first step
@@ -34,7 +34,7 @@ struct Stacked {
     int values() const { return static_cast<int>(rows); }
     int operator()(const VectorXd& x, VectorXd& stacked) {
         const VectorXd at = within(problem.box, x);
-        stacked << problem.residual(at), weight * (at - problem.about);
+        stacked << problem.residual(at), weight * (at - problem.centre);
         last = stacked;
         if (!stacked.allFinite()) last_undefined = at;
         return 0;

@@ -1,6 +1,6 @@
 // Nonlinear least squares within bounds: Levenberg and Marquardt's method of Eigen (MINPACK's lmder).
 //
-//   minimise  |r(P(x))|² + w² |P(x) - about|²,   P(x): the point of the box that is nearest to x
+//   minimise  |r(P(x))|² + w² |P(x) - c|²,   P(x): the point of the box that is nearest to x
 //
 // w is `pull` times the largest column norm of ∂r/∂x at the start; it keeps numbers that r does not
 // determine where they are. A number at a bound beyond which the sum would decrease has no column in
@@ -23,7 +23,7 @@ struct LeastSquares {
     std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> residual;  // NaN where there is none
     std::function<Eigen::MatrixXd(const Eigen::VectorXd& x)> jacobian;
     Box box;
-    Eigen::VectorXd about = {};
+    Eigen::VectorXd centre = {};  // c
     double pull = 1e-8;
 };
 
@@ -35,7 +35,7 @@ struct Minimum {
 // `start` is within the box.
 Minimum minimise(const LeastSquares& problem, Eigen::VectorXd start);
 
-// Per number: at a limit beyond which |r| would decrease: -1 the lower, 1 the upper, else 0.
+// Per number: -1 or 1 at the lower or upper limit if |r| would decrease beyond it, else 0.
 std::vector<int> limits_reached(const LeastSquares& problem, const Minimum& at);
 
 }  // namespace elastocheck::compare

@@ -24,12 +24,12 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 constexpr int max_evaluations = 200;      // of one run of SLSQP
 constexpr int max_runs = 4;               // each from the best point before
-constexpr int calls_at_one_point = 20;    // the step of SLSQP has vanished: it would loop for ever
+constexpr int max_repeats = 20;           // calls at one point, after which SLSQP would not end
 constexpr double min_step = 1e-12;        // of x
 constexpr double active_within = 1e-6;    // of c
-constexpr double optimal_within = 1e-4;   // of |∇F|
-constexpr double ends_within = 1e-6;      // likewise, where a run of SLSQP ends
-constexpr double min_residual = 1e-7;     // of the conditions of the optimum, where ∇F vanishes
+constexpr double optimal_within = 1e-4;   // residual of the conditions as a share of |∇F|
+constexpr double ends_within = 1e-6;      // likewise, at which a run of SLSQP ends
+constexpr double min_residual = 1e-7;     // of the conditions, where ∇F vanishes
 constexpr double multiplier_pull = 1e-7;  // makes the multipliers of parallel ∇c unique
 
 // The problem in x, with the last evaluated point, and the best point within the bands.
@@ -53,7 +53,7 @@ struct Problem {
     std::exception_ptr failed = {};
 
     double unit_of(const Bound& one) const {
-        return one.of_number ? range.high[one.which] - range.low[one.which] : scale[one.which];
+        return one.of_number ? range.high[one.index] - range.low[one.index] : scale[one.index];
     }
     double cost() const {
         return minimised < 0 ? current.squaredNorm() / 2 : f[minimised] / scale[minimised];
@@ -66,7 +66,7 @@ struct Problem {
     VectorXd excess(const std::vector<Bound>& bounds) const {
         return VectorXd::NullaryExpr(std::ssize(bounds), [&](Index k) {
             const Bound& one = bounds[static_cast<std::size_t>(k)];
-            const double over = (one.of_number ? p : f)[one.which] - one.bound;
+            const double over = (one.of_number ? p : f)[one.index] - one.bound;
             return (one.upper ? over : -over) / unit_of(one);
         });
     }
@@ -75,9 +75,9 @@ struct Problem {
         for (Index k = 0; k < gradient.rows(); ++k) {
             const Bound& one = bounds[static_cast<std::size_t>(k)];
             if (one.of_number)
-                gradient(k, one.which) = 1;
+                gradient(k, one.index) = 1;
             else
-                gradient.row(k) = f_x.row(one.which) / scale[one.which];
+                gradient.row(k) = f_x.row(one.index) / scale[one.index];
             if (!one.upper) gradient.row(k) *= -1;
         }
         return gradient;
@@ -90,7 +90,7 @@ struct Problem {
 
     void move_to(const VectorXd& x) {
         if (current.size() > 0 && current == x) {
-            if (++repeats >= calls_at_one_point && run) nlopt_force_stop(run);
+            if (++repeats >= max_repeats && run) nlopt_force_stop(run);
             return;
         }
         current = x;
@@ -98,15 +98,17 @@ struct Problem {
         f = figures.value(p);
         f_x = {};
         repeats = 0;
-        if (has_value() && largest_excess() <= within_bands && cost() < min_cost)
-            best = x, min_cost = cost();
+        if (has_value() && largest_excess() <= within_bands && cost() < min_cost) {
+            best = x;
+            min_cost = cost();
+        }
     }
     void differentiate() {
         if (f_x.size() == 0) f_x = figures.gradient(p) * (range.high - range.low).asDiagonal();
     }
-    // A call in the library of C, through which no exception may pass.
+    // Evaluates for NLopt, a C library, through which no exception may pass.
     template <class Read>
-    void called(unsigned n, const double* x, bool gradient, const Read& read) {
+    void evaluate_for_nlopt(unsigned n, const double* x, bool gradient, const Read& read) {
         try {
             move_to(Eigen::Map<const VectorXd>(x, n));
             if (gradient) differentiate();
@@ -159,7 +161,7 @@ void set_conditions(Problem& problem, Search& search) {
 double slsqp_cost(unsigned n, const double* x, double* gradient, void* data) {
     Problem& problem = *static_cast<Problem*>(data);
     double cost = HUGE_VAL;  // SLSQP then shortens its step
-    problem.called(n, x, gradient != nullptr, [&] {
+    problem.evaluate_for_nlopt(n, x, gradient != nullptr, [&] {
         if (problem.has_value()) cost = problem.cost();
         if (!gradient) return;
         Eigen::Map<VectorXd>(gradient, n) = problem.cost_gradient();
@@ -176,7 +178,7 @@ void slsqp_excess(unsigned m, double* result, unsigned n, const double* x, doubl
     Problem& problem = *static_cast<Problem*>(data);
     Eigen::Map<VectorXd> c(result, m);
     c.setZero();
-    problem.called(n, x, gradient != nullptr, [&] {
+    problem.evaluate_for_nlopt(n, x, gradient != nullptr, [&] {
         if (problem.has_value()) c = problem.excess(problem.bands);
         // row-major [m × n] is column-major [n × m]
         if (gradient)
@@ -207,11 +209,11 @@ void run_slsqp(Problem& problem, VectorXd x) {
     if (problem.failed) std::rethrow_exception(problem.failed);
 }
 
-// Within the bands and of less cost, or nearer to them; by more than rounding, so that the first of
-// equal ones is taken.
+// Whether `one` meets the bands at less cost, or is nearer to them, by more than rounding: of equal
+// searches the first counts.
 bool is_better(const Search& one, const Search& other) {
     if (one.met != other.met) return one.met;
-    const auto size = [&](const Search& of) { return one.met ? of.cost : of.nearest.off.norm(); };
+    const auto size = [&](const Search& s) { return one.met ? s.cost : s.nearest.off.norm(); };
     return size(one) < size(other) - 1e-6 * std::abs(size(other));
 }
 
@@ -239,7 +241,8 @@ struct BestPoint {
 
 Search search_from(Problem& problem, const Bands& bands, const VectorXd& start) {
     Search search{.p = start, .excess = unbounded, .cost = unbounded};
-    problem.best = {}, problem.min_cost = unbounded;
+    problem.best = {};
+    problem.min_cost = unbounded;
     const SearchRange& range = problem.range;
     problem.move_to(range.shares(start));
     search.has_value = problem.has_value();
@@ -281,10 +284,10 @@ Problem problem_of(const Figures& figures, const Goals& goals, const SearchRange
     optimum.scale = largest(goals.goal);
     optimum.scale = (optimum.scale.array() > 0).select(optimum.scale, 1);
     Problem problem{figures, range, optimum.scale, goals.minimised};
-    const auto add = [](std::vector<Bound>& to, bool of_number, Index which, double low,
+    const auto add = [](std::vector<Bound>& to, bool of_number, Index index, double low,
                         double high) {
-        if (std::isfinite(low)) to.push_back({of_number, which, false, low});
-        if (std::isfinite(high)) to.push_back({of_number, which, true, high});
+        if (std::isfinite(low)) to.push_back({of_number, index, false, low});
+        if (std::isfinite(high)) to.push_back({of_number, index, true, high});
     };
     for (Index j = 0; j < m; ++j)
         if (!optimum.still[goal_of(j)]) add(problem.bands, false, j, goals.low[j], goals.high[j]);
@@ -329,7 +332,7 @@ Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& 
     Bands bands{VectorXd::Constant(goals.low.size(), -unbounded),
                 VectorXd::Constant(goals.low.size(), unbounded), optimum.scale};
     for (const Bound& one : problem.bands)
-        (one.upper ? bands.high : bands.low)[one.which] = one.bound;
+        (one.upper ? bands.high : bands.low)[one.index] = one.bound;
     if (goals.minimised >= 0 &&
         optimum
             .still[static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(goals.minimised)])])

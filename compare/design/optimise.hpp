@@ -33,9 +33,10 @@ struct Goals {
 // Points to search from: the start, and `count - 1` within the limits, the same on every run.
 std::vector<Eigen::VectorXd> starts_of(const SearchRange& range, int count);
 
+// One side of a band of a figure, or of the range of a number.
 struct Bound {
     bool of_number = false;  // else of a figure
-    Eigen::Index which = 0;  // number or figure
+    Eigen::Index index = 0;  // of the number or figure
     bool upper = false;
     double bound = 0;  // in the unit of the number or figure
     // λ_i / g: decrease of the cost per unit by which the bound is relaxed, to first order; the

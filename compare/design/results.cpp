@@ -156,10 +156,10 @@ Table goals_table(const OptimisedScene& scene) {
 std::string bound_text(const OptimisedScene& scene, const Bound& bound) {
     const char* sign = bound.upper ? "<=" : ">=";
     if (bound.of_number) {
-        const Number& number = item(scene.varied.numbers, bound.which);
+        const Number& number = item(scene.varied.numbers, bound.index);
         return fmt::format("{} {} {:g} {}", number.path, sign, bound.bound, number.unit);
     }
-    const Figure& figure = item(scene.figures, bound.which);
+    const Figure& figure = item(scene.figures, bound.index);
     return fmt::format("{}{} {} {:g} {} at {}", figure.name, figure.change ? " (change)" : "", sign,
                        bound.bound, figure.unit, figure.place);
 }
@@ -167,14 +167,14 @@ std::string bound_text(const OptimisedScene& scene, const Bound& bound) {
 // Amount by which a bound is relaxed when its price is stated: a power of ten, up to a tenth of the
 // band or a hundredth of what the numbers move; of a number 1 mm or 1 %.
 double relaxed_by(const OptimisedScene& scene, const Bound& bound) {
-    if (bound.of_number) return step_of(item(scene.varied.numbers, bound.which));
+    if (bound.of_number) return step_of(item(scene.varied.numbers, bound.index));
     Index first = 0;
     const auto goal = std::ranges::find_if(scene.goals, [&](const Goal& candidate) {
-        return bound.which < (first += std::ssize(candidate.points));
+        return bound.index < (first += std::ssize(candidate.points));
     });
     const double width = goal->high - goal->low;
     const double largest =
-        std::isfinite(width) ? width / 10 : scene.optimum.scale[bound.which] / 100;
+        std::isfinite(width) ? width / 10 : scene.optimum.scale[bound.index] / 100;
     return std::pow(10, std::floor(std::log10(largest) + 1e-9));
 }
 

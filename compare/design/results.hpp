@@ -82,7 +82,7 @@ struct ToleratedScene {
     std::vector<Scatter> scatter = {};
     std::vector<std::string> missing = {};  // reasons why requested figures have no scatter
 };
-// `most` shares of each figure, the largest; 0: all.
-Result result_of(const ToleratedScene& all, int most);
+// With the `max_shares` largest shares of each figure; 0: all.
+Result result_of(const ToleratedScene& scene, int max_shares);
 
 }  // namespace elastocheck::compare

@@ -20,7 +20,7 @@ SearchStart start_of(const Figures& figures, const SearchRange& range) {
 
 Solution solve_for(const Figures& figures, const Bands& bands, const SearchRange& range,
                    const VectorXd& p) {
-    // those of the last point, with which every minimum begins
+    // Figures and gradient at the last points: each search begins where the one before it ended.
     VectorXd valued, f, rated;
     MatrixXd rate;
     const auto value_at = [&](const VectorXd& x) -> const VectorXd& {

@@ -5,8 +5,8 @@
 //   minimise |r(x)|² + μ² |x|²   over  low ≤ p ≤ high,   μ / |∂r/∂x| = 1e-2, 1e-4, 1e-6
 //
 // (least_squares.hpp), each from the minimum before. A wanted value is a band without width. If the
-// bands can be met, r is of the order μ² at the end and x that of smallest |x|; if not, the p is
-// nearest to them in this scaling, and r is perpendicular to all changes of the figures that the
+// bands can be met, r is of the order μ² at the end and |x| smallest; if not, p is nearest to them in
+// this scaling, and r is perpendicular to all changes of the figures that the
 // numbers within their limits can make: the figures with large components conflict.
 #pragma once
 
@@ -22,7 +22,7 @@ struct Bands {
     Eigen::VectorXd scale;      // g_j, in its unit
 };
 
-// What all searches start from.
+// Figures and their gradient at the start of all searches.
 struct SearchStart {
     Eigen::VectorXd value;     // of the figures; NaN where there is none
     Eigen::MatrixXd gradient;  // likewise; empty without values
@@ -42,9 +42,8 @@ struct Solution {
     std::vector<int> at_limit = {};
 
     double excess() const { return off.size() > 0 ? off.cwiseAbs().maxCoeff() : 0; }
-    Eigen::VectorXd conflict() const {
-        return off.cwiseAbs() / off.norm();
-    }  // share of each figure
+    // share of each figure
+    Eigen::VectorXd conflict() const { return off.cwiseAbs() / off.norm(); }
 };
 inline constexpr double met_within = 1e-7;  // |r_j| with which a wanted value is met
 

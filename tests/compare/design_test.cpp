@@ -64,11 +64,11 @@ TEST(LeastSquares, FindsTheMinimumOfRosenbrocksFunctionWithAndWithoutABound) {
                             },
                             {VectorXd::Constant(2, -infinity), VectorXd::Constant(2, infinity)},
                             list_of({-1.2, 1})};
-    const Minimum free = minimise(rosenbrock, rosenbrock.about);
+    const Minimum free = minimise(rosenbrock, rosenbrock.centre);
     EXPECT_TRUE(free.converged);
     EXPECT_LE((free.x - list_of({1, 1})).norm(), 1e-12);
     rosenbrock.box.high = list_of({0.5, 10});
-    const Minimum bounded = minimise(rosenbrock, rosenbrock.about);
+    const Minimum bounded = minimise(rosenbrock, rosenbrock.centre);
     EXPECT_TRUE(bounded.converged);
     EXPECT_LE((bounded.x - list_of({0.5, 0.25})).norm(), 1e-7);
     EXPECT_EQ(limits_reached(rosenbrock, bounded), (std::vector<int>{1, 0}));
@@ -430,7 +430,7 @@ TEST(Optimise, ShadowPricesAreTheDerivativesOfTheCostByTheBounds) {
         for (const Bound& one : found.active) {
             const double relaxed = 1e-5;
             Goals wider = goals;
-            (one.upper ? wider.high : wider.low)[one.which] += one.upper ? relaxed : -relaxed;
+            (one.upper ? wider.high : wider.low)[one.index] += one.upper ? relaxed : -relaxed;
             const Optimum there = optimise(figures, wider, range, {found.p});
             // the bounds are met within 1e-7
             EXPECT_NEAR(one.price, (found.cost - there.cost) / relaxed, 2e-3) << k;
@@ -542,7 +542,7 @@ TEST(Optimise, KeepsToeOfAMcPhersonWithinABandOverItsTravel) {
     ASSERT_FALSE(found.active.empty());
     const Bound& first = found.active.front();
     const double relaxed = 0.002;
-    (first.upper ? goals.high : goals.low)[first.which] += first.upper ? relaxed : -relaxed;
+    (first.upper ? goals.high : goals.low)[first.index] += first.upper ? relaxed : -relaxed;
     const Optimum there = optimise(toe, goals, varied, {found.p});
     EXPECT_NEAR((found.cost - there.cost) / relaxed, first.price, 0.1 * first.price);
 }
