@@ -41,9 +41,8 @@ const Series* find(const Measurement& in, const std::string& branch, Quantity qu
 }
 
 const GatedBranch* find(const Measurement& in, const std::string& branch) {
-    for (const auto& b : in.branches)
-        if (b.name == branch) return &b;
-    return nullptr;
+    const auto found = std::ranges::find(in.branches, branch, &GatedBranch::name);
+    return found == in.branches.end() ? nullptr : &*found;
 }
 
 // Parameters of the numbers of a quantity; empty where they have none.
@@ -65,7 +64,7 @@ double range(const Series& s) {
     return high - low;
 }
 
-// What Allowance::rtol is a share of (gate.hpp).
+// The scale of which Allowance::rtol is a share (gate.hpp).
 double scale(const Measurement& accepted, const Series& s) {
     if (*kind_of(s.quantity).tolerance != 0)
         return std::abs(
@@ -103,7 +102,7 @@ double noticeable(const Baseline& baseline, const Series& s) {
 // Forces within the suspension and counters of the solver, in contrast to wheel outputs.
 bool is_inner(const Offence& o) { return o.unit == "N" || o.unit == "N·m" || o.unit == "count"; }
 
-// Class of comes_before(), the first to be reported lowest.
+// Rank in the order of comes_before(), 0 first.
 int rank(const Offence& o) {
     if (o.of_limit) return 0;
     const bool at_design = o.a && *o.a == 0,
@@ -381,7 +380,8 @@ Tolerances default_tolerances(ToleranceClass kind) {
         OfKey{"deg", {{{2e-9, 0}, {5e-9, 0}, {0.001, 1e-3}}}},
         OfKey{"N", {{{2e-9, 0}, {7e-8, 0}, {1, 1e-3}}}},
         OfKey{"N·m", {{{2e-9, 0}, {5e-9, 0}, {0.1, 1e-3}}}},
-        // of a cotangent at 2 deg: 5e-9 deg changes it by 800 times as much, in percent
+        // Ackermann: at 2 deg the cotangent of a steer angle changes by 1/sin² = 821 per rad, so that
+        // 5e-9 deg change it by 7e-6 %, times l/j for each wheel
         OfKey{"%", {{{2e-9, 0}, {2e-5, 0}, {0.5, 1e-3}}}},
         OfKey{"count", {{{0, 0}, {1, 0.012}, {2, 0.5}}}},
         OfKey{"characteristic", {{{2e-9, 1e-12}, {1e-8, 1e-8}, {1e-3, 5e-3}}}},
@@ -450,8 +450,7 @@ Measurement measure(const Model& model, const Comparison& comparison) {
         result.branches.push_back(std::move(kept));
     }
     add_compliance(model, comparison, result.series);
-    std::ranges::sort(result.series,
-                      [](const Series& a, const Series& b) { return key(a) < key(b); });
+    std::ranges::sort(result.series, {}, key);
     return result;
 }
 
@@ -467,7 +466,7 @@ GateVerdict judge(const Baseline& baseline, const Measurement& measurement, Tole
     const auto common = common_branches(baseline, measurement, verdict);
     // A series of a branch that neither side lists is compared too, so that none
     // is skipped silently.
-    const auto looked_at = [&](const std::string& branch) {
+    const auto is_compared = [&](const std::string& branch) {
         return std::ranges::find(common, branch) != common.end() ||
                (find(baseline.accepted, branch) == nullptr && find(measurement, branch) == nullptr);
     };
@@ -475,12 +474,12 @@ GateVerdict judge(const Baseline& baseline, const Measurement& measurement, Tole
     const auto tolerances = baseline.tolerances.find(kind);
     static const Tolerances none;
     for (const auto& was : baseline.accepted.series)
-        if (looked_at(was.branch))
+        if (is_compared(was.branch))
             judge_series(baseline,
                          tolerances == baseline.tolerances.end() ? none : tolerances->second, was,
                          measurement, verdict);
     for (const auto& is : measurement.series)
-        if (looked_at(is.branch) &&
+        if (is_compared(is.branch) &&
             find(baseline.accepted, is.branch, is.quantity, is.channel) == nullptr)
             verdict.reasons.push_back(described(is) + " is new: the baseline does not have it");
     for (const auto& limit : baseline.limits) judge_limit(limit, measurement, verdict);

@@ -16,7 +16,7 @@
 
 namespace elastocheck::compare {
 
-// Similarity of the build that made the baseline and the judged build.
+// Classes of tolerances, by the similarity of the build that made the baseline and the judged build.
 enum class ToleranceClass {
     same_build,   // same compiler, flags, libraries and CPU: only rounding of the file
     cross_build,  // any of them differs: round-off, measured over compilers and flags

@@ -14,10 +14,10 @@ namespace {
 
 using Kind = CaseInput::Kind;
 
-constexpr const char* of_gravity = "gravity.";
-constexpr double same_point = 1e-6;  // [m]
+constexpr const char* weight_prefix = "gravity.";  // of the names of static loads
+constexpr double same_point = 1e-6;                // [m]
 
-// The jack under the wheel centre; added where no branch of the scene has needed it.
+// Position of the joint that is the jack under a wheel centre; added if the scene has none.
 int jack_under(const Wheel& wheel, Scene& scene) {
     const std::string name = (wheel.name.empty() ? "" : wheel.name + ".") + "jack";
     for (std::size_t k = 0; k < scene.joints.size(); ++k)
@@ -34,7 +34,7 @@ int jack_under(const Wheel& wheel, Scene& scene) {
 
 std::optional<Load> weight_of(const Scene& scene, const std::string& body) {
     for (const Load& load : scene.static_loads)
-        if (load.name == of_gravity + body) return load;
+        if (load.name == weight_prefix + body) return load;
     return std::nullopt;
 }
 
@@ -56,7 +56,7 @@ Load unit_load(const Scene& scene, const CaseInput& input) {
     return {"force", DeadForce{wheel.contact, along}};
 }
 
-// What the static loads of the scene put on a patch along an axis.
+// Sum of the static forces of the scene at a patch along an axis [N].
 double static_force(const Model& model, const Point& patch, int axis) {
     const FixedBodies fixed(model);
     double sum = 0;
@@ -110,7 +110,7 @@ Branch branch_of(const LoadCase& load_case, const Model& drawn, Scene& scene) {
         } else if (input.kind == Kind::acceleration) {
             add_acceleration(scene, input, branch);
         } else {
-            // static loads stay: the case adds what they lack
+            // Static loads stay: the case adds the difference.
             const double before =
                 input.kind == Kind::patch_force
                     ? static_force(drawn, scene.wheels[input.of].contact, input.axis)

@@ -1,5 +1,6 @@
 // Loads at pickup points for readers.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -50,7 +51,7 @@ struct Largest {
     double force = 0, moment = 0;
     std::string force_in{}, moment_in{};  // names of the cases
     bool shared = false, solved = true;
-    double given(double load) const { return shared || !solved ? nan : load; }
+    double shown(double load) const { return shared || !solved ? nan : load; }
 };
 
 std::vector<Largest> largest(const PickupLoads& loads) {
@@ -90,10 +91,10 @@ std::vector<ColumnOf<Largest>> largest_columns() {
         {"x", place, coordinate(0), "of the point as drawn, vehicle axes", "mm"},
         {"y", place, coordinate(1), "likewise", "mm"},
         {"z", place, coordinate(2), "likewise", "mm"},
-        {"force", whole, [](const Largest& l) { return l.given(l.force); },
+        {"force", whole, [](const Largest& l) { return l.shown(l.force); },
          "largest over the cases", "N"},
         {"force in", words, [](const Largest& l) { return l.force_in; }, "its case"},
-        {"moment", four, [](const Largest& l) { return l.given(l.moment); },
+        {"moment", four, [](const Largest& l) { return l.shown(l.moment); },
          "largest over the cases, about the point", "N·m"},
         {"moment in", words, [](const Largest& l) { return l.moment_in; }, "its case"}};
 }
@@ -125,15 +126,14 @@ std::vector<ColumnOf<LoadInCase>> case_columns() {
     return columns;
 }
 
-// Joints whose share no load determines, in words.
+// Names of the joints whose shares of a load are not determined.
 std::string shared_joints(const std::vector<Largest>& list) {
     std::vector<std::string> names;
     for (const auto& entry : list)
-        if (entry.shared && std::ranges::find(names, entry.pickup.connection) == names.end())
-            names.push_back(entry.pickup.connection);
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
-    return text;
+        if (const std::string name = "'" + entry.pickup.connection + "'";
+            entry.shared && std::ranges::find(names, name) == names.end())
+            names.push_back(name);
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Verdict verdict_of(const PickupLoads& loads) {

@@ -108,7 +108,7 @@ Sources sources_of(const Model& model) {
     return sources;
 }
 
-// A state, and what the formulas of the recursion make of it.
+// A state, with the inputs of the recursion's formulas for element forces.
 struct Solved {
     const Model& model;
     const BranchSide& side;
@@ -125,7 +125,7 @@ Vector6 stacked(const Vector3d& force, const Vector3d& moment) {
 }
 
 // Wrench of a joint on its first or second body about a point.
-Vector6 of_joint(const Solved& solved, int joint, bool is_second, const Vector3d& about) {
+Vector6 joint_wrench(const Solved& solved, int joint, bool is_second, const Vector3d& about) {
     const Wrench& on_i = solved.state.reactions[static_cast<std::size_t>(joint)];
     const Vector3d lever =
         position(solved.state.poses, solved.model.joints[static_cast<std::size_t>(joint)].at) -
@@ -134,7 +134,7 @@ Vector6 of_joint(const Solved& solved, int joint, bool is_second, const Vector3d
 }
 
 // An element pulls its body j back by (F, M); on body i acts the opposite.
-Vector6 of_element(const Solved& solved, const Source& source, const Vector3d& about) {
+Vector6 element_wrench(const Solved& solved, const Source& source, const Vector3d& about) {
     const auto k = static_cast<std::size_t>(source.parts.front());
     const auto pull = recursive::element_force<double>(solved.side.model.elastics[k].kind,
                                                        solved.inputs.rest[k], solved.q);
@@ -147,8 +147,8 @@ Vector6 wrench_of(const Solved& solved, const Source& source) {
     const Vector3d about = position(solved.state.poses, source.at);
     switch (source.kind) {
         case Source::Kind::joint:
-            return of_joint(solved, source.parts.front(), source.is_second, about);
-        case Source::Kind::element: return of_element(solved, source, about);
+            return joint_wrench(solved, source.parts.front(), source.is_second, about);
+        case Source::Kind::element: return element_wrench(solved, source, about);
         case Source::Kind::applied: return solved.external.segment<6>(6 * source.body);
         case Source::Kind::sum: break;
     }
@@ -156,7 +156,7 @@ Vector6 wrench_of(const Solved& solved, const Source& source) {
     for (const int joint : source.parts) {
         const ModelJoint& j = solved.model.joints[static_cast<std::size_t>(joint)];
         if (j.i == source.body || j.j == source.body)
-            sum += of_joint(solved, joint, j.j == source.body, about);
+            sum += joint_wrench(solved, joint, j.j == source.body, about);
     }
     return sum;
 }
@@ -231,7 +231,7 @@ std::vector<Vector6> wrenches_in(const Model& model, const BranchSide& side,
     return wrenches;
 }
 
-// Largest difference of what the loads determine, as a share of the largest force or moment.
+// Largest difference of the determined components of two solutions, as a share of the largest one.
 double disagreement_of(const std::vector<PickupLoad>& ours, const std::vector<Vector6>& others) {
     double difference = 0, largest = 0;
     for (std::size_t k = 0; k < ours.size(); ++k)
@@ -265,7 +265,7 @@ SolvedCase solve_case(const Model& model, const Branch& branch, const Sources& s
     return result;
 }
 
-// Leaves out loads on bodies that no case loads.
+// Removes the pickups of applied loads on bodies that no case loads.
 void drop_unloaded(PickupLoads& result) {
     for (std::size_t k = result.pickups.size(); k-- > 0;) {
         if (result.pickups[k].connection != applied_loads) continue;

@@ -26,7 +26,7 @@ std::string solver_of(const SolverSettings& solver) {
                                         : name(solver.leg);
 }
 
-// A solver along a side of a branch, and what is proved of its points.
+// A solver along a side of a branch, with its path and the certificates of its points.
 struct SolvedSide {
     const BranchSide& side;
     SolverSettings solver;
@@ -49,7 +49,7 @@ void solve(SolvedSide& solved, int points) {
     result.detail = solved.path.detail;
 }
 
-// The points of all solvers at one parameter: a box of one serves the others.
+// Certifies the points of all solvers at one parameter: a box proved for one may contain the others.
 void certify_at(double a, std::span<SolvedSide> solvers, const certificate::Tolerance& tolerance) {
     std::vector<certificate::ProvedBox> known;
     for (SolvedSide& solved : solvers)

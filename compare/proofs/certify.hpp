@@ -18,7 +18,7 @@ namespace elastocheck::compare {
 using reference::certificate::LimitPoint;
 using reference::certificate::Tube;
 
-// Default accuracy that is to be proved.
+// Accuracy that is to be proved by default.
 inline constexpr const char* claimed_accuracy = "1e-6mm,1e-6deg";
 // Parses "1e-8mm"; a quantity that is not given takes its default. Throws std::invalid_argument as
 // parse_tolerance does.

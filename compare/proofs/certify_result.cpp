@@ -92,7 +92,7 @@ std::vector<ColumnOf<CertifiedSide>> certified_columns() {
          "... and this"}};
 }
 
-// What a proof says of a side of a branch beyond its row, and why there is none.
+// Notes on a side: its proved curve and limit point, theorems, and reasons why there is no proof.
 void add_notes(std::vector<std::string>& notes, const CertifiedSide& side) {
     const char* unit = symbol(side.unit);
     const auto add = [&](const std::string& what) {
@@ -113,7 +113,7 @@ void add_notes(std::vector<std::string>& notes, const CertifiedSide& side) {
         add("the curve: " + side.curve->detail);
     if (side.limit && side.limit->state != ProofState::proved)
         add("the limit point: " + side.limit->detail);
-    // The theorems of the other solvers' points hold about the same motions.
+    // The solvers of a side mostly share one theorem, on the same idle motions.
     if (!side.tally.theorem.empty() && std::ranges::find(notes, side.tally.theorem) == notes.end())
         notes.push_back(side.tally.theorem);
 }

@@ -78,9 +78,9 @@ Result result_of(const Model& model, const AllEquilibria& equilibria) {
     result.tables = {std::move(list), poses(model, equilibria)};
     result.notes.push_back(
         fmt::format("{} starts with deflation; completeness is not proved", equilibria.starts));
-    if (equilibria.other_way_round > 0)
-        result.notes.push_back(fmt::format("left out: {} with a joint assembled in reverse",
-                                           equilibria.other_way_round));
+    if (equilibria.reversed > 0)
+        result.notes.push_back(
+            fmt::format("left out: {} with a joint assembled in reverse", equilibria.reversed));
     if (equilibria.turned_over > 0)
         result.notes.push_back(
             fmt::format("left out: {} with a body turned over", equilibria.turned_over));

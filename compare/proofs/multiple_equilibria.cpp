@@ -22,25 +22,22 @@ using Eigen::Vector3d;
 using reference::certificate::ProofState;
 
 // Two states are the same within this share of the scene's size, or of a radian.
-constexpr double one_state = 1e-6;
+constexpr double same_state = 1e-6;
 
 // Distances of the starts along a soft motion, as shares of the scene's size, or of a radian.
 constexpr std::array shares_along{0.03, 0.3, 1.0};
 
-// Larger models are not searched: `beside` has no motions for them, and the many starts take long.
+// Larger models are not searched: beside() computes no motions of them, and the many starts take long.
 constexpr std::size_t max_bodies = 100;
 
 // Attempts from one start, each with the newly found states deflated.
 constexpr int tries = 4;
 
+constexpr int softest_motions = 3;  // along which starts are made beside every equilibrium
+constexpr unsigned seed = 1;        // of the random poses
+
 // Uniform in [-1, 1], reproducible with any standard library.
 double draw(std::minstd_rand& random) { return 2 * static_cast<double>(random()) / 2147483647 - 1; }
-
-std::vector<Pose> drawn(const Model& model) {
-    std::vector<Pose> poses;
-    for (const auto& body : model.bodies) poses.push_back(body.design);
-    return poses;
-}
 
 // Mirrors every body's displacement about its design position.
 std::vector<Pose> mirror_image(const Model& model, const std::vector<Pose>& poses) {
@@ -78,7 +75,7 @@ void measure(const Model& model, const std::vector<Pose>& from, FoundEquilibrium
 
 // Whether the boxes of two proofs are disjoint: some body's poses are separated by more
 // than both bounds.
-bool are_two(const FoundEquilibrium& a, const FoundEquilibrium& b) {
+bool are_distinct(const FoundEquilibrium& a, const FoundEquilibrium& b) {
     for (std::size_t k = 0; k < a.state.poses.size(); ++k) {
         const Pose &p = a.state.poses[k], &q = b.state.poses[k];
         if ((p.r - q.r).norm() > a.proof.error.length + b.proof.error.length) return true;
@@ -90,7 +87,7 @@ bool are_two(const FoundEquilibrium& a, const FoundEquilibrium& b) {
 // Whether a joint is assembled in reverse. Two perpendicular directions u_i ⟂ v_j, w_j keep the
 // axis u_i along ±v_j × w_j, and three fix the rotation up to half turns; the design position
 // selects the sign.
-bool is_other_way_round(const Model& model, const Equilibrium& state) {
+bool has_reversed_joint(const Model& model, const Equilibrium& state) {
     const auto axes = [&](BodyId body, bool drawn) {
         if (body == ground) return Quaterniond::Identity();
         const auto b = static_cast<std::size_t>(body);
@@ -143,7 +140,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     const auto sides = sides_of(model, branch);
     const BranchSide& side = side_at(sides, a);
     AllEquilibria equilibria{branch.name, unit_of(branch.unit), a};
-    const auto say = [&](const std::string& what) {
+    const auto report = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what), nan);
     };
 
@@ -155,7 +152,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     }
 
     // The equilibria on the branch as it is traced.
-    say("the branch");
+    report("the branch");
     std::vector<double> parameters;
     constexpr int pieces = 8;
     for (int k = 0; k <= pieces; ++k) parameters.push_back(a * k / pieces);
@@ -167,17 +164,17 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
 
     const auto is_known = [&](const Equilibrium& state) {
         return std::ranges::any_of(known, [&](const Equilibrium& other) {
-            return leg::distance(side.model, side.branch, other, state) <= one_state;
+            return leg::distance(side.model, side.branch, other, state) <= same_state;
         });
     };
-    const std::vector<Pose> reached =
-        path.points.empty() ? drawn(side.model) : path.points.back().poses;
+    const std::vector<Pose> drawn = design_state(side.model).poses;
+    const std::vector<Pose> reached = path.points.empty() ? drawn : path.points.back().poses;
     std::deque<std::vector<Pose>> starts;
     const auto add = [&](const leg::FromStart& attempt, bool on_branch) {
         if (attempt.outcome != Outcome::converged || is_known(attempt.state)) return;
         known.push_back(attempt.state);
-        if (is_other_way_round(side.model, attempt.state)) {
-            ++equilibria.other_way_round;
+        if (has_reversed_joint(side.model, attempt.state)) {
+            ++equilibria.reversed;
             return;
         }
         bool is_turned_over = false;
@@ -191,24 +188,23 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         FoundEquilibrium entry{attempt.state, {}, attempt.stable, attempt.stiffness, on_branch};
         equilibria.list.push_back(std::move(entry));
         for (auto& start :
-             leg::beside(side.model, side.branch, attempt.state, options.motions, shares_along))
+             leg::beside(side.model, side.branch, attempt.state, softest_motions, shares_along))
             starts.push_back(std::move(start));
-        say(fmt::format("{} found", known.size()));
+        report(fmt::format("{} found", known.size()));
     };
     if (arrives) add(leg::solve_from(side.model, side.branch, a, path.points.back().poses), true);
     for (auto point = path.points.rbegin(); point != path.points.rend(); ++point) {
         starts.push_back(point->poses);
         starts.push_back(mirror_image(side.model, point->poses));
     }
-    starts.push_back(drawn(side.model));
+    starts.push_back(drawn);
     const double size = scale_of(side.model, side.branch, path.points).length;
-    std::minstd_rand random(static_cast<unsigned>(options.seed));
-
+    std::minstd_rand random(seed);
     for (int k = 0; k < options.at_random; ++k) starts.push_back(at_random(reached, size, random));
     for (; !starts.empty(); starts.pop_front()) {
         const auto start = starts.front();
-        // The first attempt is without deflation, which lengthens steps, possibly across the knot
-        // of a stop and away.
+        // The first attempt is without deflation, whose longer steps may cross the knot of a stop and
+        // diverge.
         for (int k = 0; k < tries; ++k) {
             const std::size_t known_before = known.size();
             ++equilibria.starts;
@@ -221,7 +217,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     equilibria.begins = !path.points.empty();
     equilibria.proved = !equilibria.list.empty();
     for (auto& entry : equilibria.list) {
-        say("proof");
+        report("proof");
         entry.proof = reference::certificate::certify(side.model, side.branch, entry.state);
         equilibria.proved &= entry.proof.state == ProofState::proved;
         measure(side.model, reached, entry);
@@ -229,7 +225,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     }
     for (std::size_t i = 0; i < equilibria.list.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
-            equilibria.proved &= are_two(equilibria.list[i], equilibria.list[j]);
+            equilibria.proved &= are_distinct(equilibria.list[i], equilibria.list[j]);
     std::ranges::stable_sort(equilibria.list, [](const auto& entry, const auto& other) {
         return std::pair(!entry.on_branch, entry.length) <
                std::pair(!other.on_branch, other.length);

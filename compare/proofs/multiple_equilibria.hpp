@@ -28,9 +28,7 @@ struct Result;
 struct FindOptions {
     // [rad] states with a body rotated further than this are left out
     double turn = 1.5707963267948966;
-    int at_random = 24;      // number of random poses
-    int motions = 3;         // number of softest motions tried per equilibrium
-    unsigned long seed = 1;  // of the random poses
+    int at_random = 24;  // number of random poses
     Progress progress = {};
 };
 
@@ -57,7 +55,7 @@ struct AllEquilibria {
     std::string detail = {};
     bool begins = true;  // the first point of the branch is a stable equilibrium
     std::vector<FoundEquilibrium> list = {};  // the branch's own first, then by distance
-    int other_way_round = 0;                  // equilibria with a reversed joint: not in the list
+    int reversed = 0;                         // equilibria with a reversed joint: not in the list
     // equilibria with a body rotated by more than FindOptions::turn: not in the list
     int turned_over = 0;
     int starts = 0;       // number of start poses

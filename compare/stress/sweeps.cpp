@@ -13,10 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-Scene first_branch(const Scene& scene) {
-    Scene one = scene;
-    if (one.branches.size() > 1) one.branches.resize(1);
-    return one;
+Scene first_branch(Scene scene) {
+    if (scene.branches.size() > 1) scene.branches.resize(1);
+    return scene;
 }
 
 // The first branch with `to` and `from` times a factor.
@@ -54,8 +53,8 @@ std::vector<Variant> stiffness(const Scene& scene) {
     return variants;
 }
 
-// Lengths and loads scaled together, translational rates unchanged, so that the relative movement
-// is the same; rotational rates unchanged, so that the lever arms become negligible or dominant.
+// Lengths and loads are scaled together at unchanged translational rates, so that the relative movement
+// is the same. Rotational rates stay unchanged too, so that levers become negligible or dominant.
 std::vector<Variant> levers(const Scene& scene) {
     std::vector<Variant> variants;
     for (const double factor : {1e-6, 1e-3, 1e3})
@@ -90,7 +89,8 @@ std::vector<Variant> beyond(const Scene& scene) {
     return variants;
 }
 
-// One step, and as many as make round-off visible within some seconds, for one method of each kind.
+// One step, for all methods; and as many as make round-off visible within some seconds, for one method
+// of each kind.
 std::vector<Variant> steps(const Scene& scene) {
     std::vector<Variant> variants;
     const auto bodies = scene.bodies.size();

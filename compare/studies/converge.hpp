@@ -1,4 +1,4 @@
-// What `elastocheck converge` finds: methods of the recursion over their steps, the series over its
+// Studies of `elastocheck converge`: methods of the recursion over their steps, the series over its
 // order, a candidate over its steps.
 #pragma once
 

@@ -50,11 +50,11 @@ double spread(Levels levels) {
 // through dL/dp.
 struct Line {
     double limit = 0, C = 0;                    // C: error of the finest level
-    double R = 0, slope = 0;                    // slope: dR/dp, but for a factor 2
+    double R = 0, slope = 0;                    // slope: ½ dR/dp
     double p_variance = 0, limit_variance = 0;  // for σ = 1; limit_variance at given p
 };
 
-// φ and ψ at one p, which depend on the steps alone. φ without its mean, ψ⊥.
+// φ less its mean, and ψ⊥ (`psi`), at one p; they depend only on the steps.
 struct Shape {
     double p = 0, phi_mean = 0, phi_phi = 0;
     std::vector<double> phi, psi;
@@ -63,7 +63,8 @@ struct Shape {
 double dot(std::span<const double> a, std::span<const double> b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
-double take_mean(std::vector<double>& x) {
+// Subtracts the mean of x from it and returns it.
+double subtract_mean(std::vector<double>& x) {
     const double average = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
     for (double& value : x) value -= average;
     return average;
@@ -84,9 +85,9 @@ void shape(const std::vector<double>& l, double p, Shape& result) {
         result.psi[k] = std::abs(p) < 1e-4 ? l[k] * l[k] * (0.5 + p * l[k] / 3)
                                            : (l[k] * std::exp(p * l[k]) - result.phi[k]) / p;
     }
-    result.phi_mean = take_mean(result.phi);
+    result.phi_mean = subtract_mean(result.phi);
     result.phi_phi = dot(result.phi, result.phi);
-    (void)take_mean(result.psi);
+    (void)subtract_mean(result.psi);
     const double along = dot(result.psi, result.phi) / result.phi_phi;
     for (std::size_t k = 0; k < l.size(); ++k) result.psi[k] -= along * result.phi[k];
 }
@@ -99,7 +100,7 @@ struct Values {
 Values values_of(Levels levels) {
     Values values;
     for (const Level& level : levels) values.v.push_back(level.value);
-    values.mean = take_mean(values.v);
+    values.mean = subtract_mean(values.v);
     values.r = values.v;
     return values;
 }
@@ -144,8 +145,8 @@ const std::vector<Shape>& shapes(const std::vector<double>& l) {
     return added.shapes;
 }
 
-// Zero of a function that rises from below to above it, else the end that is nearer to one: regula
-// falsi, in which an end that stays counts half (Illinois).
+// Zero of a function that is negative below it and positive above; without one, the end nearer to it.
+// Regula falsi with halved values at an end that stays (Illinois).
 double zero_of(const auto& f, double low, double high) {
     double at_low = f(low), at_high = f(high);
     if (!(at_low < 0)) return low;
@@ -207,9 +208,8 @@ Fit fit(Levels levels) {
 
 // ---- Behaviour and window
 
-// Under a law L + C h^p the difference per unit of ln h falls with refinement exactly if p >
-// 0, in any ratio of steps. True if it grows by more than the floor explains from levels k,
-// k+1 to k+1, k+2.
+// Whether the difference per unit of ln h grows from levels k, k+1 to k+1, k+2 by more than the floor
+// explains. Under a law L + C h^p it falls exactly if p > 0, whatever the ratios of the steps.
 bool grows(Levels levels, std::size_t k, double floor) {
     const auto difference = [&](std::size_t j) {
         return std::abs(levels[j + 1].value - levels[j].value);
@@ -366,8 +366,8 @@ Slope slope_of(Levels errors) {
         x.push_back(-std::log(error.steps));
         y.push_back(std::log(std::abs(error.value)));
     }
-    (void)take_mean(x);
-    (void)take_mean(y);
+    (void)subtract_mean(x);
+    (void)subtract_mean(y);
     const double stretch = dot(x, x), p = dot(x, y) / stretch;
     for (std::size_t k = 0; k < x.size(); ++k) y[k] -= p * x[k];
     return {p, dot(y, y), stretch};

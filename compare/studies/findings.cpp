@@ -11,17 +11,17 @@
 namespace elastocheck::compare {
 namespace {
 
-// ---- What a branch does to a wheel.
+// ---- Lift of a wheel by a branch.
 
-bool vertical(const Eigen::Vector3d& v) { return v.head<2>().norm() <= 1e-9 * std::abs(v.z()); }
+bool is_vertical(const Eigen::Vector3d& v) { return v.head<2>().norm() <= 1e-9 * std::abs(v.z()); }
 
 Eigen::Vector3d at_design(const Model& model, const Direction& u) {
     return u.body == ground ? u.u_local
                             : model.bodies[static_cast<std::size_t>(u.body)].design.p * u.u_local;
 }
 
-// What lifts a wheel on a branch: a vertical force on its body, a jack under it, or the road under
-// its tyre; `none` if anything else moves too.
+// The driver that lifts a wheel on a branch: a vertical force on its body, a jack under it, or the road
+// under its tyre; `none` if anything else is driven too.
 enum class Lift { none, load, jack, road };
 struct Lifted {
     Lift by = Lift::none;
@@ -43,7 +43,7 @@ bool carries(const Model& model, const Wheel& wheel, BodyId body) {
     return fixed.are_one(body, wheel.body) || fixed.are_one(body, wheel.contact.body);
 }
 
-// The only driver that moves, if it is vertical and acts on this wheel's body.
+// The lift of this wheel by the branch, if it is the only motion that the branch drives.
 Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
     Lifted result;
     for (const auto& driver : branch.drivers) {
@@ -59,7 +59,7 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
                            const auto* force = std::get_if<DeadForce>(&load.kind);
                            const bool lifts = force != nullptr &&
                                               carries(model, wheel, force->at.body) &&
-                                              vertical(force->f);
+                                              is_vertical(force->f);
                            return Lifted{lifts ? Lift::load : Lift::none, -1,
                                          lifts ? driver.rate * force->f.z() : 0, 0};
                        },
@@ -70,7 +70,7 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
                            const auto* plane = std::get_if<PointInPlane>(
                                &model.constraints[static_cast<std::size_t>(joint.driven)].kind);
                            const bool lifts =
-                               plane != nullptr && vertical(at_design(model, plane->normal_j));
+                               plane != nullptr && is_vertical(at_design(model, plane->normal_j));
                            return Lifted{lifts ? Lift::jack : Lift::none, motion.joint, 0, 0};
                        },
                        [&](const FreeLength&) {

@@ -17,8 +17,6 @@ namespace {
 
 constexpr double min_spread = 1e-9;  // [mm], [deg]: smaller spreads are rounding
 
-bool is_flat(const ScalarLaw& law) { return !(steepest(law) > 0); }
-
 // Number of the six deformations that have a stiffness.
 int axes_resisted(const SpatialLaw& law) {
     return std::visit(
@@ -27,8 +25,7 @@ int axes_resisted(const SpatialLaw& law) {
                    },
                    [](const PerAxis& u) {
                        return static_cast<int>(std::ranges::count_if(
-                           u.axis,
-                           [](const ScalarLaw& law_of_axis) { return !is_flat(law_of_axis); }));
+                           u.axis, [](const ScalarLaw& axis) { return steepest(axis) > 0; }));
                    }},
         law);
 }
@@ -130,14 +127,14 @@ FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& 
         std::vector<SolvedFormulation> solved;
         for (std::size_t m = 0; m < models.size(); ++m) {
             const std::string& name = models[m].first;
-            const PathCurve& walked = curves[b][repeats_the_first(m) ? 0 : m];
-            if (walked.outcome != Outcome::converged) {
-                spread.not_solved.push_back(fmt::format(
-                    "{}: {}: {}", name, elastocheck::name(walked.outcome), walked.detail));
+            const PathCurve& path = curves[b][repeats_the_first(m) ? 0 : m];
+            if (path.outcome != Outcome::converged) {
+                spread.not_solved.push_back(
+                    fmt::format("{}: {}: {}", name, elastocheck::name(path.outcome), path.detail));
                 continue;
             }
             spread.solved.push_back(name);
-            solved.push_back({name, walked.curve});
+            solved.push_back({name, path.curve});
         }
         if (solved.size() < 2)
             study.inconclusive.push_back(fmt::format(

@@ -12,7 +12,9 @@
 namespace elastocheck::compare {
 namespace {
 
-// NaN unless the series reached the end.
+constexpr int max_expansions = 2000;
+
+// Distance of the series from the reference, NaN unless it reached the end.
 Accuracy distance(const std::vector<Channel>& channels, const References& truth, const Curve& curve,
                   Outcome outcome) {
     if (!truth.failures.empty() || outcome != Outcome::converged) return {nan, nan};
@@ -20,10 +22,10 @@ Accuracy distance(const std::vector<Channel>& channels, const References& truth,
 }
 
 OrderLevel level_of(const Solves& solves, const BranchSide& side, const References& truth,
-                    double tolerance, int order, int expansions) {
+                    double tolerance, int order) {
     const auto path = recursive::series::follow(
-        side.model, side.branch, {.order = order, .tolerance = tolerance, .expansions = expansions},
-        *side.analysis);
+        side.model, side.branch,
+        {.order = order, .tolerance = tolerance, .expansions = max_expansions}, *side.analysis);
     const auto points = recursive::series::sample(side.model, path, side.branch, side.branch.steps);
     const Curve found = curve(solves.model, solves.channels, side.branch, points.points);
     OrderLevel level{.order = order,
@@ -73,9 +75,8 @@ std::vector<BranchOrders> order_study(Solves& solves, const OrderOptions& option
                 levels.push_back(
                     {fmt::format("{}: order {}, {:.0e} m", sides[k].name, order, tolerance),
                      [&, k, tolerance, order, at = l++] {
-                         result[k].levels[at] =
-                             level_of(solves, at_points(sides[k], multiple), truth[k], tolerance,
-                                      order, options.expansions);
+                         result[k].levels[at] = level_of(solves, at_points(sides[k], multiple),
+                                                         truth[k], tolerance, order);
                      }});
     }
     run_jobs(levels, options.threads, part(options.progress, 0.3, 1));

@@ -34,8 +34,7 @@ struct BranchOrders {
 struct OrderOptions {
     std::vector<int> orders{2, 4, 6, 8, 12, 16, 20, 24};
     std::vector<double> tolerances{1e-6, 1e-9, 1e-12};
-    int points = 20;        // compared points per branch
-    int expansions = 2000;  // upper limit
+    int points = 20;  // compared points per branch
     int threads = 1;
     Progress progress = {};
 };

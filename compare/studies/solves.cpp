@@ -13,7 +13,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// All that a method computes from; its name and order are no part of it.
+// Key of a method: all that its result depends on, which excludes its name and formal order.
 std::string key(const recursive::Method& method) {
     return std::visit(overloaded{[](const recursive::Linear& m) {
                                      return fmt::format("linear {:d} {:d} {:d} {:d}",
@@ -38,6 +38,7 @@ std::string key(const BranchSide& side) {
     return fmt::format("{} to {:a} at {}", side.branch.name, side.branch.to, side.branch.steps);
 }
 
+// The run of this name, made by the first thread that requests it.
 template <class Make>
 Solves::Run& run_once(Solves& solves, const std::string& name, const Make& make) {
     ++solves.requests;

@@ -23,13 +23,13 @@ struct Solves {
     const std::vector<Channel> channels;              // channels(model)
     std::vector<std::vector<BranchSide>> sides = {};  // per branch, at the base points
 
-    // One for each side of a branch, its points and solver.
+    // By one solver along one side of a branch, at its points.
     struct Run {
         std::once_flag once = {};
         PathCurve curve = {};
         References references = {};  // run, not judged
     };
-    std::mutex lock = {};  // of the map, not of its runs
+    std::mutex lock = {};  // guards the map, not its runs
     std::map<std::string, Run> runs = {};
     std::atomic<int> requests = 0;
 };

@@ -86,7 +86,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
 
 // Station at which the last refinement moves the value most: there the leading term of the error
 // is largest, while at coarse levels the next one may be.
-std::size_t max_moved(const std::vector<std::vector<double>>& levels) {
+std::size_t most_refined(const std::vector<std::vector<double>>& levels) {
     const auto moves = difference(levels[levels.size() - 2], levels.back());
     return static_cast<std::size_t>(
         std::ranges::max_element(moves, {}, [](double e) { return std::abs(e); }) - moves.begin());
@@ -108,7 +108,7 @@ StepConvergence at_station(const std::vector<int>& steps,
 // two finest levels v and w, h_v = r h_w, give the limit:  w + (w - v) / (r^p - 1).
 std::vector<double> own_limit(const std::vector<int>& steps,
                               const std::vector<std::vector<double>>& levels, double formal) {
-    const auto leading = at_station(steps, levels, max_moved(levels), formal, 0);
+    const auto leading = at_station(steps, levels, most_refined(levels), formal, 0);
     const double p = leading.as_formal ? formal : leading.order;
     const auto& finest = levels.back();
     const auto& before = levels[levels.size() - 2];
@@ -130,17 +130,17 @@ std::vector<double> own_limit(const std::vector<int>& steps,
 // the coefficient of the leading error term crosses zero there, the next term sets its order.
 void add_order(ChannelStudy& study, const std::vector<int>& steps,
                const std::vector<std::vector<double>>& levels, double formal) {
-    constexpr double hardly_any = 0.1, above_rounding = 10;
+    constexpr double small_share = 0.1, above_rounding = 10;
     std::vector<Level> errors;
     for (std::size_t l = 0; l < levels.size(); ++l) {
         const auto N = static_cast<double>(steps[l]);
         errors.push_back({N, study.step_error_max[l]});
         study.zero_at_end = study.zero_at_end ||
                             (errors.back().value > above_rounding * round_off &&
-                             std::abs(study.step_error_end[l]) < hardly_any * errors.back().value);
+                             std::abs(study.step_error_end[l]) < small_share * errors.back().value);
     }
     study.behaviour =
-        at_station(steps, levels, max_moved(levels), formal, study.uncertainty).behaviour;
+        at_station(steps, levels, most_refined(levels), formal, study.uncertainty).behaviour;
     if (study.behaviour != Behaviour::converging) return;
     study.order = asymptotic_order_of(errors, above_rounding * round_off);
     study.as_formal = agrees_with_formal(study.order.order, study.order.order_error, formal);
@@ -231,17 +231,17 @@ MethodStudy study_method(Solves& solves, const StudiedSide& side, const recursiv
     std::vector<Curve> levels;
     std::vector<Level> Phi;
     for (const int N : side.steps) {
-        PathCurve walked = level_of(solves, side, method, N);
-        m.outcomes.push_back(walked.outcome);
-        if (walked.outcome != Outcome::converged) {
-            m.not_studied = fmt::format("with {} steps: {}: {}", N,
-                                        elastocheck::name(walked.outcome), walked.detail);
+        PathCurve path = level_of(solves, side, method, N);
+        m.outcomes.push_back(path.outcome);
+        if (path.outcome != Outcome::converged) {
+            m.not_studied = fmt::format("with {} steps: {}: {}", N, elastocheck::name(path.outcome),
+                                        path.detail);
             m.constraint_error.push_back(nan);
             continue;
         }
-        m.constraint_error.push_back(walked.constraint_error.back());
+        m.constraint_error.push_back(path.constraint_error.back());
         Phi.push_back({static_cast<double>(N), m.constraint_error.back()});
-        levels.push_back(std::move(walked.curve));
+        levels.push_back(std::move(path.curve));
     }
     m.constraint_order = order_of(Phi, 1e-12);
     if (!m.not_studied.empty()) return m;
@@ -383,13 +383,13 @@ BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
             .kind =
                 recursive::Linear{.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
         for (const int N : steps) {
-            PathCurve walked = level_of(solves, side, method, N);
-            if (walked.outcome != Outcome::converged) {
+            PathCurve path = level_of(solves, side, method, N);
+            if (path.outcome != Outcome::converged) {
                 attribution.not_attributed = fmt::format(
-                    "with {} steps: {}: {}", N, elastocheck::name(walked.outcome), walked.detail);
+                    "with {} steps: {}: {}", N, elastocheck::name(path.outcome), path.detail);
                 return attribution;
             }
-            levels[bits].push_back(std::move(walked.curve));
+            levels[bits].push_back(std::move(path.curve));
         }
     }
     for (const auto& combination : levels)

@@ -43,9 +43,10 @@ struct ChannelStudy {
     std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
     double gap = 0;                                      // own limit - reference at the end, signed
     double gap_max = 0, gap_rms = 0;                     // over the branch
-    double gap_exponent = 0;  // of |gap| over the parameter or abscissa; NaN at the floor
-    double uncertainty = 0;   // largest difference of the references over the branch
-    double range = 0;         // of the reference over the branch
+    double gap_exponent =
+        0;  // power of the parameter or abscissa with which |gap| grows; NaN at a floor
+    double uncertainty = 0;  // largest difference of the references over the branch
+    double range = 0;        // of the reference over the branch
 };
 
 struct MethodStudy {
@@ -62,7 +63,7 @@ struct MethodStudy {
 
 struct StudiedBranch {
     std::string branch;      // name of the branch, or of one side: "bounce to -80 mm"
-    std::string belongs_to;  // the name of the branch
+    std::string belongs_to;  // name of the whole branch
     Unit unit{};             // display unit of the parameter
     std::string abscissa;    // name of the channel, empty where there is none
 };
@@ -87,19 +88,18 @@ Study study(const Model& model, const StudyOptions& options = {});
 // are their base times powers of two.
 Study study(Solves& solves, const StudyOptions& options);
 
-// One method on one branch side with several step counts, made by any solver.
+// Curves of one method, or of another solver, on one branch side with several step counts.
 struct StudiedLevels {
     const std::vector<int>& steps;
     const std::vector<Curve>& curves;  // one a step count
     const References& references;
     double formal_order;  // NaN if unknown
 };
-// Studies the levels. `studied`: positions in `all` channels of the curves of the main ones to study.
+// Studies the levels. `all`: the channels of the curves; `studied`: positions of the studied ones.
 void study_levels(MethodStudy& study, const std::vector<Channel>& all,
                   const std::vector<std::size_t>& studied, const StudiedLevels& levels);
 
-// Reasons why the references cannot be used in a study: a failure, or too large a
-// distance between them.
+// Reasons why the references cannot be used in a study: a failure, or a distance beyond Bounds.
 std::vector<std::string> unfit(const References& references, const std::string& side);
 
 // A branch side as the references of a study run it, with its share of every step count.

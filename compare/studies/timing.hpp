@@ -11,12 +11,12 @@
 
 namespace elastocheck::compare {
 
-// [job][round], seconds.
+// Seconds of each job and round, [job][round].
 using Times = std::vector<std::vector<double>>;
 Times take_turns(std::span<const std::function<void()>> jobs, int rounds);
 
 double median(std::vector<double> values);  // NaN for an empty vector
-// by round
+// times / base, round by round
 std::vector<double> ratios(const std::vector<double>& times, const std::vector<double>& base);
 
 // Noise of a time ratio, from one job timed twice per round: deviation of the median ratio

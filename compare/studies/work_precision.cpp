@@ -142,8 +142,8 @@ bool is_tight_enough(const Trade& trade, const TradePoint& point) {
     return 1e3 * point.own_tolerance <= trade.tolerance.mm && deg <= trade.tolerance.deg;
 }
 
-// Meets the tolerance, and so do all finer configurations of the same method: errors that cancel,
-// or too few steps to show an instability, would meet it only by chance.
+// Whether this and all finer configurations of the same method meet the tolerance: a coarse one alone
+// would meet it by chance, by errors that cancel or too few steps to show an instability.
 bool eligible(const Trade& trade, std::size_t k) {
     if (trade.points[k].again || !is_tight_enough(trade, trade.points[k])) return false;
     for (std::size_t finer = k;
@@ -155,27 +155,16 @@ bool eligible(const Trade& trade, std::size_t k) {
     return true;
 }
 
-// Cheapest by price; the first of equal ones, which has the loosest tolerance or the fewest steps.
-std::optional<std::size_t> cheapest(const Trade& trade,
-                                    const std::vector<std::size_t>& candidates) {
-    const auto price = [&](std::size_t k) { return trade.points[k].work.price; };
-    const auto best = std::ranges::min_element(candidates, {}, price);
-    if (best == candidates.end()) return std::nullopt;
-    return *best;
-}
-
-// Misfit factor of the law C·h^p: between the rungs h/2 and 2h it predicts the geometric mean
-// at the middle one, at an end of the ladder the extrapolation of the two next rungs. The
-// same factor is the uncertainty of the error elsewhere. The band also contains the result of
-// the confirming run.
+// Misfit factor of the law C·h^p on the ladder of a method, its step counts or tolerances: between the
+// rungs h/2 and 2h the law predicts the geometric mean of their errors, at an end of the ladder the
+// extrapolation of the two next rungs. The same factor is taken as the uncertainty of the error.
 double misfit(double error, double neighbour, double other, bool between) {
     const double expected = between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
     return std::max(error / expected, expected / error);
 }
 
-// Sets the band of the error: [e / factor - u, e factor + u], the factor by misfit()
-// at two neighbouring rungs of the ladder (step counts or tolerances of one method), u
-// the reference uncertainty.
+// Sets the band of the error: [e / factor - u, e factor + u], the factor by misfit() at two neighbouring
+// rungs, u the reference uncertainty. It also contains the error of the confirming run.
 void band(const Trade& trade, Recommendation& recommendation) {
     const auto k = static_cast<std::ptrdiff_t>(recommendation.point);
     const Accuracy &e = trade.points[recommendation.point].error, &u = trade.uncertainty;
@@ -287,8 +276,11 @@ void recommend(const Solves& solves, const std::vector<std::vector<double>>& ext
     std::vector<std::size_t> candidates;
     for (std::size_t k = 0; k < trade.points.size(); ++k)
         if (eligible(trade, k)) candidates.push_back(k);
-    while (const auto k = cheapest(trade, candidates)) {
-        const TradePoint& point = trade.points[*k];
+    while (!candidates.empty()) {
+        // of equal prices the first, which has the loosest tolerance or the fewest steps
+        const std::size_t k = *std::ranges::min_element(
+            candidates, {}, [&](std::size_t c) { return trade.points[c].work.price; });
+        const TradePoint& point = trade.points[k];
         const ConfirmingRun again = confirm(solves, extents, point, threads, progress);
         if (!again.reference_failed.empty()) {
             trade.inconclusive.push_back(
@@ -298,7 +290,7 @@ void recommend(const Solves& solves, const std::vector<std::vector<double>>& ext
             return;
         }
         Recommendation recommendation;
-        recommendation.point = *k;
+        recommendation.point = k;
         recommendation.confirmed = again.error;
         recommendation.confirmed_numbers = again.compared;
         band(trade, recommendation);
@@ -317,7 +309,7 @@ void recommend(const Solves& solves, const std::vector<std::vector<double>>& ext
                               describe(point), holds ? "up to " : "", worst.mm, worst.deg,
                               100 * worst.share,
                               holds ? ", as far as its rungs obey their law" : " when run again"));
-        std::erase(candidates, *k);
+        std::erase(candidates, k);
     }
 }
 
@@ -362,14 +354,12 @@ std::vector<bool> pareto_front(std::span<const WorkError> points) {
 }
 
 Trade trade(const Model& model, const TradeOptions& options) {
-    if (options.points < 1)
-        throw std::invalid_argument("trade: points must be positive and rounds not negative");
     Solves solves(model, options.points);
     return trade(solves, options);
 }
 
 Trade trade(Solves& solves, const TradeOptions& options) {
-    if (options.points != solves.base || options.rounds < 0)
+    if (options.points < 1 || options.points != solves.base || options.rounds < 0)
         throw std::invalid_argument("trade: points must be positive and rounds not negative");
     const Model& model = solves.model;
     const auto& all_channels = solves.channels;

@@ -35,7 +35,7 @@
 
 namespace elastocheck::compare {
 
-// max(mm / tolerance, deg / tolerance): up to 1 is good enough. NaN if either is.
+// Largest ratio of an error in mm or deg to its tolerance: up to 1 it is met. NaN if either error is.
 double share_of(const Tolerance& tolerance, const Accuracy& error);
 
 struct Work {
@@ -117,7 +117,7 @@ Result result_of(const Model& model, const Trade& trade);
 // leg: at the finest points of the solves, or at every step of the configuration if that is coarser.
 Profile profile(Solves& solves, std::size_t branch, const TradePoint& configuration);
 
-// "tangent, 40 steps", "adaptive at 1e-05 m", "equilibrium leg"
+// "tangent, 40 steps", "adaptive at 1e-02 mm", "equilibrium leg"
 std::string describe(const TradePoint& point);
 
 // Pareto front of work against error: no other point is as good in both and better in one.

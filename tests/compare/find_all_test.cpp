@@ -201,7 +201,7 @@ TEST(FindAll, LegsAtDifferentEquilibriaAreReportedAsSuch) {
 TEST(FindAll, SlideInTheOppositeDirectionIsNotAnEquilibrium) {
     // The constraints of the slide hold in the reversed assembly too: these states are counted.
     const auto all = all_of(arch(-200), -120);
-    EXPECT_GT(all.other_way_round, 0);
+    EXPECT_GT(all.reversed, 0);
     for (const auto& one : all.list) EXPECT_LT(one.angle, 1e-6);
 }
 
