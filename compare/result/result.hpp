@@ -1,5 +1,5 @@
-// What an analysis found, as data for readers. Each analysis has in NAME_result.cpp a function that
-// makes one from its typed result; reports/render/ alone knows how terminals, files and pages show it.
+// Result of an analysis, as data for readers. Each analysis has in NAME_result.cpp a function that makes
+// one from its typed result; only reports/render/ knows how terminals, files and pages show it.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace elastocheck::compare {
 
-// Of what was asked for. A side result that is not confirmed is a note, never the verdict.
+// Verdict on what the user requested. A side result that is not confirmed is a note, never the verdict.
 struct Verdict {
     Grade grade = Grade::not_judged;
     std::string sentence{};              // "Proved: all 12 points are equilibria to 1e-06 mm."
     std::vector<std::string> reasons{};  // of `not_judged`
     int compared = 0;                    // numbers that the verdict rests on
-    bool requested = true;               // else only the deviations were asked for
+    bool requested = true;               // false: the user requested only deviations
 };
 
-// What is drawn of columns of a table.
+// A chart of columns of a table.
 struct Chart {
     enum class Kind {
         curves,

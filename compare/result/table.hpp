@@ -17,7 +17,7 @@ namespace elastocheck::compare {
 
 using Cell = std::variant<double, std::string>;  // a missing number is NaN
 
-// How readers see the cells of a column.
+// How the cells of a column are shown to readers.
 enum class Digits {
     hidden,
     words,
@@ -34,7 +34,7 @@ enum class Digits {
     percent,    // 14 %, of a share
 };
 
-// What a description says of a field besides its name.
+// Description of a field of a row besides its name.
 struct About {
     // "" without a unit, or where it differs from row to row (given in a column `unit`)
     const char* unit = "";
@@ -75,8 +75,8 @@ struct AnyCell {
     Cell cell;
 };
 
-// A column of a table whose rows are made from structs S, and its cell. Those of texts for programs
-// alone, which readers do not see, are Digits::hidden.
+// A column of a table whose rows are made from structs S: its cell as a function of S. Columns that only
+// programs read are Digits::hidden.
 template <class S>
 struct ColumnOf {
     std::string name;
@@ -103,8 +103,8 @@ Table table(std::string id, const std::vector<ColumnOf<S>>& columns, const auto&
     return result;
 }
 
-// The table with these of its columns alone, in this order, each for readers; those that are hidden as
-// words. A name that it lacks is left out.
+// The table with only these columns, in this order, all shown to readers, hidden ones as words. A name
+// that the table lacks is left out.
 Table with_columns(const Table& table, const std::vector<std::string>& names);
 
 // The description of a struct S is a function

@@ -26,16 +26,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The errors of the lower order are h²/2 y''' of central differences over h and 2h, and h³/4 y''''.
+// Error of the formula of lower order, which `check` computes: h²/2 y''' for central differences over h
+// and 2h, h³/4 y'''' for one-sided ones.
 const Stencil around{
     {-2, -1, 1, 2}, {1. / 12, -2. / 3, 2. / 3, -1. / 12}, {.25, -.5, .5, -.25}, {-.5, 2, 2, -.5}};
 const Stencil above{{1, 2, 3, 4}, {4, -3, 4. / 3, -.25}, {1, -1.5, 1, -.25}, {}};
 const Stencil below{{-1, -2, -3, -4}, {-4, 3, -4. / 3, .25}, {-1, 1.5, -1, .25}, {}};
 
-// Largest error of the lower order, of the size of its row; of the derivative it is near the square.
+// Largest error of lower order, as a share of the size of its row; that of the derivative is near its square.
 constexpr double settled = 1e-4;
-constexpr int max_shorter_steps = 3;  // steps of an eighth
-constexpr double one_slope = 1e-3;  // difference of the slopes to both sides that is none, likewise
+constexpr int max_shorter_steps = 3;  // divisions of h by eight
+constexpr double one_slope = 1e-3;    // likewise: a smaller difference of both slopes is none
 constexpr double across_a_knot = std::numeric_limits<double>::max();
 
 bool compile_points(const Changing& changing, const Stencil& stencil, double h, Compiled& result) {
@@ -52,7 +53,7 @@ bool compile_points(const Changing& changing, const Stencil& stencil, double h, 
     return true;
 }
 
-// What is left out of one model and not of the other, for a message.
+// A part that compile() leaves out of one of two models, for a message; empty if there is none.
 std::string difference(const Model& a, const Model& b) {
     for (const auto& [has, lacks] : {std::pair{&a, &b}, {&b, &a}})
         for (const Omission& omission : has->omitted)
@@ -252,7 +253,7 @@ MatrixXd rounding_of(const Entries& entries, std::span<const Neighbouring> near)
     return rounding;
 }
 
-// Of these outputs alone.
+// The side with only these of its outputs.
 ReadSide with_rows(const ReadSide& of, const std::vector<Index>& rows) {
     ReadSide some{of.side, {}};
     for (const Index c : rows)
@@ -276,7 +277,7 @@ struct Refining {
     bool judges_kinks;
     Analyses& analyses;
 
-    // Of the outputs `some`.
+    // Differences of the outputs `some` over h; `stencil` null: the one that the file accepts.
     Entries with(const ReadSide& some, const Stencil* stencil, double h) const {
         Changing shorter = number;
         shorter.h = h;
@@ -302,7 +303,7 @@ struct Refining {
                 rows.push_back(c);
         return rows;
     }
-    // The largest error in `limit`.
+    // The largest ratio of an error to its limit.
     double worst(const VectorXd& check) const {
         double largest = 0;
         for (Index c = 0; c < check.size(); ++c)

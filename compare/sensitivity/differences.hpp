@@ -1,4 +1,4 @@
-// Derivatives of what is read from the state of a leg, by differences over neighbouring models.
+// Derivatives of outputs of a state of a leg, by differences over models with a changed number.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@
 
 namespace elastocheck::compare {
 
-// Offsets in h, and weights times h of the derivative, of the error of a formula of lower order, and
-// of a kink: the difference of the slopes to both sides.
+// A difference formula: offsets t of its points in h, and weights times h of the derivative, of the error
+// of a formula of lower order, and of the kink, the difference of the slopes to both sides.
 struct Stencil {
     std::array<double, 4> t, weight, check, kink;
 };
@@ -24,12 +24,12 @@ struct Stencil {
 // The scene and its compiled model where a number is larger by some amount.
 struct Changed {
     Model model;
-    std::optional<Trim> trim;  // as read, for what it asks of the state
+    std::optional<Trim> trim;  // as read, for its conditions
 };
 struct Changing {
     std::function<Changed(double by)> at;  // throws SceneError where the file does not accept it
-    double h = 0;                          // of the differences
-    double step = 1;                       // of its effect
+    double h = 0;                          // step of the differences
+    double step = 1;                       // step in which the effect is shown
 };
 
 // The models of one stencil: around the number, or on the side that the file accepts.
@@ -37,15 +37,15 @@ struct Compiled {
     std::vector<Changed> points = {};
     const Stencil* stencil = nullptr;
     double h = 0;
-    int side = 0;
+    int side = 0;                // 0 around the number, 1 or -1 where it grows or falls
     std::string undefined = {};  // reason why there are none
 };
 Compiled compiled(const Changing& changing);
 
-// A side of a branch with what is read on it.
+// Outputs that are read on a side of a branch, also for neighbouring models.
 struct Outputs {
     std::vector<Channel> channels;  // of the model of the side
-    // Of the same channels of a neighbouring model what they read there, and what they count from.
+    // The same channels in a neighbouring model: what they read, and the values they are counted from.
     struct Placed {
         std::vector<Reads> reads;
         Eigen::VectorXd from;
@@ -76,8 +76,8 @@ struct OneSided {
 
 struct Rates {
     Eigen::MatrixXd at;  // [outputs × numbers], NaN where there is none
-    // [outputs × numbers] rounding of an output over h, from the second differences of all numbers:
-    // what a stiff element amplifies
+    // [outputs × numbers] rounding of the derivative, which stiff elements amplify, by the kinks over all
+    // numbers
     Eigen::MatrixXd rounding;
     std::vector<std::string> why;  // per number: why there is none
     OneSided one_sided = {};
@@ -92,9 +92,9 @@ struct StateOfLeg {
 Rates rates_at(const StateOfLeg& of, std::span<const Changing> numbers,
                std::span<const Neighbouring> near, bool judges_kinks, Analyses& analyses);
 
-// The smallest size of a row of such a matrix that counts, for its largest entries by the steps of
-// the numbers: a millionth of the largest of its kind, and 1e-5 of its unit; of a characteristic a
-// thousandth of its unit.
+// Sizes of the rows of such a matrix: `largest`, the largest entry of each times the step of its number, but
+// at least a millionth of the largest of its kind (motions, forces) and 1e-5 of its unit; for a
+// characteristic at least a thousandth of its unit.
 std::vector<double> min_sizes(std::span<const Channel> outputs, std::vector<double> largest);
 
 }  // namespace elastocheck::compare

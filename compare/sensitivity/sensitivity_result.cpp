@@ -16,7 +16,7 @@ using Eigen::Index;
 
 constexpr double rounding_of_effect = 1e-12;  // of the largest effect on an output
 
-// Of an output by a number at a station of a side.
+// Derivative of an output by a number at a station of a side.
 struct Derivative {
     const Gradients& all;
     const SideGradients& side;
@@ -197,7 +197,7 @@ Table varied_numbers_table(const Gradients& gradients) {
                  gradients.numbers);
 }
 
-// Of every leg on every side how far the derivatives agree with those of the others.
+// Agreement of the derivatives of every leg on every side with those of the others.
 Table legs_agreement_table(const Gradients& all) {
     using enum Digits;
     struct Row {

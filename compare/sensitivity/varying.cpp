@@ -48,7 +48,7 @@ VaryingScene varying(File file, std::vector<VariedNumber> numbers) {
             }};
 }
 
-// Of a branch's steps, which are whole.
+// Whether the number is a count, the steps of a branch, which has no derivative.
 bool is_count(std::string_view path) {
     return path.starts_with("branches.") && path.ends_with(".steps");
 }
@@ -91,6 +91,7 @@ std::vector<VariedNumber> joined(const File& file, std::vector<VariedNumber> num
     return list;
 }
 
+// A millimetre in each unit of length.
 const std::map<std::string, double>& millimetre() {
     static const std::map<std::string, double> units{
         {"mm", 1}, {"m", 1e-3}, {"cm", 0.1}, {"in", 1 / 25.4}};

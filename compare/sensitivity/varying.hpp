@@ -34,13 +34,13 @@ struct VaryingScene {
     std::function<Scene(std::size_t k, double by)> with = {};
 };
 
-// By these numbers. Throws SceneError for a path that is not in Scene::numbers.
+// By these numbers of a file. Throws SceneError for a path that is not in Scene::numbers.
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
                      std::span<const std::string> paths);
-// By the wanted of all numbers of the file, of both sides or of one, or all of both but the counts of
-// steps of the branches, in their order. Numbers that the file accepts only together, such as the rates
-// across the only axis of a bushing's frame, or the entries (1, 2) and (2, 1) of a stiffness matrix, are
-// one, at the place of the first.
+// By the wanted numbers of a file in their order, also those of one side of the vehicle; by default all
+// numbers of both sides except the counts of steps of branches. Numbers that the file
+// accepts only together, such as the entries (1, 2) and (2, 1) of a stiffness matrix, are one, at the
+// place of the first.
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings = {},
                      const std::function<bool(const std::string& path)>& wanted = {});
 

@@ -18,8 +18,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// Displayed channels: every main one, the worst force and moment component of each joint, and the
-// worst rate of a unit, or each.
+// Displayed channels: every main one, the worst force and moment component of each joint, and of the
+// characteristics of one unit the worst, or each.
 std::vector<std::size_t> shown(const Comparison& comparison, const BranchComparison& branch,
                                const Reading& reading, bool each_rate) {
     std::vector<std::size_t> rows;

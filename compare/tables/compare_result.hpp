@@ -14,9 +14,10 @@ namespace elastocheck::compare {
 // `assessment` is of the comparison. The verdict has no sentence.
 Result result_of(const Model& model, const Comparison& comparison, const Assessment& assessment);
 
-// Its tables, also of the page. Deviations of the recursion on a branch, of the main outputs, the
-// largest component of each joint and the worst rate, or each; agreement of the references, a branch a row; residuals of the
-// states of each leg in the equations of the others; proofs; outcome and work of each leg.
+// Its tables, also of the page: deviations of the recursion on a branch (main outputs, the largest
+// component of each joint, and the worst characteristic of a unit, or each); agreement of the references, a
+// row per branch; residuals of the states of each leg in the equations of the others; proofs; outcome and
+// work of each leg.
 Table deviation_table(const Comparison& comparison, const BranchComparison& branch,
                       bool each_rate = false);
 Table agreement_table(const Comparison& comparison);
@@ -24,7 +25,7 @@ Table residual_table(const Comparison& comparison);
 Table proof_table(const Comparison& comparison);
 Table leg_table(std::span<const BranchComparison> branches);
 
-// All that is only in files: rates and compliance at the design position, forces at
+// Tables that are only in files: rates and compliance at the design position, forces at
 // the ends of the branches, the largest forces, wheel rates, agreement, residuals, proofs.
 void add_tables(Result& result, const Model& model, const Comparison& comparison);
 

@@ -1,5 +1,4 @@
-// How far the references agree, by what they are judged, and which of their points are proved.
-
+// Tables of the agreement of the references, of residuals, and of proofs.
 #include <cmath>
 #include <numbers>
 
@@ -8,7 +7,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// Largest distance of the references in a unit and how many numbers it is made of; NaN without one.
+// Largest distance of the references in outputs of a unit, NaN if there are none; and the number of the
+// compared numbers.
 std::pair<double, int> distance_in(Unit unit, const Comparison& all,
                                    const BranchComparison& branch) {
     const auto& apart = branch.uncertainty.equal_parameter.channels;

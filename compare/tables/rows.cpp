@@ -30,12 +30,12 @@ void both(Unit unit, const std::string& abscissa, const T& at_parameter, const T
     sink(abscissa_reading(abscissa), at_abscissa);
 }
 
-// Percentage; NaN where the whole is rounding, mm or deg.
+// Percentage; NaN where the whole is rounding, less than 1e-9 mm or deg.
 double percent(double part, double whole) {
     return std::abs(whole) < 1e-9 ? nan : 100 * part / whole;
 }
 
-// At a = 0, as a leg has it.
+// Value of a channel at a = 0 by a leg.
 double at_start(const LegRun& run, std::size_t channel) {
     return run.curve.values.empty() ? nan : run.curve.values[run.curve.start][channel];
 }

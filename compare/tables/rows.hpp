@@ -211,7 +211,7 @@ void describe(auto& field, Described<StudyRow> auto& r) {
     field("not studied", r.not_studied, {"", "why", words});
 }
 
-// ... with one step count.
+// A method and output over a side of a branch, by one reading and with one step count.
 struct StepRow {
     std::string branch{}, method{}, reading{}, output{}, unit{};
     double steps = nan;
@@ -233,6 +233,7 @@ void describe(auto& field, Described<StepRow> auto& r) {
     field("constraint error", r.constraint_error, {"m", "or rad: |Φ| at the end, eq. (31)"});
 }
 
+// The gap of an output on a branch side, and its parts (GapShare).
 struct GapRow {
     std::string branch{}, reading{}, output{}, unit{};
     double whole = nan, lever = nan, axis = nan, load = nan, rest = nan, band = nan,

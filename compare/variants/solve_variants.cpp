@@ -25,11 +25,11 @@ namespace {
 
 constexpr const char* other_outputs = "the variant has other outputs than the scene";
 constexpr int points_for_extremes = 20, max_points = 1000;
-// Of the series: the ends of a branch are mostly beyond one expansion, also of order 32; of 16 to 32,
-// 24 took least time on the generic McPherson strut.
+// Order of the series. One expansion rarely reaches the end of a branch, even of order 32; of the orders 16
+// to 32, 24 took least time on the generic McPherson strut.
 constexpr int order = 24;
 
-// Whether the station is a recorded point of a way with so many increments: which one, or -1.
+// Position of a station among the recorded points of a branch side with so many increments, or -1.
 int point_at(double at, double to, int increments) {
     const double k = at / to * increments;
     const double nearest = std::round(k);
@@ -38,7 +38,7 @@ int point_at(double at, double to, int increments) {
 
 bool is_extreme(const VariantFigure& figure) { return figure.over != Over::station; }
 
-// Of a channel that reads a coordinate: of which point, in any variant.
+// Function that returns the point of a channel that reads a coordinate, in any variant; empty for others.
 std::function<Point(const Model&)> point_read(const Channel& channel, const Model& design) {
     if (!std::holds_alternative<Coordinate>(channel.reads)) return {};
     for (const Entry& entry : catalogue())
@@ -118,7 +118,7 @@ VariantSolver::VariantSolver(const Model& design, std::vector<VariantFigure> fig
     }
 }
 
-// The ways that the figures read, the number of points, and the groups.
+// Sets the ways (branch sides) that the figures read, the number of points, and the groups.
 void VariantSolver::place(const Model& design) {
     std::vector<Way> ways;
     const auto way_of = [&](std::size_t branch, std::size_t side) -> Way& {
@@ -191,7 +191,7 @@ bool VariantSolver::is_as_design(const Model& variant) const {
     return structure == structure_;
 }
 
-// One a figure; none where the model has others.
+// The outputs of the figures in a model; none where it lacks one of them.
 std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& model) const {
     const auto all = figure_outputs(model, with_sums_);
     std::vector<Channel> own;

@@ -33,15 +33,15 @@ struct VariantFigure {
     Unit unit = Unit::none;
 };
 
-// Of "toe@jounce:3000", "min toe@jounce", "bump_steer". `outputs`: figure_outputs() of the model.
-// Throws std::invalid_argument for what the scene has not, with the nearest name, and for a reaction
+// Parses "toe@jounce:3000", "min toe@jounce", "bump_steer". `outputs`: figure_outputs() of the model.
+// Throws std::invalid_argument for a name that the scene lacks, with the nearest name, and for a reaction
 // that redundant joints share.
 VariantFigure parse_variant_figure(const std::string& name, std::string words, const Model& model,
                                    std::span<const Channel> outputs);
 
 // ---- Variants.
 
-// As they are in a ledger.
+// Outcomes of a variant, as in a ledger.
 namespace outcome {
 inline constexpr const char *solved = "solved",
                             *no_scene = "no scene",            // the numbers make the scene invalid
@@ -76,12 +76,13 @@ class VariantSolver {
         std::size_t figure = 0;
         int point = -1;  // recorded point; -1: every one
     };
+    // A branch side with the figures that are read on it.
     struct Way {
         std::size_t branch = 0, side = 0;  // position in Model::branches, in branch_sides() of it
         std::vector<Reading> readings = {};
         Analyses responses = {};  // of the design, where a characteristic is read
     };
-    struct Group {  // of ways that are followed together
+    struct Group {  // ways that are followed together
         std::vector<Way> ways;
         Model design = {};
         recursive::Analysis analysis = {};
