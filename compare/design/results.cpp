@@ -149,7 +149,7 @@ Table goals_table(const OptimisedScene& scene) {
           },
           "largest difference of the series"},
          {"conflict", percent,
-          [&](Index g) { return optimum.met ? nan : values_of(optimum.conflict, g).norm(); },
+          [&](Index g) { return optimum.met ? nan : values_of(optimum.conflict, g).sum(); },
           "share in the conflict of the bands"}});
 }
 

@@ -42,8 +42,8 @@ struct Solution {
     std::vector<int> at_limit = {};
 
     double excess() const { return off.size() > 0 ? off.cwiseAbs().maxCoeff() : 0; }
-    // share of each figure
-    Eigen::VectorXd conflict() const { return off.cwiseAbs() / off.norm(); }
+    // share |r_j| / Σ |r| of each figure in what is not reached
+    Eigen::VectorXd conflict() const { return off.cwiseAbs() / off.cwiseAbs().sum(); }
 };
 inline constexpr double met_within = 1e-7;  // |r_j| with which a wanted value is met
 

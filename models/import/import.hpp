@@ -67,7 +67,7 @@ Imported import_file(const std::filesystem::path& file, const Options& options);
 // extension, and the name in messages and in the head of the scene.
 Imported import_text(std::string_view text, const std::string& file, const Options& options);
 
-// ---- Importers, one per format.
+// ---- Importers. import_points reads tables (.csv, sheets of .xlsx) and the points of .shk and .cmd files.
 Draft import_adm(std::string_view text, const std::string& file, const Options& options);
 Draft import_chrono(std::string_view text, const std::string& file, const Options& options);
 Draft import_subsystem(std::string_view text, const std::string& file, const Options& options);

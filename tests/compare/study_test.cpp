@@ -185,7 +185,7 @@ TEST(Study, FailedReferencesMakeTheStudyInconclusive) {
     EXPECT_FALSE(study(compile(scene), options()).conclusive());
 }
 
-TEST(Study, FewerThanFiveOrUnorderedLevelsAreRejected) {
+TEST(Study, FewerThanFiveOrUnorderedStepCountsAreRejected) {
     const Model model = compile(support::scene("single_bushing"));
     for (const std::vector<int>& steps : {std::vector<int>{10, 20, 40, 80},
                                           {10, 20, 40, 80, 80},

@@ -360,7 +360,7 @@ TEST(Link, DistanceJointOfALinkGetsAnUnusedName) {
     EXPECT_EQ(names(compile(taken).joints), "b.link b");
 }
 
-TEST(Link, OneOfTwoLinksInSeriesIsKept) {
+TEST(Link, OfTwoInSeriesOneBecomesADistanceAndOneStaysABody) {
     for (const bool outer_first : {true, false}) {
         Scene s = linked();
         s.bodies.push_back({"c", {Vector3d(1, 2, 3), Quaterniond::Identity()}});

@@ -407,7 +407,7 @@ TEST(Diagnosis, DuplicatedJointOfAGridIsFound) {
     EXPECT_EQ(d.redundant_sets, (std::vector<std::vector<int>>{{120, 300}}));
 }
 
-TEST(Diagnosis, ThousandSpinningLinksAreModesOfOneBodyEach) {
+TEST(Diagnosis, IdleSpinOfEachOfAThousandBodiesIsAModeOfThatBodyAlone) {
     // A body with a thousand others on it.
     Scene scene = row_of_bodies(1001, [](int k) -> Vector3d {
         return {0.01 * k, 0.5, 0.001 * (k % 7)};

@@ -69,7 +69,7 @@ TEST(Validation, CommittedNumbersEqualThoseOfTheCode) {
                       << "\nIf that is meant, run ./dev validation and commit what it writes.";
 }
 
-TEST(Validation, DriftBeyondItsToleranceIsDetected) {
+TEST(Validation, NumberThatMovesBeyondItsToleranceOrIsMissingIsReported) {
     const Numbers old{{"a", {1, 0.1}}, {"b", {2, 0.1}}};
     EXPECT_TRUE(drift(old, {{"a", {1.05, 0.1}}, {"b", {2, 0.1}}}).empty());
     EXPECT_EQ(drift(old, {{"a", {1.2, 0.1}}, {"b", {2, 0.1}}}).size(), 1u);

@@ -312,7 +312,7 @@ void convert_coupler(Conversion& c, const Statement& s) {
     const auto scales = s.numbers("SCALES", 1, 3);
     if (joints.size() < 2 || joints.size() > 3) s.fail("JOINTS: two or three are needed");
     if (s.has("FUNCTION")) return c.miss(s, "it couples by a user-written function");
-    // For two joints one scale may be missing: that of the first is then 1.
+    // One scale may be missing: that of the first joint is then 1.
     std::vector<double> scale = scales;
     if (scale.size() == joints.size() - 1) scale.insert(scale.begin(), 1);
     if (scale.size() != joints.size())
