@@ -23,11 +23,7 @@
 namespace elastocheck::compare::variants {
 namespace {
 
-constexpr const char* other_outputs = "the variant has other outputs than the scene";
 constexpr int points_for_extremes = 20, max_points = 1000;
-// Order of the series. One expansion rarely reaches the end of a branch, even of order 32; of the orders 16
-// to 32, 24 took least time on the generic McPherson strut.
-constexpr int order = 24;
 
 // Position of a station among the recorded points of a branch side with so many increments, or -1.
 int point_at(double at, double to, int increments) {
@@ -203,16 +199,11 @@ std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& model) c
     return own;
 }
 
-// Outputs of the design as those of a variant.
-void VariantSolver::take_points(const Model& variant, std::vector<Channel>& outputs) const {
-    for (std::size_t k = 0; k < outputs.size(); ++k)
-        if (points_read_[k]) std::get<Coordinate>(outputs[k].reads).at = points_read_[k](variant);
-}
-
 void VariantSolver::read(const Followed& followed, const std::vector<Channel>& outputs,
                          Analyses analyses, VariantFigures& into) const {
     const auto& [model, side, way, path] = followed;
     const Branch& branch = model.branches[way.branch];
+    into.declined = into.declined || declines(path.outcome);
     std::string ended;
     std::size_t reached = 0;
     for (; reached < path.points.size() && ended.empty(); ++reached)
@@ -289,58 +280,51 @@ void VariantSolver::finish(VariantFigures& figures) const {
     }
 }
 
-std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants) const {
-    std::vector<VariantFigures> results(variants.size(),
-                                        {.values = std::vector<double>(figures_.size(), nan)});
-    std::vector<Channel> as_design = outputs_;
-    std::vector<std::vector<Channel>> own;  // none of a variant as the design
-    std::vector<std::size_t> which;         // have the outputs of the figures
-    for (std::size_t v = 0; v < variants.size(); ++v) {
-        const bool same = is_as_design(variants[v]);
-        if (auto found = same ? std::vector<Channel>() : outputs(variants[v])) {
-            own.push_back(std::move(*found));
-            which.push_back(v);
-        } else {
-            results[v].outcome = outcome::no_value;
-            results[v].reason = other_outputs;
-        }
-    }
-    std::vector<bool> declined(which.size(), false);
+std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants, Leg leg) const {
+    std::vector<VariantFigures> results(variants.size(), without_values(leg));
+    std::vector<std::size_t> together;
+    for (std::size_t v = 0; v < variants.size(); ++v)
+        if (leg == Leg::series && is_as_design(variants[v]))
+            together.push_back(v);
+        else
+            results[v] = solve_alone(variants[v], leg);
+    std::vector<Channel> outputs = outputs_;
     for (const Group& group : groups_) {
         std::vector<Model> models;
-        models.reserve(which.size());
-        for (const std::size_t v : which) models.push_back(followed(variants[v], group.ways));
+        models.reserve(together.size());
+        for (const std::size_t v : together) models.push_back(followed(variants[v], group.ways));
         recursive::solve_batch(
-            group.design, group.analysis, models,
-            {.series = {.order = order}, .points = points_, .wrenches = !only_motion_},
-            [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
-                declined[v] = declined[v] || declines(path.outcome);
-                const Model& variant = variants[which[v]];
-                const bool same = own[v].empty();
-                if (same) take_points(variant, as_design);
-                read({variant, models[v].branches[w], group.ways[w], path},
-                     same ? as_design : own[v], same ? group.ways[w].responses : Analyses{},
-                     results[which[v]]);
+            group.design, group.analysis, models, {.points = points_, .wrenches = !only_motion_},
+            [&](std::size_t k, std::size_t w, const EquilibriumPath& path) {
+                const Model& variant = variants[together[k]];
+                for (std::size_t f = 0; f < outputs.size(); ++f)
+                    if (points_read_[f])
+                        std::get<Coordinate>(outputs[f].reads).at = points_read_[f](variant);
+                read({variant, models[k].branches[w], group.ways[w], path}, outputs,
+                     group.ways[w].responses, results[together[k]]);
             });
     }
-    for (std::size_t k = 0; k < which.size(); ++k) {
-        VariantFigures& result = results[which[k]];
-        finish(result);
-        if (!declined[k] || result.outcome != outcome::ended_early) continue;
-        VariantFigures other = solve_alone(variants[which[k]], Leg::equilibrium);
+    for (const std::size_t v : together) finish(results[v]);
+    for (std::size_t v = 0; v < variants.size() && leg == Leg::series; ++v) {
+        if (!results[v].declined || results[v].outcome != outcome::ended_early) continue;
+        VariantFigures other = solve_alone(variants[v], Leg::equilibrium);
         if (other.outcome != outcome::solved) continue;
-        other.reason = "by the equilibrium leg, since series: " + result.reason;
-        result = std::move(other);
+        other.reason = "by the equilibrium leg, since series: " + results[v].reason;
+        results[v] = std::move(other);
     }
     return results;
 }
 
+VariantFigures VariantSolver::without_values(Leg leg) const {
+    return {.values = std::vector<double>(figures_.size(), nan), .leg = leg};
+}
+
 VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
-    VariantFigures result{.values = std::vector<double>(figures_.size(), nan), .leg = leg};
+    VariantFigures result = without_values(leg);
     const auto own = outputs(variant);
     if (!own) {
         result.outcome = outcome::no_value;
-        result.reason = other_outputs;
+        result.reason = "the variant has other outputs than the scene";
         return result;
     }
     for (const Group& group : groups_)

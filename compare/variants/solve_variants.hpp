@@ -1,5 +1,5 @@
-// The figures of many variants of a scene by `series` in lockstep, and of a variant by the
-// equilibrium leg, also of one that series declines.
+// The figures of many variants of a scene by `series` in lockstep, of those of another structure each
+// alone, and of a variant by the equilibrium leg, also of one that series declines.
 //
 // All branches that the figures read are followed together where every part of the model is active
 // on each of them, else one after the other. States are recorded in equal increments of the
@@ -56,6 +56,7 @@ struct VariantFigures {
     std::string reason = {};
     std::vector<double> values = {};  // per figure; NaN where there is none, infinite: undefined
     Leg leg = Leg::series;            // by which the values are
+    bool declined = false;            // the leg gave up on a branch that another may follow further
 };
 
 class VariantSolver {
@@ -64,8 +65,9 @@ class VariantSolver {
     // that no 1000 equal increments have among them.
     VariantSolver(const Model& design, std::vector<VariantFigure> figures);
 
-    // Compiled models of the variants. Thread-safe; a result does not depend on the other variants.
-    std::vector<VariantFigures> solve(std::span<const Model> variants) const;
+    // Compiled models of the variants. Thread-safe; a result does not depend on the other variants. What
+    // series declines is solved by the equilibrium leg.
+    std::vector<VariantFigures> solve(std::span<const Model> variants, Leg leg = Leg::series) const;
     // By one leg, alone, at the same stations.
     VariantFigures solve_alone(const Model& variant, Leg leg) const;
 
@@ -91,7 +93,7 @@ class VariantSolver {
     void place(const Model& design);
     Model followed(const Model& model, const std::vector<Way>& ways) const;
     std::optional<std::vector<Channel>> outputs(const Model& model) const;
-    void take_points(const Model& variant, std::vector<Channel>& outputs) const;
+    VariantFigures without_values(Leg leg) const;
     struct Followed {  // a way of a variant
         const Model& model;
         const Branch& side;

@@ -106,7 +106,7 @@ Singularity nearest_singularity(const SteppingState& s, const Coefficients<doubl
             binomial *= std::abs((1.5 - k) / k);
             power *= unit;
         }
-        y.col(k) = weighted(k) * (power / binomial);
+        if (k >= from - 2) y.col(k) = weighted(k) * (power / binomial);
     }
     const int rows = p - from + 1;
     Matrix<double> A(rows * n, 2);

@@ -154,13 +154,6 @@ void bind_study(py::module_& module) {
             reports::check_may_write(file, {kind, beginning});
         },
         py::arg("file"), py::arg("kind"), py::arg("beginning"));
-    module.def(
-        "write_whole",
-        [](const std::string& file, const std::string& content, const std::string& kind,
-           const std::string& beginning) {
-            reports::write_whole(file, content, {kind, beginning});
-        },
-        py::arg("file"), py::arg("content"), py::arg("kind"), py::arg("beginning"));
     const reports::Provenance made = reports::provenance();
     module.attr("build") =
         made.version + " " + made.commit.substr(0, 12) + (made.dirty ? " changed" : "");

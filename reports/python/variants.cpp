@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "compare/comparison/trim.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/variants/solve_variants.hpp"
@@ -59,6 +60,8 @@ class Variants {
             settings_.push_back(number->value);
         }
         (void)reader::VariedScene(*scene_->parsed, paths_);  // throws for what is not a number
+        if (const Scene drawn = scene_->parsed->read(scene_->settings); drawn.trim)
+            (void)compare::trim_by_series(drawn, &trimmed_);
     }
 
     std::size_t numbers() const { return varied_; }
@@ -100,15 +103,26 @@ class Variants {
         return numbers;
     }
 
+    // By the series from where that of the scene ended; where that fails, or for another leg, as trim():
+    // from nothing by the equilibrium leg, confirmed by the energy leg.
+    compare::Trimmed trim(const Scene& scene, compare::Leg leg) const {
+        if (leg == compare::Leg::series && trimmed_.J.size() > 0) {
+            compare::TrimStart start = trimmed_;
+            if (auto near = compare::trim_by_series(scene, &start); near.record->reached())
+                return near;
+        }
+        return compare::trim(scene);
+    }
+
     // The model of a variant; without one, the reason.
     std::optional<Model> model_of(reader::VariedScene& varied, const double* values,
-                                  VariantFigures& figures) const {
+                                  compare::Leg leg, VariantFigures& figures) const {
         try {
             std::optional<Model> model;
             const Scene scene = varied.read(with_settings(values), &model);
             if (model) return model;
             if (!scene.trim) return compile(scene);
-            const compare::Trimmed trimmed = compare::trim(scene);
+            const compare::Trimmed trimmed = trim(scene, leg);
             if (!trimmed.record || trimmed.record->reached()) return compile(trimmed.scene);
             figures.outcome = compare::variants::outcome::not_trimmed;
             figures.reason = trimmed.record->detail;
@@ -128,15 +142,13 @@ class Variants {
         std::vector<Model> models;
         std::vector<std::size_t> rows;
         for (std::size_t k = first; k < end; ++k) {
-            auto model = model_of(varied, values + k * varied_, all[k]);
+            auto model = model_of(varied, values + k * varied_, leg, all[k]);
             if (!model) continue;
             models.push_back(std::move(*model));
             rows.push_back(k);
         }
-        const bool together = leg == compare::Leg::series;
-        auto solved = together ? solver_.solve(models) : std::vector<VariantFigures>();
-        for (std::size_t m = 0; m < models.size(); ++m)
-            all[rows[m]] = together ? std::move(solved[m]) : solver_.solve_alone(models[m], leg);
+        auto solved = solver_.solve(models, leg);
+        for (std::size_t m = 0; m < models.size(); ++m) all[rows[m]] = std::move(solved[m]);
     }
 
     SharedScene scene_;
@@ -145,6 +157,7 @@ class Variants {
     std::vector<double> settings_ = {};
     std::vector<VariantFigure> figures_;
     VariantSolver solver_;
+    compare::TrimStart trimmed_ = {};  // of the scene, where it has a trim that the series reaches
 };
 
 compare::Leg leg_named(const std::string& method) {

@@ -643,3 +643,16 @@ def test_figures_of_variants_equal_those_of_their_scenes_read_alone(scenes):
             scene.variants(*wrong)
     with pytest.raises(elastocheck.ArgumentError, match="allowed: series, equilibrium, energy"):
         scene.variants(numbers, "toe@jounce:3000", "published")
+
+
+def test_figures_of_variants_with_a_trim_are_those_of_a_trim_from_nothing(scenes):
+    """By series a variant's trim starts from the scene's; by the equilibrium leg from nothing, and it is confirmed."""
+    scene = elastocheck.read(scenes / "double_wishbone.yaml")
+    number = "points.tie_rod_inner.z"
+    numbers = {number: scene.numbers[number] + np.array([-2, 0, 3.0])}
+    figures = ["toe@travel:80", "camber@travel:-80", "wheel_rate"]
+    values, outcomes = scene.variants(numbers, figures, threads=1)
+    assert outcomes == ["solved"] * 3 and np.ptp(values[:, 0]) > 0.01
+    np.testing.assert_allclose(values, scene.variants(numbers, figures, "equilibrium")[0], rtol=1e-9, atol=1e-9)
+    again = scene.variants({number: numbers[number][2:]}, figures, threads=1)[0]
+    assert np.array_equal(again, values[2:])  # the variants before do not matter

@@ -13,11 +13,11 @@ import time
 
 import numpy as np
 
-from elastocheck import _core, read
+from elastocheck import _core
 from elastocheck._errors import ArgumentError, FileError
 from elastocheck.study import output, statistics
 from elastocheck.study.design import Design
-from elastocheck.study.file import Study, scene_hash
+from elastocheck.study.file import Study
 from elastocheck.study.ledger import Ledger, locked, naming
 from elastocheck.study.output import Report
 
@@ -28,7 +28,7 @@ def _solved(solver, ks, numbers, witnesses):
     """Rows of the ledger for the variants with the numbers `ks`, and for their `witnesses` (positions in `ks`)."""
     tables = []
     for at, leg in [(range(len(ks)), "series"), (witnesses, "equilibrium")]:
-        values, outcomes, legs, reasons = solver.solve(numbers[at], leg, 1)
+        values, outcomes, legs, reasons = solver().solve(numbers[at], leg, 1)
         # As SQLite stores it: NULL for nan, and zero without a sign.
         stored = np.where(np.isnan(values), None, values + 0.0).tolist()
         tables.append([(ks[i], outcome, by, reason or None, *row) for i, outcome, by, reason, row in zip(at, outcomes, legs, reasons, stored)])
@@ -36,16 +36,12 @@ def _solved(solver, ks, numbers, witnesses):
 
 
 @functools.lru_cache(maxsize=1)
-def _prepared(file, name, identity, paths, words):
+def _solver_on_worker(file, count, identity):
     """The solver of a study in a worker of a cluster; it stays there for the next batch."""
-    scene = read(file, name=name)
-    if (scene_hash(file, scene), _core.build) != identity:
-        raise FileError(f"{file}: the scene, or the version of the program, is another one on this worker")
-    return _core.Variants(scene, list(paths), list(words))
-
-
-def _by_worker(prepared, *batch):
-    return _solved(_prepared(*prepared), *batch)
+    study = Study(file, count)
+    if study.identity != dict(identity):
+        raise FileError(f"{file}: the study, its scene or the version of the program is another one on this worker")
+    return study.solver
 
 
 @contextlib.contextmanager
@@ -56,7 +52,7 @@ def _solvers(study, threads, scheduler):
         threads = threads or len(os.sched_getaffinity(0))
         with concurrent.futures.ThreadPoolExecutor(threads) as pool:
             try:
-                yield functools.partial(pool.submit, _solved, study.solver), 2 * threads
+                yield functools.partial(pool.submit, _solved, lambda: study.solver), 2 * threads
             finally:
                 pool.shutdown(wait=False, cancel_futures=True)
         return
@@ -65,11 +61,10 @@ def _solvers(study, threads, scheduler):
         client = distributed.Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:
         raise ArgumentError(f"--scheduler {scheduler}: {error}") from error
-    identity = study.identity["scene"], study.identity["version"]
-    prepared = os.path.abspath(study.scene_file), study.scene_name, identity, tuple(study.paths), tuple(study.words)
+    solver = functools.partial(_solver_on_worker, os.path.abspath(study.file), study.count, tuple(study.identity.items()))
     with client:
         pool = client.get_executor(pure=False, retries=10)
-        yield functools.partial(pool.submit, _by_worker, prepared), 4 * max(sum(client.nthreads().values()), 1)
+        yield functools.partial(pool.submit, _solved, solver), 4 * max(sum(client.nthreads().values()), 1)
 
 
 def _missing(ledger, count, shard):
@@ -162,7 +157,7 @@ def run(file, folder, count=None, *, threads=0, scheduler=None, shard=None, merg
             return None
         report = Report(study, ledger, reproduce, statistics.rare_rows(study, threads) if rare else (), sum(map(len, left)))
         for kind, to in exports.items():
-            output.write_rows(report, to, kind)
+            {"csv": output.write_csv, "hdf5": output.write_hdf5}[kind](report, to)
             say(f"Written: {to}")
         if reports:
             report.write(folder)

@@ -6,28 +6,25 @@ import warnings
 from elastocheck import Error, study
 
 
-def _say(words):
-    print(words, file=sys.stderr)
-
-
-def _progress(what, done):
-    print(f"\r{what}\033[K", end="" if done < 1 else "\r\033[K", file=sys.stderr, flush=True)
-
-
 def main(quiet=False, as_json=False, **options):
     """Options as those of elastocheck.study.run()."""
-    warnings.showwarning = lambda message, *_: _say(f"{message} (warning)")
+    def say(words, end="\n"):
+        print(words, end=end, file=sys.stderr, flush=True)
+
+    def progress(what, done):
+        say(f"\r{what}\033[K", "" if done < 1 else "\r\033[K")
+
+    warnings.showwarning = lambda message, *_: say(f"{message} (warning)")
     try:
-        report = study.run(**options, say=_say, progress=_progress if sys.stderr.isatty() and not quiet else None)
-    except ImportError as error:
-        _say(f"elastocheck: study: {error}; `./dev study` installs what it needs")
+        report = study.run(**options, say=say, progress=progress if sys.stderr.isatty() and not quiet else None)
+    except (Error, ImportError) as error:
+        say(f"elastocheck: {error}" + ("; `./dev study` installs what it needs" if isinstance(error, ImportError) else ""))
         return 2
-    except (Error, OSError) as error:
-        file = getattr(error, "filename", None)
-        _say(f"elastocheck: {file}: {error.strerror}" if file else f"elastocheck: {error}")
+    except OSError as error:
+        say(f"elastocheck: {error.filename}: {error.strerror}")
         return 2
     except KeyboardInterrupt:
-        _say("\nelastocheck: interrupted; the same command goes on")
+        say("\nelastocheck: interrupted; the same command goes on")
         return 130
     except Exception:  # a bug
         traceback.print_exc()

@@ -99,16 +99,6 @@ def _distribution(kind, at, nominal):
     return tuple(numbers.values())
 
 
-def _short_hash(content):
-    return hashlib.sha256(content).hexdigest()[:16]
-
-
-def scene_hash(file, scene):
-    """Hash of a scene file and of its curves, whose tables may be in other files."""
-    with open(file, "rb") as text:
-        return _short_hash(text.read() + _core.hash_of_curves(scene).encode())
-
-
 class Study:
     """A study as data. Everything is checked before the first variant.
 
@@ -159,11 +149,6 @@ class Study:
         """The numbers of the scene [n x paths] by values of the variables [n x variables]."""
         return np.column_stack([values[:, j] * nominal for j, v in enumerate(self.variables)
                                 for nominal in (v.scaled.values() if v.scaled else [1.0])])
-
-    @property
-    def block(self):
-        """Variants in a block of the design: a, b, then a with one variable after the other from b."""
-        return len(self.variables) + 2 if self.indices else 1
 
     def _claim(self, at, path, variable):
         if path.startswith("branches."):
@@ -229,7 +214,8 @@ class Study:
                                 ("indices", ["monte_carlo", "sobol"], "only of a sobol or monte_carlo design")]:
             if at.get(key) and self.kind not in kinds:
                 at.get(key).fail(why)
-        self.seed, self.indices, self.table = 0, False, None
+        # `block`: variants in a block of the design: a, b, then a with one variable after the other from b.
+        self.seed, self.indices, self.table, self.block = 0, False, None, 1
         if self.kind not in DRAWN:
             if self.correlation is not None:
                 whole.need("groups").fail("not of a grid or a list, which draw nothing")
@@ -256,6 +242,7 @@ class Study:
         self.indices = bool(at.get("indices")) and at.get("indices").one_of("yes or no", ["true", "false"]) == "true"
         if self.indices and self.correlation is not None:
             at.need("indices").fail("Sobol indices need independent variables, and there are groups")
+        self.block = len(self.variables) + 2 if self.indices else 1
         if self.count < self.block:
             size.fail(f"{self.count} variants are less than one block of {self.block} for Sobol indices")
 
@@ -307,7 +294,8 @@ class Study:
                  self.correlation is not None and self.correlation.tolist(), self.kind, self.seed, self.indices,
                  self.witness, self.words, self.kind == "latin_hypercube" and self.count,
                  self.table is not None and self.table.tolist()]
-        # The first values too: another version of a library may draw others.
+        # The first values too: another version of a library may draw others. Of the scene, tables of curves in other files too.
         first = Design(self).values(0, min(self.count, self.block))
-        return {"scene": scene_hash(self.scene_file, self.scene),
-                "study": _short_hash(repr(parts).encode() + first.tobytes()), "version": _core.build}
+        with open(self.scene_file, "rb") as text:
+            contents = {"scene": text.read() + _core.hash_of_curves(self.scene).encode(), "study": repr(parts).encode() + first.tobytes()}
+        return {key: hashlib.sha256(content).hexdigest()[:16] for key, content in contents.items()} | {"version": _core.build}

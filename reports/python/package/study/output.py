@@ -129,7 +129,8 @@ class Report(Result):
         page = self.found.page("Study " + os.path.splitext(os.path.basename(study.file))[0],
                                {f.name: f"{f.words}, in {f.unit}." for f in study.figures}, self.document["reproduce"], made)
         for name, content in [("statistics.json", self.printed), ("study.html", page)]:
-            _core.write_whole(os.path.join(folder, name), content, *KINDS[name])
+            with replaced(os.path.join(folder, name)) as part, open(part, "w", encoding="utf-8") as out:
+                out.write(content)
 
 
 def frames(report, at_once):
@@ -144,30 +145,30 @@ def frames(report, at_once):
         yield pandas.concat([table.iloc[:, :3], drawn, table.iloc[:, 3:].astype(float)], axis=1)
 
 
-def _write_hdf5(tables, file):
-    """A data set for each column; a "/" in its name is a "|"."""
-    import h5py
-    with h5py.File(file, "w") as out:
-        for table in tables:
-            for name, column in table.items():
-                values, name = column.to_numpy(), name.replace("/", "|")
-                kind = h5py.string_dtype() if values.dtype == object else values.dtype
-                data = out[name] if name in out else out.create_dataset(name, (0,), kind, maxshape=(None,))
-                data.resize(len(data) + len(values), axis=0)
-                data[len(data) - len(values):] = values
-
-
-def write_rows(report, file, kind):
-    """Writes a row for each variant as "csv" or "hdf5"; the file is replaced when it is complete."""
+@contextlib.contextmanager
+def replaced(file):
+    """A file to write beside this one, which it replaces when it is complete."""
     try:
-        tables = frames(report, at_once=16384)
-        if kind == "hdf5":
-            _write_hdf5(tables, file + ".part")
-        else:
-            with open(file + ".part", "w", newline="") as out:
-                for j, table in enumerate(tables):
-                    table.to_csv(out, index=False, header=not j)
+        yield file + ".part"
         os.replace(file + ".part", file)
     finally:
         with contextlib.suppress(FileNotFoundError):
             os.remove(file + ".part")
+
+
+def write_csv(report, file):
+    with replaced(file) as part, open(part, "w", newline="") as out:
+        for j, table in enumerate(frames(report, at_once=16384)):
+            table.to_csv(out, index=False, header=not j)
+
+
+def write_hdf5(report, file):
+    """A data set for each column; a "/" in its name is a "|"."""
+    import h5py
+    with replaced(file) as part, h5py.File(part, "w") as out:
+        for table in frames(report, at_once=16384):
+            for name, column in table.rename(columns=lambda name: name.replace("/", "|")).items():
+                kind = h5py.string_dtype() if column.dtype == object else column.dtype
+                data = out[name] if name in out else out.create_dataset(name, (0,), kind, maxshape=(None,))
+                data.resize(len(data) + len(column), axis=0)
+                data[len(data) - len(column):] = column.to_numpy()
