@@ -115,14 +115,14 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
 // last vector there: over a box of another size I - Y S is about a multiple of this one, so that v
 // is a good start for it too. Below 1 the box contracts; below `enough` the search ends.
 double shrinks(const Contraction& rest, VectorXd& v, double enough = 0.9) {
-    constexpr int iterations = 12;
+    constexpr int iterations = 40, at_least = 5;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; rest.finite && k < iterations; ++k) {
         const VectorXd w = rest(v);
         if (!w.allFinite()) break;
         const double last = least;
         least = std::min(least, (w.array() / v.array()).maxCoeff() * (1 + 1e-14));
-        if (least < enough || (k > 1 && least > 0.9 * last)) break;
+        if (least < enough || (k > at_least && least > 0.98 * last)) break;
         v = w.cwiseMax(1e-9 * v);
     }
     return least;
