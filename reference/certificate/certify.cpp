@@ -39,14 +39,28 @@ using Eigen::VectorXd;
 struct Box {
     bool proved = false;
     VectorXd r;
-    SparseRows<Interval> J;  // Jacobian over the box
+    SparseRows<Interval> J;  // Jacobian over the box, or one somewhat larger
     Eigen::MatrixXd Y;       // not of a large system
-    double alone = 0;        // t of the large box without another equilibrium
+    Contraction rest;        // of Y and J; not of a large system
+    bool sampled = false;    // J is over poses within `sample`
+    double alone = 0;        // of a large system: t of the large box without another equilibrium
 };
-// Searches r with |Y F(ỹ)| + |I - Y F'(ỹ ± r)| r < r, from r = 1.5 |Y F(ỹ)| on (`defect`). If a box
-// does not pass, the next one is larger, with Y the inverse of the middle of its Jacobian: across
-// the knot of a stop that differs from the inverse at ỹ. `least` keeps
+// All origins within t L and all quaternions within t, or the radii r where these are larger.
+VectorXd poses_within(const System& system, double t, VectorXd r) {
+    for (int b = 0; b < system.bodies; ++b) {
+        auto place = r.segment<3>(system.pose(b));
+        auto turn = r.segment<4>(system.pose(b) + 3);
+        place = place.cwiseMax(t * system.length);
+        turn = turn.cwiseMax(t);
+    }
+    return r;
+}
+// Searches r with |Y F(ỹ)| + |I - Y F'(ỹ ± r)| r < r, from r = 1.5 |Y F(ỹ)| on (`defect`). First
+// with F' over poses within `sample`, which shows how F' varies; rarely, near a knot, that is too
+// far. If a box does not pass, the next one is larger, with Y the inverse of the middle of its
+// Jacobian: across the knot of a stop that differs from the inverse at ỹ. `least` keeps
 // r above 0, as the strict inequality needs.
+constexpr double sample = 1e-10;
 Box smallest(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 8, iterations = 4;
     constexpr double least = 1e-20;
@@ -56,19 +70,21 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
     VectorXd defect = step(result.Y, F);
     if (!defect.allFinite()) return result;
     result.r = (1.5 * defect).cwiseMax(least);
-    for (int trial = 0; trial < trials && !result.proved; ++trial) {
-        result.J = evaluate(problem, box(approximate.y, result.r), Interval(a), Slopes::yes).J;
+    for (int trial = -1; trial < trials && !result.proved; ++trial) {
+        const VectorXd over = trial < 0 ? poses_within(problem.system, sample, result.r) : result.r;
+        result.J = evaluate(problem, box(approximate.y, over), Interval(a), Slopes::yes).J;
         if (trial > 0) {
             result.Y = inverse(factors(middle(result.J)));
             defect = step(result.Y, F);
             if (!defect.allFinite()) return result;
         }
-        const Contraction rest = contraction(result.Y, result.J);
+        const Contraction& rest = result.rest = contraction(result.Y, result.J);
+        if (!rest.finite && trial < 0) continue;
         if (!rest.finite) return result;
         // First by fixed-point iteration, which suffices where F' hardly changes; then by
         // a linear solve.
         VectorXd r;
-        if (trial == 0) {
+        if (trial <= 0) {
             VectorXd from = result.r;
             for (int k = 0; k < iterations && r.size() == 0; ++k) {
                 const VectorXd to = (defect + rest(from)) * (1 + 1e-14);
@@ -81,7 +97,8 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
         if (r.size() > 0 && (r.array() <= result.r.array()).all()) {
             result.r = r;
             result.proved = true;
-        } else {
+            result.sampled = trial < 0;
+        } else if (trial >= 0) {
             result.r = r.size() > 0 ? (2 * r).cwiseMax(result.r).eval() : 4 * result.r;
             if (!result.r.allFinite()) return result;
         }
@@ -96,69 +113,58 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
 //
 // Smallest max_i (|I - Y S| v)_i / v_i found by power iteration, which starts at v and leaves its
 // last vector there: over a box of another size I - Y S is about a multiple of this one, so that v
-// is a good start for it too. Below 1 the box contracts.
-double shrinks(const Contraction& rest, VectorXd& v) {
-    constexpr int iterations = 12;
+// is a good start for it too. Below 1 the box contracts; below `enough` the search ends.
+double shrinks(const Contraction& rest, VectorXd& v, double enough = 0.9) {
+    constexpr int iterations = 40, at_least = 5;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; rest.finite && k < iterations; ++k) {
         const VectorXd w = rest(v);
         if (!w.allFinite()) break;
         const double last = least;
         least = std::min(least, (w.array() / v.array()).maxCoeff() * (1 + 1e-14));
-        if (least < 0.9 || (k > 1 && least > 0.9 * last)) break;
+        if (least < enough || (k > at_least && least > 0.98 * last)) break;
         v = w.cwiseMax(1e-9 * v);
     }
     return least;
 }
 
-// Jacobian over the box of origins within t L and quaternions within t of ỹ.
-struct LargeBox {
-    VectorXd r;
-    SparseRows<Interval> J;
-};
+// Jacobian over the box of origins within t L and quaternions within t of ỹ, and over the box of y*.
 struct Sizes {
     const VectorXd& small;  // r of the box of y*
     double t;
 };
-LargeBox large_box(const Problem& problem, const VectorXd& centre, double a, const Sizes& sizes) {
+SparseRows<Interval> over_large_box(const Problem& problem, const VectorXd& centre, double a,
+                                    const Sizes& sizes) {
     const System& system = problem.system;
-    LargeBox large{sizes.small, {}};
-    for (int b = 0; b < system.bodies; ++b) {
-        large.r.segment<3>(system.pose(b)).setConstant(sizes.t * system.length);
-        large.r.segment<4>(system.pose(b) + 3).setConstant(sizes.t);
-    }
-    large.r = large.r.cwiseMax(sizes.small);  // p* ∈ [p]
-    std::vector<Interval> y = box(centre, large.r);
+    std::vector<Interval> y = box(centre, poses_within(system, sizes.t, sizes.small));
     if (!system.separated.empty()) {
         const auto x = deformations(system, {y.begin(), y.begin() + system.n()}, Interval(a));
         for (std::size_t k = 0; k < system.separated.size(); ++k)
             y[static_cast<std::size_t>(system.deformation(k))] =
                 x[system.separated[k].element][system.separated[k].axis];
     }
-    large.J = evaluate(problem, y, Interval(a), Slopes::yes).J;
-    return large;
+    return evaluate(problem, y, Interval(a), Slopes::yes).J;
 }
 
 // Largest t found for which the box of origins within t L and quaternions within t of ỹ contracts;
 // 0 if none does. Y is the inverse at ỹ, and where that fails the inverse at the middle of the
-// Jacobian. The ratio of shrinks() grows about in proportion to t, so that t aims at a ratio of
-// 0.85.
+// Jacobian. The ratio of shrinks() grows about in proportion to t, from the sampled box on, so that
+// t aims at a ratio of 0.99.
 double alone(const Problem& problem, const VectorXd& centre, double a, const Box& smallest) {
     const VectorXd& small = smallest.r;
     constexpr int trials = 8;
-    constexpr double largest = 0.05, enough = 0.6, aim = 0.85, corner = 0.2;
+    constexpr double largest = 0.05, enough = 0.85, aim = 0.99, corner = 0.2;
     double t = 2e-3, proved_t = 0, failed_t = std::numeric_limits<double>::infinity();
-    VectorXd v;
+    VectorXd v = poses_within(problem.system, t, small);
+    if (smallest.sampled) t = std::min(largest, aim * sample / shrinks(smallest.rest, v, 0));
     for (int trial = 0; trial < trials; ++trial) {
-        const LargeBox large = large_box(problem, centre, a, {small, t});
-        const SparseRows<Interval>& J = large.J;
-        if (v.size() == 0) v = large.r;
+        const SparseRows<Interval> J = over_large_box(problem, centre, a, {small, t});
         double ratio = shrinks(contraction(smallest.Y, J), v);
         if (!(ratio < 1)) ratio = shrinks(contraction(inverse(factors(middle(J))), J), v);
         if (ratio < 1) {
             proved_t = std::max(proved_t, t);
-            t = std::min({largest, t * aim / std::max(ratio, 1e-3), 0.7 * failed_t});
-            if (ratio > enough || t < 1.3 * proved_t) break;
+            t = std::min({largest, t * aim / std::max(ratio, 1e-3), 0.95 * failed_t});
+            if (ratio > enough || t < 1.1 * proved_t) break;
         } else {
             // The new t is in proportion; not with a corner in the box, which must shrink until it
             // excludes the corner.
@@ -226,7 +232,7 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
         std::vector<double> sizes;
         for (int k = 0; k < larger_boxes; ++k) {
             const double t = largest * std::pow(shorter, k);
-            Split over = split(large_box(problem, centre, a, {result.r, t}).J);
+            Split over = split(over_large_box(problem, centre, a, {result.r, t}));
             if (!over.finite) continue;
             J.push_back(recentred(over, J.front().M));
             sizes.push_back(t);
@@ -445,7 +451,10 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                 const double t = large ? smallest_box.alone
                                        : alone(problem, approximate.y, state.load, smallest_box);
                 certificate.unique = unique_around(mapped, approximate.y, t);
-                certificate.stable = stable(problem, z, smallest_box.J);
+                certificate.stable =
+                    stable(problem, z, smallest_box.J) ||
+                    (smallest_box.sampled &&
+                     stable(problem, z, evaluate(problem, enclosure, a, Slopes::yes).J));
                 certificate.detail = statement(system, problem.border, held, "state");
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
                     say(certificate.detail,

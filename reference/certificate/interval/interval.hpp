@@ -1,9 +1,9 @@
 // Interval arithmetic in doubles with guaranteed enclosure.
 //
 // A bound is computed with rounding to nearest and then moved outwards by one unit in the last
-// place: the rounding error is at most half a unit, so the bound lies beyond the exact value. The
-// neighbour of a double is the next integer in its bits. No rounding mode is set, so the result
-// does not depend on the compiler's code motion, and threads do not interfere.
+// place: the rounding error is at most half a unit, so the bound lies beyond the exact value. No
+// rounding mode is set, so the result does not depend on the compiler's code motion, and threads do
+// not interfere.
 // `arithmetic_is_as_proved()` checks the two assumptions of this argument.
 //
 // An unbounded interval carries no information, and neither does any result of it. It stands for
@@ -12,18 +12,16 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 namespace elastocheck::reference::certificate {
 
-// The least double above x; ∞ and NaN are returned unchanged.
+// A double above x: the next one, near the least normal number the one after it (Rump, Zimmermann,
+// Boldo, Melquiond 2009). ∞ is returned unchanged, -∞ and NaN as NaN.
 inline double next_up(double x) {
-    if (!(x < std::numeric_limits<double>::infinity())) return x;
-    const auto bits = std::bit_cast<std::int64_t>(x + 0.0);  // -0 is +0
-    return std::bit_cast<double>(bits + (bits >= 0 ? 1 : -1));
+    constexpr double more_than_half = 0x1.0000000000001p-53;
+    return x + (more_than_half * std::abs(x) + std::numeric_limits<double>::denorm_min());
 }
 inline double next_down(double x) { return -next_up(-x); }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <type_traits>
 
 #include "reference/certificate/interval/interval.hpp"
@@ -18,6 +19,17 @@ template <class S, int N>
 struct Dual {
     S v{};
     std::array<S, static_cast<std::size_t>(N)> d{};
+    unsigned has = 0;  // bit k: d_k may be other than zero
+    void set(std::size_t k, const S& slope) {
+        d.at(k) = slope;
+        has |= 1U << k;
+    }
+    // f(k) for the derivatives that may be other than zero
+    template <class F>
+    void each(const F& f) const {
+        for (unsigned rest = has; rest != 0; rest &= rest - 1)
+            f(static_cast<std::size_t>(std::countr_zero(rest)));
+    }
 };
 
 template <int n>
@@ -187,96 +199,80 @@ double take_radius(Jet<n>& x) {
 // ---- Duals. Zero derivatives are skipped: an element has two bodies and a point one.
 
 template <class S, int N>
-Dual<S, N> operator-(Dual<S, N> a) {
-    a.v = -a.v;
-    for (S& d : a.d) d = -d;
-    return a;
+Dual<S, N> operator-(const Dual<S, N>& a) {
+    Dual<S, N> r;
+    r.v = -a.v, r.has = a.has;
+    a.each([&](std::size_t k) { r.d[k] = -a.d[k]; });
+    return r;
 }
 template <class S, int N>
-Dual<S, N> operator+(Dual<S, N> a, const Dual<S, N>& b) {
-    a.v = a.v + b.v;
-    for (std::size_t k = 0; k < a.d.size(); ++k) a.d[k] = a.d[k] + b.d[k];
-    return a;
+Dual<S, N> operator+(const Dual<S, N>& a, const Dual<S, N>& b) {
+    Dual<S, N> r = a;
+    r.v = a.v + b.v, r.has |= b.has;
+    b.each([&](std::size_t k) { r.d[k] = a.d[k] + b.d[k]; });
+    return r;
 }
 template <class S, int N>
-Dual<S, N> operator-(Dual<S, N> a, const Dual<S, N>& b) {
-    a.v = a.v - b.v;
-    for (std::size_t k = 0; k < a.d.size(); ++k) a.d[k] = a.d[k] - b.d[k];
-    return a;
+Dual<S, N> operator-(const Dual<S, N>& a, const Dual<S, N>& b) {
+    Dual<S, N> r = a;
+    r.v = a.v - b.v, r.has |= b.has;
+    b.each([&](std::size_t k) { r.d[k] = a.d[k] - b.d[k]; });
+    return r;
 }
 template <class S, int N>
 Dual<S, N> operator*(const Dual<S, N>& a, const Dual<S, N>& b) {
     Dual<S, N> r;
-    r.v = a.v * b.v;
-    for (std::size_t k = 0; k < r.d.size(); ++k) {
-        if (!is_zero(a.d[k])) r.d[k] = a.d[k] * b.v;
-        if (!is_zero(b.d[k])) r.d[k] = r.d[k] + a.v * b.d[k];
-    }
+    r.v = a.v * b.v, r.has = a.has | b.has;
+    a.each([&](std::size_t k) { r.d[k] = a.d[k] * b.v; });
+    b.each([&](std::size_t k) { r.d[k] = r.d[k] + a.v * b.d[k]; });
     return r;
 }
 template <class S, int N>
 Dual<S, N> operator/(const Dual<S, N>& a, const Dual<S, N>& b) {
+    Dual<S, N> r = a;
+    r.v = a.v / b.v, r.has |= b.has;
+    r.each([&](std::size_t k) { r.d[k] = (a.d[k] - r.v * b.d[k]) / b.v; });
+    return r;
+}
+// A value with its slope by x.
+template <class S, int N>
+Dual<S, N> chained(const S& v, const S& slope, const Dual<S, N>& x) {
     Dual<S, N> r;
-    r.v = a.v / b.v;
-    for (std::size_t k = 0; k < r.d.size(); ++k)
-        if (!is_zero(a.d[k]) || !is_zero(b.d[k])) r.d[k] = (a.d[k] - r.v * b.d[k]) / b.v;
+    r.v = v, r.has = x.has;
+    x.each([&](std::size_t k) { r.d[k] = slope * x.d[k]; });
     return r;
 }
 template <class S, int N>
 Dual<S, N> sqr(const Dual<S, N>& a) {
-    Dual<S, N> r;
-    r.v = sqr(a.v);
-    const S twice = a.v + a.v;
-    for (std::size_t k = 0; k < r.d.size(); ++k)
-        if (!is_zero(a.d[k])) r.d[k] = twice * a.d[k];
-    return r;
+    return chained(sqr(a.v), a.v + a.v, a);
 }
 template <class S, int N>
 Dual<S, N> sqrt(const Dual<S, N>& a) {
     using std::sqrt;
     Dual<S, N> r;
-    r.v = sqrt(a.v);
+    r.v = sqrt(a.v), r.has = a.has;
     const S twice = r.v + r.v;
-    for (std::size_t k = 0; k < r.d.size(); ++k)
-        if (!is_zero(a.d[k])) r.d[k] = a.d[k] / twice;
+    a.each([&](std::size_t k) { r.d[k] = a.d[k] / twice; });
     return r;
 }
-template <class S, int N>
-Dual<S, N> operator+(Dual<S, N> a, const std::type_identity_t<S>& b) {
+// With a constant, of the type of the value or another.
+template <class S, int N, class B>
+requires(std::is_same_v<B, S> || std::is_same_v<B, Base<S>>) Dual<S, N>
+operator+(Dual<S, N> a, const B& b) {
     a.v = a.v + b;
     return a;
 }
-template <class S, int N>
-Dual<S, N> operator-(Dual<S, N> a, const std::type_identity_t<S>& b) {
+template <class S, int N, class B>
+requires(std::is_same_v<B, S> || std::is_same_v<B, Base<S>>) Dual<S, N>
+operator-(Dual<S, N> a, const B& b) {
     a.v = a.v - b;
     return a;
 }
-template <class S, int N>
-Dual<S, N> operator*(Dual<S, N> a, const std::type_identity_t<S>& b) {
+template <class S, int N, class B>
+requires(std::is_same_v<B, S> || std::is_same_v<B, Base<S>>) Dual<S, N>
+operator*(Dual<S, N> a, const B& b) {
     a.v = a.v * b;
-    for (S& d : a.d)
-        if (!is_zero(d)) d = d * b;
-    return a;
-}
-// With a constant of another type than the value.
-template <class S, int N>
-requires(!std::is_same_v<S, Base<S>>) Dual<S, N>
-operator+(Dual<S, N> a, const Base<S>& b) {
-    a.v = a.v + b;
-    return a;
-}
-template <class S, int N>
-requires(!std::is_same_v<S, Base<S>>) Dual<S, N>
-operator-(Dual<S, N> a, const Base<S>& b) {
-    a.v = a.v - b;
-    return a;
-}
-template <class S, int N>
-requires(!std::is_same_v<S, Base<S>>) Dual<S, N>
-operator*(Dual<S, N> a, const Base<S>& b) {
-    a.v = a.v * b;
-    for (S& d : a.d)
-        if (!is_zero(d)) d = d * b;
+    a.each([&](std::size_t k) { a.d[k] = a.d[k] * b; });
     return a;
 }
 
@@ -302,12 +298,7 @@ Dual<S, N> composed(const Base<S>* f, const Dual<S, N>& x) {
     std::array<Base<S>, static_cast<std::size_t>(order<S>) + 1> slope;
     for (std::size_t j = 0; j < slope.size(); ++j)
         slope[j] = f[j + 1] * Base<S>(static_cast<double>(j + 1));
-    Dual<S, N> r;
-    r.v = composed(f, x.v);
-    const S rate = composed(slope.data(), x.v);
-    for (std::size_t k = 0; k < r.d.size(); ++k)
-        if (!is_zero(x.d[k])) r.d[k] = rate * x.d[k];
-    return r;
+    return chained(composed(f, x.v), composed(slope.data(), x.v), x);
 }
 template <class T>
 T composed(const Expansion<T>& f, const T& x) {

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SparseLU>
 #include <algorithm>
+#include <memory>
 
 #include "models/eigen/dense.hpp"
 
@@ -20,6 +23,8 @@ constexpr double surely_regular = 1e3;
 constexpr int equilibration_sweeps = 8;
 // Null spaces take dense matrices.
 constexpr int max_unknowns_of_borders = 2000;
+// Up to here dense factors take less time.
+constexpr int max_unknowns_of_dense = 80;
 // Relative to the largest entry of a null vector: smaller entries are rounding.
 constexpr double no_part = 1e-12;
 
@@ -175,10 +180,12 @@ VectorXd rounding_of_equations(const System& system, const VectorXd& z, double a
     return zero_tolerance_of_rounding(system) * size;
 }
 
-Border border_at(const System& system, const VectorXd& z, double a, double zero_tolerance) {
+Border border_at(const System& system, const VectorXd& z, double a, double zero_tolerance,
+                 Values<double>* values_at) {
     const Index nb = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
     Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
     const auto values = evaluate(system, doubles(z), a, Slopes::yes);
+    if (values_at != nullptr) *values_at = values;
     const SparseMatrix slopes = middle(values.J);
     if (!slopes.coeffs().allFinite() || nb == 0 ||
         factors(slopes).rcond() > surely_regular * zero_tolerance)
@@ -332,6 +339,14 @@ SparseRows<S> bordered_slopes(const Problem& problem, Values<S> values) {
     return by_rows(entries, size);
 }
 
+// The equations of the system with their border.
+template <class S>
+Values<S> bordered(const Problem& problem, const std::vector<S>& y, Values<S> values) {
+    add_border(problem, y, values.E);
+    if (problem.size() > problem.n()) values.J = bordered_slopes(problem, values);
+    return values;
+}
+
 }  // namespace
 
 template <class S>
@@ -344,11 +359,9 @@ Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& 
 template <class S>
 Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes) {
     if (slopes == Slopes::no) return evaluate_without_slopes(problem, y, a);
-    Values<S> values =
-        evaluate(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a), slopes);
-    add_border(problem, y, values.E);
-    if (problem.size() > problem.n()) values.J = bordered_slopes(problem, values);
-    return values;
+    return bordered(problem, y,
+                    evaluate(problem.system, poses_and_reactions(problem, y),
+                             parameter(problem, y, a), slopes));
 }
 template <class S>
 Values<S> residual(const Problem& problem, const std::vector<S>& y, const S& a) {
@@ -371,34 +384,32 @@ template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vecto
                                                 const Jet<1>&);
 
 VectorXd Factors::solve(const VectorXd& b) const {
-    if (!transposed) return VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
-    return D_c.cwiseProduct(transposed->transpose().solve(VectorXd(D_r.cwiseProduct(b))));
+    if (!of) return VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
+    return D_c.cwiseProduct(of(D_r.cwiseProduct(b), false));
 }
 
 MatrixXd Factors::rows_of_inverse(Index from, Index count) const {
-    if (!transposed)
-        return MatrixXd::Constant(count, size(), std::numeric_limits<double>::quiet_NaN());
+    if (!of) return MatrixXd::Constant(count, size(), std::numeric_limits<double>::quiet_NaN());
     MatrixXd right = MatrixXd::Zero(size(), count);
     for (Index k = 0; k < count; ++k) right(from + k, k) = D_c[from + k];
-    return (D_r.asDiagonal() * MatrixXd(transposed->solve(right))).transpose();
+    return (D_r.asDiagonal() * of(right, true)).transpose();
 }
 
 // ‖A⁻¹‖₁ by Hager's method (Hager 1984, Higham 1988).
 double Factors::rcond() const {
     constexpr int iterations = 5;
     const Index n = size();
-    if (!transposed) return 0;
-    auto direct = transposed->transpose();
+    if (!of) return 0;
     VectorXd x = VectorXd::Constant(n, 1 / static_cast<double>(n));
     double inverse_norm = 0;
     for (int k = 0; k < iterations; ++k) {
-        const VectorXd y = direct.solve(x);
+        const VectorXd y = of(x, false);
         if (!y.allFinite()) return 0;
         const double size = y.lpNorm<1>();
         if (k > 0 && !(size > inverse_norm)) break;
         inverse_norm = std::max(inverse_norm, size);
         const VectorXd sign = y.unaryExpr([](double v) { return v < 0 ? -1. : 1.; }),
-                       z = transposed->solve(sign);
+                       z = of(sign, true);
         Index largest = 0;
         const double slope = z.cwiseAbs().maxCoeff(&largest);
         if (!z.allFinite()) return 0;
@@ -407,7 +418,7 @@ double Factors::rcond() const {
     }
     for (Index k = 0; k < n; ++k)
         x[k] = (k % 2 == 0 ? 1 : -1) * (1 + static_cast<double>(k) / static_cast<double>(n));
-    const VectorXd y = direct.solve(x);
+    const VectorXd y = of(x, false);
     if (!y.allFinite()) return 0;
     inverse_norm = std::max(inverse_norm, 2 * y.lpNorm<1>() / (3 * static_cast<double>(n)));
     return 1 / (norm * inverse_norm);
@@ -415,13 +426,25 @@ double Factors::rcond() const {
 
 Factors factors(const SparseMatrix& J) {
     const Index n = J.rows();
-    Factors result{VectorXd::Ones(n), VectorXd::Ones(n), nullptr};
+    Factors result{VectorXd::Ones(n), VectorXd::Ones(n), {}};
     if (n == 0 || !J.coeffs().allFinite()) return result;
     const auto [A, D_r, D_c] = equilibrated(J);
     result.D_r = D_r, result.D_c = D_c;
     for (Index j = 0; j < n; ++j) result.norm = std::max(result.norm, A.col(j).cwiseAbs().sum());
-    auto lu = std::make_shared<Eigen::SparseLU<SparseMatrix>>(SparseMatrix(A.transpose()));
-    if (lu->info() == Eigen::Success) result.transposed = std::move(lu);
+    // of Aᵀ, which most right-hand sides are for
+    const auto solving = [](const auto& lu) {
+        return [lu](const MatrixXd& b, bool transposed) -> MatrixXd {
+            if (transposed) return lu->solve(b);
+            return lu->transpose().solve(b);
+        };
+    };
+    if (n <= max_unknowns_of_dense) {
+        const MatrixXd dense = A.transpose();
+        result.of = solving(std::make_shared<Eigen::PartialPivLU<MatrixXd>>(dense));
+        return result;
+    }
+    const auto lu = std::make_shared<Eigen::SparseLU<SparseMatrix>>(SparseMatrix(A.transpose()));
+    if (lu->info() == Eigen::Success) result.of = solving(lu);
     return result;
 }
 
@@ -446,7 +469,8 @@ double size_of(const Problem& problem, const VectorXd& step) {
 // diverge along an idle motion also end in small steps, at coordinates of 1e7 and more. The last
 // two steps share their factors, unless they do not decrease: then a knot may lie in between, with
 // the factors from its other side (near a limit point it is only rounding).
-Approximate newton(const Problem& problem, const VectorXd& from, double a) {
+Approximate newton(const Problem& problem, const VectorXd& from, double a,
+                   const Values<double>* values_at) {
     constexpr int max_steps = 12, max_shared = 2, max_anew = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
     const double rounding = problem.system.separated.empty() ? 1e-13 : 1e-15;
@@ -455,8 +479,11 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     bool share = false;
     for (int step = 0, shared = 0, anew = 0;
          shared < max_shared && (approximate.settled || step < max_steps); ++step) {
+        const std::vector<double> y = doubles(approximate.y);
         const Values<double> values =
-            evaluate(problem, doubles(approximate.y), a, share ? Slopes::no : Slopes::yes);
+            step == 0 && values_at != nullptr
+                ? bordered(problem, y, *values_at)
+                : evaluate(problem, y, a, share ? Slopes::no : Slopes::yes);
         if (!share) {
             approximate.J = factors(middle(values.J));
             approximate.since = 0;
@@ -495,10 +522,12 @@ BorderCheck check_border(const Problem& problem, const VectorXd& y, double a) {
 NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double a) {
     const double rounding = zero_tolerance_of_rounding(system);
     const auto from = [&](const VectorXd& start, double zero_tolerance) {
-        Problem problem{system, border_at(system, start, a, zero_tolerance), z, false, {}, {}};
+        Values<double> values;
+        Problem problem{system, border_at(system, start, a, zero_tolerance, &values), z, false, {},
+                        {}};
         VectorXd y = VectorXd::Zero(problem.size());
         y.head(system.n()) = start;
-        Approximate found = newton(problem, y, a);
+        Approximate found = newton(problem, y, a, &values);
         // Without a border the factors show that J is regular, also after the steps since.
         BorderCheck there;
         if (found.settled && found.y.allFinite()) {

@@ -8,8 +8,8 @@
 // Unknowns y = (z, μ, a).
 #pragma once
 
-#include <Eigen/SparseLU>
-#include <memory>
+#include <Eigen/SparseCore>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -46,7 +46,9 @@ double zero_tolerance_of_rounding(const System& system);
 constexpr double loose_zero_tolerance = 1e-5;
 // The rounding of each equation [n]: relative to the forces on its body, to L or to a direction.
 Eigen::VectorXd rounding_of_equations(const System& system, const Eigen::VectorXd& z, double a);
-Border border_at(const System& system, const Eigen::VectorXd& z, double a, double zero_tolerance);
+// `values_at`, if given, receives E and ∂E/∂z at z.
+Border border_at(const System& system, const Eigen::VectorXd& z, double a, double zero_tolerance,
+                 Values<double>* values_at = nullptr);
 
 // Names of the bodies moved by the idle motions, and of the joints of the
 // redundant rows: "'strut'".
@@ -81,8 +83,9 @@ std::vector<Interval> thin(const Eigen::VectorXd& x);
 // Floating-point LU factors of a Jacobian D_r⁻¹ A D_c⁻¹, A with rows and columns of size one.
 struct Factors {
     Eigen::VectorXd D_r, D_c;
-    std::shared_ptr<Eigen::SparseLU<SparseMatrix>> transposed;  // of Aᵀ; none if it is singular
-    double norm = 0;                                            // ‖A‖₁
+    // (b, transposed): A⁻¹ b or A⁻ᵀ b; none if A is singular
+    std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, bool)> of;
+    double norm = 0;  // ‖A‖₁
     Eigen::Index size() const { return D_r.size(); }
     Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
     // `count` rows of the inverse [count × n]; NaN without factors.
@@ -92,14 +95,15 @@ struct Factors {
 Factors factors(const SparseMatrix& J);
 Eigen::MatrixXd inverse(const Factors& factors);
 
-// Newton's method: start of the proof.
+// Newton's method: start of the proof. `values_at`, if given: the equations of the system at y.
 struct Approximate {
     Eigen::VectorXd y;
     Factors J;
     bool settled = false;
     double since = 0;  // movement since the factors, relative to the model's size
 };
-Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a);
+Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a,
+                   const Values<double>* values_at = nullptr);
 
 // Validity of a border at y. `sound`: all its motions and rows are structurally idle or redundant
 // there, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond

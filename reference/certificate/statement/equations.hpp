@@ -163,8 +163,8 @@ struct Row {
     T Phi;
     OnBoth<T> reaction;
 };
-template <class T>
-using Rows = std::array<Row<T>, 3>;
+template <class T, std::size_t n = 1>
+using Rows = std::array<Row<T>, n>;
 
 // δΦ = n · (δp_i - δp_j), p a common place of both: n at p on i, -n on j.
 template <class T>
@@ -180,9 +180,9 @@ Row<T> of_directions(const T& Phi, const Vec<T>& u_i, const Vec<T>& u_j) {
 }
 
 template <class T>
-Rows<T> rows_of(const CoincidentPoints& c, const T&, const Frame<T>& i, const Frame<T>& j) {
+Rows<T, 3> rows_of(const CoincidentPoints& c, const T&, const Frame<T>& i, const Frame<T>& j) {
     const Vec<T> p = position(i, c.i.s_local), gap = p - position(j, c.j.s_local);
-    Rows<T> rows;
+    Rows<T, 3> rows;
     for (std::size_t k = 0; k < 3; ++k)
         rows[k] =
             of_points(gap[k], constant<T>(Eigen::Vector3d::Unit(static_cast<int>(k))), p, i, j);

@@ -40,7 +40,7 @@ struct Assembly {
             T x;
             x.v = z[static_cast<std::size_t>(k)];
             if constexpr (!std::is_same_v<T, InForces<S>>)
-                x.d.at(static_cast<std::size_t>(slot)) = constant<S>(1.);
+                x.set(static_cast<std::size_t>(slot), constant<S>(1.));
             return x;
         }
     }
@@ -60,7 +60,7 @@ struct Assembly {
         } else {
             T x;
             x.v = a;
-            if constexpr (!std::is_same_v<T, InForces<S>>) x.d.back() = constant<S>(1.);
+            if constexpr (!std::is_same_v<T, InForces<S>>) x.set(x.d.size() - 1, constant<S>(1.));
             return x;
         }
     }
@@ -210,7 +210,7 @@ struct Assembly {
             const double radius = take_radius(one.v);
             if (!std::isfinite(radius)) return f;
             out.laws.rho[out.laws.column + static_cast<int>(k)] = radius;
-            one.d[k] = constant<S>(1.);
+            one.set(k, constant<S>(1.));
         }
         return one;
     }
@@ -296,7 +296,7 @@ struct Assembly {
         } else {
             Dual<S, 1> law_at_x;
             law_at_x.v = x;
-            law_at_x.d[0] = constant<S>(1.);
+            law_at_x.set(0, constant<S>(1.));
             law_at_x = force(law, law_at_x);
             add({}, to + 1, f - law_at_x.v);
             add_slope(to, x_at, constant<S>(-1.));
@@ -312,14 +312,12 @@ struct Assembly {
             [&](const auto& k) {
                 const Slots slots{k.i.body, k.j.body};
                 const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
-                const Rows<T> rows = rows_of(k, system.values[c].at(parameter<T>()), i, j);
-                for (int n = 0; n < elastocheck::rows(kind); ++n) {
-                    const Row<T>& row = rows[static_cast<std::size_t>(n)];
-                    const int column = system.reaction(c) + n;
+                int column = system.reaction(c), closure = system.closure(c);
+                for (const Row<T>& row : rows_of(k, system.values[c].at(parameter<T>()), i, j)) {
                     const S& R = z[static_cast<std::size_t>(column)];
-                    add(slots, system.closure(c) + n, row.Phi);
+                    add(slots, closure++, row.Phi);
                     add_times(slots, slots.i, row.reaction.i, R, column);
-                    add_times(slots, slots.j, row.reaction.j, R, column);
+                    add_times(slots, slots.j, row.reaction.j, R, column++);
                 }
             },
             kind);
@@ -440,13 +438,10 @@ std::vector<JointWrench<S>> unit_wrenches(const System& system, int joint, const
             [&](const auto& kind) {
                 const auto i = assembly.template frame<S>(kind.i.body, 0),
                            j = assembly.template frame<S>(kind.j.body, 0);
-                const Rows<S> rows = rows_of(kind, system.values[c].at(a), i, j);
-                for (int n = 0; n < elastocheck::rows(constraint.kind); ++n) {
-                    const OnBoth<S>& reaction = rows[static_cast<std::size_t>(n)].reaction;
-                    columns.push_back(
-                        about_joint(assembly, model_joint,
-                                    kind.i.body == model_joint.i ? reaction.i : reaction.j));
-                }
+                for (const Row<S>& row : rows_of(kind, system.values[c].at(a), i, j))
+                    columns.push_back(about_joint(
+                        assembly, model_joint,
+                        kind.i.body == model_joint.i ? row.reaction.i : row.reaction.j));
             },
             constraint.kind);
     }
