@@ -498,20 +498,20 @@ TEST(Measurement, PointsAreDrawnOverTheAbscissaOfTheFigure) {
         "chrono_mcpherson_travel");
     int seen = 0;
     for (const auto& sweep : sweeps_of(scene)) {
-        const auto points = measured_series(
+        const auto points = measured_curves(
             scene, sweep, measured_over_parameter(scene, sweep) ? "" : "travel", "toe");
         if (sweep.name == "travel") {
             ++seen;
-            ASSERT_TRUE(points);
+            ASSERT_EQ(points.size(), 1u);
             EXPECT_FALSE(measured_over_parameter(scene, sweep));
-            EXPECT_EQ(points->rows, (std::vector<std::vector<double>>{{-20, 0.1}, {20, -0.2}}));
+            EXPECT_EQ(points[0].rows, (std::vector<std::vector<double>>{{-20, 0.1}, {20, -0.2}}));
         } else if (sweep.name == "load") {
             ++seen;
-            ASSERT_TRUE(points);
+            ASSERT_EQ(points.size(), 1u);
             EXPECT_TRUE(measured_over_parameter(scene, sweep));
-            EXPECT_EQ(points->rows, (std::vector<std::vector<double>>{{500, 0.3}, {700, 0.4}}));
+            EXPECT_EQ(points[0].rows, (std::vector<std::vector<double>>{{500, 0.3}, {700, 0.4}}));
         } else {
-            EXPECT_FALSE(points) << sweep.name;
+            EXPECT_TRUE(points.empty()) << sweep.name;
         }
     }
     EXPECT_EQ(seen, 2);
