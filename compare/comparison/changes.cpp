@@ -42,7 +42,7 @@ Table table_of(const std::vector<Change>& changes, const char* was, const char* 
         return number ? number->value : nan;
     };
     return table<Change>(
-        "numbers",
+        {.id = "numbers"},
         {{"number", words, [](const Change& c) { return (c.is ? c.is : c.was)->path; }},
          {was, given, [=](const Change& c) { return value(c.was); }},
          {is, given, [=](const Change& c) { return value(c.is); }},

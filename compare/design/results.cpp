@@ -21,7 +21,7 @@ constexpr double min_share = 0.05;  // of a figure in a conflict, of a number in
 
 using Columns = std::vector<ColumnOf<Index>>;  // of rows by their positions
 Table rows_of(const char* id, Index count, const Columns& columns) {
-    return table(id, columns, std::views::iota(Index{0}, count));
+    return table({.id = id}, columns, std::views::iota(Index{0}, count));
 }
 template <class Item>
 const Item& item(const std::vector<Item>& list, Index k) {
@@ -432,12 +432,12 @@ Result result_of(const ToleratedScene& scene, int max_shares) {
                     {&scene.figures[k], item(scene.tolerances.numbers, i), share_of[i]});
     }
     result.tables.push_back(
-        table("shares",
+        table({.id = "shares"},
               std::vector<ColumnOf<Share>>{
                   {"output", words, [](const Share& s) { return s.figure->name; }},
                   {"at", words, [](const Share& s) { return s.figure->place; }},
-                  {"tolerance", words, [](const Share& s) { return s.number; }},
-                  {"share", percent, [](const Share& s) { return s.share; }, "of the variance"}},
+                  {"tolerance", words, &Share::number},
+                  {"share", percent, &Share::share, "of the variance"}},
               shares));
     result.verdict.grade =
         scene.missing.empty() && !scene.figures.empty() ? Grade::pass : Grade::not_judged;

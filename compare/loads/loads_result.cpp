@@ -21,10 +21,10 @@ constexpr std::array<const char*, 6> components{"force_x",  "force_y",  "force_z
 
 std::vector<ColumnOf<SolvedCase>> load_columns(const std::vector<Pickup>& pickups) {
     std::vector<ColumnOf<SolvedCase>> columns{
-        {"case", Digits::hidden, [](const SolvedCase& c) { return c.name; }, "the load case"},
-        {"imbalance", Digits::hidden, [](const SolvedCase& c) { return c.imbalance; },
+        {"case", Digits::hidden, &SolvedCase::name, "the load case"},
+        {"imbalance", Digits::hidden, &SolvedCase::imbalance,
          "largest remainder of the balance of a body, of the largest force or moment on any"},
-        {"disagreement", Digits::hidden, [](const SolvedCase& c) { return c.disagreement; },
+        {"disagreement", Digits::hidden, &SolvedCase::disagreement,
          "largest difference from the second solution, of the largest force or moment"}};
     for (const bool in_body_axes : {false, true})
         for (std::size_t k = 0; k < pickups.size(); ++k)
@@ -93,10 +93,10 @@ std::vector<ColumnOf<Largest>> largest_columns() {
         {"z", place, coordinate(2), "likewise", "mm"},
         {"force", whole, [](const Largest& l) { return l.shown(l.force); },
          "largest over the cases", "N"},
-        {"force in", words, [](const Largest& l) { return l.force_in; }, "its case"},
+        {"force in", words, &Largest::force_in, "its case"},
         {"moment", four, [](const Largest& l) { return l.shown(l.moment); },
          "largest over the cases, about the point", "N·m"},
-        {"moment in", words, [](const Largest& l) { return l.moment_in; }, "its case"}};
+        {"moment in", words, &Largest::moment_in, "its case"}};
 }
 
 // A case and a pickup point, for readers.
@@ -185,15 +185,15 @@ Verdict verdict_of(const PickupLoads& loads) {
 Result result_of(const PickupLoads& loads) {
     Result result{.analysis = "loads", .verdict = verdict_of(loads)};
     const auto list = largest(loads);
-    result.tables.push_back(table("pickups", largest_columns(), list));
+    result.tables.push_back(table({.id = "pickups"}, largest_columns(), list));
     result.tables.back().caption = "largest loads on each body, in vehicle axes";
     constexpr std::size_t max_rows = 1000;  // for readers
     if (const auto rows = by_case(loads); rows.size() <= max_rows) {
-        result.tables.push_back(table("", case_columns(), rows));
+        result.tables.push_back(table({}, case_columns(), rows));
         result.tables.back().caption = "loads by cases, in vehicle axes";
         result.tables.back().detail = true;
     }
-    result.tables.push_back(table("loads", load_columns(loads.pickups), loads.cases));
+    result.tables.push_back(table({.id = "loads"}, load_columns(loads.pickups), loads.cases));
     if (const std::string names = shared_joints(list); !names.empty())
         result.notes.push_back(fmt::format(
             "statically indeterminate: the joints {} share loads in a way that no load determines. "

@@ -46,9 +46,8 @@ std::vector<ColumnOf<CertifiedSide>> certified_columns() {
     using enum Digits;
     using Side = CertifiedSide;
     return {
-        {"branch", hidden, [](const Side& s) { return s.branch; },
-         "a side of a branch, from a = 0"},
-        {"solver", words, [](const Side& s) { return s.solver; }, "whose points are tested"},
+        {"branch", hidden, &Side::branch, "a side of a branch, from a = 0"},
+        {"solver", words, &Side::solver, "whose points are tested"},
         {"outcome", words, [](const Side& s) { return name(s.outcome); }, "how the solver ended"},
         {"points", whole, [](const Side& s) { return s.tally.points; }, "looked at"},
         {"proved", whole, [](const Side& s) { return s.tally.proved; },
@@ -124,8 +123,9 @@ Result result_of(const CertifyStudy& study) {
     Result result{.analysis = "certify"};
     for (const auto& branch : distinct(study.sides, &CertifiedSide::branch)) {
         const auto sides = where(study.sides, &CertifiedSide::branch, branch);
-        Table& part = result.tables.emplace_back(table("sides", certified_columns(), sides));
-        part.caption = fmt::format("branch '{}'", branch);
+        Table& part = result.tables.emplace_back(
+            table({.id = "sides", .caption = fmt::format("branch '{}'", branch)},
+                  certified_columns(), sides));
         for (const auto& side : sides) add_notes(part.notes, side);
     }
     result.notes.push_back(fmt::format(

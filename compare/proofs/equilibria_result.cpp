@@ -21,7 +21,7 @@ std::vector<ColumnOf<FoundEquilibrium>> found_columns() {
              "proved distance to the true equilibrium, at most", "mm"},
             {"alone within", size, [](const Found& f) { return 1e3 * f.proof.unique.length; },
              "proved: no other equilibrium within this distance", "mm"},
-            {"what it means", words, [](const Found& f) { return f.meaning; }}};
+            {"what it means", words, &Found::meaning}};
 }
 
 // A body in one of the equilibria.
@@ -40,24 +40,24 @@ Table poses(const Model& model, const AllEquilibria& equilibria) {
     const auto part = [](const char* name, const char* unit, auto&& value) {
         return ColumnOf<BodyPose>{.name = name, .cell = value, .unit = unit};
     };
-    return table<BodyPose>("poses",
-                           {part("number", "", [](const BodyPose& p) { return p.number; }),
-                            part("body", "", [](const BodyPose& p) { return p.body; }),
-                            part("x", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.x(); }),
-                            part("y", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.y(); }),
-                            part("z", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.z(); }),
-                            part("qw", "", [](const BodyPose& p) { return p.pose.p.w(); }),
-                            part("qx", "", [](const BodyPose& p) { return p.pose.p.x(); }),
-                            part("qy", "", [](const BodyPose& p) { return p.pose.p.y(); }),
-                            part("qz", "", [](const BodyPose& p) { return p.pose.p.z(); })},
-                           rows);
+    return table<BodyPose>(
+        {.id = "poses"},
+        {part("number", "", &BodyPose::number), part("body", "", &BodyPose::body),
+         part("x", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.x(); }),
+         part("y", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.y(); }),
+         part("z", "mm", [](const BodyPose& p) { return 1e3 * p.pose.r.z(); }),
+         part("qw", "", [](const BodyPose& p) { return p.pose.p.w(); }),
+         part("qx", "", [](const BodyPose& p) { return p.pose.p.x(); }),
+         part("qy", "", [](const BodyPose& p) { return p.pose.p.y(); }),
+         part("qz", "", [](const BodyPose& p) { return p.pose.p.z(); })},
+        rows);
 }
 
 }  // namespace
 
 Result result_of(const Model& model, const AllEquilibria& equilibria) {
     Result result{.analysis = "equilibria"};
-    Table list = table("equilibria", found_columns(), equilibria.list);
+    Table list = table({.id = "equilibria"}, found_columns(), equilibria.list);
     list.columns.insert(list.columns.begin(), {.name = "number", .digits = Digits::whole});
     for (std::size_t k = 0; k < list.rows.size(); ++k)
         list.rows[k].insert(list.rows[k].begin(), static_cast<double>(k + 1));

@@ -22,7 +22,8 @@ struct Verdict {
 // A chart of columns of a table.
 struct Chart {
     enum class Kind {
-        curves,
+        curves,  // with a mark at each point
+        lines,   // a colour for each value of by[0]; dashed of the second value of by[1]
         points,  // y over x
         bars,    // y[1] over the interval from x to y[0]
         ranked   // of words x the values y[0], largest first, with the interval from y[1] to y[2]
@@ -37,9 +38,10 @@ struct Chart {
     std::string only{};           // of rows that begin with a word those with this one; empty: all
     std::string axis{};           // heading of the values' axis, instead of the column's
     std::vector<double> marks{};  // limits on that axis; not finite: none
+    std::vector<std::string> rings{};  // of lines: values of by[0] that are drawn as points
 };
 
-inline constexpr const char* chart_kinds[] = {"curves", "points", "bars", "ranked"};
+inline constexpr const char* chart_kinds[] = {"curves", "lines", "points", "bars", "ranked"};
 
 struct Result {
     std::string analysis{};  // "certify", as the command

@@ -1,5 +1,5 @@
-// A table: what text, CSV, JSON and page are made from, so that all formats agree. Rows of a study
-// are structs, and describe() says once which columns their fields are.
+// A table: what text, CSV, JSON and page are made from, so that all formats agree. Its rows are structs;
+// a list of ColumnOf says once which columns they have.
 #pragma once
 
 #include <algorithm>
@@ -34,22 +34,12 @@ enum class Digits {
     percent,    // 14 %, of a share
 };
 
-// Description of a field of a row besides its name.
-struct About {
-    // "" without a unit, or where it differs from row to row (given in a column `unit`)
-    const char* unit = "";
-    const char* description = "";
-    Digits digits = Digits::hidden;
-    const char* heading = "";  // for readers, instead of the name
-    int place = -1;  // for readers: beside the column at this place of the table; -1: its own
-};
-
 struct Column {
     std::string name, unit{}, description{};
     bool words = false;  // its cells are texts, not numbers
     Digits digits = Digits::hidden;
     std::string heading{};
-    int place = -1;
+    int place = -1;  // for readers: beside the column at this place of the table; -1: its own
 };
 
 struct Table {
@@ -70,71 +60,51 @@ struct AnyCell {
     template <class Number>
     requires std::is_arithmetic_v<Number> &&(!std::same_as<Number, bool>)AnyCell(Number number)
         : cell(finite_or_nan(static_cast<double>(number))) {}
+    template <std::same_as<bool> Truth>
+    AnyCell(Truth truth) : cell(std::string(truth ? "yes" : "")) {}
     AnyCell(std::string text) : cell(std::move(text)) {}
     AnyCell(const char* text) : cell(std::string(text)) {}
     Cell cell;
 };
 
-// A column of a table whose rows are made from structs S: its cell as a function of S. Columns that only
-// programs read are Digits::hidden.
+// A column of a table whose rows are made from structs S, and its cell: a member of S or a function of
+// it. No unit where it differs from row to row (given in a column `unit`). `heading`: for readers,
+// instead of the name. Those for programs alone are Digits::hidden.
 template <class S>
 struct ColumnOf {
     std::string name;
     Digits digits = Digits::hidden;
     std::function<AnyCell(const S&)> cell;
     std::string description{}, unit{}, heading{};
+    int place = -1;
 };
 
-// The table of a range of S; of std::vector<ColumnOf<S>>.
+// The table of a range of S, of these columns; `head` has its id, caption and notes.
 template <class S>
-Table table(std::string id, const std::vector<ColumnOf<S>>& columns, const auto& range) {
-    Table result{.id = std::move(id)};
+Table table(Table head, const std::vector<ColumnOf<S>>& columns, const auto& range) {
     for (const auto& c : columns)
-        result.columns.push_back({.name = c.name,
-                                  .unit = c.unit,
-                                  .description = c.description,
-                                  .words = c.digits == Digits::words || c.digits == Digits::note,
-                                  .digits = c.digits,
-                                  .heading = c.heading});
+        head.columns.push_back({.name = c.name,
+                                .unit = c.unit,
+                                .description = c.description,
+                                .words = c.digits == Digits::words || c.digits == Digits::note,
+                                .digits = c.digits,
+                                .heading = c.heading,
+                                .place = c.place});
     for (const S& s : range) {
-        auto& row = result.rows.emplace_back();
+        auto& row = head.rows.emplace_back();
         for (const auto& c : columns) row.push_back(c.cell(s).cell);
     }
-    return result;
+    return head;
 }
 
 // The table with only these columns, in this order, all shown to readers, hidden ones as words. A name
 // that the table lacks is left out.
 Table with_columns(const Table& table, const std::vector<std::string>& names);
 
-// The description of a struct S is a function
-//     void describe(auto& field, Described<S> auto& s)
-// that calls field(name, member, About) for every field, in order.
-template <class T, class S>
-concept Described = std::same_as<std::remove_const_t<T>, S>;
-
-inline Cell cell_of(double value) { return value; }
-inline Cell cell_of(const std::string& value) { return value; }
-inline Cell cell_of(bool value) { return std::string(value ? "yes" : ""); }
-
+// The table of rows that say their columns themselves, in a function Row::columns().
 template <class Row>
 Table table_of(const std::vector<Row>& rows) {
-    Table table;
-    const auto column = [&](const char* name, const auto& value, const About& about = {}) {
-        table.columns.push_back({name, about.unit, about.description,
-                                 !std::is_same_v<decltype(value), const double&>, about.digits,
-                                 about.heading, about.place});
-    };
-    const Row none{};
-    describe(column, none);
-    for (const auto& row : rows) {
-        auto& cells = table.rows.emplace_back();
-        const auto cell = [&](const char*, const auto& value, const About& = {}) {
-            cells.push_back(cell_of(value));
-        };
-        describe(cell, row);
-    }
-    return table;
+    return table({}, Row::columns(), rows);
 }
 
 // Distinct values of a field, in the order of the rows.

@@ -76,7 +76,7 @@ struct ShownNumber {
     static std::vector<ColumnOf<ShownNumber>> columns() {
         using enum Digits;
         using Row = ShownNumber;
-        return {{"output", words, [](const Row& r) { return r.output; }},
+        return {{"output", words, &Row::output},
                 {"number", words, [](const Row& r) { return r.number(); }},
                 {"at start", three, [](const Row& r) { return r.shown(r.start); }},
                 {"at end", three, [](const Row& r) { return r.shown(r.end); }},
@@ -132,11 +132,11 @@ Table shown_table(const Gradients& gradients, const SideGradients& side, int mos
                 {std::exchange(output, ""), start, end, rounding_of_effect * sizes[order.front()]});
         }
     }
-    Table shown = table("", ShownNumber::columns(), rows);
-    shown.caption =
-        fmt::format("{}: derivatives at {:g} and {:g} {}", side.name,
-                    Derivative{gradients, side, 0, 0, 0}.parameter(),
-                    Derivative{gradients, side, last, 0, 0}.parameter(), symbol(side.unit));
+    Table shown = table({.caption = fmt::format("{}: derivatives at {:g} and {:g} {}", side.name,
+                                                Derivative{gradients, side, 0, 0, 0}.parameter(),
+                                                Derivative{gradients, side, last, 0, 0}.parameter(),
+                                                symbol(side.unit))},
+                        ShownNumber::columns(), rows);
     shown.notes.assign(reasons.begin(), reasons.end());
     for (const auto& leg : side.legs)
         if (leg.not_applicable)
@@ -158,7 +158,7 @@ Table derivatives_table(const Gradients& all) {
                 for (std::size_t k = 0; k < all.numbers.size(); ++k)
                     rows.push_back({all, side, s, c, k});
     return table(
-        "derivatives",
+        {.id = "derivatives"},
         std::vector<ColumnOf<Row>>{
             {"branch", words, [](const Row& r) { return r.side.name; }, "side of a branch"},
             {"parameter", given, [](const Row& r) { return r.parameter(); },
@@ -184,17 +184,16 @@ Table derivatives_table(const Gradients& all) {
 Table varied_numbers_table(const Gradients& gradients) {
     using enum Digits;
     using Row = VariedNumber;
-    return table("numbers",
-                 std::vector<ColumnOf<Row>>{
-                     {"number", words, [](const Row& r) { return r.path; }},
-                     {"value", given, [](const Row& r) { return r.value; }, "in the file"},
-                     {"unit", words, [](const Row& r) { return r.unit; }},
-                     {"step", given, [](const Row& r) { return r.step; }, "of its effect"},
-                     {"side", given, [](const Row& r) { return r.side; },
-                      "1, -1: derivatives are those where it grows, falls"},
-                     {"undefined", words, [](const Row& r) { return r.undefined; },
-                      "why there is no derivative by it"}},
-                 gradients.numbers);
+    return table(
+        {.id = "numbers"},
+        std::vector<ColumnOf<Row>>{
+            {"number", words, &Row::path},
+            {"value", given, &Row::value, "in the file"},
+            {"unit", words, &Row::unit},
+            {"step", given, &Row::step, "of its effect"},
+            {"side", given, &Row::side, "1, -1: derivatives are those where it grows, falls"},
+            {"undefined", words, &Row::undefined, "why there is no derivative by it"}},
+        gradients.numbers);
 }
 
 // Agreement of the derivatives of every leg on every side with those of the others.
@@ -208,7 +207,7 @@ Table legs_agreement_table(const Gradients& all) {
     for (const SideGradients& side : all.sides)
         for (const LegGradients& by : side.legs) rows.push_back({side, by});
     return table(
-        "agreement",
+        {.id = "agreement"},
         std::vector<ColumnOf<Row>>{
             {"side", words, [](const Row& r) { return r.side.name; }, "of a branch"},
             {"branch", words, [](const Row& r) { return r.side.branch; }},

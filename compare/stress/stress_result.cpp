@@ -20,23 +20,22 @@ std::vector<ColumnOf<StressCell>> cell_columns() {
     constexpr Digits hidden = Digits::hidden;
     using C = StressCell;
     return {
-        {"scene", hidden, [](const C& c) { return c.scene; }},
-        {"sweep", hidden, [](const C& c) { return c.sweep; }},
-        {"variant", hidden, [](const C& c) { return c.variant; }},
-        {"side", hidden, [](const C& c) { return c.side; }, "of a branch, from where it begins"},
-        {"solver", hidden, [](const C& c) { return c.solver; }},
+        {"scene", hidden, &C::scene},
+        {"sweep", hidden, &C::sweep},
+        {"variant", hidden, &C::variant},
+        {"side", hidden, &C::side, "of a branch, from where it begins"},
+        {"solver", hidden, &C::solver},
         {"outcome", hidden, [](const C& c) { return name(c.outcome); }},
         {"verdict", hidden, [](const C& c) { return name(c.verdict); }},
-        {"known by", hidden, [](const C& c) { return c.known_by; }, "source of the true state"},
-        {"digits", hidden, [](const C& c) { return c.digits; },
-         "-log10 of the error over the range"},
+        {"known by", hidden, &C::known_by, "source of the true state"},
+        {"digits", hidden, &C::digits, "-log10 of the error over the range"},
         {"error", hidden, [](const C& c) { return 1e3 * c.error; }, "of any place, at most", "mm"},
         {"claim", hidden, [](const C& c) { return 1e3 * c.claim; },
          "accuracy that the solver claims; empty without a tolerance", "mm"},
         {"range", hidden, [](const C& c) { return 1e3 * c.range; },
          "largest displacement of a point; the size of the scene where nothing moves", "mm"},
-        {"reason", hidden, [](const C& c) { return c.why; }},
-        {"detail", hidden, [](const C& c) { return c.detail; }, "message of the solver"}};
+        {"reason", hidden, &C::why},
+        {"detail", hidden, &C::detail, "message of the solver"}};
 }
 
 // One row per scene and sweep, and per variant of an extreme scene, with a sign per solver: the
@@ -60,10 +59,10 @@ Table map_of(const Survival& survival) {
         char& now = row->signs[static_cast<std::size_t>(solver - survival.solvers.begin())];
         if (worst_first.find(sign(cell)) < worst_first.find(now)) now = sign(cell);
     }
-    return table<MapRow>("map",
-                         {{"scene", Digits::words, [](const MapRow& r) { return r.scene; }},
-                          {"variants", Digits::words, [](const MapRow& r) { return r.variants; }},
-                          {"signs", Digits::words, [](const MapRow& r) { return r.signs; },
+    return table<MapRow>({.id = "map"},
+                         {{"scene", Digits::words, &MapRow::scene},
+                          {"variants", Digits::words, &MapRow::variants},
+                          {"signs", Digits::words, &MapRow::signs,
                            fmt::format("one for each of {}", fmt::join(survival.solvers, " "))}},
                          rows);
 }
@@ -73,9 +72,9 @@ Table map_of(const Survival& survival) {
 Result result_of(const Survival& survival) {
     Result result{.analysis = "stress"};
     result.tables = {
-        map_of(survival), table("cells", cell_columns(), survival.cells),
+        map_of(survival), table({.id = "cells"}, cell_columns(), survival.cells),
         table<CellVerdict>(
-            "counts",
+            {.id = "counts"},
             {{"verdict", Digits::hidden, [](CellVerdict v) { return name(v); }},
              {"cells", Digits::hidden, [&](CellVerdict v) { return survival.count(v); }}},
             verdicts)};

@@ -177,22 +177,21 @@ Table worst_of(const Assessment& a) {
                         {"other", "abscissa", &a.other_across}};
     std::erase_if(rows, [](const W& row) { return !row.worst->has_value(); });
     constexpr Digits hidden = Digits::hidden;
-    return table<W>("worst",
-                    {{"kind", hidden, [](const W& w) { return w.kind; },
-                      "of the output: a position, an angle, or any other"},
-                     {"at equal", hidden, [](const W& w) { return w.reading; }},
-                     {"branch", hidden, [](const W& w) { return (*w.worst)->branch; }},
-                     {"output", hidden, [](const W& w) { return (*w.worst)->channel; }},
-                     {"unit", hidden, [](const W& w) { return symbol((*w.worst)->unit); }},
-                     {"deviation", hidden, [](const W& w) { return (*w.worst)->max; }},
-                     {"limit", hidden, [](const W& w) { return (*w.worst)->limit; }},
-                     {"share", hidden,
-                      [](const W& w) {
-                          return (*w.worst)->extent > 0 ? (*w.worst)->max / (*w.worst)->extent
-                                                        : nan;
-                      },
-                      "of the extent of the output"}},
-                    rows);
+    return table<W>(
+        {.id = "worst"},
+        {{"kind", hidden, &W::kind, "of the output: a position, an angle, or any other"},
+         {"at equal", hidden, &W::reading},
+         {"branch", hidden, [](const W& w) { return (*w.worst)->branch; }},
+         {"output", hidden, [](const W& w) { return (*w.worst)->channel; }},
+         {"unit", hidden, [](const W& w) { return symbol((*w.worst)->unit); }},
+         {"deviation", hidden, [](const W& w) { return (*w.worst)->max; }},
+         {"limit", hidden, [](const W& w) { return (*w.worst)->limit; }},
+         {"share", hidden,
+          [](const W& w) {
+              return (*w.worst)->extent > 0 ? (*w.worst)->max / (*w.worst)->extent : nan;
+          },
+          "of the extent of the output"}},
+        rows);
 }
 
 std::string about(const Model& model, const Comparison& comparison) {
@@ -256,7 +255,7 @@ Table deviation_table(const Comparison& comparison, const BranchComparison& bran
         {"uncertainty", size, [&](C c) { return doubt.channels[c].max; },
          "distance of the references, largest over the branch"}};
     const bool compared = !load.channels.empty() && !doubt.channels.empty();
-    Table result = table("deviation", columns,
+    Table result = table({.id = "deviation"}, columns,
                          compared ? shown(comparison, branch, load, each_rate) : std::vector<C>{});
     if (!compared) {
         result.notes.push_back("nothing compared: " +
@@ -282,7 +281,7 @@ Table leg_table(std::span<const BranchComparison> branches) {
     for (const auto& branch : branches)
         for (const auto& run : branch.runs) runs.push_back({&branch, &run});
     return table<OfRun>(
-        "legs",
+        {.id = "legs"},
         {{"branch", hidden, [](const OfRun& o) { return o.branch->branch; }},
          {"leg", words, [](const OfRun& o) { return solver_of(*o.run); }},
          {"outcome", words, [](const OfRun& o) { return elastocheck::name(o.run->outcome); }},
@@ -355,21 +354,18 @@ Table rate_error_table(const std::vector<RateError>& errors) {
     using enum Digits;
     using E = RateError;
     return table<E>(
-        "rate_errors",
-        {{"branch", words, [](const E& e) { return e.branch; }},
-         {"wheel", words, [](const E& e) { return e.wheel; }},
-         {"to", place, [](const E& e) { return e.to; }, "end of the branch"},
+        {.id = "rate_errors"},
+        {{"branch", words, &E::branch},
+         {"wheel", words, &E::wheel},
+         {"to", place, &E::to, "end of the branch"},
          {"unit", words, [](const E& e) { return symbol(e.unit); }},
-         {"error", percent, [](const E& e) { return e.off; },
-          "of the recursion's wheel rate; positive is too stiff"},
-         {"over", four, [](const E& e) { return e.over; }, "travel of the reference", "mm"},
-         {"travel", deviation, [](const E& e) { return e.travel; },
-          "recursion less reference at the end", "mm"},
-         {"force", deviation, [](const E& e) { return e.force; }, "likewise", "N"},
-         {"wheel rate", four, [](const E& e) { return e.wheel_rate; }, "of the reference", "N/mm"},
-         {"ride rate", four, [](const E& e) { return e.ride_rate; }, "with the tyre in series",
-          "N/mm"},
-         {"ride error", percent, [](const E& e) { return e.ride_off; }}},
+         {"error", percent, &E::off, "of the recursion's wheel rate; positive is too stiff"},
+         {"over", four, &E::over, "travel of the reference", "mm"},
+         {"travel", deviation, &E::travel, "recursion less reference at the end", "mm"},
+         {"force", deviation, &E::force, "likewise", "N"},
+         {"wheel rate", four, &E::wheel_rate, "of the reference", "N/mm"},
+         {"ride rate", four, &E::ride_rate, "with the tyre in series", "N/mm"},
+         {"ride error", percent, &E::ride_off}},
         errors);
 }
 

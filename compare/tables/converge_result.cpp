@@ -136,12 +136,15 @@ std::vector<ColumnOf<SideLevel>> order_columns() {
 void add(Result& result, const BranchOrders& side) {
     std::vector<SideLevel> levels;
     for (const auto& level : side.levels) levels.push_back({&side, &level});
-    Table& part = result.tables.emplace_back(table("orders", order_columns(), levels));
-    part.caption = fmt::format(
-        "branch '{}', the series over its order; error to the equilibrium leg, {}", side.branch,
-        side.failure.empty() ? fmt::format("references {:.1e} mm, {:.1e} deg apart",
-                                           side.uncertainty.mm, side.uncertainty.deg)
-                             : "which has no result to compare with: " + side.failure);
+    Table& part = result.tables.emplace_back(
+        table({.id = "orders",
+               .caption = fmt::format(
+                   "branch '{}', the series over its order; error to the equilibrium leg, {}",
+                   side.branch,
+                   side.failure.empty() ? fmt::format("references {:.1e} mm, {:.1e} deg apart",
+                                                      side.uncertainty.mm, side.uncertainty.deg)
+                                        : "which has no result to compare with: " + side.failure)},
+              order_columns(), levels));
     // A linear branch has none.
     if (const auto& nearest = side.levels.back().nearest; std::isfinite(nearest.radius))
         part.notes.push_back(fmt::format(

@@ -44,8 +44,7 @@ struct Judged {
 
 Table agreement_table(const Comparison& comparison) {
     using B = BranchComparison;
-    std::vector<ColumnOf<B>> columns{
-        {"branch", Digits::words, [](const B& b) { return b.branch; }}};
+    std::vector<ColumnOf<B>> columns{{"branch", Digits::words, &B::branch}};
     const std::pair<Unit, const char*> of[]{{Unit::mm, "positions"},
                                             {Unit::deg, "angles"},
                                             {Unit::newton, "forces"},
@@ -61,7 +60,7 @@ Table agreement_table(const Comparison& comparison) {
                                compared += distance_in(unit, comparison, b).second;
                            return compared;
                        }});
-    return table("agreement", columns, comparison.branches);
+    return table({.id = "agreement"}, columns, comparison.branches);
 }
 
 Table residual_table(const Comparison& comparison) {
@@ -72,7 +71,10 @@ Table residual_table(const Comparison& comparison) {
             for (const Leg by : legs)
                 if (by != run.leg && !run.curve.a.empty()) rows.push_back({&branch, &run, by});
     Table made = table<Judged>(
-        "residuals",
+        {.id = "residuals",
+         .caption =
+             "Residuals of each solution in the equations of the others, worst over the points",
+         .detail = true},
         {{"branch", words, [](const Judged& j) { return j.branch->branch; }},
          {"states of", words, [](const Judged& j) { return name(j.run->leg); }},
          {"judged by", words, [](const Judged& j) { return name(j.by); },
@@ -82,9 +84,6 @@ Table residual_table(const Comparison& comparison) {
          {"constraint", size, [](const Judged& j) { return 1e3 * j.left().length; }, "", "mm"},
          {"direction", hidden, [](const Judged& j) { return j.left().direction; }}},
         rows);
-    made.caption =
-        "Residuals of each solution in the equations of the others, worst over the points";
-    made.detail = true;
     return made;
 }
 
@@ -97,7 +96,7 @@ Table proof_table(const Comparison& comparison) {
         for (const auto& run : branch.runs)
             if (run.proved.points > 0) rows.push_back({&branch, &run});
     Table made = table<J>(
-        "proofs",
+        {.id = "proofs", .caption = "Proofs by interval arithmetic", .detail = true},
         {{"branch", words, [](const J& j) { return j.branch->branch; }},
          {"points of", words, [](const J& j) { return name(j.run->leg); }},
          {"points", whole, [](const J& j) { return j.run->proved.points; }},
@@ -122,8 +121,6 @@ Table proof_table(const Comparison& comparison) {
          {"theorem", hidden, [](const J& j) { return j.run->proved.theorem; },
           "what the certificate states besides"}},
         rows);
-    made.caption = "Proofs by interval arithmetic";
-    made.detail = true;
     return made;
 }
 

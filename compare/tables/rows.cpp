@@ -49,6 +49,244 @@ std::string behaviour_words(const ChannelStudy& study) {
 
 }  // namespace
 
+// ---- The columns, with name, unit, definition, and for readers digits, heading and place.
+
+std::vector<ColumnOf<CharacteristicRow>> CharacteristicRow::columns() {
+    using enum Digits;
+    using R = CharacteristicRow;
+    return {
+        {"output", words, &R::output},
+        {"unit", words, &R::unit},
+        {"value", four, &R::value,
+         "at a = 0 of the first branch, by the equilibrium leg; none if it is undefined"},
+        {"distance of references", hidden, &R::apart, "second reference less equilibrium leg"},
+        {"recursion", hidden, &R::recursion, "by the matrix that the recursion factorises there"},
+        {"off", deviation, &R::off, "recursion less equilibrium leg", "", "error"},
+        {"off %", three, &R::off_percent, "of the value", "%", "share"},
+        {"undefined", hidden, &R::undefined, "reason for a missing value"},
+        {"definition", hidden, &R::definition}};
+}
+
+std::vector<ColumnOf<StaticRow>> StaticRow::columns() {
+    using enum Digits;
+    using R = StaticRow;
+    return {{"wheel", hidden, &R::wheel},
+            {"output", hidden, &R::output},
+            {"unit", hidden, &R::unit},
+            {"drawn", hidden, &R::drawn, "in the design position, as the file has it"},
+            {"settled", hidden, &R::settled, "in equilibrium, after the trim where there is one"}};
+}
+
+std::vector<ColumnOf<ComplianceRow>> ComplianceRow::columns() {
+    using enum Digits;
+    using R = ComplianceRow;
+    std::vector<ColumnOf<R>> all{
+        {"branch", hidden, &R::branch},
+        {"a", hidden, &R::a, "parameter of the branch"},
+        {"unit", hidden, &R::unit, "of a"},
+        {"leg", hidden, &R::leg},
+        {"point", hidden, &R::point,
+         "where forces act and displacements are read: wheel centre or contact patch"},
+        {"wheel", hidden, &R::wheel, "whose displacement is given"},
+        {"answer", hidden, &R::answer,
+         "displacement of the point in mm, rotation of the wheel in deg, ground axes"},
+        {"loaded wheel", hidden, &R::loaded_wheel,
+         "on which forces and moments act, all jacks and tyres removed"}};
+    for (std::size_t k = 0; k < causes.size(); ++k)
+        all.push_back({causes[k], four, [k](const R& r) { return r.by_cause[k]; },
+                       k < 3 ? "response per kN" : "response per 100 N·m"});
+    all.push_back({"reciprocity", hidden, &R::reciprocity,
+                   "|C - Cᵀ| / |C| of the whole matrix at the wheel centres, rotations counted by "
+                   "the tyre's radius"});
+    return all;
+}
+
+std::vector<ColumnOf<ForceRow>> ForceRow::columns() {
+    using enum Digits;
+    using R = ForceRow;
+    return {{"branch", hidden, &R::branch},
+            {"end", hidden, &R::end, "parameter there"},
+            {"end unit", hidden, &R::end_unit},
+            {"element", hidden, &R::element},
+            {"output", hidden, &R::output},
+            {"unit", hidden, &R::unit},
+            {"value", hidden, &R::value, "of the equilibrium leg"},
+            {"error", hidden, &R::error, "recursion less equilibrium leg, in the same unit"},
+            {"share", hidden, &R::share, "of the value", "%"}};
+}
+
+std::vector<ColumnOf<LargestForceRow>> LargestForceRow::columns() {
+    using enum Digits;
+    using R = LargestForceRow;
+    return {{"branch", hidden, &R::branch},
+            {"at", hidden, &R::at, "parameter of the branch where it is largest"},
+            {"parameter unit", hidden, &R::parameter_unit},
+            {"element", hidden, &R::element},
+            {"output", hidden, &R::output, "its component of the largest absolute value"},
+            {"value", hidden, &R::value, "by the equilibrium leg"},
+            {"unit", hidden, &R::unit},
+            {"deformation", hidden, &R::deformation, "conjugate to the force, at the same point"},
+            {"deformation unit", hidden, &R::deformation_unit}};
+}
+
+std::vector<ColumnOf<FormulationRow>> FormulationRow::columns() {
+    using enum Digits;
+    using R = FormulationRow;
+    return {{"branch", hidden, &R::branch},
+            {"output", words, &R::output},
+            {"unit", words, &R::unit},
+            {"spread", three, &R::spread,
+             "largest less smallest value over the formulations, maximum over the branch"},
+            {"at", given, &R::at, "parameter there"},
+            {"parameter unit", words, &R::parameter_unit, "", "", "unit"},
+            {"smallest by", words, &R::smallest_by,
+             "the formulation that gives the smallest value there"},
+            {"largest by", words, &R::largest_by, "likewise"},
+            {"distance of references", size, &R::apart, "at most, at equal parameter"},
+            {"deviation", three, &R::deviation,
+             "of the recursion from the equilibrium leg at equal parameter, at most"}};
+}
+
+std::vector<ColumnOf<DefinitionRow>> DefinitionRow::columns() {
+    using enum Digits;
+    using R = DefinitionRow;
+    return {
+        {"branch", words, &R::branch},
+        {"output", words, &R::output, "the figure, and its other definition after @"},
+        {"unit", words, &R::unit},
+        {"difference", three, &R::difference,
+         "from the figure as defined here, by the equilibrium leg, largest over the branch"},
+        {"at", given, &R::at, "parameter there"},
+        {"parameter unit", words, &R::parameter_unit, "", "", "unit"},
+        {"drawn", three, &R::drawn, "difference in the design position"},
+        {"deviation", three, &R::deviation,
+         "of the recursion from the equilibrium leg in the figure, at equal parameter, at most"},
+        {"formula", hidden, &R::formula, "of the other definition"}};
+}
+
+std::vector<ColumnOf<StudyRow>> StudyRow::columns() {
+    using enum Digits;
+    using R = StudyRow;
+    return {{"branch", hidden, &R::branch},
+            {"method", words, &R::method},
+            {"reading", hidden, &R::reading},
+            {"output", words, &R::output},
+            {"unit", words, &R::unit},
+            {"behaviour", words, &R::behaviour,
+             "of the value with the largest step error on the branch"},
+            {"order", three, &R::order, "at which the largest step error over the branch falls"},
+            {"order error", size, &R::order_error, "its standard error", "", "±"},
+            {"as formal", hidden, &R::as_formal, "the order agrees with the method's"},
+            {"limit", hidden, &R::limit, "own limit for infinitely many steps, at the end"},
+            {"band", size, &R::band, "uncertainty of the limit", "", "± band", 13},
+            {"finest step error", size, &R::finest_step_error,
+             "largest over the branch with the most steps"},
+            {"gap", three, &R::gap, "own limit less reference at the end", "", "gap at end"},
+            {"largest gap", hidden, &R::gap_max},
+            {"rms gap", hidden, &R::gap_rms},
+            {"gap exponent", three, &R::gap_exponent,
+             "power of the parameter or abscissa with which it grows", "", "growth a^"},
+            {"distance of references", size, &R::apart},
+            {"range", hidden, &R::range, "of the reference over the branch"},
+            {"gap share", three, &R::gap_share, "gap at the end, of the range", "%", "of the range",
+             14},
+            {"constraint order", hidden, &R::constraint_order,
+             "order at which |Φ| of eq. (31) decreases at the end"},
+            {"constraint order error", hidden, &R::constraint_order_error, "its standard error"},
+            {"not studied", words, &R::not_studied, "why"}};
+}
+
+std::vector<ColumnOf<StepRow>> StepRow::columns() {
+    using enum Digits;
+    using R = StepRow;
+    return {{"branch", hidden, &R::branch},
+            {"method", hidden, &R::method},
+            {"reading", hidden, &R::reading},
+            {"output", hidden, &R::output},
+            {"unit", hidden, &R::unit},
+            {"steps", hidden, &R::steps},
+            {"outcome", hidden, &R::outcome},
+            {"end", hidden, &R::end, "value less own limit at the end"},
+            {"largest", hidden, &R::largest},
+            {"rms", hidden, &R::rms},
+            {"error", hidden, &R::error, "value less reference at the end: step error and gap"},
+            {"constraint error", hidden, &R::constraint_error, "or rad: |Φ| at the end, eq. (31)",
+             "m"}};
+}
+
+std::vector<ColumnOf<GapRow>> GapRow::columns() {
+    using enum Digits;
+    using R = GapRow;
+    std::vector<ColumnOf<R>> all{
+        {"branch", hidden, &R::branch},
+        {"reading", hidden, &R::reading},
+        {"output", words, &R::output},
+        {"unit", words, &R::unit},
+        {"whole", three, &R::whole,
+         "gap of the recursion in which forces do not follow the bodies"},
+        {"lever", three, &R::lever, "contribution of the lever of the stored force", "",
+         "stored force's lever"},
+        {"axis", three, &R::axis, "contribution of its axis and law", "", "its axis and law"},
+        {"load", three, &R::load, "contribution of the lever of the load", "", "load's lever"},
+        {"rest", size, &R::rest, "remaining gap when all three follow: 0 within the band"},
+        {"band", size, &R::band, "", "", "± band"},
+        {"lever share", three, &R::lever_share, "of the whole", "%", "share", 5},
+        {"axis share", three, &R::axis_share, "likewise", "%", "share", 6},
+        {"load share", three, &R::load_share, "likewise", "%", "share", 7}};
+    // In the order of GapShare::combinations.
+    constexpr std::array follows{
+        "nothing", "lever",          "axis",          "lever and axis",
+        "load",    "lever and load", "axis and load", "lever, axis and load"};
+    for (std::size_t k = 0; k < follows.size(); ++k)
+        all.push_back({fmt::format("gap, following: {}", follows[k]), hidden,
+                       [k](const R& r) { return r.following[k]; }});
+    all.push_back({"not attributed", words, &R::not_attributed, "why"});
+    return all;
+}
+
+std::vector<ColumnOf<TradeRow>> TradeRow::columns() {
+    using enum Digits;
+    using R = TradeRow;
+    return {{"leg", hidden, &R::leg},
+            {"method", words, &R::method},
+            {"steps", whole, &R::steps, "per branch; none if the method chooses them"},
+            {"tolerance", given, &R::tolerance,
+             "that is required of a method that chooses its steps", "mm"},
+            {"outcome", hidden, &R::outcome},
+            {"error", size, &R::error, "", "mm"},
+            {"angle error", size, &R::angle_error, "", "deg", "error"},
+            {"share", hidden, &R::share, "of the tolerance"},
+            {"solves", whole, &R::solves},
+            {"factorisations", whole, &R::factorisations},
+            {"evaluations", whole, &R::evaluations},
+            {"price", whole, &R::price,
+             "in back-substitutions: N/3 · factorisations + solves + evaluations"},
+            {"time", three, &R::time, "median over the rounds", "s"},
+            {"time ratio", three, &R::time_ratio, "to the equilibrium leg", "", "ratio"},
+            {"front", words, &R::front,
+             "no other is as accurate with s: fewer solves, f: fewer factorisations + evaluations, "
+             "t: less time"},
+            {"not ranked", words, &R::not_ranked, "why"},
+            {"recommended", hidden, &R::recommended},
+            {"detail", hidden, &R::detail, "of the outcome"}};
+}
+
+std::vector<ColumnOf<EffectRow>> EffectRow::columns() {
+    using enum Digits;
+    using R = EffectRow;
+    return {{"branch", hidden, &R::branch},
+            {"at", hidden, &R::at, "parameter of the branch"},
+            {"parameter unit", hidden, &R::parameter_unit},
+            {"output", hidden, &R::output},
+            {"unit", hidden, &R::unit},
+            {"number", hidden, &R::number, "path in the scene file"},
+            {"step", hidden, &R::step, "1 mm of a length, else 1 % of the value"},
+            {"effect", hidden, &R::effect, "derivative of the output times the step"},
+            {"undefined", hidden, &R::undefined, "reason for a missing effect"}};
+}
+
+// ---- The rows.
+
 std::vector<CharacteristicRow> characteristic_rows(const Comparison& comparison) {
     std::vector<CharacteristicRow> rows;
     if (comparison.branches.empty()) return rows;

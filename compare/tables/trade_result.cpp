@@ -64,8 +64,8 @@ Table accuracies(const Trade& trade) {
                                  {"confirmed error", r->confirmed}});
     using Named = NamedAccuracy;
     return table<Named>(
-        "accuracies",
-        {{"accuracy", Digits::hidden, [](const Named& a) { return a.name; }},
+        {.id = "accuracies"},
+        {{"accuracy", Digits::hidden, &Named::name},
          {"positions", Digits::hidden, [](const Named& a) { return a.accuracy.mm; }, "", "mm"},
          {"angles", Digits::hidden,
           [&](const Named& a) { return trade.angles ? a.accuracy.deg : nan; }, "", "deg"},

@@ -33,6 +33,7 @@
 #include "reports/command/options/running.hpp"
 #include "reports/command/program/command.hpp"
 #include "reports/document/document.hpp"
+#include "reports/document/inspection.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
@@ -281,6 +282,7 @@ SceneAnalyses solve_scene(const std::string& file, const ReportRequest& request,
     scene.only = request.only;
     scene.quick = request.quick;
     const Model& model = scene.model;
+    scene.inspected = inspection({scene.scene, model, scene.trim});
     const bool studies = !request.quick && request.only != "kc";
 
     const double after_legs = studies ? 0.25 : 1;
@@ -442,7 +444,7 @@ const Command report_command{
         add_set(command, request->settings);
         as_folder(command.add_option("-o,--output", request->folder,
                                      "folder for report.html, report.md, result.json, curves.csv, "
-                                     "numbers.csv, figures/"))
+                                     "figures/"))
             ->required();
         command.add_option("--tolerance", request->tolerance,
                            "required accuracy (default: 0.01mm,0.001deg,1%)");

@@ -167,13 +167,12 @@ compare::Table numbers_of(const Against& against) {
     const auto number = [](const std::optional<Number>& n) { return n ? n->value : nan; };
     const auto either = [](const Change& c) { return *(c.is ? c.is : c.was); };
     compare::Table table = compare::table<Change>(
-        "numbers",
+        {.id = "numbers", .caption = "Numbers of the scene that differ"},
         {{"number", Digits::words, [=](const Change& c) { return either(c).path; }},
          {"base", Digits::given, [=](const Change& c) { return number(c.was); }},
          {"variant", Digits::given, [=](const Change& c) { return number(c.is); }},
          {"unit", Digits::words, [=](const Change& c) { return either(c).unit; }}},
         against.numbers);
-    table.caption = "Numbers of the scene that differ";
     return table;
 }
 
@@ -183,21 +182,20 @@ compare::Table figures_of(const Against& against, bool noticed) {
     std::vector<F> rows = against.figures;
     std::erase_if(rows, [&](const F& f) { return noticed == (f.noticed <= 1); });
     compare::Table table = compare::table<F>(
-        "figures",
+        {.id = "figures",
+         .caption = noticed ? "Figures at the design position that differ"
+                            : "Figures that differ by less than an engineer notices",
+         .detail = !noticed},
         {{"figure", Digits::words, [](const F& f) { return as_words(f.output); }},
-         {"output", Digits::hidden, [](const F& f) { return f.output; }},
-         {"base", Digits::four, [](const F& f) { return f.base; }},
-         {"variant", Digits::four, [](const F& f) { return f.variant; }},
-         {"unit", Digits::words, [](const F& f) { return f.unit; }},
-         {"difference", Digits::deviation, [](const F& f) { return f.difference; }},
-         {"unit of difference", Digits::words, [](const F& f) { return f.unit_of_difference; }, "",
-          "", "its unit"},
-         {"noticed", Digits::hidden, [](const F& f) { return f.noticed; },
+         {"output", Digits::hidden, &F::output},
+         {"base", Digits::four, &F::base},
+         {"variant", Digits::four, &F::variant},
+         {"unit", Digits::words, &F::unit},
+         {"difference", Digits::deviation, &F::difference},
+         {"unit of difference", Digits::words, &F::unit_of_difference, "", "", "its unit"},
+         {"noticed", Digits::hidden, &F::noticed,
           "ratio to what an engineer notices; none: no value of one of them"}},
         rows);
-    table.caption = noticed ? "Figures at the design position that differ"
-                            : "Figures that differ by less than an engineer notices";
-    table.detail = !noticed;
     return table;
 }
 
@@ -222,8 +220,10 @@ compare::Table largest_of(const Against& against) {
          {"parameter unit", Digits::words, [](const CurveRow& row) { return row.branch->unit; }, "",
           "", "its unit"},
          {"noticed", Digits::hidden, [](const CurveRow& row) { return row.curve->noticed; }}});
-    compare::Table table = compare::table("differences", columns, rows);
-    table.caption = "Largest difference over each branch, at equal load or drive";
+    compare::Table table =
+        compare::table({.id = "differences",
+                        .caption = "Largest difference over each branch, at equal load or drive"},
+                       columns, rows);
     return table;
 }
 
@@ -241,8 +241,7 @@ compare::Table lines_of(const Against& against) {
           [](const CurveRow& row) { return row.line == &row.curve->base ? "base" : "variant"; }},
          {"parameter", Digits::place, [](const CurveRow& row) { return row.line->a[row.k]; }},
          {"value", Digits::four, [](const CurveRow& row) { return row.line->y[row.k]; }}});
-    compare::Table table = compare::table("lines", columns, rows);
-    table.detail = true;
+    compare::Table table = compare::table({.id = "lines", .detail = true}, columns, rows);
     return table;
 }
 

@@ -8,7 +8,6 @@
 #include "compare/tables/compare_result.hpp"
 #include "compare/tables/rows.hpp"
 #include "models/overloaded.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/given/wheels.hpp"
 #include "reports/render/render.hpp"
@@ -20,34 +19,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 using compare::Leg;
-
-json model_json(const Model& model, const recursive::Diagnosis& d,
-                const recursive::Conditioning& condition) {
-    json bodies = json::array(), joints = json::array(), elements = json::array(),
-         idle = json::array(), redundant = json::array(), omitted = json::array();
-    for (const auto& body : model.bodies) bodies.push_back(body.name);
-    for (const auto& joint : model.joints) joints.push_back(joint.name);
-    for (const auto& elastic : model.elastics) elements.push_back(elastic.name);
-    for (const auto& mode : d.idle) idle.push_back(mode.description);
-    for (const auto& r : d.redundant)
-        redundant.push_back(
-            {{"joint", model.joints[static_cast<std::size_t>(r.joint)].name}, {"rows", r.rows}});
-    for (const auto& o : model.omitted) omitted.push_back({{"what", o.what}, {"why", o.why}});
-    return {{"bodies", bodies},
-            {"joints", joints},
-            {"elements", elements},
-            {"coordinates", d.coordinates},
-            {"constraints", d.rows},
-            {"unknowns", d.coordinates + d.rows},
-            {"rank", d.rank},
-            {"degrees_of_freedom", d.degrees_of_freedom()},
-            {"idle_modes", idle},
-            {"redundant", redundant},
-            {"left_out", omitted},
-            {"imbalance_N", d.imbalance},
-            {"condition_equilibrated", condition.equilibrated},
-            {"condition_raw", condition.raw}};
-}
 
 // Moved and held drivers of a branch.
 json drivers_json(const Model& model, const Branch& branch) {
@@ -76,15 +47,6 @@ json channels_json(const std::vector<compare::Channel>& channels) {
                         {"kind", name(channel.kind())},
                         {"definition", channel.definition}});
     return list;
-}
-
-json numbers_json(const Scene& scene) {
-    json numbers = json::array();
-    for (const auto& n : scene.numbers) {
-        numbers.push_back({{"path", n.path}, {"value", n.value}, {"unit", n.unit}});
-        for (const auto& [side, value] : n.sides) numbers.back()["sides"][side] = value;
-    }
-    return numbers;
 }
 
 json legs_json(const std::vector<compare::LegRun>& runs,
@@ -135,24 +97,6 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all,
             {"at_equal_abscissa", reading_json(pair.equal_abscissa, all, determined)}};
 }
 
-json trim_json(const compare::TrimRecord& trim) {
-    json adjusted = json::array(), conditions = json::array();
-    for (const auto& a : trim.adjusted)
-        adjusted.push_back(
-            {{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
-    for (const auto& c : trim.conditions)
-        conditions.push_back({{"name", c.name},
-                              {"unit", symbol(c.unit)},
-                              {"requested", c.target},
-                              {"missed", c.missed},
-                              {"missed_by_confirming_leg", c.confirmed}});
-    return {{"adjusted", adjusted},
-            {"conditions", conditions},
-            {"iterations", trim.iterations},
-            {"bushings", compare::name(trim.bushings)},
-            {"confirmed_by", name(trim.confirmed_by)}};
-}
-
 json wheels_json(const Model& model) {
     json names = json::array(), vehicle = nullptr;
     for (const auto& wheel : model.wheels)
@@ -192,11 +136,7 @@ json document(const std::string& reproduce, const Provenance& provenance) {
 }
 
 json scene_head(const SceneAnalyses& s) {
-    json head = {{"name", s.scene.name},
-                 {"source", s.scene.source},
-                 {"input_hash", s.hash},
-                 {"model", model_json(s.model, s.diagnosis, s.conditioning)}};
-    if (s.trim) head["trim"] = trim_json(*s.trim);
+    json head = {{"name", s.scene.name}, {"source", s.scene.source}, {"input_hash", s.hash}};
     if (!s.warnings.empty()) head["warnings"] = s.warnings;
     return head;
 }
@@ -247,7 +187,6 @@ json described_channels(const Model& model, const compare::Comparison& compariso
 void add_compared(json& part, const SceneAnalyses& scene) {
     const Model& model = scene.model;
     const compare::Comparison& comparison = scene.comparison;
-    part["numbers"] = numbers_json(scene.scene);
     part["channels"] = described_channels(model, comparison);
     part["branches"] = branches_json(scene);
     if (!model.wheels.empty() && !comparison.branches.empty()) part["wheels"] = wheels_json(model);
@@ -290,9 +229,9 @@ compare::Table recommended_table(const Recommended& recommended) {
             points.push_back({branch, profile.a[k], profile.deviation[k]});
     using enum compare::Digits;
     return compare::table<Point>(
-        "recommended",
-        {{"branch", words, [](const Point& p) { return p.branch; }},
-         {"parameter", place, [](const Point& p) { return p.a; }},
+        {.id = "recommended"},
+        {{"branch", words, &Point::branch},
+         {"parameter", place, &Point::a},
          {"error", size, [](const Point& p) { return p.error.mm; }, "", "mm"},
          {"angle error", size, [](const Point& p) { return p.error.deg; }, "", "deg"}},
         points);
@@ -310,6 +249,7 @@ json results_json(const SceneAnalyses& s) {
     if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);
     add_tables(compared, s);
     json results = json::array({json_of(compared)});
+    if (!s.inspected.tables.empty()) results.push_back(json_of(s.inspected));
     if (s.study)
         results.push_back(
             json_of(result_of(s.model, compare::ConvergenceStudies{.methods = s.study})));

@@ -23,8 +23,7 @@ std::string driven_name(const Model& model, const Driven& driven);
 // null. `reproduce` is the command that made it.
 nlohmann::ordered_json document(const std::string& reproduce, const Provenance& provenance);
 
-// A scene in the document without results: name, source, hash of its file, compiled
-// model, trim, warnings.
+// A scene in the document without results: name, source, hash of its file, warnings.
 nlohmann::ordered_json scene_head(const SceneAnalyses& scene);
 // A compared scene: its curves and deviations (compared_json); with the results of all other
 // analyses of it (scene_json).

@@ -53,18 +53,21 @@ std::vector<compare::Cell> row_of(const char* what, const Size& size) {
 
 void add_size(Result& result, const Model& model, const recursive::Diagnosis& d) {
     const recursive::Conditioning condition = recursive::conditioning(model, d);
-    result.about = {
-        model.name,
-        fmt::format(
-            "degrees of freedom: {}, {} of them idle; constraints: {} of rank {}; condition "
-            "of eq. (24): {:.2g} equilibrated, {:.2g} as it stands",
-            d.degrees_of_freedom(), d.idle.size(), d.rows, d.rank, condition.equilibrated,
-            condition.raw)};
+    result.about = {model.name};
     add(result,
         {.columns = {words("size"), number("bodies"), number("joints"), number("elements"),
                      number("coordinates"), number("constraints"), number("unknowns")},
          .rows = {row_of("as written", model.as_written), row_of("as solved", model.as_solved)},
-         .id = "size"});
+         .id = "size",
+         .caption = "size"});
+    add(result, {.columns = {number("degrees of freedom"), number("idle"), number("rank"),
+                             number("condition", "", Digits::size),
+                             number("condition as it stands", "", Digits::size),
+                             number("imbalance", "N", Digits::given)},
+                 .rows = {{1.0 * d.degrees_of_freedom(), 1.0 * std::ssize(d.idle), 1.0 * d.rank,
+                           condition.equilibrated, condition.raw, d.imbalance}},
+                 .id = "diagnosis",
+                 .caption = "as drawn; condition of eq. (24), equilibrated"});
 }
 
 // The matrix of a step, bordered by the idle modes and redundant rows, and its factors.
@@ -123,8 +126,10 @@ void add_trim(Result& result, const compare::TrimRecord& trim) {
         conditions.push_back(
             {c.name, c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed)});
     add(result,
-        {.columns = {words("number"), number("by", "", Digits::given), words("unit"),
-                     words("makes")},
+        {.columns = {words("number"),
+                     number("by", "", Digits::four),
+                     words("unit"),
+                     {.name = "makes", .words = true, .digits = Digits::note}},
          .rows = adjusted,
          .id = "trim",
          .caption = fmt::format(
@@ -138,7 +143,8 @@ void add_trim(Result& result, const compare::TrimRecord& trim) {
         {.columns = {words("until"), number("is", "", Digits::given), words("unit"),
                      number("met to", "", Digits::size), number("confirmed to", "", Digits::size)},
          .rows = conditions,
-         .id = "conditions"});
+         .id = "conditions",
+         .caption = "conditions that the trim meets"});
 }
 
 // The branches, and where each begins: the settled displacements of the main outputs.
@@ -290,8 +296,8 @@ Result shortened(Result result) {
     constexpr std::size_t max_listed = 40;
     for (Table& table : result.tables) {
         if (table.rows.size() <= max_listed || table.id == "outputs") continue;
-        table.notes.push_back(
-            fmt::format("... and {} more; --verbose lists all", table.rows.size() - max_listed));
+        table.notes.push_back(fmt::format("... and {} more; inspect --verbose lists all",
+                                          table.rows.size() - max_listed));
         table.rows.resize(max_listed);
     }
     return result;

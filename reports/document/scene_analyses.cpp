@@ -6,13 +6,6 @@
 
 namespace elastocheck::reports {
 
-SceneAnalyses compiled(Scene scene, Model model) {
-    SceneAnalyses analyses{.scene = std::move(scene), .model = std::move(model)};
-    analyses.diagnosis = recursive::diagnose(analyses.model);
-    analyses.conditioning = recursive::conditioning(analyses.model, analyses.diagnosis);
-    return analyses;
-}
-
 void add_comparison(SceneAnalyses& scene, compare::Comparison comparison) {
     scene.comparison = std::move(comparison);
     for (const auto& branch : scene.comparison.branches)

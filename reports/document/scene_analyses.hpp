@@ -15,7 +15,6 @@
 #include "elastocheck/compare.hpp"
 #include "elastocheck/scene.hpp"
 #include "elastocheck/trim.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/against.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/given/measurement.hpp"
@@ -49,11 +48,10 @@ struct SceneAnalyses {
     Model model{};
     std::optional<compare::TrimRecord> trim{};
     std::vector<std::string> warnings{};
-    std::string hash{};  // of the file
+    std::string hash{};           // of the file
+    compare::Result inspected{};  // as `inspect` has it
     compare::Comparison comparison{};
     std::vector<std::string> reasons{};  // why it cannot be judged; empty when it can
-    recursive::Diagnosis diagnosis{};
-    recursive::Conditioning conditioning{};
     // per branch: where tyres and springs with loose seats lift off and return, in words
     std::vector<std::vector<std::string>> lift_offs{};
     Drawing drawing{};
@@ -73,8 +71,6 @@ struct SceneAnalyses {
     bool conclusive() const { return reasons.empty(); }
 };
 
-// The scene, its model and their diagnosis, without analyses.
-SceneAnalyses compiled(Scene scene, Model model);
 // Adds a comparison, the reasons why it is not conclusive, lift-offs and the drawing.
 void add_comparison(SceneAnalyses& scene, compare::Comparison comparison);
 

@@ -10,6 +10,7 @@
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/tables/sheet.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 
@@ -21,14 +22,11 @@ void fail_at(const std::string& file, int line, const std::string& what) {
 double number_in(std::string_view cell, const std::string& file, int line,
                  const std::string& column) {
     if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
-    double value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
-        fail_at(file, line,
-                fmt::format(
-                    "{}: {} is not a number; allowed: a number with a decimal point, or nothing",
+    if (const auto value = finite_number(cell)) return *value;
+    fail_at(
+        file, line,
+        fmt::format("{}: {} is not a number; allowed: a number with a decimal point, or nothing",
                     column, reader::quote(cell)));
-    return value;
 }
 
 double number_or_none(std::string_view cell, const std::string& file, int line,

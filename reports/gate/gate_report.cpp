@@ -93,12 +93,11 @@ compare::Table offences_table(const std::vector<WorstOffence>& worst, bool with_
          "ratio to the smallest change that an engineer notices", "", "times noticeable"},
         {"tolerances", three, [](const WorstOffence& w) { return w.offence->share(); },
          "ratio to the tolerance; of a limit 1 + excess / |limit|", "", "times the tolerance"},
-        {"numbers", whole, [](const WorstOffence& w) { return w.numbers; },
-         "of the channel out of it"}};
+        {"numbers", whole, &WorstOffence::numbers, "of the channel out of it"}};
     if (with_scene)
         columns.insert(columns.begin(),
                        {"scene", words, [](const WorstOffence& w) { return w.scene->file; }});
-    return compare::table("offences", columns, worst);
+    return compare::table({.id = "offences"}, columns, worst);
 }
 
 // Truncates a list to `most` entries; returns "... and 3 more channels", or nothing.
@@ -379,12 +378,12 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
     using enum compare::Digits;
     using Gated = GatedScene;
     const compare::Table table = compare::table<Gated>(
-        "scenes",
-        {{"scene", words, [](const Gated& s) { return s.file; }},
+        {.id = "scenes"},
+        {{"scene", words, &Gated::file},
          {"verdict", words, [](const Gated& s) { return verdict_of(s); }},
          {"numbers compared", whole, [](const Gated& s) { return s.verdict.compared; }},
          {"tolerance class", words, [](const Gated& s) { return class_of(s); }},
-         {"last acceptance", words, [](const Gated& s) { return s.reason; }},
+         {"last acceptance", words, &Gated::reason},
          {"notes", words,
           [](const Gated& s) { return fmt::format("{}", fmt::join(s.notes, "; ")); }}},
         std::span(scenes).first(shown));

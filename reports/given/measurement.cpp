@@ -151,7 +151,7 @@ compare::Table deviation_table(const Measured& measured, const compare::Measured
     std::vector<compare::ColumnOf<Row>> columns{
         {"reading", hidden,
          [&](const Row&) { return reading_name(measured, reading, comparison); }},
-        {"test", words, [](const Row& r) { return r.branch; }},
+        {"test", words, &Row::branch},
         {"output", words, [&](const Row& r) { return comparison.channels[r.channel].name; }},
         {"unit", words, [&](const Row& r) { return symbol(comparison.channels[r.channel].unit); }},
         {"points", whole, [](const Row& r) { return r.compared(); }},
@@ -174,9 +174,10 @@ compare::Table deviation_table(const Measured& measured, const compare::Measured
         columns.push_back({fmt::format("{} rms", name(leg)), shown ? rounded : hidden,
                            [=](const Row& r) { return deviation_of(r).rms; }, "", "", "rms"});
     }
-    compare::Table table = compare::table("measured", columns, reading.rows);
-    table.caption =
-        "Deviation from the measurement, " + reading_name(measured, reading, comparison);
+    compare::Table table = compare::table({.id = "measured",
+                                           .caption = "Deviation from the measurement, " +
+                                                      reading_name(measured, reading, comparison)},
+                                          columns, reading.rows);
     return table;
 }
 
@@ -184,22 +185,21 @@ compare::Table loop_table(const Measured& measured, const compare::Comparison& c
     using enum compare::Digits;
     using Loop = compare::Hysteresis;
     compare::Table table = compare::table<Loop>(
-        "loops",
-        {{"branch", words, [](const Loop& l) { return l.branch; }},
+        {.id = "loops",
+         .caption = "Hysteresis of the measurement: its two ways, whose mean is compared"},
+        {{"branch", words, &Loop::branch},
          {"output", words, [&](const Loop& l) { return comparison.channels[l.channel].name; }},
          {"unit", words,
           [&](const Loop& l) { return symbol(comparison.channels[l.channel].unit); }},
-         {"width", size, [](const Loop& l) { return l.width; }, "largest difference of both ways",
-          "", "largest width"},
-         {"at", place, [](const Loop& l) { return l.at; }},
+         {"width", size, &Loop::width, "largest difference of both ways", "", "largest width"},
+         {"at", place, &Loop::at},
          {"place unit", words,
           [&](const Loop& l) {
               return symbol(unit_of_place(measured, l.by_parameter, l.branch, comparison));
           },
           "", "", "its unit"},
-         {"points", whole, [](const Loop& l) { return l.points; }}},
+         {"points", whole, &Loop::points}},
         measured.found.loops);
-    table.caption = "Hysteresis of the measurement: its two ways, whose mean is compared";
     return table;
 }
 
@@ -223,7 +223,7 @@ compare::Table point_table(const Measured& measured, const compare::Comparison& 
     };
     using V = PointValue;
     compare::Table table = compare::table<V>(
-        "points",
+        {.id = "points", .detail = true},
         {{"point", whole, [](const V& v) { return v.point + 1; }},
          {"branch", words,
           [&](const V& v) {
@@ -238,7 +238,6 @@ compare::Table point_table(const Measured& measured, const compare::Comparison& 
           [&](const V& v) { return symbol(comparison.channels[v.column->channel].unit); }},
          {"value", four, [](const V& v) { return v.column->values[v.point]; }, "absolute"}},
         rows);
-    table.detail = true;
     return table;
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
+#include "reports/page/common.hpp"
 #include "reports/render/render.hpp"
 #include "reports/text/numbers.hpp"
 
@@ -57,6 +59,84 @@ Figure scatter_of(const compare::Chart& chart, const Table& table) {
     return figure;
 }
 
+std::size_t place_in(const std::vector<std::string>& list, const std::string& word) {
+    return static_cast<std::size_t>(std::ranges::find(list, word) - list.begin());
+}
+
+// The curves of the table by their order there: those that are drawn as lines, and as rings.
+std::pair<std::vector<DrawnCurve>, std::vector<DrawnCurve>> curves_in(const compare::Chart& chart,
+                                                                      const Table& table) {
+    std::vector<DrawnCurve> drawn, given;
+    const std::size_t of = place_of(table, chart.by[0]), whose = place_of(table, chart.by[1]);
+    const auto numbers = chart_rows(chart, table);
+    for (std::size_t r = 0; r < numbers.size(); ++r) {
+        const DrawnCurve like{std::get<std::string>(table.rows[r][of]),
+                              std::get<std::string>(table.rows[r][whose])};
+        auto& list = place_in(chart.rings, like.of) < chart.rings.size() ? given : drawn;
+        auto curve = std::ranges::find_if(list, [&](const DrawnCurve& other) {
+            return other.of == like.of && other.whose == like.whose;
+        });
+        if (curve == list.end()) curve = list.insert(curve, like);
+        const bool gap = !std::isfinite(numbers[r][0]) || !std::isfinite(numbers[r][1]);
+        curve->rows.push_back(gap ? std::vector<double>{} : numbers[r]);
+    }
+    return {drawn, given};
+}
+
+// One legend entry for each value of by[0] and of by[1], in place of one a curve.
+Figure lines_of(const compare::Chart& chart, const Table& table) {
+    using enum Series::Style;
+    constexpr Colour case_colours[] = {vermilion, blue, green, purple, ochre, pink, slate, sky};
+    const auto [drawn, given] = curves_in(chart, table);
+    const auto cases = compare::distinct(drawn, &DrawnCurve::of);
+    auto wheels = compare::distinct(drawn, &DrawnCurve::whose);
+    std::erase(wheels, "");
+    const bool several = cases.size() > 1, by_wheel = drawn.size() > cases.size();
+    const auto colour_of = [&](std::size_t k) { return case_colours[k % std::size(case_colours)]; };
+    Figure figure{.x = heading_of(table.columns[place_of(table, chart.x)]),
+                  .y = heading_of(table.columns[place_of(table, chart.y.front())])};
+    auto& legend = figure.legend;
+    for (std::size_t k = 0; several && k < cases.size(); ++k)
+        legend.push_back(
+            {.title = cases[k], .style = k == 0 ? heavy : line, .colour = colour_of(k)});
+    const std::size_t sides = legend.size();
+    for (std::size_t w = 0; by_wheel && w < wheels.size(); ++w)
+        legend.push_back({.title = wheels[w],
+                          .style = w == 0 ? line : dashed,
+                          .colour = several ? ink : colour_of(w)});
+    for (std::size_t k = 0; k < cases.size(); ++k)
+        for (const auto& curve : compare::where(drawn, &DrawnCurve::of, cases[k])) {
+            const std::size_t w = place_in(wheels, curve.whose);
+            const bool of_wheel = w < wheels.size(), second = by_wheel && of_wheel && w > 0;
+            Series series{.title = several ? curve.of : "",
+                          .style = several && k == 0 ? heavy : line,
+                          .colour = colour_of(several  ? k
+                                              : second ? w
+                                                       : 0),
+                          .rows = curve.rows};
+            if (second) series.style = dashed;
+            if (several) series.keys.push_back(k);
+            if (by_wheel && of_wheel) series.keys.push_back(sides + w);
+            if (series.keys.empty()) series.keys = {0};
+            if (of_wheel) series.title += (several ? ", " : "") + curve.whose;
+            if (series.title.empty()) series.title = "full solution";
+            figure.series.push_back(std::move(series));
+        }
+    for (const auto& curve : given) {
+        const bool first = curve.of == chart.rings.front();
+        Series series{.title = curve.of,
+                      .style = rings,
+                      .colour = first ? purple : green,
+                      .mark = first ? 5 : 4};
+        const auto entry = std::ranges::find(legend, curve.of, &Series::title);
+        series.keys = {static_cast<std::size_t>(entry - legend.begin())};
+        if (entry == legend.end() && !legend.empty()) legend.push_back(series);
+        series.rows = curve.rows;
+        figure.series.push_back(std::move(series));
+    }
+    return figure;
+}
+
 // Bars: rows of (low end of the bar, high end, height). Marks are vertical lines.
 Figure bars_of(const compare::Chart& chart, const Table& table) {
     Figure figure{.description = fmt::format("{} of {}.", chart.title, chart.only),
@@ -92,10 +172,11 @@ Figure ranking_of(const compare::Chart& chart, const Table& table) {
         if (has_row(chart, row))
             ranked.push_back(
                 {std::get<std::string>(row[place_of(table, chart.x)]), numbers[ranked.size()]});
-    std::ranges::stable_sort(
-        ranked, [](const Ranked& a, const Ranked& b) { return a.values[1] > b.values[1]; });
+    std::ranges::stable_sort(ranked, std::ranges::greater{},
+                             [](const Ranked& r) { return std::abs(r.values[1]); });
     ranked.resize(std::min(ranked.size(), max_bars));
-    Figure figure{.description = fmt::format("{} of {}:", chart.axis, chart.only), .x = chart.axis};
+    Figure figure{.description = chart.axis + (chart.only.empty() ? "" : " of " + chart.only) + ":",
+                  .x = chart.axis};
     Series bars{.style = Series::Style::bars, .colour = blue},
         intervals{.title = "interval of 95 %"};
     for (const auto& [name, values] : ranked) {
@@ -122,9 +203,10 @@ Figure ranking_of(const compare::Chart& chart, const Table& table) {
 Figure figure_of(const compare::Chart& chart, const Table& table, const std::string& y) {
     using enum compare::Chart::Kind;
     if (chart.kind != curves) {
-        Figure figure = chart.kind == points ? scatter_of(chart, table)
-                        : chart.kind == bars ? bars_of(chart, table)
-                                             : ranking_of(chart, table);
+        Figure figure = chart.kind == lines    ? lines_of(chart, table)
+                        : chart.kind == points ? scatter_of(chart, table)
+                        : chart.kind == bars   ? bars_of(chart, table)
+                                               : ranking_of(chart, table);
         figure.id = chart.id;
         figure.title = chart.title;
         return figure;

@@ -74,6 +74,13 @@ struct SweepCurve {
     std::vector<std::pair<std::size_t, std::size_t>> order{};  // curve and point
 };
 
+// A curve of a figure: of a load case or a spring, "measured" or a candidate, and of a wheel, where it is of
+// one. A row is abscissa and ordinate; an empty row is a gap.
+struct DrawnCurve {
+    std::string of, whose{};
+    std::vector<std::vector<double>> rows{};
+};
+
 // Up to `count` evenly spaced indices of 0 ... size - 1, including both ends.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
 

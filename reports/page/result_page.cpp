@@ -4,6 +4,7 @@
 
 #include "reports/files/templates.hpp"
 #include "reports/page/chart.hpp"
+#include "reports/page/common.hpp"
 #include "reports/page/plot.hpp"
 #include "reports/page/svg.hpp"
 #include "reports/render/render.hpp"
@@ -40,9 +41,7 @@ std::string result_page(const compare::Result& result, const std::string& title,
         data["tables"].push_back(page_table(table));
         data["tables"].back()["folded"] = table.rows.size() > max_rows;
     }
-    Table by{.caption = "Made by"};
-    for (const char* name : {"what", "which"})
-        by.columns.push_back({.name = name, .words = true, .digits = Digits::words});
+    Table by = words_table("Made by", {"what", "which"});
     for (const auto& [what, which] : made) by.rows.push_back({what, which});
     data["provenance"] = page_table(by);
     return render("html/study", data, Escape::html);

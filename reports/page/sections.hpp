@@ -34,8 +34,6 @@ std::optional<Section> price_section(const SceneAnalyses& scene);
 std::optional<Section> convergence_section(const SceneAnalyses& scene);
 std::optional<Section> references_section(const SceneAnalyses& scene);
 std::optional<Section> formulations_section(const SceneAnalyses& scene);
-std::optional<Section> stations_section(const SceneAnalyses& scene);
-std::optional<Section> matrices_section(const SceneAnalyses& scene);
 std::optional<Section> model_section(const SceneAnalyses& scene);
 
 // Rates for the first screen; without columns if the scene has none.

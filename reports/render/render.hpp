@@ -54,18 +54,4 @@ nlohmann::ordered_json json_of(const compare::Result& result);
 // left-aligned, lengths in mm.
 std::string text(const compare::Table& table);
 
-// The same of rows.
-template <class Row>
-std::string csv(const std::vector<Row>& rows) {
-    return csv(compare::table_of(rows));
-}
-template <class Row>
-nlohmann::ordered_json table_json(const std::vector<Row>& rows) {
-    return table_json(compare::table_of(rows));
-}
-template <class Row>
-std::string text(const std::vector<Row>& rows) {
-    return text(compare::table_of(rows));
-}
-
 }  // namespace elastocheck::reports

@@ -129,8 +129,10 @@ compare::Table deviations(const CandidateBranch& branch, const CandidateJudgemen
     add_reading(columns, "at equal parameter", load, symbol(branch.unit), &Row::parameter);
     add_reading(columns, "at equal abscissa", travel,
                 abscissa == nullptr ? "" : symbol(abscissa->unit), &Row::abscissa);
-    compare::Table table = compare::table("deviations", columns, rows_of(branch, j, comparison));
-    table.caption = fmt::format("branch '{}': {} points", branch.branch, branch.points);
+    compare::Table table = compare::table(
+        {.id = "deviations",
+         .caption = fmt::format("branch '{}': {} points", branch.branch, branch.points)},
+        columns, rows_of(branch, j, comparison));
     if (!std::isnan(branch.from))
         table.caption += fmt::format(" from {:.6g} to {:.6g} {}", branch.from + 0.0,
                                      branch.to + 0.0, symbol(branch.unit));
@@ -157,10 +159,9 @@ struct StateRow {
 std::vector<ColumnOf<StateRow>> columns_of_states(bool of_all) {
     const Digits digits = of_all ? Digits::hidden : Digits::size;
     return {{"branch", Digits::hidden, [](const StateRow& s) { return s.source->branch; }},
-            {"equations of", of_all ? Digits::hidden : Digits::words,
-             [](const StateRow& s) { return s.leg; }},
-            {"parameter", of_all ? Digits::hidden : Digits::given,
-             [](const StateRow& s) { return s.a; }, "of the state; of the largest force", "", "at"},
+            {"equations of", of_all ? Digits::hidden : Digits::words, &StateRow::leg},
+            {"parameter", of_all ? Digits::hidden : Digits::given, &StateRow::a,
+             "of the state; of the largest force", "", "at"},
             {"force", digits, [](const StateRow& s) { return s.residuals.force; }, "", "N"},
             {"moment", digits, [](const StateRow& s) { return s.residuals.moment; }, "", "N·m"},
             {"constraint", digits, [](const StateRow& s) { return 1e3 * s.residuals.length; }, "",
@@ -186,14 +187,16 @@ void add_states(const compare::StateResiduals& source, compare::Result& result) 
         }
         if (!list->empty()) largest.push_back(worst);
     }
-    compare::Table table = compare::table("states", columns_of_states(false), largest);
-    table.caption = fmt::format("branch '{}': its {} states in the equations of the legs",
-                                source.branch, source.a.size());
+    compare::Table table = compare::table(
+        {.id = "states",
+         .caption = fmt::format("branch '{}': its {} states in the equations of the legs",
+                                source.branch, source.a.size())},
+        columns_of_states(false), largest);
     if (!source.why_not.empty())
         table.notes.push_back(fmt::format("{} of its states are not judged: {}",
                                           source.truth.empty() ? "all" : "some", source.why_not));
     result.tables.push_back(std::move(table));
-    result.tables.push_back(compare::table("residuals", columns_of_states(true), states));
+    result.tables.push_back(compare::table({.id = "residuals"}, columns_of_states(true), states));
 }
 
 // Largest imbalance of the states in the equilibrium leg [N], [N·m]; 0 without states;

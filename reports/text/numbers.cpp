@@ -50,6 +50,14 @@ double parsed_number(std::string_view text) {
     return value;
 }
 
+std::optional<double> finite_number(std::string_view word) {
+    if (word.starts_with('+')) word.remove_prefix(1);  // from_chars rejects a plus
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool whole = error == std::errc{} && end == word.data() + word.size();
+    return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 std::string short_number(double value) {
     int digits = 1;
     while (digits < 4 && parsed_number(fmt::format("{:.{}e}", value, digits - 1)) !=

@@ -1,6 +1,7 @@
 // Formatting of numbers for readers.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,8 @@ std::string signed_number(double value, int digits = 3);  // with a plus
 
 // The number at the start of a text, with a decimal point in any locale. NaN without one.
 double parsed_number(std::string_view text);
+// The finite number that a word is, likewise, also with a plus.
+std::optional<double> finite_number(std::string_view word);
 
 // Up to four significant digits, as few as needed: "−80", "21.33".
 std::string short_number(double value);

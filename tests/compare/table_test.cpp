@@ -24,7 +24,8 @@ void expect_whole(const std::vector<Row>& rows, std::size_t count) {
     for (const auto& row : table.rows) {
         ASSERT_EQ(row.size(), table.columns.size());
         for (std::size_t c = 0; c < row.size(); ++c)
-            EXPECT_EQ(std::holds_alternative<std::string>(row[c]), table.columns[c].words)
+            EXPECT_TRUE(table.columns[c].digits == Digits::hidden ||
+                        std::holds_alternative<std::string>(row[c]) == table.columns[c].words)
                 << table.columns[c].name;
     }
 }

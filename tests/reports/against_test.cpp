@@ -18,7 +18,7 @@ namespace {
 
 SceneAnalyses solved(const std::string& name, std::vector<Setting> settings = {}) {
     const Scene read = read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml", settings);
-    SceneAnalyses scene = compiled(read, compile(read));
+    SceneAnalyses scene{.scene = read, .model = compile(read)};
     compare::Options options;
     options.recursion.steps = 8;
     options.prove = false;

@@ -31,7 +31,8 @@ using json = nlohmann::ordered_json;
 struct Made : SceneAnalyses {
     Made() {
         const Scene of = support::scene("chrono_mcpherson");
-        static_cast<SceneAnalyses&>(*this) = compiled(of, compile(of));
+        scene = of;
+        model = compile(of);
         hash = input_hash("input");
         compare::Options options;
         options.recursion.steps = 12;
@@ -53,8 +54,6 @@ TEST(Document, HasBuildInputAndSettings) {
         EXPECT_FALSE(d["provenance"][key].get<std::string>().empty()) << key;
     for (const char* key : {"Eigen", "Ceres", "NLopt", "yaml-cpp", "fmt"})
         EXPECT_FALSE(d["provenance"]["libraries"][key].get<std::string>().empty()) << key;
-    EXPECT_EQ(s["model"]["unknowns"], 27);
-    EXPECT_EQ(s["model"]["idle_modes"].size(), 1u);
     EXPECT_EQ(s["verdict"]["conclusive"], true);
     EXPECT_GT(s["verdict"]["numbers_compared"], 1000);
 }
@@ -115,7 +114,7 @@ TEST(Document, HasForcesOfElementsAtTheEndsOfTheBranches) {
     const json whole = json::parse(made.document().dump());
     const auto told = compare::force_rows(made.model, made.comparison);
     EXPECT_EQ(result_in(whole["scenes"][0], "compare")["tables"]["forces"],
-              json::parse(table_json(told).dump()));
+              json::parse(table_json(table_of(told)).dump()));
     const std::string rows = forces_csv({made});
     EXPECT_TRUE(
         rows.starts_with("scene,branch,end,end unit,element,output,unit,value,error,share [%]\n"))

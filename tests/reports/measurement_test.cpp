@@ -388,12 +388,12 @@ TEST(Measurement, MissingValueLeavesAGapInItsCurveOnly) {
     const SceneAnalyses scene = sample_with(
         solved().typed("branch,travel_mm,toe_deg,camber_deg\njounce,20,-0.7,0.1\njounce,40,-1.4,\n"
                        "jounce,60,-2,0.3\n"));
-    const auto camber = measured_series(scene, sweeps_of(scene).front(), "travel", "camber");
-    ASSERT_TRUE(camber);
-    ASSERT_EQ(camber->rows.size(), 3u);
-    EXPECT_EQ(camber->rows[0], (std::vector{20.0, 0.1}));
-    EXPECT_TRUE(std::isnan(camber->rows[1][1]));
-    EXPECT_EQ(camber->rows[2], (std::vector{60.0, 0.3}));
+    const auto camber = measured_curves(scene, sweeps_of(scene).front(), "travel", "camber");
+    ASSERT_EQ(camber.size(), 1u);
+    ASSERT_EQ(camber[0].rows.size(), 3u);
+    EXPECT_EQ(camber[0].rows[0], (std::vector{20.0, 0.1}));
+    EXPECT_TRUE(std::isnan(camber[0].rows[1][1]));
+    EXPECT_EQ(camber[0].rows[2], (std::vector{60.0, 0.3}));
 }
 
 TEST(Measurement, PointsAreUsedOnlyOnTheirBranch) {
@@ -405,9 +405,9 @@ TEST(Measurement, PointsAreUsedOnlyOnTheirBranch) {
         solved().typed("branch,travel_mm,toe_deg\njounce,20,-0.7\njounce,60,-2\nrebound,-60,2\n"));
     Sweep sweep = sweeps_of(scene).front();
     ASSERT_EQ(sweep.branches.size(), 2u);
-    EXPECT_EQ(measured_series(scene, sweep, "travel", "toe")->rows.size(), 3u);
+    EXPECT_EQ(measured_curves(scene, sweep, "travel", "toe").at(0).rows.size(), 3u);
     sweep.branches.pop_back();
-    EXPECT_EQ(measured_series(scene, sweep, "travel", "toe")->rows.size(), 2u);
+    EXPECT_EQ(measured_curves(scene, sweep, "travel", "toe").at(0).rows.size(), 2u);
 }
 
 // Without travel the figures use the load as abscissa, with the points.
@@ -498,20 +498,20 @@ TEST(Measurement, PointsAreDrawnOverTheAbscissaOfTheFigure) {
         "chrono_mcpherson_travel");
     int seen = 0;
     for (const auto& sweep : sweeps_of(scene)) {
-        const auto points = measured_series(
+        const auto points = measured_curves(
             scene, sweep, measured_over_parameter(scene, sweep) ? "" : "travel", "toe");
         if (sweep.name == "travel") {
             ++seen;
-            ASSERT_TRUE(points);
+            ASSERT_EQ(points.size(), 1u);
             EXPECT_FALSE(measured_over_parameter(scene, sweep));
-            EXPECT_EQ(points->rows, (std::vector<std::vector<double>>{{-20, 0.1}, {20, -0.2}}));
+            EXPECT_EQ(points[0].rows, (std::vector<std::vector<double>>{{-20, 0.1}, {20, -0.2}}));
         } else if (sweep.name == "load") {
             ++seen;
-            ASSERT_TRUE(points);
+            ASSERT_EQ(points.size(), 1u);
             EXPECT_TRUE(measured_over_parameter(scene, sweep));
-            EXPECT_EQ(points->rows, (std::vector<std::vector<double>>{{500, 0.3}, {700, 0.4}}));
+            EXPECT_EQ(points[0].rows, (std::vector<std::vector<double>>{{500, 0.3}, {700, 0.4}}));
         } else {
-            EXPECT_FALSE(points) << sweep.name;
+            EXPECT_TRUE(points.empty()) << sweep.name;
         }
     }
     EXPECT_EQ(seen, 2);

@@ -4,6 +4,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "reports/document/document.hpp"
+#include "reports/document/inspection.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -13,10 +14,12 @@ namespace {
 SceneAnalyses solved(const std::string& name, compare::Trimmed trimmed,
                      const compare::Options& options) {
     Model model = compile(trimmed.scene);
-    SceneAnalyses made = compiled(std::move(trimmed.scene), std::move(model));
-    made.trim = std::move(trimmed.record);
+    SceneAnalyses made{.scene = std::move(trimmed.scene),
+                       .model = std::move(model),
+                       .trim = std::move(trimmed.record),
+                       .hash = input_hash("input")};
     made.scene.source = name + ".yaml";
-    made.hash = input_hash("input");
+    made.inspected = inspection({made.scene, made.model, made.trim});
     add_comparison(made, compare::compare(made.model, options));
     return made;
 }

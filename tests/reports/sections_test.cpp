@@ -58,10 +58,10 @@ double rate(const SceneAnalyses& scene, const std::string& output) {
 TEST(Sections, EveryPartOfTheAnalysesBecomesASection) {
     std::vector<std::string> ids;
     for (const auto& section : sections_of(sample_scene())) ids.push_back(section.id);
-    EXPECT_EQ(ids, (std::vector<std::string>{"first", "conditions", "drawing", "kinematics",
-                                             "springs", "gradients", "rates", "forces", "methods",
-                                             "references", "deviation", "price", "convergence",
-                                             "stations", "matrices", "model"}));
+    EXPECT_EQ(ids,
+              (std::vector<std::string>{"first", "conditions", "drawing", "kinematics", "springs",
+                                        "gradients", "rates", "forces", "methods", "references",
+                                        "deviation", "price", "convergence", "model"}));
     for (const auto& section : sections_of(sample_scene()))
         for (const auto& group : section.figures) {
             EXPECT_FALSE(group.caption.empty());
@@ -344,8 +344,6 @@ TEST(Sections, AbscissasAreNamedByTheDriveOfTheirBranch) {
         for (const auto& group : section.figures)
             for (const auto& f : group.figures) expect_parts(f.x, {}, {"parameter"});
     expect_parts(said(scene, "steering"), {"Turning circle at full lock"});
-    expect_parts(said(scene, "stations"),
-                 {"| rack [mm] | steer angle left [deg] |", "rack.drive force [N]"});
 }
 
 TEST(Sections, FirstSectionShowsTheAlignmentAsDrawnAndAfterTheTrim) {
@@ -354,7 +352,7 @@ TEST(Sections, FirstSectionShowsTheAlignmentAsDrawnAndAfterTheTrim) {
     expect_parts(text, {"settled after the trim (toe-in, top outwards positive)\n| of the wheel | "
                         "drawn left | drawn right | settled left | settled right ",
                         "| wheel load [N] | – | – | 3800 | 3800 |",
-                        "| springs.coil_left.preload | +17.86 N |"});
+                        "| springs.coil_left.preload | 17.86 | N |"});
     auto& settled = truth_of(scene.comparison.branches[settled_on(scene.model)]);
     settled.values[settled.start][channel_of(scene, "left.toe")] = -0.0125;
     expect_parts(said(scene, "first"), {"| toe [deg] | 0 | 0 | −0.01250 | 0 |"});
@@ -416,9 +414,6 @@ TEST(Sections, CompliancesOfAnAxleAreThoseOfRigTestsWithBothWheelsLoaded) {
             if (row[0] > 0 && row[0] < nearest) nearest = row[0], slope = 1e3 * row[1] / row[0];
         EXPECT_NEAR(slope, steer, 0.15 * std::abs(steer)) << series.title;
     }
-    expect_parts(said(scene, "stations"),
-                 {"lateral, inwards: changes", "| left, 3000 N | right, −3000 N |",
-                  "braking, to the back: changes", "aligning, towards toe-in: changes"});
 }
 
 // Slopes of fitted lines are near the rates at the design position, in the signs of the tests.
@@ -530,7 +525,17 @@ TEST(Sections, RateThatIsZeroHasNoPercentage) {
         curve.values[curve.start][rate] = value;
     };
     set(compare::Leg::equilibrium, 3.5e-4), set(compare::Leg::recursive, 0.30035);
-    expect_parts(said(scene, "matrices"), {"| +0.300 | – |"});
+    expect_parts(said(scene, "deviation"), {"| +0.300 | – |"});
+}
+
+// As `inspect` shows it, the details left out.
+TEST(Sections, ModelIsThatOfInspect) {
+    const std::string text = said(compared_scene("front_axle"), "model");
+    expect_parts(text,
+                 {"As drawn; condition of eq. (24), equilibrated\n| degrees of freedom | ",
+                  "| as solved | ", "| springs.coil_left.preload | 17.86 | N |",
+                  "Elastic elements\n| element | between | law "},
+                 {"numbers, as --set"});
 }
 
 TEST(Sections, ForcesOfAStopAreShownWithItsPenetration) {

@@ -133,7 +133,7 @@ TEST(Tables, ConvergenceStudyIsEqualInEveryFormat) {
         expect_parts(said, {std::string("branch 'lift' ") + reading});
     }
     EXPECT_EQ(json_of(result_of(model, studies))["tables"]["attribution"].dump(),
-              table_json(gaps).dump());
+              table_json(table_of(gaps)).dump());
 
     std::string beside;  // the step counts stand side by side
     for (const auto& row : steps)
@@ -177,7 +177,7 @@ TEST(Tables, WorkPrecisionTableIsEqualInEveryFormat) {
         {"error [deg]"});  // a pendulum's outputs are positions
 
     const auto rows = compare::trade_rows(trade);
-    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(rows), '\n')),
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(table_of(rows)), '\n')),
               trade.points.size() + 1);
     EXPECT_TRUE(rows[trade.recommendation->point].recommended);
     const auto document = json::parse(json_of(result).dump());

@@ -4,7 +4,6 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/parsed_scene.hpp"
 #include "reports/files/files.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -26,7 +26,7 @@ constexpr FileKind changed_scene{"scene changed by elastocheck", "# Changed by e
 
 void add(Settings& settings, const Number& number, double value) {
     for (const std::string& path : compare::paths_in(number.path))
-        settings.push_back(setting(path, value));
+        settings.push_back(elastocheck::setting(path, value));
 }
 Settings without(Settings settings, const std::vector<Number>& numbers) {
     for (const Number& number : numbers)
@@ -115,13 +115,8 @@ void set_scene(Varied& varied, const std::string& file, const Settings& settings
 }
 
 double parse_number(std::string_view word) {
-    double value = 0;
-    const char *first = word.data(), *last = first + word.size();
-    if (word.starts_with('+')) ++first;  // from_chars rejects a plus
-    const auto [end, error] = std::from_chars(first, last, value);
-    if (error != std::errc() || end != last || !std::isfinite(value))
-        throw std::invalid_argument(fmt::format("'{}' is not a number", word));
-    return value;
+    if (const auto value = finite_number(word)) return *value;
+    throw std::invalid_argument(fmt::format("'{}' is not a number", word));
 }
 
 compare::Figure parse_figure(const std::string& word, const Model& model) {

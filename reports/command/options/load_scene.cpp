@@ -219,11 +219,11 @@ std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,
 }
 
 SceneAnalyses analyses_of(const LoadedScene& loaded, const std::string& file) {
-    SceneAnalyses scene = compiled(loaded.scene, loaded.model);
-    scene.trim = loaded.trim;
-    scene.warnings = loaded.warnings;
-    scene.hash = input_hash(read_whole(file));
-    return scene;
+    return {.scene = loaded.scene,
+            .model = loaded.model,
+            .trim = loaded.trim,
+            .warnings = loaded.warnings,
+            .hash = input_hash(read_whole(file))};
 }
 
 nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file) {

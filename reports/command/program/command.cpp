@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
 #include "reports/command/options/limits.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -23,17 +23,12 @@ std::string flaw_of_a_name(const std::string& word) {
     return {};
 }
 
-// CLI11 reads numbers by the locale's decimal sign; from_chars reads a point.
+// CLI11 reads numbers by the locale's decimal sign.
 double number_of(const std::string& option, const std::string& word,
                  std::pair<double, double> range) {
     const auto [low, high] = range;
-    double number = 0;
-    const char* first = word.data() + (word.starts_with('+') ? 1 : 0);  // from_chars rejects a plus
-    const char* last = word.data() + word.size();
-    const auto [end, error] = std::from_chars(first, last, number);
-    if (error == std::errc{} && end == last && std::isfinite(number) && number >= low &&
-        number <= high)
-        return number;
+    if (const auto number = finite_number(word); number && *number >= low && *number <= high)
+        return *number;
     const bool bounded = std::isfinite(low) || std::isfinite(high);
     throw CLI::ValidationError(
         option, fmt::format("'{}' is not a number{}", word,

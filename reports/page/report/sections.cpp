@@ -10,8 +10,7 @@ std::vector<Section> sections_of(const SceneAnalyses& scene) {
         springs_section,   steering_section,    compliance_section,   curves_section,
         gradients_section, rates_section,       forces_section,       loads_section,
         change_section,    methods_section,     references_section,   deviation_section,
-        price_section,     convergence_section, formulations_section, stations_section,
-        matrices_section,  model_section};
+        price_section,     convergence_section, formulations_section, model_section};
     const auto left_out = [&](Part part) {
         return !scene.only.empty() &&
                part == (scene.only == "kc" ? Part::evidence : Part::behaviour);

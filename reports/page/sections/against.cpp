@@ -10,6 +10,7 @@
 
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
+#include "reports/page/sections/kinematics/figures.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -24,17 +25,10 @@ std::pair<std::string, std::string> names_of(const SceneAnalyses& scene, const A
     return {file(scene.scene.source), file(against.source)};
 }
 
-Series curve(const Against::Line& line, bool variant) {
-    Series series{.title = variant ? "variant" : "base",
-                  .style = variant ? Series::Style::line : Series::Style::wide,
-                  .colour = variant ? vermilion : sky};
-    for (std::size_t k = 0; k < line.a.size(); ++k) {
-        if (std::isfinite(line.y[k]))
-            series.rows.push_back({line.a[k], line.y[k]});
-        else if (!series.rows.empty() && !series.rows.back().empty())
-            series.rows.emplace_back();
-    }
-    return series;
+DrawnCurve curve(const char* of, const Against::Line& line) {
+    DrawnCurve drawn{of};
+    for (std::size_t k = 0; k < line.a.size(); ++k) drawn.rows.push_back({line.a[k], line.y[k]});
+    return drawn;
 }
 
 // Whether two lines can be distinguished: by a hundredth of the range of the curve.
@@ -58,14 +52,15 @@ FigureGroup figures(const SceneAnalyses& scene, const Against& against) {
             if (group.figures.size() == most) return group;
             const std::string output = as_words(c.output);
             group.figures.push_back(
-                {.id = fmt::format("against-{}-{}", slug(c.output), slug(branch.name)),
-                 .title = fmt::format("{}, {}", output, branch.name),
-                 .description =
-                     fmt::format("{} of both variants, {}; they differ by up to {} {}", output,
-                                 branch.name, number(std::abs(c.largest), 2), c.unit),
-                 .x = sweep_of(scene, *same).parameter,
-                 .y = fmt::format("{} [{}]", output, c.unit),
-                 .series = {curve(c.base, false), curve(c.variant, true)}});
+                figure_of_curves(
+                    {.id = fmt::format("against-{}-{}", slug(c.output), slug(branch.name)),
+                     .title = fmt::format("{}, {}", output, branch.name),
+                     .x = sweep_of(scene, *same).parameter,
+                     .y = {fmt::format("{} [{}]", output, c.unit)}},
+                    {curve("base", c.base), curve("variant", c.variant)},
+                    fmt::format("{} of both variants, {}; they differ by up to {} {}", output,
+                                branch.name, number(std::abs(c.largest), 2), c.unit))
+                    .figures.front());
         }
     }
     return group;

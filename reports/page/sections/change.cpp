@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "reports/page/chart.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/effects.hpp"
@@ -18,29 +19,19 @@ constexpr std::size_t max_bars = 5, max_charts = 6, max_columns = 8;
 
 // The five numbers with the largest effects as bars.
 Figure tornado(const KeyFigure& key) {
-    Figure figure{.id = fmt::format("change-{}", slug(key.title)),
-                  .title = key.title,
-                  .description = fmt::format("The largest effects on {}:", key.title),
-                  .x = fmt::format("change of {} [{}]", key.title, key.unit),
-                  .y = ""};
-    Series bars{.style = Series::Style::bars, .colour = blue};
-    double row = 0;
-    for (const EffectRow& effect : key.effects) {
-        if (row <= -static_cast<double>(max_bars) || !key.counts(effect.effect)) break;
-        --row;
-        const std::string label = number_label(effect);
-        figure.y_ticks.emplace_back(row, label);
-        bars.rows.push_back({effect.effect / 2, row, std::min(0.0, effect.effect),
-                             std::max(0.0, effect.effect), row - 0.3, row + 0.3});
-        figure.description +=
-            fmt::format(" {} {} {};", label, signed_number(effect.effect, 2), key.unit);
-    }
-    figure.description.back() = '.';
-    figure.series.push_back(std::move(bars));
-    figure.y_low = row - 0.6;
-    figure.y_high = -0.4;
-    figure.height = 0.45 + 0.08 * -row;
-    return figure;
+    auto largest = key.effects;
+    std::erase_if(largest, [&](const EffectRow& row) { return !key.counts(row.effect); });
+    largest.resize(std::min(largest.size(), max_bars));
+    return figure_of({.id = fmt::format("change-{}", slug(key.title)),
+                      .title = key.title,
+                      .x = "number",
+                      .y = {"effect"},
+                      .kind = compare::Chart::Kind::ranked,
+                      .axis = fmt::format("change of {} [{}]", key.title, key.unit)},
+                     compare::table<EffectRow>({},
+                                               {{"number", Digits::words, number_label},
+                                                {"effect", Digits::deviation, &EffectRow::effect}},
+                                               largest));
 }
 
 // Size of the gradient of each figure by each hardpoint; empty where none has an effect.
@@ -62,10 +53,10 @@ Table heat_map(const std::vector<KeyFigure>& figures, const std::vector<EffectRo
     for (K f = 0; f < figures.size(); ++f)
         columns.push_back({figures[f].title, Digits::shaded, [&, f](K k) { return sizes[f][k]; },
                            "", figures[f].unit});
-    Table map = compare::table("", columns, moving);
-    map.caption =
-        "Effect of moving a hardpoint by 1 mm in its most effective direction; shade: share of the "
-        "largest of the column";
+    Table map = compare::table({.caption = "Effect of moving a hardpoint by 1 mm in its most "
+                                           "effective direction; shade: share of the "
+                                           "largest of the column"},
+                               columns, moving);
     return map;
 }
 
@@ -96,15 +87,13 @@ std::optional<Section> change_section(const SceneAnalyses& scene) {
                 largest.emplace_back(&figure, &figure.effects[k]);
     using L = std::pair<const KeyFigure*, const EffectRow*>;
     charts.table = compare::table<L>(
-        "",
+        {.caption = "Effects on each figure, the largest ten, for 1 mm or 1 %", .detail = true},
         {{"figure", Digits::words, [](const L& l) { return l.first->title; }},
          {"number", Digits::words, [](const L& l) { return l.second->number; }},
          {"for", Digits::words, [](const L& l) { return l.second->step; }},
          {"effect", Digits::deviation, [](const L& l) { return l.second->effect; }},
          {"unit", Digits::words, [](const L& l) { return l.first->unit; }}},
         largest);
-    charts.table.caption = "Effects on each figure, the largest ten, for 1 mm or 1 %";
-    charts.table.detail = true;
     section.figures.push_back(std::move(charts));
     if (figures.size() > max_columns) figures.resize(max_columns);
     if (Table map = heat_map(figures, rows); !map.rows.empty())

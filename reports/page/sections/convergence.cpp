@@ -28,7 +28,7 @@ Table levels_of(const std::vector<StepRow>& rows) {
         return most;
     };
     return compare::table<double>(
-        "",
+        {},
         {{"steps", whole, [](double steps) { return steps; }, "", "", "steps per branch"},
          {against_reference, three, [=](double s) { return worst(s, &StepRow::error, 1); }},
          {step_error, three, [=](double s) { return worst(s, &StepRow::end, 1); }},

@@ -73,19 +73,17 @@ Table table_of(const std::vector<DeviationAt>& stations, const SceneAnalyses& sc
     using enum Digits;
     using S = DeviationAt;
     const char* unit = symbol(of_unit);
-    return compare::table<S>("",
-                             {{sweep.parameter, place, [](const S& s) { return s.a; }},
-                              {"published, " + sweep.at_equal_parameter(), three,
-                               [](const S& s) { return s.load; }, "", unit},
-                              {"published, " + sweep.at_equal_abscissa(), three,
-                               [](const S& s) { return s.travel; }, "", unit},
-                              {scene.recommended ? configuration(scene.recommended->configuration) +
-                                                       ", " + sweep.at_equal_parameter()
-                                                 : "recommended",
-                               three, [](const S& s) { return s.recommended; }, "", unit},
-                              {"difference of the references", three,
-                               [](const S& s) { return s.references; }, "", unit}},
-                             stations);
+    return compare::table<S>(
+        {},
+        {{sweep.parameter, place, &S::a},
+         {"published, " + sweep.at_equal_parameter(), three, &S::load, "", unit},
+         {"published, " + sweep.at_equal_abscissa(), three, &S::travel, "", unit},
+         {scene.recommended
+              ? configuration(scene.recommended->configuration) + ", " + sweep.at_equal_parameter()
+              : "recommended",
+          three, &S::recommended, "", unit},
+         {"difference of the references", three, &S::references, "", unit}},
+        stations);
 }
 
 // Largest value; a point that the other leg does not reach is NaN, and ignored.
@@ -149,6 +147,19 @@ std::optional<FigureGroup> deviations(const SceneAnalyses& scene, const Sweep& s
         fmt::format("Worst of {}. {}", which, agreement), {figure}, std::move(table)};
 }
 
+// Of the recursion in the rates. No share of a value that its error exceeds: it is zero.
+Table errors_in_rates(const compare::Comparison& comparison) {
+    auto design = characteristic_rows(comparison);
+    for (auto& r : design) {
+        r.output = as_words(r.output);
+        if (!(std::abs(r.off_percent) <= 100)) r.off_percent = compare::nan;
+    }
+    Table table = with_columns(table_of(design), {"output", "value", "unit", "off", "off %"});
+    table.caption = "Error of the published recursion in the rates at the design position";
+    table.detail = true;
+    return table;
+}
+
 }  // namespace
 
 std::optional<Section> deviation_section(const SceneAnalyses& scene) {
@@ -165,6 +176,8 @@ std::optional<Section> deviation_section(const SceneAnalyses& scene) {
                         branch.branch);
         table.detail = true;
     }
+    if (Table rates = errors_in_rates(scene.comparison); !rates.rows.empty())
+        section.tables.push_back(std::move(rates));
     if (section.figures.empty() && section.tables.empty()) return std::nullopt;
     return section;
 }

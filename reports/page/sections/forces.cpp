@@ -100,8 +100,7 @@ std::optional<Section> forces_section(const SceneAnalyses& scene) {
     }
     using enum Digits;
     using L = Largest;
-    std::vector<compare::ColumnOf<L>> columns{
-        {"element", words, [](const L& l) { return l.element; }}};
+    std::vector<compare::ColumnOf<L>> columns{{"element", words, &L::element}};
     for (const auto& [name, unit, of] :
          {std::tuple{"largest force", "N", &L::force}, {"largest moment", "N·m", &L::moment}}) {
         columns.push_back({name, three,
@@ -114,8 +113,9 @@ std::optional<Section> forces_section(const SceneAnalyses& scene) {
         columns.push_back({"deformed by", words,
                            [&, of](const L& l) { return deformation_of(l.*of, elements); }});
     }
-    Table table = compare::table("", columns, largest);
-    table.caption = "Largest force and moment of each element over all points of the branches";
+    Table table = compare::table(
+        {.caption = "Largest force and moment of each element over all points of the branches"},
+        columns, largest);
     section.tables.push_back(std::move(table));
     return section;
 }

@@ -23,20 +23,19 @@ std::optional<Section> methods_section(const SceneAnalyses& scene) {
     using enum Digits;
     using M = MethodRow;
     Table table = compare::table<M>(
-        "",
-        {{"method", words, [](const M& m) { return m.method; }},
-         {"steps or tolerance", words, [](const M& m) { return m.setting; }},
+        {.caption = fmt::format("Fast methods against {}", tolerance_of(scene))},
+        {{"method", words, &M::method},
+         {"steps or tolerance", words, &M::setting},
          {"within the tolerance", words,
           [](const M& m) { return m.chosen   ? "yes, recommended"
                                   : m.within ? "yes"
                                              : "no"; }},
-         {"error at equal load or drive", size, [](const M& m) { return m.mm; }, "", "mm"},
-         {"angle", size, [](const M& m) { return m.deg; }, "", "deg"},
-         {"error at equal travel", size, [](const M& m) { return m.mm_across; }, "", "mm"},
-         {"angle", size, [](const M& m) { return m.deg_across; }, "", "deg"},
-         {"work, of the full solution", percent, [](const M& m) { return m.cost; }}},
+         {"error at equal load or drive", size, &M::mm, "", "mm"},
+         {"angle", size, &M::deg, "", "deg"},
+         {"error at equal travel", size, &M::mm_across, "", "mm"},
+         {"angle", size, &M::deg_across, "", "deg"},
+         {"work, of the full solution", percent, &M::cost}},
         rows);
-    table.caption = fmt::format("Fast methods against {}", tolerance_of(scene));
     section.tables.push_back(std::move(table));
     return section;
 }

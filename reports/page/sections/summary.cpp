@@ -47,30 +47,22 @@ Table alignment_table(const SceneAnalyses& scene) {
                      const auto row = row_of(output, wheel.name);
                      return row == values.end() ? compare::nan : settled_value((*row).*of);
                  }});
-    Table table = compare::table("", columns, outputs);
-    table.caption =
-        fmt::format("Static alignment as drawn and as settled{} (toe-in, top outwards positive)",
-                    scene.trim ? " after the trim" : "");
+    Table table = compare::table(
+        {.caption = fmt::format(
+             "Static alignment as drawn and as settled{} (toe-in, top outwards positive)",
+             scene.trim ? " after the trim" : "")},
+        columns, outputs);
     return table;
 }
 
 // What the trim adjusted. Preloads of balanced bushings are listed with the model.
 Table trim_table(const SceneAnalyses& scene) {
     const bool balanced = scene.trim->bushings == Trim::Bushings::balanced;
-    auto rows = scene.trim->adjusted;
-    using Adjusted = decltype(rows)::value_type;
-    std::erase_if(rows, [&](const Adjusted& a) {
-        return balanced && a.name.starts_with("bushings.") && a.name.ends_with(".preload");
+    Table table = whole_table(scene.inspected, "trim");
+    std::erase_if(table.rows, [&](const auto& row) {
+        const auto& name = std::get<std::string>(row.front());
+        return balanced && name.starts_with("bushings.") && name.ends_with(".preload");
     });
-    Table table = compare::table<Adjusted>(
-        "",
-        {{"what", Digits::words, [](const Adjusted& a) { return a.name; }},
-         {"by", Digits::four,
-          [](const Adjusted& a) {
-              return fmt::format("{} {}", signed_number(a.by, 4), symbol(a.unit));
-          }},
-         {"makes", Digits::note, [](const Adjusted& a) { return a.makes; }}},
-        rows);
     table.caption = balanced ? "The trim adjusted; preloads of all bushings (in “The model as "
                                "compiled”) balance the drawn position"
                              : "The trim adjusted; bushings are unloaded as drawn";

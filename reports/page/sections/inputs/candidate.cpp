@@ -61,13 +61,12 @@ std::optional<Section> candidate_section(const SceneAnalyses& scene) {
     return section;
 }
 
-std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sweep,
-                                     const std::string& abscissa, const std::string& channel) {
-    std::vector<Series> list;
+std::vector<DrawnCurve> candidate_curves(const SceneAnalyses& scene, const Sweep& sweep,
+                                         const std::string& abscissa, const std::string& channel) {
+    std::vector<DrawnCurve> list;
     const auto& channels = scene.comparison.channels;
     for (const auto& [candidate, sentence] : scene.candidates) {
-        Series series{
-            .title = candidate.name, .style = Series::Style::rings, .colour = green, .mark = 4};
+        DrawnCurve points{candidate.name};
         // The candidate's values of a main output or of the abscissa of the branch; null without.
         const auto column = [&](const compare::CandidateReading& reading,
                                 const CandidateBranch& branch,
@@ -91,9 +90,9 @@ std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sw
             if (x == nullptr || y == nullptr) continue;
             for (const auto k : thinned(x->size(), 21))
                 if (std::isfinite((*x)[k]) && std::isfinite((*y)[k]))
-                    series.rows.push_back({(*x)[k], (*y)[k]});
+                    points.rows.push_back({(*x)[k], (*y)[k]});
         }
-        if (!series.rows.empty()) list.push_back(std::move(series));
+        if (!points.rows.empty()) list.push_back(std::move(points));
     }
     return list;
 }

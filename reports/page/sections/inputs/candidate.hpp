@@ -11,7 +11,7 @@ namespace elastocheck::reports {
 
 // Points of every candidate on these branches for one output, over another one or, if `abscissa` is
 // empty, over the parameter.
-std::vector<Series> candidate_series(const SceneAnalyses& scene, const Sweep& sweep,
-                                     const std::string& abscissa, const std::string& channel);
+std::vector<DrawnCurve> candidate_curves(const SceneAnalyses& scene, const Sweep& sweep,
+                                         const std::string& abscissa, const std::string& channel);
 
 }  // namespace elastocheck::reports

@@ -116,15 +116,14 @@ std::optional<FigureGroup> effect_arrows(const SceneAnalyses& scene, const KeyFi
         };
     };
     group.table = compare::table<Gradient>(
-        "",
+        {.caption = fmt::format("Effect of 1 mm on {} [{}]", figure.title, figure.unit),
+         .detail = true},
         {{"hardpoint", Digits::words, [](const Gradient& of) { return as_words(of.first); }},
          {"x", Digits::deviation, along(0)},
          {"y", Digits::deviation, along(1)},
          {"z", Digits::deviation, along(2)},
          {"along the arrow", Digits::three, size_of}},
         points);
-    group.table.caption = fmt::format("Effect of 1 mm on {} [{}]", figure.title, figure.unit);
-    group.table.detail = true;
     const std::vector<View> views{front_view, side_view, top_view};
     group.figures = draw_views(suspension, views, small_frame(suspension));
     for (std::size_t k = 0; k < views.size(); ++k) {

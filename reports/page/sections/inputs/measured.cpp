@@ -39,22 +39,22 @@ bool measured_over_parameter(const SceneAnalyses& scene, const Sweep& sweep) {
     return points && !travel;
 }
 
-std::optional<Series> measured_series(const SceneAnalyses& scene, const Sweep& sweep,
-                                      const std::string& by, const std::string& channel) {
-    if (!scene.measured) return std::nullopt;
+std::vector<DrawnCurve> measured_curves(const SceneAnalyses& scene, const Sweep& sweep,
+                                        const std::string& by, const std::string& channel) {
+    if (!scene.measured) return {};
     const auto& a = scene.measured->measurement.table.points.a;
     const auto* x = !by.empty() ? column(scene, by) : a.empty() ? nullptr : &a;
     const auto* y = column(scene, channel);
-    if (x == nullptr || y == nullptr) return std::nullopt;
-    Series series{.title = "measured", .style = Series::Style::rings, .colour = purple, .mark = 5};
+    if (x == nullptr || y == nullptr) return {};
+    DrawnCurve points{"measured"};
     bool any = false;
     for (std::size_t k = 0; k < x->size(); ++k)
         if (is_on(scene, sweep, k) && std::isfinite((*x)[k])) {
-            series.rows.push_back({(*x)[k], (*y)[k]});
+            points.rows.push_back({(*x)[k], (*y)[k]});
             any = any || std::isfinite((*y)[k]);
         }
-    if (!any) return std::nullopt;
-    return series;
+    if (!any) return {};
+    return {points};
 }
 
 std::optional<Section> measured_section(const SceneAnalyses& scene) {

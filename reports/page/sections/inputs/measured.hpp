@@ -15,7 +15,7 @@ bool measured_over_parameter(const SceneAnalyses& scene, const Sweep& sweep);
 
 // Points of these branches for a channel, over another channel or, if `by` is empty or was not
 // measured, over the parameter. Empty if it was not measured.
-std::optional<Series> measured_series(const SceneAnalyses& scene, const Sweep& sweep,
-                                      const std::string& by, const std::string& channel);
+std::vector<DrawnCurve> measured_curves(const SceneAnalyses& scene, const Sweep& sweep,
+                                        const std::string& by, const std::string& channel);
 
 }  // namespace elastocheck::reports

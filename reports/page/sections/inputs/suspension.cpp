@@ -31,14 +31,13 @@ Suspension suspension_of(const SceneAnalyses& scene) {
 Table points_table(const std::vector<Suspension::Point>& points) {
     using P = Suspension::Point;
     const auto along = [](std::size_t axis) { return [=](const P& p) { return p.at[axis]; }; };
-    Table table = compare::table<P>("",
-                                    {{"point", Digits::words, [](const P& p) { return p.name; }},
-                                     {"on", Digits::words, [](const P& p) { return p.body; }},
+    Table table = compare::table<P>({.detail = true},
+                                    {{"point", Digits::words, &P::name},
+                                     {"on", Digits::words, &P::body},
                                      {"x", Digits::four, along(0), "", "mm"},
                                      {"y", Digits::four, along(1), "", "mm"},
                                      {"z", Digits::four, along(2), "", "mm"}},
                                     points);
-    table.detail = true;
     return table;
 }
 

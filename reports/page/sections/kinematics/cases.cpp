@@ -1,6 +1,8 @@
 #include "reports/page/sections/kinematics/cases.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "reports/given/wheels.hpp"
 #include "reports/page/sections/inputs/candidate.hpp"
@@ -75,19 +77,16 @@ std::vector<double> abscissa_of(const SceneAnalyses& scene, const Family& family
     return x;
 }
 
-std::vector<Series> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
-                             const FoundOutput& of, Scale scale) {
+std::vector<DrawnCurve> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
+                                 const FoundOutput& of, Scale scale) {
     const std::string by = family.abscissa(of.wheel);
-    auto given = candidate_series(scene, c.sweep, by, of.channel);
-    if (auto points = measured_series(scene, c.sweep, by, of.channel))
-        given.insert(given.begin(), std::move(*points));
+    auto given = measured_curves(scene, c.sweep, by, of.channel);
+    std::ranges::move(candidate_curves(scene, c.sweep, by, of.channel), std::back_inserter(given));
     const double push = family.by == By::push ? push_of(scene, c, of.wheel).factor : 1;
-    for (auto& points : given)
-        for (auto& row : points.rows)
-            if (!row.empty()) {
-                row[0] *= push;
-                row[1] = scale(row[1]);
-            }
+    for (auto& points : given) {
+        points.whose = of.of_all ? "" : of.wheel.name;
+        for (auto& row : points.rows) row = {push * row[0], scale(row[1])};
+    }
     return given;
 }
 

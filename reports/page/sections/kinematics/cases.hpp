@@ -74,7 +74,7 @@ Push push_of(const SceneAnalyses& scene, const Case& c, const Wheel& wheel);
 std::string direction_of(const SceneAnalyses& scene, const Family& family, const Case& c);
 
 // Points of an output that were measured or that candidates give, scaled as its curve is.
-std::vector<Series> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
-                             const FoundOutput& of, Scale scale);
+std::vector<DrawnCurve> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
+                                 const FoundOutput& of, Scale scale);
 
 }  // namespace elastocheck::reports

@@ -71,7 +71,7 @@ std::optional<Section> conditions_section(const SceneAnalyses& scene) {
                             {"drive", percent(vehicle->drive_share)}};
     using B = ComparedBranch;
     Table table = compare::table<B>(
-        "",
+        {.caption = "Load cases"},
         {{"load case", Digits::words, [](const B& b) { return as_words(b.name()); }},
          {"test", Digits::words, [&](const B& b) { return load_case(model, *b.requested); }},
          {"from", Digits::place, [](const B& b) { return b.from(); }},
@@ -81,7 +81,6 @@ std::optional<Section> conditions_section(const SceneAnalyses& scene) {
          {"the wheels stand on", Digits::words,
           [&](const B& b) { return supports_of(model, *b.requested); }}},
         branches_of(scene));
-    table.caption = "Load cases";
     section.tables.push_back(std::move(table));
     return section;
 }

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <ranges>
 
+#include "reports/page/chart.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -45,30 +49,83 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
     return rows;
 }
 
-// A bundle for each load case; of outputs of springs and dampers one for each element.
-std::vector<Bundle> bundles_of(const SceneAnalyses& scene, const Family& family,
-                               const Quantity& quantity, CurveRange& extent) {
-    std::vector<Bundle> bundles;
+// Of each load case and wheel; of outputs of springs and dampers of each element.
+std::vector<DrawnCurve> curves_of(const SceneAnalyses& scene, const Family& family,
+                                  const Quantity& quantity, CurveRange& extent,
+                                  std::vector<DrawnCurve>& given) {
+    std::vector<DrawnCurve> curves;
     for (const Case& c : family.cases) {
         const std::string legend = c.legend() + direction_of(scene, family, c);
         for (const auto& of : outputs_of(scene, quantity.name)) {
-            const std::string title = of.element.empty() ? legend : of.element;
             const auto values = c.curve.channel(of.channel),
                        x = abscissa_of(scene, family, c, of.wheel);
             if (values.empty() || values.size() != x.size()) continue;
             const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
-            auto bundle = std::ranges::find(bundles, title, &Bundle::title);
-            if (bundle == bundles.end()) bundle = bundles.insert(bundle, Bundle{title});
-            bundle->add(of.of_all ? "" : of.wheel.name,
-                        rows_of(x, values, scale, quantity, extent));
-            for (auto& series : given_of(scene, family, c, of, scale))
-                bundle->others.push_back(std::move(series));
+            const std::string whose = of.of_all ? "" : of.wheel.name;
+            add_curve(curves, {of.element.empty() ? legend : of.element, whose,
+                               rows_of(x, values, scale, quantity, extent)});
+            std::ranges::move(given_of(scene, family, c, of, scale), std::back_inserter(given));
         }
     }
-    return bundles;
+    return curves;
+}
+
+// In the same order, or in the opposite one, as of two wheels in roll.
+bool coincide(const Rows& a, const Rows& b) {
+    double size = 0;
+    for (const auto& row : a)
+        for (const double v : row) size = std::max(size, std::abs(v));
+    const auto same = [&](const auto& one, const auto& other) {
+        return std::ranges::equal(
+            one, other, [&](double v, double w) { return std::abs(v - w) <= 1e-6 * size; });
+    };
+    return std::ranges::equal(a, b, same) || std::ranges::equal(a, b | std::views::reverse, same);
+}
+
+// Of every curve at most so many points; all with its gaps, which are rows without numbers.
+Table table_of_points(const compare::Chart& chart, const std::vector<DrawnCurve>& curves,
+                      std::size_t most) {
+    struct At {
+        const DrawnCurve* curve;
+        double x, y;
+    };
+    std::vector<At> points;
+    for (const auto& curve : curves) {
+        Rows rows = curve.rows;
+        if (rows.size() > most) std::erase_if(rows, [](const auto& row) { return row.empty(); });
+        for (const auto k : thinned(rows.size(), most))
+            points.push_back(rows[k].empty() ? At{&curve, compare::nan, compare::nan}
+                                             : At{&curve, rows[k][0], rows[k][1]});
+    }
+    return compare::table<At>(
+        {.caption = fmt::format("{} over {}", chart.y.front(), chart.x), .detail = true},
+        {{chart.by[0], Digits::words, [](const At& at) { return at.curve->of; }},
+         {chart.by[1], Digits::words, [](const At& at) { return at.curve->whose; }},
+         {chart.x, Digits::place, &At::x},
+         {chart.y.front(), Digits::four, &At::y}},
+        points);
 }
 
 }  // namespace
+
+bool add_curve(std::vector<DrawnCurve>& curves, DrawnCurve curve) {
+    if (curve.rows.empty() || std::ranges::any_of(curves, [&](const DrawnCurve& other) {
+            return other.of == curve.of && coincide(other.rows, curve.rows);
+        }))
+        return false;
+    curves.push_back(std::move(curve));
+    return true;
+}
+
+FigureGroup figure_of_curves(compare::Chart chart, const std::vector<DrawnCurve>& curves,
+                             const std::string& description, std::string caption) {
+    chart.kind = compare::Chart::Kind::lines;
+    chart.by = {"curve", "wheel"};
+    Figure figure = figure_of(chart, table_of_points(chart, curves, SIZE_MAX));
+    figure.description = description;
+    if (!caption.empty()) caption[0] = static_cast<char>(std::toupper(caption[0]));
+    return {std::move(caption), {std::move(figure)}, table_of_points(chart, curves, 7)};
+}
 
 void add_figures(Section& section, const SceneAnalyses& scene, const Family& family) {
     if (family.cases.empty()) return;
@@ -76,33 +133,33 @@ void add_figures(Section& section, const SceneAnalyses& scene, const Family& fam
     if (family.if_given)
         std::ranges::copy(compare::drawn_over(compare::Over::if_given),
                           std::back_inserter(quantities));
+    std::vector<std::string> names, given_names{"measured"};
+    for (const auto& c : family.cases) names.push_back(c.sweep.name);
+    for (const auto& candidate : scene.candidates) given_names.push_back(candidate.judgement.name);
     for (const auto& quantity : quantities) {
         const bool if_given = &quantity - quantities.data() >= std::ssize(family.quantities);
         CurveRange extent;
-        auto bundles = bundles_of(scene, family, quantity, extent);
-        const bool given =
-            std::ranges::any_of(bundles, [](const Bundle& b) { return !b.others.empty(); });
-        const bool empty =
-            std::ranges::all_of(bundles, [](const Bundle& b) { return b.lines.empty(); });
+        std::vector<DrawnCurve> given;
+        auto curves = curves_of(scene, family, quantity, extent, given);
         // A quantity that does not move is left out, unless there are measured or candidate values.
         const double size = std::max(1e-3, std::max(std::abs(extent.low), extent.high));
-        if (empty || (!given && (if_given || !(extent.moved > 1e-6 * size)))) continue;
+        if (curves.empty() || (given.empty() && (if_given || !(extent.moved > 1e-6 * size))))
+            continue;
+        std::ranges::move(given, std::back_inserter(curves));
         const std::string unit = outputs_of(scene, quantity.name).front().unit;
         const bool change =
             quantity.shown == Shown::change || quantity.shown == Shown::outward_change;
-        std::vector<std::string> names;
-        for (const auto& c : family.cases) names.push_back(c.sweep.name);
-        Figure figure{
-            .id = fmt::format("{}-{}", slug(quantity.name), family.id),
-            .title = quantity.title,
-            .description = fmt::format("{} over {} by the full solution, {}: from {} to {} {}.",
-                                       quantity.title, family.x, enumerated(names),
-                                       number(extent.low), number(extent.high), unit),
-            .x = family.x,
-            .y = fmt::format("{} [{}]", change ? "change" : label_of(quantity), unit)};
-        if (family.cases.size() == 1) figure.x += direction_of(scene, family, family.cases[0]);
-        section.figures.push_back(drawn(std::move(figure), std::move(bundles), scene.model.wheels,
-                                        quantity.sign.empty() ? quantity.title : quantity.sign));
+        section.figures.push_back(figure_of_curves(
+            {.id = fmt::format("{}-{}", slug(quantity.name), family.id),
+             .title = quantity.title,
+             .x = family.x +
+                  (family.cases.size() == 1 ? direction_of(scene, family, family.cases[0]) : ""),
+             .y = {fmt::format("{} [{}]", change ? "change" : label_of(quantity), unit)},
+             .rings = given_names},
+            curves,
+            fmt::format("{} over {} by the full solution, {}: from {} to {} {}.", quantity.title,
+                        family.x, enumerated(names), number(extent.low), number(extent.high), unit),
+            quantity.sign.empty() ? quantity.title : quantity.sign));
     }
 }
 

@@ -10,23 +10,13 @@
 
 namespace elastocheck::reports {
 
-// The curves of one colour: those of a load case or of a spring, one line per wheel.
-struct Bundle {
-    std::string title;  // in the legend: "lateral, inwards"; empty if there is one bundle
-    struct Line {
-        std::string whose;  // "left"; empty: not of one wheel
-        std::vector<std::vector<double>> rows;
-    };
-    std::vector<Line> lines{};
-    std::vector<Series> others{};  // measured, candidates, marks
+// Whether it was added: unless one of the same load case coincides with it, as of the other wheel.
+bool add_curve(std::vector<DrawnCurve>& curves, DrawnCurve curve);
 
-    // Adds a line unless it coincides with one that is there.
-    void add(const std::string& whose, std::vector<std::vector<double>> rows);
-};
-
-// The figure with these curves, and their numbers as a table.
-FigureGroup drawn(Figure figure, std::vector<Bundle> bundles, const std::vector<Wheel>& wheels,
-                  std::string caption);
+// The figure of these curves and some of their points as a table. `chart` has id, title,
+// the names of its axes and what is drawn as rings.
+FigureGroup figure_of_curves(compare::Chart chart, const std::vector<DrawnCurve>& curves,
+                             const std::string& description, std::string caption = {});
 
 // Adds a figure of every quantity that changes, or of which there are measured or candidate values.
 void add_figures(Section& section, const SceneAnalyses& scene, const Family& family);

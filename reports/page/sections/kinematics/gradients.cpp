@@ -94,14 +94,12 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
         }
     }
     using R = GradientRow;
-    std::vector<compare::ColumnOf<R>> columns{
-        {"gradient of", Digits::words, [](const R& r) { return r.of; }}};
+    std::vector<compare::ColumnOf<R>> columns{{"gradient of", Digits::words, &R::of}};
     for (std::size_t w = 0; w < wheels.size() && wheels.size() > 1; ++w)
         columns.push_back({wheels[w].name, Digits::four, [w](const R& r) { return r.values[w]; }});
-    columns.push_back(
-        {wheels.size() > 1 ? "mean" : "value", Digits::four, [](const R& r) { return r.mean; }});
-    columns.push_back({"unit", Digits::words, [](const R& r) { return r.unit; }});
-    Table table = compare::table("", columns, rows);
+    columns.push_back({wheels.size() > 1 ? "mean" : "value", Digits::four, &R::mean});
+    columns.push_back({"unit", Digits::words, &R::unit});
+    Table table = compare::table({}, columns, rows);
     const std::string positive = push_of(scene, c, wheels[0]).positive;
     table.caption = fmt::format("{}{}{}, over {} from {} to {}\u00a0{}", c.legend(),
                                 positive.empty() ? "" : " ", positive, over.words,

@@ -53,8 +53,7 @@ std::vector<Rate> rates_of(const Design& design, const std::vector<Wheel>& wheel
 
 Table rates_table(const std::vector<Rate>& rates, const std::vector<Wheel>& wheels,
                   std::string caption) {
-    std::vector<compare::ColumnOf<Rate>> columns{
-        {"rate", Digits::words, [](const Rate& r) { return r.name; }}};
+    std::vector<compare::ColumnOf<Rate>> columns{{"rate", Digits::words, &Rate::name}};
     for (std::size_t k = 0; k < std::max<std::size_t>(1, wheels.size()); ++k)
         columns.push_back({wheels.size() < 2 ? "value" : wheels[k].name, Digits::four,
                            [=](const Rate& r) -> compare::AnyCell {
@@ -64,8 +63,7 @@ Table rates_table(const std::vector<Rate>& rates, const std::vector<Wheel>& whee
                            }});
     columns.push_back(
         {"unit", Digits::words, [](const Rate& r) { return r.unit == "-" ? "" : r.unit; }});
-    Table table = compare::table("", columns, rates);
-    table.caption = std::move(caption);
+    Table table = compare::table({.caption = std::move(caption)}, columns, rates);
     for (const auto& rate : rates)
         for (const auto& row : rate.rows)
             if (const std::string why = row ? row->undefined : "";
@@ -107,13 +105,10 @@ std::optional<Section> rates_section(const SceneAnalyses& scene) {
     for (const auto& [cause, of_group] : groups)
         section.tables.push_back(
             rates_table(of_group, scene.model.wheels, "At the design position: " + cause));
-    Table& definitions = section.tables.emplace_back(compare::table<Rate>(
-        "",
-        {{"rate", Digits::words, [](const Rate& r) { return r.name; }},
-         {"definition", Digits::note, [](const Rate& r) { return r.definition; }}},
+    section.tables.push_back(compare::table<Rate>(
+        {.caption = "Definitions of the rates", .detail = true},
+        {{"rate", Digits::words, &Rate::name}, {"definition", Digits::note, &Rate::definition}},
         rates));
-    definitions.caption = "Definitions of the rates";
-    definitions.detail = true;
     return section;
 }
 

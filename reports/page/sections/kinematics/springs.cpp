@@ -75,39 +75,34 @@ std::optional<Section> springs_section(const SceneAnalyses& scene) {
     if (wheels.empty() || !sweep || !sweep->lifts()) return std::nullopt;
     Section section{
         .id = "springs", .title = "Springs, stops and dampers", .part = Part::behaviour};
-    std::vector<Bundle> bundles;
+    std::vector<DrawnCurve> curves;
     std::vector<std::string> contacts;
-    Series marks{
-        .title = "a stop touches", .style = Series::Style::rings, .colour = ink, .mark = 5};
+    DrawnCurve marks{"a stop touches"};
     for (const auto& force : spring_forces(scene, *sweep)) {
         std::vector<double> touches;
         auto rows = curve_of(force, touches);
         if (std::ranges::all_of(rows, [](const auto& row) { return row[1] == 0; })) continue;
-        auto bundle = std::ranges::find(bundles, force.element, &Bundle::title);
-        if (bundle == bundles.end()) bundle = bundles.insert(bundle, Bundle{force.element});
-        const auto before = bundle->lines.size();
-        bundle->add(wheels[force.wheel].name, std::move(rows));
-        if (bundle->lines.size() == before) continue;  // coincides with that of the other wheel
+        if (!add_curve(curves, {force.element, wheels[force.wheel].name, std::move(rows)}))
+            continue;  // coincides with that of the other wheel
         for (const double at : touches) {
             marks.rows.push_back({at, 0});
             contacts.push_back(fmt::format("{} at {}\u00a0mm", force.element, number(at)));
         }
     }
-    if (!bundles.empty()) {
-        if (!marks.rows.empty()) bundles.back().others.push_back(std::move(marks));
-        Figure figure{
-            .id = "force-springs",
-            .title = "Force of springs and stops",
-            .description = fmt::format("Force of springs and stops over wheel travel, {}, "
-                                       "by the full solution at its stations.",
-                                       sweep->name),
-            .x = "wheel travel [mm]",
-            .y = "force [N]"};
-        section.figures.push_back(
-            drawn(std::move(figure), std::move(bundles), wheels,
-                  contacts.empty() ? "Compression positive"
-                                   : "Compression positive; touches: " + enumerated(contacts)));
-    }
+    if (!marks.rows.empty()) curves.push_back(marks);
+    if (!curves.empty())
+        section.figures.push_back(figure_of_curves(
+            {.id = "force-springs",
+             .title = "Force of springs and stops",
+             .x = "wheel travel [mm]",
+             .y = {"force [N]"},
+             .rings = {marks.of}},
+            curves,
+            fmt::format("Force of springs and stops over wheel travel, {}, by the full solution at "
+                        "its stations.",
+                        sweep->name),
+            contacts.empty() ? "Compression positive"
+                             : "Compression positive; touches: " + enumerated(contacts)));
     add_figures(section, scene,
                 {.id = "springs",
                  .x = "wheel travel [mm]",
