@@ -215,6 +215,37 @@ json report_json(const Report& report) {
     return result;
 }
 
+std::string numbers_csv(const std::vector<SceneAnalyses>& scenes) {
+    std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
+    for (const auto& scene : scenes)
+        for (const auto& branch : branches_of(scene)) {
+            const Sweep sweep = sweep_of(scene, branch);
+            const std::string by_parameter = "published " + sweep.at_equal_parameter(),
+                              by_abscissa = "published " + sweep.at_equal_abscissa();
+            const auto &load = branch.result->deviation.equal_parameter.channels,
+                       &travel = branch.result->deviation.equal_abscissa.channels;
+            for (std::size_t c = 0; c < load.size(); ++c) {
+                const auto& channel = scene.comparison.channels[c];
+                const auto values = values_of(branch.truth(), c);
+                if (!channel.main || values.empty() || !branch.result->determined[c]) continue;
+                const auto row = [&](const std::string& quantity, double value, double tolerance) {
+                    csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
+                                       for_csv(fs::path(scene.scene.source).stem().string()),
+                                       for_csv(branch.name()), for_csv(channel.name),
+                                       for_csv(symbol(channel.unit)), quantity, value, tolerance);
+                };
+                // The references agree far better; a deviation contains the rounding of many steps.
+                const double fine = 1e-6, coarse = 1e-6 + 1e-6 * load[c].range;
+                row("equilibrium at the end", values.back(), fine);
+                row(by_parameter + ": deviation at the end", load[c].end, coarse);
+                row(by_parameter + ": largest deviation", load[c].max, coarse);
+                if (c < travel.size())
+                    row(by_abscissa + ": largest deviation", travel[c].max, coarse);
+            }
+        }
+    return csv;
+}
+
 namespace {
 
 // A report before its figures are drawn.
@@ -282,7 +313,8 @@ std::vector<NamedContent> texts(Draft draft, const Report& report, const std::st
                                     {"report.md", render("markdown/page", data, Escape::markdown)},
                                     {"result.json", report_json(report).dump(1) + "\n"},
                                     {"curves.csv", curves_csv(comparisons)},
-                                    {"forces.csv", forces_csv(report.scenes)}};
+                                    {"forces.csv", forces_csv(report.scenes)},
+                                    {"numbers.csv", numbers_csv(report.scenes)}};
     if (!live.empty()) files.push_back({"live.html", live});
     return files;
 }

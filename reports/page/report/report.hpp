@@ -44,4 +44,8 @@ struct Answer {
 std::vector<Answer> write_report(const Report& report, const std::filesystem::path& folder,
                                  const ReportOptions& options = {});
 
+// scene,branch,output,unit,quantity,value,tolerance: numbers for regression tests between runs,
+// with the tolerance of each for other compilers.
+std::string numbers_csv(const std::vector<SceneAnalyses>& scenes);
+
 }  // namespace elastocheck::reports
