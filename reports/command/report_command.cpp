@@ -444,7 +444,7 @@ const Command report_command{
         add_set(command, request->settings);
         as_folder(command.add_option("-o,--output", request->folder,
                                      "folder for report.html, report.md, result.json, curves.csv, "
-                                     "figures/"))
+                                     "numbers.csv, figures/"))
             ->required();
         command.add_option("--tolerance", request->tolerance,
                            "required accuracy (default: 0.01mm,0.001deg,1%)");

@@ -9,6 +9,7 @@
 #include "compare/tables/rows.hpp"
 #include "models/overloaded.hpp"
 #include "reports/document/drawing.hpp"
+#include "reports/document/inspection.hpp"
 #include "reports/given/wheels.hpp"
 #include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
@@ -248,6 +249,10 @@ json results_json(const SceneAnalyses& s) {
     if (s.judgement) compared.verdict.sentence = sentence(judgement);
     if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);
     add_tables(compared, s);
+    if (s.inspected.tables.empty()) {
+        if (s.trim) add_trim(compared, *s.trim);
+        add_numbers(compared, s.scene);
+    }
     json results = json::array({json_of(compared)});
     if (!s.inspected.tables.empty()) results.push_back(json_of(s.inspected));
     if (s.study)

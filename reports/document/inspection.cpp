@@ -119,34 +119,6 @@ void add_parts(Result& result, const Scene& scene, const Model& model) {
                  .caption = "elastic elements"});
 }
 
-void add_trim(Result& result, const compare::TrimRecord& trim) {
-    Rows adjusted, conditions;
-    for (const auto& a : trim.adjusted) adjusted.push_back({a.name, a.by, symbol(a.unit), a.makes});
-    for (const auto& c : trim.conditions)
-        conditions.push_back(
-            {c.name, c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed)});
-    add(result,
-        {.columns = {words("number"),
-                     number("by", "", Digits::four),
-                     words("unit"),
-                     {.name = "makes", .words = true, .digits = Digits::note}},
-         .rows = adjusted,
-         .id = "trim",
-         .caption = fmt::format(
-             "trim, found by the equilibrium leg in {} step{}, confirmed by {}; bushings are {}",
-             trim.iterations, trim.iterations == 1 ? "" : "s",
-             trim.confirmed_by == compare::Leg::energy ? "the energy leg" : "the series",
-             trim.bushings == Trim::Bushings::balanced
-                 ? "balanced: the drawn position is the equilibrium"
-                 : "unloaded as drawn")});
-    add(result,
-        {.columns = {words("until"), number("is", "", Digits::given), words("unit"),
-                     number("met to", "", Digits::size), number("confirmed to", "", Digits::size)},
-         .rows = conditions,
-         .id = "conditions",
-         .caption = "conditions that the trim meets"});
-}
-
 // The branches, and where each begins: the settled displacements of the main outputs.
 void add_branches(Result& result, const Model& model,
                   const std::vector<compare::Channel>& channels) {
@@ -236,6 +208,36 @@ Table one_column(const char* id, const char* heading, const char* caption,
     return table;
 }
 
+}  // namespace
+
+void add_trim(Result& result, const compare::TrimRecord& trim) {
+    Rows adjusted, conditions;
+    for (const auto& a : trim.adjusted) adjusted.push_back({a.name, a.by, symbol(a.unit), a.makes});
+    for (const auto& c : trim.conditions)
+        conditions.push_back(
+            {c.name, c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed)});
+    add(result,
+        {.columns = {words("number"),
+                     number("by", "", Digits::four),
+                     words("unit"),
+                     {.name = "makes", .words = true, .digits = Digits::note}},
+         .rows = adjusted,
+         .id = "trim",
+         .caption = fmt::format(
+             "trim, found by the equilibrium leg in {} step{}, confirmed by {}; bushings are {}",
+             trim.iterations, trim.iterations == 1 ? "" : "s",
+             trim.confirmed_by == compare::Leg::energy ? "the energy leg" : "the series",
+             trim.bushings == Trim::Bushings::balanced
+                 ? "balanced: the drawn position is the equilibrium"
+                 : "unloaded as drawn")});
+    add(result,
+        {.columns = {words("until"), number("is", "", Digits::given), words("unit"),
+                     number("met to", "", Digits::size), number("confirmed to", "", Digits::size)},
+         .rows = conditions,
+         .id = "conditions",
+         .caption = "conditions that the trim meets"});
+}
+
 void add_numbers(Result& result, const Scene& scene) {
     Rows rows;
     for (const Number& n : scene.numbers) {
@@ -251,8 +253,6 @@ void add_numbers(Result& result, const Scene& scene) {
                  .caption = "numbers, as --set and --vary name them",
                  .detail = true});
 }
-
-}  // namespace
 
 Result inspection(const Inspected& inspected) {
     const auto& [scene, model, trim] = inspected;
