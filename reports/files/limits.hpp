@@ -1,5 +1,4 @@
-// Size limits of external input. Output of this program is smaller
-// (reports/command/options/limits.hpp).
+// Size limits of external input.
 #pragma once
 
 #include <cstddef>

@@ -26,7 +26,7 @@ std::string for_script(std::string_view json);
 std::string for_markdown(std::string_view text);
 
 // A field of a CSV file (RFC 4180), quoted where necessary; on one line. A text that a spreadsheet
-// would evaluate (=, +, -, @ at the beginning of a cell, also after a semicolon) gets an apostrophe
+// would evaluate (=, +, -, @ at the beginning of a cell, also after a comma or semicolon) gets an apostrophe
 // before it; numbers are unchanged.
 std::string for_csv(std::string_view text);
 

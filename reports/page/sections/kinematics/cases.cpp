@@ -11,17 +11,17 @@
 namespace elastocheck::reports {
 
 std::vector<Case> cases_of(const SceneAnalyses& scene,
-                           const std::function<bool(const Sweep&)>& in) {
+                           const std::function<bool(const Sweep&)>& includes) {
     std::vector<Case> cases;
     for (const auto& sweep : sweeps_of(scene))
-        if (in(sweep)) {
+        if (includes(sweep)) {
             cases.push_back({sweep, SweepCurve(scene, sweep)});
             if (cases.back().curve.a.size() < 2) cases.pop_back();
         }
     return cases;
 }
 
-bool pushes(const Sweep& sweep) {
+bool is_force_test(const Sweep& sweep) {
     return sweep.kind == "lateral force" || sweep.kind == "longitudinal force" ||
            sweep.kind == "moment";
 }
@@ -52,7 +52,7 @@ std::string label_of(const Quantity& quantity) {
     return title;
 }
 
-double at_rest(double value) {
+double without_rounding(double value) {
     constexpr double rest = 1e-9;  // mm, deg, N: less is rounding
     return std::abs(value) < rest ? 0 : value;
 }

@@ -19,9 +19,11 @@ struct Case {
     SweepCurve curve;
     std::string legend() const { return as_words(sweep.name); }
 };
-// The sweeps for which `in` holds, with two points or more.
-std::vector<Case> cases_of(const SceneAnalyses& scene, const std::function<bool(const Sweep&)>& in);
-bool pushes(const Sweep& sweep);  // forces in the plane of the road, and moments
+// The sweeps for which `includes` holds, with two points or more.
+std::vector<Case> cases_of(const SceneAnalyses& scene,
+                           const std::function<bool(const Sweep&)>& includes);
+// Whether the sweep is a force in the plane of the road, or a moment.
+bool is_force_test(const Sweep& sweep);
 
 // Load cases that share an abscissa: the parameter, the travel of each wheel, the force or moment on
 // each wheel in the direction of a K&C test, the roll of the axle.
@@ -31,7 +33,8 @@ struct Family {
     By by = By::parameter;
     std::vector<Case> cases{};
     std::vector<Quantity> quantities{};
-    bool if_given = true;  // also quantities that are drawn only where they are given
+    bool with_given_only =
+        true;  // also quantities without a curve unless measured or by a candidate
     // Channel that is the abscissa of a wheel; empty: the parameter.
     std::string abscissa(const Wheel& wheel) const;
 };
@@ -45,8 +48,8 @@ struct FoundOutput {
 };
 std::vector<FoundOutput> outputs_of(const SceneAnalyses& scene, const std::string& quantity);
 
-// The wheel of a spring, damper or stop, the only one with a word of the name in its own, and the
-// other words: "coil" and the position of "left" for "coil_left". None if there is no such wheel.
+// Splits the name of a spring, damper or stop: "coil_left" is "coil" and the position of the wheel "left".
+// None unless exactly one wheel has a word of the name.
 std::optional<std::pair<std::string, std::size_t>> wheel_of(const std::string& owner,
                                                             const std::vector<Wheel>& wheels);
 
@@ -55,16 +58,17 @@ struct Scale {
     double factor = 1, origin = 0;
     double operator()(double value) const { return factor * (value - origin); }
 };
+// `side`: sign by the side of the wheel; `start`: position of the branch's start among the values.
 Scale scale_of(const Quantity& quantity, int side, const std::vector<double>& values,
                std::size_t start);
 std::string label_of(const Quantity& quantity);  // "camber", "steer angle"
-double at_rest(double value);                    // 0 for a value that is rounding
+double without_rounding(double value);           // 0 for a value that is rounding
 
 // Abscissa of a wheel in a case, the parameter times `push_of` where it is a push.
 std::vector<double> abscissa_of(const SceneAnalyses& scene, const Family& family, const Case& c,
                                 const Wheel& wheel);
-// Force or moment on a wheel as the figures of a K&C test count it: the parameter times `factor`; of a
-// wheel that is not loaded that on the other one.
+// Force or moment on a wheel as the figures of a K&C test count it: the parameter times `factor`; for
+// an unloaded wheel that on the other wheel.
 struct Push {
     double factor = 1;
     std::string positive{};  // "inwards"; empty: the parameter as it stands

@@ -39,7 +39,7 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
             shown && has_poles && !rows.empty() && !rows.back().empty() && rows.back()[1] * y < 0;
         if ((!shown || turned) && !rows.empty() && !rows.back().empty()) rows.emplace_back();
         if (!shown) continue;
-        rows.push_back({at_rest(x[j]), at_rest(y)});
+        rows.push_back({without_rounding(x[j]), without_rounding(y)});
         low = std::min(low, y);
         high = std::max(high, y);
     }
@@ -130,20 +130,20 @@ FigureGroup figure_of_curves(compare::Chart chart, const std::vector<DrawnCurve>
 void add_figures(Section& section, const SceneAnalyses& scene, const Family& family) {
     if (family.cases.empty()) return;
     auto quantities = family.quantities;
-    if (family.if_given)
+    if (family.with_given_only)
         std::ranges::copy(compare::drawn_over(compare::Over::if_given),
                           std::back_inserter(quantities));
     std::vector<std::string> names, given_names{"measured"};
     for (const auto& c : family.cases) names.push_back(c.sweep.name);
     for (const auto& candidate : scene.candidates) given_names.push_back(candidate.judgement.name);
     for (const auto& quantity : quantities) {
-        const bool if_given = &quantity - quantities.data() >= std::ssize(family.quantities);
+        const bool with_given_only = &quantity - quantities.data() >= std::ssize(family.quantities);
         CurveRange extent;
         std::vector<DrawnCurve> given;
         auto curves = curves_of(scene, family, quantity, extent, given);
         // A quantity that does not move is left out, unless there are measured or candidate values.
         const double size = std::max(1e-3, std::max(std::abs(extent.low), extent.high));
-        if (curves.empty() || (given.empty() && (if_given || !(extent.moved > 1e-6 * size))))
+        if (curves.empty() || (given.empty() && (with_given_only || !(extent.moved > 1e-6 * size))))
             continue;
         std::ranges::move(given, std::back_inserter(curves));
         const std::string unit = outputs_of(scene, quantity.name).front().unit;

@@ -25,7 +25,7 @@ Fitted fitted_over(const Sweep& sweep) {
     if (sweep.kind == "roll") return {By::roll, roll, 1, 1, "deg", "deg", "roll towards the wheel"};
     if (sweep.lifts()) return {By::travel, travel, 20, 100, "mm", "100 mm", "wheel travel"};
     if (sweep.kind == "moment") return {By::push, load, 100, 100, "N·m", "100 N·m", "moment"};
-    if (pushes(sweep)) return {By::push, load, 1000, 1000, "N", "kN", "force"};
+    if (is_force_test(sweep)) return {By::push, load, 1000, 1000, "N", "kN", "force"};
     if (sweep.unit == "mm") return {By::parameter, steering, 10, 1, "mm", "mm", "the rack"};
     return {By::parameter, steering, 20, 1, "deg", "deg", "the steering"};
 }
@@ -79,7 +79,8 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
             if (std::isnan(line.slope)) continue;
             // forces per mm, not per 100 mm
             const bool of_force = output.unit == "N" && over.by == By::travel;
-            const double value = at_rest(scale.factor * line.slope * (of_force ? 1 : over.per));
+            const double value =
+                without_rounding(scale.factor * line.slope * (of_force ? 1 : over.per));
             range.from = std::min(range.from, line.from);
             range.to = std::max(range.to, line.to);
             row.unit = fmt::format("{}/{}", output.unit, of_force ? "mm" : over.per_unit);
@@ -114,7 +115,7 @@ std::optional<Section> gradients_section(const SceneAnalyses& scene) {
     Section section{.id = "gradients", .title = "Gradients", .part = Part::behaviour};
     std::set<std::string> lifted;  // one test of each kind of lift
     for (const auto& c : cases_of(scene, [](const Sweep& s) {
-             return s.lifts() || s.kind == "steering" || pushes(s);
+             return s.lifts() || s.kind == "steering" || is_force_test(s);
          })) {
         if (c.sweep.lifts() && !lifted.insert(c.sweep.kind).second) continue;
         if (Table table = gradients_over(scene, c); !table.rows.empty())

@@ -62,7 +62,7 @@ std::vector<std::vector<double>> curve_of(const SpringForce& force, std::vector<
                 rows.push_back({touches.back(), 0});
             }
         }
-        rows.push_back({at_rest(at[0]), at_rest(at[1])});
+        rows.push_back({without_rounding(at[0]), without_rounding(at[1])});
     }
     return rows;
 }
@@ -109,7 +109,7 @@ std::optional<Section> springs_section(const SceneAnalyses& scene) {
                  .by = By::travel,
                  .cases = {{*sweep, SweepCurve(scene, *sweep)}},
                  .quantities = compare::drawn_over(compare::Over::springs),
-                 .if_given = false});
+                 .with_given_only = false});
     if (section.figures.empty()) return std::nullopt;
     section.words["branch"] = sweep->name;
     return section;

@@ -68,7 +68,7 @@ std::optional<Section> steering_section(const SceneAnalyses& scene) {
 }
 
 std::optional<Section> compliance_section(const SceneAnalyses& scene) {
-    const auto cases = cases_of(scene, pushes);
+    const auto cases = cases_of(scene, is_force_test);
     if (scene.model.wheels.empty() || cases.empty()) return std::nullopt;
     Section section{.id = "compliance",
                     .title = "Compliance under forces and moments",
@@ -88,7 +88,7 @@ std::optional<Section> compliance_section(const SceneAnalyses& scene) {
 std::optional<Section> curves_section(const SceneAnalyses& scene) {
     const bool no_wheels = scene.model.wheels.empty();
     const auto cases = cases_of(scene, [&](const Sweep& s) {
-        return no_wheels || !(s.lifts() || s.kind == "steering" || pushes(s));
+        return no_wheels || !(s.lifts() || s.kind == "steering" || is_force_test(s));
     });
     if (cases.empty()) return std::nullopt;
     Section section{.id = "curves", .title = "Outputs over load or drive", .part = Part::behaviour};
