@@ -108,7 +108,7 @@ Values less(Values a, const Values& b) {
     return a;
 }
 // Half of the last decimal with which a column is written; 0 of one with more than six.
-double rounding(const Values& v) {
+double rounding_of(const Values& v) {
     double unit = 1;
     for (int decimals = 0; decimals <= 6; ++decimals, unit /= 10)
         if (std::ranges::all_of(
@@ -336,7 +336,7 @@ std::optional<Explanation> explain(const ColumnWithReference& b) {
                          // the figure may not move at all where another definition of it does
                          : std::max(allowed,
                                     std::min(share_of_deviation * deviation,
-                                             std::max(share_of_reference * span(v), rounding(v)))),
+                                             std::max(share_of_reference * span(v), rounding_of(v)))),
                 tests))
             accepted = other;
     if (!accepted) accepted = wrong_from(b);

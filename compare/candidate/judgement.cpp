@@ -1,5 +1,4 @@
 #include "compare/candidate/judgement.hpp"
-#include "compare/deviation/tolerance.hpp"
 
 #include <cmath>
 
