@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "compare/deviation/tolerance.hpp"
+
 namespace elastocheck::compare {
 namespace {
 
