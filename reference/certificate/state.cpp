@@ -123,7 +123,7 @@ VectorXd radii(const StateAt& mapped, const Tolerance& near) {
         const int k = system.pose(body);
         const Vec<Interval> place_of = place(mapped, body);
         const Quat<Interval> p =
-            direction_of<Interval>(mapped.state.poses[static_cast<std::size_t>(body)].p);
+            unit_quaternion<Interval>(mapped.state.poses[static_cast<std::size_t>(body)].p);
         for (int i = 0; i < 3; ++i)
             r[k + i] =
                 (Interval(near.length) +
@@ -203,7 +203,7 @@ Extent distance(const StateAt& mapped, const std::vector<Interval>& z) {
         far.length = std::max(far.length, size_above(std::array{z[k] - from[0], z[k + 1] - from[1],
                                                                 z[k + 2] - from[2]}));
         far.angle = std::max(far.angle,
-                             angle_above(direction_of<Interval>(
+                             angle_above(unit_quaternion<Interval>(
                                              mapped.state.poses[static_cast<std::size_t>(body)].p),
                                          quaternion(mapped.system, z, body)));
     }
