@@ -452,15 +452,16 @@ template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vecto
                                                 const Jet<1>&);
 
 VectorXd Factors::solve(const VectorXd& b) const {
-    if (!of) return VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
-    return D_c.cwiseProduct(of(D_r.cwiseProduct(b), false));
+    if (!solve_A) return VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
+    return D_c.cwiseProduct(solve_A(D_r.cwiseProduct(b), false));
 }
 
 MatrixXd Factors::rows_of_inverse(Index from, Index count) const {
-    if (!of) return MatrixXd::Constant(count, size(), std::numeric_limits<double>::quiet_NaN());
+    if (!solve_A)
+        return MatrixXd::Constant(count, size(), std::numeric_limits<double>::quiet_NaN());
     MatrixXd right = MatrixXd::Zero(size(), count);
     for (Index k = 0; k < count; ++k) right(from + k, k) = D_c[from + k];
-    return (D_r.asDiagonal() * of(right, true)).transpose();
+    return (D_r.asDiagonal() * solve_A(right, true)).transpose();
 }
 
 // 1 / (‖A‖₁ ‖A⁻¹‖₁). ‖A⁻¹‖₁ = max ‖A⁻¹ x‖₁ over ‖x‖₁ = 1 is convex in x: Hager's method climbs from
@@ -468,17 +469,17 @@ MatrixXd Factors::rows_of_inverse(Index from, Index count) const {
 double Factors::rcond() const {
     constexpr int iterations = 5;
     const Index n = size();
-    if (!of) return 0;
+    if (!solve_A) return 0;
     VectorXd x = VectorXd::Constant(n, 1 / static_cast<double>(n));
     double inverse_norm = 0;
     for (int k = 0; k < iterations; ++k) {
-        const VectorXd y = of(x, false);
+        const VectorXd y = solve_A(x, false);
         if (!y.allFinite()) return 0;
         const double size = y.lpNorm<1>();
         if (k > 0 && !(size > inverse_norm)) break;
         inverse_norm = std::max(inverse_norm, size);
         const VectorXd sign = y.unaryExpr([](double v) { return v < 0 ? -1. : 1.; }),
-                       z = of(sign, true);
+                       z = solve_A(sign, true);
         Index largest = 0;
         const double slope = z.cwiseAbs().maxCoeff(&largest);
         if (!z.allFinite()) return 0;
@@ -488,7 +489,7 @@ double Factors::rcond() const {
     // Higham's vector of alternating signs, for matrices on which the iteration stops too early.
     for (Index k = 0; k < n; ++k)
         x[k] = (k % 2 == 0 ? 1 : -1) * (1 + static_cast<double>(k) / static_cast<double>(n));
-    const VectorXd y = of(x, false);
+    const VectorXd y = solve_A(x, false);
     if (!y.allFinite()) return 0;
     inverse_norm = std::max(inverse_norm, 2 * y.lpNorm<1>() / (3 * static_cast<double>(n)));
     return 1 / (norm * inverse_norm);
@@ -501,8 +502,8 @@ Factors factors(const SparseMatrix& J) {
     const auto [A, D_r, D_c] = equilibrated(J);
     result.D_r = D_r, result.D_c = D_c;
     for (Index j = 0; j < n; ++j) result.norm = std::max(result.norm, A.col(j).cwiseAbs().sum());
-    // of Aᵀ, which most right-hand sides are for
-    const auto solving = [](const auto& lu) {
+    // The factors are those of Aᵀ, since most right-hand sides are for it.
+    const auto solver_of = [](const auto& lu) {
         return [lu](const MatrixXd& b, bool transposed) -> MatrixXd {
             if (transposed) return lu->solve(b);
             return lu->transpose().solve(b);
@@ -510,11 +511,11 @@ Factors factors(const SparseMatrix& J) {
     };
     if (n <= max_unknowns_of_dense) {
         const MatrixXd dense = A.transpose();
-        result.of = solving(std::make_shared<Eigen::PartialPivLU<MatrixXd>>(dense));
+        result.solve_A = solver_of(std::make_shared<Eigen::PartialPivLU<MatrixXd>>(dense));
         return result;
     }
     const auto lu = std::make_shared<Eigen::SparseLU<SparseMatrix>>(SparseMatrix(A.transpose()));
-    if (lu->info() == Eigen::Success) result.of = solving(lu);
+    if (lu->info() == Eigen::Success) result.solve_A = solver_of(lu);
     return result;
 }
 

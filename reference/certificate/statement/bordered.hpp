@@ -84,7 +84,7 @@ std::vector<Interval> thin(const Eigen::VectorXd& x);
 struct Factors {
     Eigen::VectorXd D_r, D_c;
     // (b, transposed): A⁻¹ b or A⁻ᵀ b; none if A is singular
-    std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, bool)> of;
+    std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, bool)> solve_A;
     double norm = 0;  // ‖A‖₁
     Eigen::Index size() const { return D_r.size(); }
     Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
