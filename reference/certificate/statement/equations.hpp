@@ -115,7 +115,8 @@ std::array<T, 6> deformation(const Bushing& bushing, const T& rise, const Measur
     return e;
 }
 
-// Wrenches of a bushing on its bodies, (f, g) = ∂u/∂e + preload, u the energy. With F = A_f f and the frame rotating by δπ_f,
+// Wrenches of a bushing on its bodies from its element forces `f_g`, (f, g) = ∂u/∂e + preload with
+// the energy u. With F = A_f f and the frame rotating by δπ_f,
 //
 //   f · δd = F · (δp_j - δp_i) - (D × F) · δπ_f        g · δθ = (A_i G g) · (δπ_j - δπ_i)
 //

@@ -50,14 +50,13 @@ void add_pair(BodyId a, int rows, BodyId b, int columns, const Eigen::Matrix3d& 
 // its δ²u is the same.
 void add_curvature_along(const Eigen::Vector3d& f, const Carried& point, Blocks& H);
 
-// g(D), D = p - p', p and p' the points at the levers `point` and
-// `other_point`; f [3] and M [3 × 3] are the
-// first and second derivative of g.
+// g(D), D = p - p', p and p' the points at the levers `point` and `other_point`; f [3] and M [3 × 3]
+// are the first and second derivative of g.
 void add_curvature_of_difference(const Eigen::Vector3d& f, const Eigen::Matrix3d& M,
                                  const Carried& point, const Carried& other_point, Blocks& H);
 
-// n·D, n a direction carried by a body, D = p - p' of the points at the levers `point`
-// and `other_point`.
+// n·D, n a direction carried by a body, D = p - p' of the points at the levers `point` and
+// `other_point`.
 void add_curvature_of_offset(const Carried& n, const Eigen::Vector3d& D, const Carried& point,
                              const Carried& other_point, Blocks& H);
 
