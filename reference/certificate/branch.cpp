@@ -210,18 +210,18 @@ SparseRows<Interval> coefficient(const SparseRows<Jet<n>>& J, std::size_t k) {
 // The gauge is zero along the piece by definition.
 template <int n>
 std::vector<Values<Interval>> coefficients(const Problem& problem, const Piece& piece) {
-    const Interval middle = 0, all{-1, 1};
-    Values<Jet<n>> about =
+    const Interval middle = 0, whole_piece{-1, 1};
+    Values<Jet<n>> F_middle =
         residual(problem, along<n>(piece, middle, nullptr), parameter<n>(piece, middle));
-    const auto over =
-        evaluate_without_slopes(problem, along<n>(piece, all, nullptr), parameter<n>(piece, all));
+    const auto F_piece = evaluate_without_slopes(problem, along<n>(piece, whole_piece, nullptr),
+                                                 parameter<n>(piece, whole_piece));
     std::vector<Values<Interval>> F(static_cast<std::size_t>(n) + 1);
     for (std::size_t k = 0; k < F.size(); ++k) {
-        for (const Jet<n>& entry : (k + 1 < F.size() ? about : over).E)
+        for (const Jet<n>& entry : (k + 1 < F.size() ? F_middle : F_piece).E)
             F[k].E.push_back(entry.c[k]);
         std::fill(F[k].E.begin() + problem.n(), F[k].E.end(), Interval());
     }
-    F.front().laws = std::move(about.laws);
+    F.front().laws = std::move(F_middle.laws);
     return F;
 }
 
@@ -242,10 +242,10 @@ struct RestAlong {
     std::vector<Split> J;        // |M_j|, R_j
     double gamma = 0;
     VectorXd operator()(const VectorXd& r) const {
-        VectorXd sum = VectorXd::Zero(r.size()), lost = sum;
+        VectorXd sum = VectorXd::Zero(r.size()), remainder = sum;
         for (const MatrixXd& part : rest) sum += above(part, r);
-        for (const Split& part : J) lost += above(part.R, r) + gamma * above(part.M, r);
-        return (sum + above(Y, lost)) * (1 + 1e-13);
+        for (const Split& part : J) remainder += above(part.R, r) + gamma * above(part.M, r);
+        return (sum + above(Y, remainder)) * (1 + 1e-13);
     }
 };
 RestAlong rest_along(const std::vector<MatrixXd>& Y, std::vector<Split> J) {
@@ -278,15 +278,17 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
     return true;
 }
 
-// r with `first` + rest(r) < r, by fixed-point iteration; empty if none is found.
-VectorXd tube(const VectorXd& first, const RestAlong& rest) {
-    constexpr double least = 1e-20;
+// r with `correction` + rest(r) < r, by fixed-point iteration; empty if none is found. The factors
+// 1.01 and 1.02 give the iteration some room above the fixed point; 1 + 1e-14 covers the rounding of
+// the sum.
+VectorXd tube(const VectorXd& correction, const RestAlong& rest) {
+    constexpr double min_radius = 1e-20;
     constexpr int max_iterations = 30;
-    VectorXd r = first.cwiseMax(least) * 1.01;
+    VectorXd r = correction.cwiseMax(min_radius) * 1.01;
     for (int k = 0; k < max_iterations; ++k) {
-        const VectorXd next = ((first + rest(r)) * 1.02).cwiseMax(least);
+        const VectorXd next = ((correction + rest(r)) * 1.02).cwiseMax(min_radius);
         if (!next.allFinite()) return {};
-        if (all_less((first + rest(next)) * (1 + 1e-14), next)) return next;
+        if (all_less((correction + rest(next)) * (1 + 1e-14), next)) return next;
         r = next.cwiseMax(r);
     }
     return {};
@@ -299,51 +301,51 @@ void enclose(const NodeSolver& solver, Node& node) {
     const Interval a = node.a;
     const Values<Interval> F = residual(problem, thin(node.y), a);
     MatrixXd Y = node.Y;
-    VectorXd room = (3 * step(Y, F)).cwiseMax(1e-19);
-    for (int trial = 0; trial < 4 && node.box.size() == 0 && room.allFinite(); ++trial) {
-        const auto J = evaluate(problem, box(node.y, room), a, Slopes::yes).J;
+    VectorXd trial_radii = (3 * step(Y, F)).cwiseMax(1e-19);
+    for (int trial = 0; trial < 4 && node.box.size() == 0 && trial_radii.allFinite(); ++trial) {
+        const auto J = evaluate(problem, box(node.y, trial_radii), a, Slopes::yes).J;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return;
         VectorXd r = passing(step(Y, F), rest);
         if (r.size() == 0)
             // at a corner, where the inverse at ỹ belongs to one side
             Y = inverse(factors(middle(J)));
-        else if ((r.array() <= room.array()).all())
+        else if ((r.array() <= trial_radii.array()).all())
             node.box = std::move(r);
         else
-            room = 2 * r;
+            trial_radii = 2 * r;
     }
 }
 
-// Sets the tube of a piece, with radii r > `joint`; false if it is not proved.
-bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const VectorXd& joint,
+// Sets the tube of a piece, with radii r > `min_radii`; false if it is not proved.
+bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const VectorXd& min_radii,
            const Tolerance& tolerance) {
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
     constexpr int J_order = order<SlopesAlong>;
     const auto F = coefficients<order<Along>>(problem, piece);
-    const VectorXd first = step({Y0}, F);
-    if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
+    const VectorXd correction = step({Y0}, F);
+    if (!correction.allFinite() || !within(solver.system, correction, tolerance)) return false;
     // Radii over which F' is evaluated; at least those of the tube to be proved.
-    VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
+    VectorXd trial_radii = (4 * correction).cwiseMax(min_radii).cwiseMax(1e-18);
     const auto slopes = [&](const Interval& S) {
-        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
-                        Slopes::yes)
+        return evaluate(problem, along<J_order>(piece, S, &trial_radii),
+                        parameter<J_order>(piece, S), Slopes::yes)
             .J;
     };
     for (int trial = 0; trial < 2; ++trial) {
-        const auto about = slopes(Interval(0)), over = slopes(Interval(-1, 1));
+        const auto J_middle = slopes(Interval(0)), J_piece = slopes(Interval(-1, 1));
         std::vector<Split> J;
         for (std::size_t k = 0; k <= J_order; ++k) {
-            J.push_back(split(coefficient(k < J_order ? about : over, k)));
+            J.push_back(split(coefficient(k < J_order ? J_middle : J_piece, k)));
             if (!J.back().finite) return false;
         }
         const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
-        piece.r = tube(step(Y, F).cwiseMax(joint), rest_along(Y, std::move(J)));
+        piece.r = tube(step(Y, F).cwiseMax(min_radii), rest_along(Y, std::move(J)));
         if (piece.r.size() == 0 || !within(solver.system, piece.r, tolerance)) return false;
         const auto R = piece.r.segment(7 * solver.system.bodies, solver.system.rows).array();
         if (!(R < 0.5 * std::min(tolerance.force, tolerance.moment)).all()) return false;
-        if ((piece.r.array() <= room.array()).all()) return true;
-        room = 2 * piece.r;
+        if ((piece.r.array() <= trial_radii.array()).all()) return true;
+        trial_radii = 2 * piece.r;
     }
     return false;
 }
@@ -363,53 +365,54 @@ bool crosses_a_knot(const System& system, const Piece& piece) {
 }
 
 // prove() for a short piece across a knot of a law, with the slopes of both sides.
-bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& joint,
+bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& min_radii,
                      const Tolerance& tolerance) {
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
     const auto F = coefficients<1>(problem, piece);
-    const auto slopes = [&](const VectorXd& room) {
+    const auto slopes = [&](const VectorXd& trial_radii) {
         std::vector<Interval> y;
-        for (const auto& jet : along<1>(piece, Interval(-1, 1), &room)) y.push_back(jet.c[0]);
+        for (const auto& jet : along<1>(piece, Interval(-1, 1), &trial_radii))
+            y.push_back(jet.c[0]);
         return evaluate(problem, y, parameter<1>(piece, Interval(-1, 1)).c[0], Slopes::yes).J;
     };
-    VectorXd room = joint;
+    VectorXd trial_radii = min_radii;
     for (int trial = 0; trial < 4; ++trial) {
-        const auto J = slopes(room);
+        const auto J = slopes(trial_radii);
         const MatrixXd Y = inverse(factors(middle(J)));
         if (!Y.allFinite()) return false;
-        const VectorXd first = step({Y}, F).cwiseMax(joint);
-        if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
+        const VectorXd correction = step({Y}, F).cwiseMax(min_radii);
+        if (!correction.allFinite() || !within(solver.system, correction, tolerance)) return false;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return false;
-        const VectorXd r = passing(first, rest);
+        const VectorXd r = passing(correction, rest);
         if (r.size() == 0 || !within(solver.system, r, tolerance)) return false;
-        if ((r.array() <= room.array()).all()) {
+        if ((r.array() <= trial_radii.array()).all()) {
             piece.r = r;
             return true;
         }
-        room = (2 * r).cwiseMax(room);
+        trial_radii = (2 * r).cwiseMax(trial_radii);
     }
     return false;
 }
 
 // ---- Statements about the curve
 
-void raise(Extent& to, const Extent& by) {
-    to.length = std::max(to.length, by.length);
-    to.angle = std::max(to.angle, by.angle);
-    to.force = std::max(to.force, by.force);
-    to.moment = std::max(to.moment, by.moment);
+void keep_largest(Extent& largest, const Extent& extent) {
+    largest.length = std::max(largest.length, extent.length);
+    largest.angle = std::max(largest.angle, extent.angle);
+    largest.force = std::max(largest.force, extent.force);
+    largest.moment = std::max(largest.moment, extent.moment);
 }
 
 // Distance of the tube from the state at its a.
-Extent distance(const Piece& piece, const StateAt& at) {
+Extent distance(const Piece& piece, const StateAt& mapped) {
     const Interval a0 = piece.a0, a1 = piece.a1,
-                   s = (Interval(2) * Interval(at.state.load) - a0 - a1) / (a1 - a0);
+                   s = (Interval(2) * Interval(mapped.state.load) - a0 - a1) / (a1 - a0);
     std::vector<Interval> z;
     for (const auto& jet : along<0>(piece, intersection(s, Interval(-1, 1)), &piece.r))
         z.push_back(jet.c[0]);
-    z.resize(static_cast<std::size_t>(at.system.n()));
-    return distance(at, z);
+    z.resize(static_cast<std::size_t>(mapped.system.n()));
+    return distance(mapped, z);
 }
 
 // Upper bounds of U μ over the piece.
@@ -423,6 +426,7 @@ Held held_over(const NodeSolver& solver, const Piece& piece) {
 struct Section {  // two neighbouring nodes of the path, and the one halfway between them
     Node from, middle, to;
 };
+// Result of prove_section(): whether there is exactly one curve in the tube of the piece.
 struct ProvedPiece {
     Piece piece;
     bool proved = false, over_knot = false;
@@ -436,30 +440,30 @@ ProvedPiece prove_section(const NodeSolver& solver, Section& s, bool over_knots,
                           const Tolerance& tolerance) {
     ProvedPiece result;
     Piece& piece = result.piece;
-    const auto joined = [&] {
+    const auto ends_are_inside = [&] {
         return all_less(s.from.box, piece.r) && all_less(s.to.box, piece.r);
     };
-    const auto attempt = [&](const VectorXd& joint) {
+    const auto attempt = [&](const VectorXd& min_radii) {
         if (s.to.found && s.middle.found) {
             piece = quintic(s.from, s.middle, s.to);
             result.proved = !crosses_a_knot(solver.system, piece) &&
-                            prove(solver, piece, s.middle.Y, joint, tolerance);
+                            prove(solver, piece, s.middle.Y, min_radii, tolerance);
         }
         result.over_knot = false;
         if (!result.proved && s.to.found && over_knots) {
             piece = straight(s.from, s.to);
-            result.proved = result.over_knot = prove_over_knot(solver, piece, joint, tolerance);
+            result.proved = result.over_knot = prove_over_knot(solver, piece, min_radii, tolerance);
         }
     };
     attempt(VectorXd::Zero(s.from.y.size()));
     if (result.proved) enclose(solver, s.to);
-    if (result.proved && s.to.box.size() > 0 && !joined())
+    if (result.proved && s.to.box.size() > 0 && !ends_are_inside())
         attempt(1.1 * s.from.box.cwiseMax(s.to.box));
     result.proved = result.proved && solver.is_sound(s.to);
     if (!result.proved) return result;
     result.held = held_over(solver, piece);
     result.pushed = result.held.held > tolerance.held || result.held.gap > tolerance.gap;
-    result.proved = !result.pushed && s.to.box.size() > 0 && joined();
+    result.proved = !result.pushed && s.to.box.size() > 0 && ends_are_inside();
     return result;
 }
 
@@ -477,11 +481,12 @@ std::string why_it_ends(const NodeSolver& solver, const Held& pushed, const Tole
 }
 
 // Why the states are not a path; empty if they are.
-std::string why_not_a_path(const std::vector<StateAt>& at, std::span<const Equilibrium> states,
+std::string why_not_a_path(const std::vector<StateAt>& mapped, std::span<const Equilibrium> states,
                            const Branch& branch) {
     const double range = states.back().load - states.front().load;
-    for (std::size_t k = 0; k < at.size(); ++k) {
-        if (!at[k].z.allFinite() || !std::isfinite(states[k].load)) return "a state is not finite";
+    for (std::size_t k = 0; k < mapped.size(); ++k) {
+        if (!mapped[k].z.allFinite() || !std::isfinite(states[k].load))
+            return "a state is not finite";
         if (k > 0 && !((states[k].load - states[k - 1].load) * range > 0))
             return fmt::format("the states turn back at {}",
                                parameter_text(branch.unit, states[k].load, digits));
@@ -490,14 +495,14 @@ std::string why_not_a_path(const std::vector<StateAt>& at, std::span<const Equil
 }
 
 // Adds the width of a piece: its radius, and its distance from the states along it.
-void widen(Tube& tube, const System& system, const Piece& piece, std::span<const StateAt> along) {
+void widen(Tube& tube, const System& system, const Piece& piece, std::span<const StateAt> states) {
     Extent width{0, 0, 0, 0};
-    for (const StateAt& state : along) raise(width, distance(piece, state));
+    for (const StateAt& state : states) keep_largest(width, distance(piece, state));
     for (int b = 0; b < system.bodies; ++b) {
         width.length = std::max(width.length, piece.r.segment<3>(system.pose(b)).norm());
         width.angle = std::max(width.angle, 2 * piece.r.segment<4>(system.pose(b) + 3).norm());
     }
-    raise(tube.width, width);
+    keep_largest(tube.width, width);
 }
 
 }  // namespace
@@ -524,14 +529,15 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     const double end = states.back().load, range = end - tube.from;
     if (const auto why = why_not_a_path(mapped, states, branch); !why.empty()) return open(why);
     const StateAt& middle = mapped[mapped.size() / 2];
-    const Interpolant interpolant_of = interpolant(mapped);
-    const NodeSolver solver{system, interpolant_of,
+    const Interpolant path = interpolant(mapped);
+    const NodeSolver solver{system, path,
                             equilibrium_near(system, middle.z, middle.state.load).problem.border};
 
-    // Step-size control: halved after a failure, enlarged by three fifths after a success.
-    constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
-    constexpr int max_bridges = 40;  // consecutive
-    double h = first_share * range;
+    // Step-size control: halved after a failure, enlarged by three fifths after a success. Shares of
+    // the range; a piece shorter than `knot_step` may be straight across a knot.
+    constexpr double min_step = 1e-13, first_step = 0.02, knot_step = 1e-6;
+    constexpr int max_knot_pieces = 40;  // consecutive
+    double h = first_step * range;
     Held held, pushed;
     Section section{solver.node(tube.from), {}, {}};
     if (!section.from.found)
@@ -542,19 +548,19 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         return open(fmt::format("nothing is proved at {}", place(tube.from)));
     std::size_t next_state = 0;
     bool halved = false;
-    int bridges = 0;  // consecutive pieces across knots up to here
+    int knot_pieces = 0;  // consecutive pieces across knots up to here
     while (tube.to != end) {
-        if (bridges == max_bridges)
+        if (knot_pieces == max_knot_pieces)
             return open(
                 fmt::format("past {} the path stays on a knot, or close to one", place(tube.to)));
-        const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
-        const double a1 = last ? end : tube.to + h;
-        if (a1 == tube.to || std::abs(h) < shortest * std::abs(range))
+        const bool is_last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
+        const double a1 = is_last ? end : tube.to + h;
+        if (a1 == tube.to || std::abs(h) < min_step * std::abs(range))
             return open(why_it_ends(solver, pushed, tolerance, place(tube.to)));
         section.to = halved && section.middle.a == a1 ? section.middle : solver.node(a1);
         section.middle = solver.node(tube.to / 2 + a1 / 2);
         const ProvedPiece proved_piece =
-            prove_section(solver, section, std::abs(h) < bridge * std::abs(range), tolerance);
+            prove_section(solver, section, std::abs(h) < knot_step * std::abs(range), tolerance);
         if (proved_piece.pushed) pushed = proved_piece.held;
         if (!proved_piece.proved) {
             h /= 2;
@@ -577,9 +583,9 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         section.from = section.to;
         h *= 1.6;
         // the knot is passed
-        if (proved_piece.over_knot && std::abs(h) < std::abs(first_share * range))
-            h = first_share * range;
-        bridges = proved_piece.over_knot ? bridges + 1 : 0;
+        if (proved_piece.over_knot && std::abs(h) < std::abs(first_step * range))
+            h = first_step * range;
+        knot_pieces = proved_piece.over_knot ? knot_pieces + 1 : 0;
         if (std::abs(h) > std::abs(range)) h = range;
     }
     if (!within(tube.width, tolerance))

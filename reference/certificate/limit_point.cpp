@@ -12,6 +12,8 @@
 // maximum is at least a(±δ) and at most the largest a of the box.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/krawczyk.hpp"
 #include "reference/certificate/state.hpp"
@@ -40,14 +42,14 @@ Tangent normalised(const System& system, const VectorXd& along) {
 }
 
 // A point of the curve with its inverse, whose last column is a tangent.
-struct OnCurve {
+struct CurvePoint {
     VectorXd y;
     MatrixXd Y;
     bool found = false;
     VectorXd v() const { return Y.col(Y.cols() - 1); }
     double slope() const { return Y(Y.rows() - 1, Y.cols() - 1); }  // da/dσ
 };
-OnCurve on_curve(const Problem& problem) {
+CurvePoint point_on_curve(const Problem& problem) {
     Approximate found = newton(problem, problem.y_t, 0);
     return {std::move(found.y), inverse(found.J), found.settled};
 }
@@ -55,39 +57,39 @@ OnCurve on_curve(const Problem& problem) {
 // Secant method for da/dσ = 0 (`slope`), steps in σ. The point and tangent of the
 // problem are updated.
 constexpr double first_step = 1e-4, small_step = 1e-10, longest_step = 0.2;
-OnCurve turning_point(Problem& problem) {
+CurvePoint turning_point(Problem& problem) {
     double slope = 0, step = 0;
-    OnCurve here = on_curve(problem);
-    for (int count = 0; count < 40 && here.found; ++count) {
-        problem.y_t = here.y;
-        problem.t = normalised(problem.system, here.v()).t;
-        here = on_curve(problem);
-        if (!here.found) return here;
-        const double new_slope = here.slope(), rate = step == 0 ? 0 : (new_slope - slope) / step;
+    CurvePoint point = point_on_curve(problem);
+    for (int iteration = 0; iteration < 40 && point.found; ++iteration) {
+        problem.y_t = point.y;
+        problem.t = normalised(problem.system, point.v()).t;
+        point = point_on_curve(problem);
+        if (!point.found) return point;
+        const double new_slope = point.slope(), rate = step == 0 ? 0 : (new_slope - slope) / step;
         const double next = rate == 0 ? first_step : -new_slope / rate;
-        if (new_slope == 0 || std::abs(next) < small_step) return here;
+        if (new_slope == 0 || std::abs(next) < small_step) return point;
         slope = new_slope;
         step = std::clamp(next, -longest_step, longest_step);
-        problem.y_t = here.y + step * here.v();
-        here = on_curve(problem);
+        problem.y_t = point.y + step * point.v();
+        point = point_on_curve(problem);
     }
-    here.found = false;
-    return here;
+    point.found = false;
+    return point;
 }
 
-// Bounds of dy/dσ = Y e ± error over the box.
-struct SlopeOf {
-    double middle = 0, radius = std::numeric_limits<double>::infinity();  // of da/dσ
+// Bounds of da/dσ over the box: the last entry of dy/dσ = Y e ± r.
+struct SlopeBounds {
+    double middle = 0, radius = std::numeric_limits<double>::infinity();
 };
-SlopeOf slope_of_a(const MatrixXd& Y, const Contraction& rest) {
+SlopeBounds slope_of_a(const MatrixXd& Y, const Contraction& rest) {
     const Index n = Y.rows();
-    const VectorXd x = Y.col(n - 1);
-    VectorXd r = rest(x.cwiseAbs()) * 1.01;
+    const VectorXd tangent = Y.col(n - 1);
+    VectorXd r = rest(tangent.cwiseAbs()) * 1.01;
     r = r.cwiseMax(1e-300);
     for (int k = 0; k < 20; ++k) {
-        const VectorXd next = (rest(x.cwiseAbs()) + rest(r)) * (1 + 1e-13);
+        const VectorXd next = (rest(tangent.cwiseAbs()) + rest(r)) * (1 + 1e-13);
         if (all_less(next, r * (1 + 1e-12)) || (next.array() <= r.array()).all())
-            return {x[n - 1], next[n - 1] * (1 + 1e-12)};
+            return {tangent[n - 1], next[n - 1] * (1 + 1e-12)};
         r = (next * 1.1).cwiseMax(r);
     }
     return {};
@@ -127,6 +129,51 @@ Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, do
     return result;
 }
 
+// The point of the segment at one end.
+struct SegmentEnd {
+    double sign = 0;  // of da/dσ
+    Interval a;
+};
+// The end σ = `sigma` of the segment `curve` through `top`, |σ| < δ: a box of its own contains one
+// equilibrium, which is that of the segment. Empty if this or the sign is not proved.
+std::optional<SegmentEnd> segment_end(const Problem& problem, const CurvePoint& top,
+                                      const Segment& curve, double delta, double sigma) {
+    Problem at_end = problem;
+    at_end.y_t = top.y + sigma * top.v();
+    const CurvePoint end = point_on_curve(at_end);
+    if (!end.found) return {};
+    const Segment point = segment(at_end, end.y, end.Y, 0);
+    if (!point.proved) return {};
+    const Index n = problem.size();
+    Interval sigma_of_point;
+    for (Index i = 0; i < n; ++i)
+        sigma_of_point +=
+            Interval(problem.t[i]) * (around(end.y[i], point.r[i]) - Interval(top.y[i]));
+    const bool on_segment = mag(sigma_of_point) <= delta && sigma_of_point.lo * sigma > 0 &&
+                            sigma_of_point.hi * sigma > 0 &&
+                            all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), curve.r);
+    const SlopeBounds slope = slope_of_a(end.Y, point.rest);
+    if (!on_segment || !(std::abs(slope.middle) > slope.radius)) return {};
+    return SegmentEnd{slope.middle > 0 ? 1. : -1., around(end.y[n - 1], point.r[n - 1])};
+}
+
+// The problem with a among the unknowns at the state z, σ along its tangent there. Empty if the
+// curve has no tangent.
+std::optional<Problem> problem_along_curve(const System& system, const VectorXd& z, double a) {
+    const Problem at_fixed_a{system, border_at(system, z, a, loose_zero_tolerance), z, false, {},
+                             {}};
+    const Index n = at_fixed_a.size() + 1;
+    VectorXd y = VectorXd::Zero(n);
+    y.head(system.n()) = z;
+    const Values<double> values = evaluate(at_fixed_a, doubles(y.head(n - 1)), a, Slopes::yes);
+    VectorXd along = VectorXd::Ones(n), right = VectorXd::Zero(n - 1);
+    right.head(system.n()) = Eigen::Map<const VectorXd>(values.E_a.data(), system.n());
+    along.head(n - 1) = -factors(middle(values.J)).solve(right);
+    if (!along.allFinite() || along.head(n - 1).isZero(0)) return {};
+    y[n - 1] = a;
+    return Problem{system, at_fixed_a.border, z, true, normalised(system, along).t, y};
+}
+
 }  // namespace
 
 LimitPoint certify_limit_point(const Model& model, const Branch& branch, const Equilibrium& state,
@@ -142,60 +189,34 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     const StateAt mapped = state_at(system, state);
     if (!mapped.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
 
-    Problem at_fixed_a{system,   border_at(system, mapped.z, state.load, loose_zero_tolerance),
-                       mapped.z, false,
-                       {},       {}};
-    const Index n = at_fixed_a.size() + 1;
-    VectorXd y = VectorXd::Zero(n);
-    y.head(system.n()) = mapped.z;
-    const Values<double> values =
-        evaluate(at_fixed_a, doubles(y.head(n - 1)), state.load, Slopes::yes);
-    VectorXd along = VectorXd::Ones(n), right = VectorXd::Zero(n - 1);
-    right.head(system.n()) = Eigen::Map<const VectorXd>(values.E_a.data(), system.n());
-    along.head(n - 1) = -factors(middle(values.J)).solve(right);
-    if (!along.allFinite() || along.head(n - 1).isZero(0))
-        return open("the curve has no tangent at the state");
-    y[n - 1] = state.load;
-    Problem problem{system, at_fixed_a.border,           at_fixed_a.z_g,
-                    true,   normalised(system, along).t, y};
-    const OnCurve top = turning_point(problem);
+    // 1. The limit point in floating point.
+    std::optional<Problem> along_curve = problem_along_curve(system, mapped.z, state.load);
+    if (!along_curve) return open("the curve has no tangent at the state");
+    Problem& problem = *along_curve;
+    const Index n = problem.size();
+    const CurvePoint top = turning_point(problem);
     if (!top.found) return open("no limit point is found near the state");
     if (!check_border(problem, top.y, top.y[n - 1]).sound)
         return open(
             "a held motion or constraint is not idle or redundant at the limit point, is loaded, "
             "or has a gap");
 
+    // 2. The shortest segment of the curve on whose ends da/dσ has opposite signs.
     problem.y_t = top.y;
+    constexpr double inside = 0.999;  // of δ: the ends lie inside the segment
     for (double delta = 1e-9; delta < 1e-3; delta *= 4) {
         const Segment curve = segment(problem, top.y, top.Y, delta);
         if (!curve.proved) continue;
-        std::array<double, 2> sign{};
-        std::array<Interval, 2> a;
-        for (std::size_t side = 0; side < 2; ++side) {
-            const double to = (side == 0 ? -1 : 1) * 0.999 * delta;
-            Problem at_end = problem;
-            at_end.y_t = top.y + to * top.v();
-            const OnCurve end = on_curve(at_end);
-            if (!end.found) break;
-            const Segment point = segment(at_end, end.y, end.Y, 0);
-            if (!point.proved) break;
-            Interval sigma;
-            for (Index i = 0; i < n; ++i)
-                sigma +=
-                    Interval(problem.t[i]) * (around(end.y[i], point.r[i]) - Interval(top.y[i]));
-            const bool on_segment =
-                mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
-                all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), curve.r);
-            const SlopeOf slope = slope_of_a(end.Y, point.rest);
-            if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
-            sign[side] = slope.middle > 0 ? 1 : -1;
-            a[side] = around(end.y[n - 1], point.r[n - 1]);
-        }
-        if (!(sign[0] * sign[1] < 0)) continue;
-        const bool maximum = sign[0] > 0;
+        const auto lower_end = segment_end(problem, top, curve, delta, -inside * delta);
+        if (!lower_end) continue;
+        const auto upper_end = segment_end(problem, top, curve, delta, inside * delta);
+        if (!upper_end || !(lower_end->sign * upper_end->sign < 0)) continue;
+
+        // 3. Bounds of the limit, and the distance of its box from the state.
+        const bool maximum = lower_end->sign > 0;
         const Interval range_of_a = around(top.y[n - 1], curve.r[n - 1]);
-        limit.from = maximum ? std::max(a[0].lo, a[1].lo) : range_of_a.lo;
-        limit.to = maximum ? range_of_a.hi : std::min(a[0].hi, a[1].hi);
+        limit.from = maximum ? std::max(lower_end->a.lo, upper_end->a.lo) : range_of_a.lo;
+        limit.to = maximum ? range_of_a.hi : std::min(lower_end->a.hi, upper_end->a.hi);
         const auto whole = box(top.y, curve.r);
         limit.error = distance(mapped, {whole.begin(), whole.begin() + system.n()});
         if (within(limit.error, tolerance))

@@ -94,10 +94,10 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const Sparse
     const double length = power_of_two(system.length);
     const auto row_of = [&](Index row) { return turned_row(system, z, J.row(row), length); };
     // Adds weight · row rowᵀ.
-    const auto add_square = [](Entries& to, const Interval& weight, const Sparse& row) {
+    const auto add_square = [](Entries& sum, const Interval& weight, const Sparse& row) {
         for (const auto& [i, a] : row)
             for (const auto& [j, b] : row)
-                to.push_back(
+                sum.push_back(
                     {static_cast<int>(i), static_cast<int>(j), weight * (i == j ? sqr(a) : a * b)});
     };
 
@@ -122,30 +122,31 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const Sparse
         add_square(H, k, row_of(system.curve(c)));
     }
     H = by_rows(H, static_cast<int>(n)).entries;
-    double most = 0;
-    for (const auto& entry : H) most = std::max(most, mag(entry.value));
-    if (!std::isfinite(most) || !(most > 0)) return n == 0;
+    double largest_entry = 0;
+    for (const auto& entry : H) largest_entry = std::max(largest_entry, mag(entry.value));
+    if (!std::isfinite(largest_entry) || !(largest_entry > 0)) return n == 0;
 
     // Constraint rows and gauges of idle motions, scaled to size one.
-    std::vector<Sparse> held;
-    const auto hold = [&](Sparse row) {
+    std::vector<Sparse> excluded;
+    const auto exclude = [&](Sparse row) {
         double largest = 0;
         for (const auto& [k, entry] : row) largest = std::max(largest, mag(entry));
         if (!(largest > 0) || !std::isfinite(largest)) return;
-        const Interval by = power_of_two(1 / largest);
-        for (auto& [k, entry] : row) entry *= by;
-        held.push_back(std::move(row));
+        const Interval scale = power_of_two(1 / largest);
+        for (auto& [k, entry] : row) entry *= scale;
+        excluded.push_back(std::move(row));
     };
-    for (int row = 0; row < system.rows; ++row) hold(row_of(n + row));
+    for (int row = 0; row < system.rows; ++row) exclude(row_of(n + row));
     for (int k = problem.border.redundant; k < problem.border.count(); ++k)
-        hold(row_of(system.n() + k));
+        exclude(row_of(system.n() + k));
 
     for (const double rho : {1., 1e3, 1e6}) {
-        Entries all = H;
-        for (const Sparse& row : held) add_square(all, power_of_two(rho * most), row);
-        const Split sum = split(by_rows(all, static_cast<int>(n)));
+        Entries sum_of_squares = H;
+        for (const Sparse& row : excluded)
+            add_square(sum_of_squares, power_of_two(rho * largest_entry), row);
+        const Split sum = split(by_rows(sum_of_squares, static_cast<int>(n)));
         if (sum.finite && positive_definite(sum.M, sum.R)) return true;
-        if (held.empty()) return false;
+        if (excluded.empty()) return false;
     }
     return false;
 }

@@ -26,7 +26,7 @@ std::array<S, 6> stacked(const System& system, const JointWrench<S>& wrench) {
     }
     return w;
 }
-JointWrench<Interval> given(const Equilibrium& state, std::size_t joint) {
+JointWrench<Interval> stored_wrench(const Equilibrium& state, std::size_t joint) {
     const Wrench& wrench = state.reactions[joint];
     return {constant<Interval>(wrench.force), constant<Interval>(wrench.moment)};
 }
@@ -50,12 +50,14 @@ double angle_above(const Quat<Interval>& p, const Quat<Interval>& other) {
 }
 
 Quat<Interval> quaternion(const System& system, const std::vector<Interval>& z, BodyId body) {
-    const auto at = [&](int k) { return z[static_cast<std::size_t>(system.pose(body) + 3 + k)]; };
-    return {at(0), {{at(1), at(2), at(3)}}};
+    const auto component = [&](int k) {
+        return z[static_cast<std::size_t>(system.pose(body) + 3 + k)];
+    };
+    return {component(0), {{component(1), component(2), component(3)}}};
 }
 
 // Stored r - c as an enclosure.
-Vec<Interval> place(const StateAt& mapped, BodyId body) {
+Vec<Interval> stored_origin(const StateAt& mapped, BodyId body) {
     Vec<Interval> r;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto i = static_cast<Index>(k);
@@ -65,7 +67,7 @@ Vec<Interval> place(const StateAt& mapped, BodyId body) {
     return r;
 }
 
-MatrixXd columns_at(const System& system, int joint, const VectorXd& z, double a) {
+MatrixXd unit_wrench_columns(const System& system, int joint, const VectorXd& z, double a) {
     const auto units = unit_wrenches(system, joint, doubles(z), a);
     MatrixXd C(6, static_cast<Index>(units.size()));
     for (Index k = 0; k < C.cols(); ++k) {
@@ -90,7 +92,7 @@ StateAt state_at(const System& system, const Equilibrium& state) {
         mapped.z.segment<4>(system.pose(body) + 3) << p.w(), p.x(), p.y(), p.z();
     }
     for (int joint = 0; joint < static_cast<int>(state.reactions.size()); ++joint) {
-        const MatrixXd C = columns_at(system, joint, mapped.z, state.load);
+        const MatrixXd C = unit_wrench_columns(system, joint, mapped.z, state.load);
         const auto rows = rows_of_joint(system, joint);
         MatrixXd P(C.cols(), 6);
         if (C.cols() > 0 && C.allFinite()) P = pseudo_inverse(C);
@@ -106,28 +108,20 @@ StateAt state_at(const System& system, const Equilibrium& state) {
     return mapped;
 }
 
+namespace {
+
 // Poses: a unit quaternion at a rotation φ from another is within 2 sin(φ/4) ≤ φ/2 of it.
-//
-// Reactions: for z in the box of poses the wrench is w = C(z) R. With E = I - P C,
-//
-//   R - R₀ = P w - R₀ + E R   so   |R - R₀| ≤ |P w₀ - R₀| + |P| |w - w₀| + |E| |R₀| + |E| |R - R₀|
-//
-// and the largest is at most that of the first three over 1 - ‖E‖. Reactions that are moments are
-// divided by L, as in w.
-//
-// Separated curves: their deformation over the box of poses, and the law over that interval.
-VectorXd radii(const StateAt& mapped, const Tolerance& near) {
+void set_pose_radii(const StateAt& mapped, const Tolerance& near, VectorXd& r) {
     const System& system = mapped.system;
-    VectorXd r = VectorXd::Zero(system.n());
     for (BodyId body = 0; body < system.bodies; ++body) {
         const int k = system.pose(body);
-        const Vec<Interval> place_of = place(mapped, body);
+        const Vec<Interval> origin = stored_origin(mapped, body);
         const Quat<Interval> p =
-            direction_of<Interval>(mapped.state.poses[static_cast<std::size_t>(body)].p);
+            unit_quaternion<Interval>(mapped.state.poses[static_cast<std::size_t>(body)].p);
         for (int i = 0; i < 3; ++i)
             r[k + i] =
                 (Interval(near.length) +
-                 Interval(mag(place_of[static_cast<std::size_t>(i)] - Interval(mapped.z[k + i]))))
+                 Interval(mag(origin[static_cast<std::size_t>(i)] - Interval(mapped.z[k + i]))))
                     .hi;
         const std::array<Interval, 4> parts{p.w, p.v[0], p.v[1], p.v[2]};
         for (int i = 0; i < 4; ++i)
@@ -136,92 +130,118 @@ VectorXd radii(const StateAt& mapped, const Tolerance& near) {
                  Interval(mag(parts[static_cast<std::size_t>(i)] - Interval(mapped.z[k + 3 + i]))))
                     .hi;
     }
-    const auto poses = box(mapped.z, r);
+}
+
+// Reactions of a joint: for z in the box of poses the wrench is w = C(z) R. With E = I - P C,
+//
+//   R - R₀ = P w - R₀ + E R   so   |R - R₀| ≤ |P w₀ - R₀| + |P| |w - w₀| + |E| |R₀| + |E| |R - R₀|
+//
+// and the largest is at most that of the first three over 1 - ‖E‖. Reactions that are moments are
+// divided by L, as in w.
+void set_reaction_radii(const StateAt& mapped, int joint, const std::vector<Interval>& poses,
+                        const Tolerance& near, VectorXd& r) {
+    const System& system = mapped.system;
     const Interval length = system.length;
-    for (int joint = 0; joint < static_cast<int>(mapped.from_wrench.size()); ++joint) {
-        const MatrixXd& P = mapped.from_wrench[static_cast<std::size_t>(joint)];
-        const auto units = unit_wrenches(system, joint, poses, Interval(mapped.state.load));
-        const auto rows = rows_of_joint(system, joint);
-        const auto w0 = stacked(system, given(mapped.state, static_cast<std::size_t>(joint)));
-        const std::size_t q = rows.size();
-        std::vector<Interval> R0;
-        for (const int row : rows) R0.push_back(mapped.z[7 * system.bodies + row]);
-        // In newtons: a reaction moment is divided by L.
-        double largest = 0, norm = 0;
-        std::vector<bool> moment;
-        for (const auto& constraint : system.model->constraints)
-            if (constraint.joint == joint)
-                for (int n = 0; n < elastocheck::rows(constraint.kind); ++n)
-                    moment.push_back(is_direction(constraint.kind));
-        const auto in_newtons = [&](const Interval& x, std::size_t i) {
-            return moment[i] ? x / length : x;
-        };
-        for (std::size_t i = 0; i < q; ++i) {
-            Interval sum = -R0[i], spread, rest_norm;
-            for (std::size_t k = 0; k < 6; ++k) {
-                const Interval p = P(static_cast<Index>(i), static_cast<Index>(k));
-                sum += p * w0[k];
-                spread += Interval(mag(p)) *
-                          (k < 3 ? Interval(near.force) : Interval(near.moment) / length);
-            }
-            for (std::size_t j = 0; j < q; ++j) {
-                Interval E = i == j ? Interval(1) : Interval(0);
-                const auto column = stacked(system, units[j]);
-                for (std::size_t k = 0; k < 6; ++k)
-                    E -= Interval(P(static_cast<Index>(i), static_cast<Index>(k))) * column[k];
-                spread += Interval(mag(E)) * Interval(mag(R0[j]));
-                // of R_j in newtons
-                const Interval scaled = moment[j] ? Interval(mag(E)) * length : Interval(mag(E));
-                rest_norm += in_newtons(scaled, i);
-            }
-            const Interval deviation = Interval(mag(sum)) + spread;
-            largest = std::max(largest, mag(in_newtons(deviation, i)));
-            norm = std::max(norm, mag(rest_norm));
+    const MatrixXd& P = mapped.from_wrench[static_cast<std::size_t>(joint)];
+    const auto units = unit_wrenches(system, joint, poses, Interval(mapped.state.load));
+    const auto rows = rows_of_joint(system, joint);
+    const auto w0 = stacked(system, stored_wrench(mapped.state, static_cast<std::size_t>(joint)));
+    const std::size_t q = rows.size();
+    std::vector<Interval> R0;
+    for (const int row : rows) R0.push_back(mapped.z[7 * system.bodies + row]);
+    // In newtons: a reaction moment is divided by L.
+    double max_deviation = 0, max_E_norm = 0;
+    std::vector<bool> is_moment;
+    for (const auto& constraint : system.model->constraints)
+        if (constraint.joint == joint)
+            for (int n = 0; n < elastocheck::rows(constraint.kind); ++n)
+                is_moment.push_back(is_direction(constraint.kind));
+    const auto in_newtons = [&](const Interval& x, std::size_t i) {
+        return is_moment[i] ? x / length : x;
+    };
+    for (std::size_t i = 0; i < q; ++i) {
+        Interval sum = -R0[i], spread, E_norm;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const Interval p = P(static_cast<Index>(i), static_cast<Index>(k));
+            sum += p * w0[k];
+            spread +=
+                Interval(mag(p)) * (k < 3 ? Interval(near.force) : Interval(near.moment) / length);
         }
-        const double within = norm < 1 ? (Interval(largest) / (Interval(1) - Interval(norm))).hi
-                                       : std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < q; ++i)
-            r[7 * system.bodies + rows[i]] = moment[i] ? (Interval(within) * length).hi : within;
+        for (std::size_t j = 0; j < q; ++j) {
+            Interval E = i == j ? Interval(1) : Interval(0);
+            const auto column = stacked(system, units[j]);
+            for (std::size_t k = 0; k < 6; ++k)
+                E -= Interval(P(static_cast<Index>(i), static_cast<Index>(k))) * column[k];
+            spread += Interval(mag(E)) * Interval(mag(R0[j]));
+            // of R_j in newtons
+            const Interval scaled = is_moment[j] ? Interval(mag(E)) * length : Interval(mag(E));
+            E_norm += in_newtons(scaled, i);
+        }
+        const Interval deviation = Interval(mag(sum)) + spread;
+        max_deviation = std::max(max_deviation, mag(in_newtons(deviation, i)));
+        max_E_norm = std::max(max_E_norm, mag(E_norm));
     }
-    if (system.separated.empty()) return r;
+    const double bound = max_E_norm < 1
+                             ? (Interval(max_deviation) / (Interval(1) - Interval(max_E_norm))).hi
+                             : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < q; ++i)
+        r[7 * system.bodies + rows[i]] = is_moment[i] ? (Interval(bound) * length).hi : bound;
+}
+
+// Separated curves: their deformation over the box of poses, and the law over that interval.
+void set_curve_radii(const StateAt& mapped, const std::vector<Interval>& poses, VectorXd& r) {
+    const System& system = mapped.system;
     const auto x = deformations(system, poses, Interval(mapped.state.load));
     for (std::size_t k = 0; k < system.separated.size(); ++k) {
         const SeparatedCurve& curve = system.separated[k];
         const Interval& x_of_curve = x[curve.element][curve.axis];
-        const Index to = system.deformation(k);
-        r[to] = mag(x_of_curve - Interval(mapped.z[to]));
-        r[to + 1] = mag(force(law_of(system, curve), x_of_curve) - Interval(mapped.z[to + 1]));
+        const Index index = system.deformation(k);
+        r[index] = mag(x_of_curve - Interval(mapped.z[index]));
+        r[index + 1] =
+            mag(force(law_of(system, curve), x_of_curve) - Interval(mapped.z[index + 1]));
     }
+}
+
+}  // namespace
+
+VectorXd radii(const StateAt& mapped, const Tolerance& near) {
+    VectorXd r = VectorXd::Zero(mapped.system.n());
+    set_pose_radii(mapped, near, r);
+    const auto poses = box(mapped.z, r);
+    for (int joint = 0; joint < static_cast<int>(mapped.from_wrench.size()); ++joint)
+        set_reaction_radii(mapped, joint, poses, near, r);
+    if (!mapped.system.separated.empty()) set_curve_radii(mapped, poses, r);
     return r;
 }
 
 Extent distance(const StateAt& mapped, const std::vector<Interval>& z) {
-    Extent far{0, 0, 0, 0};
+    Extent largest{0, 0, 0, 0};
     for (BodyId body = 0; body < mapped.system.bodies; ++body) {
-        const Vec<Interval> from = place(mapped, body);
+        const Vec<Interval> origin = stored_origin(mapped, body);
         const auto k = static_cast<std::size_t>(mapped.system.pose(body));
-        far.length = std::max(far.length, size_above(std::array{z[k] - from[0], z[k + 1] - from[1],
-                                                                z[k + 2] - from[2]}));
-        far.angle = std::max(far.angle,
-                             angle_above(direction_of<Interval>(
-                                             mapped.state.poses[static_cast<std::size_t>(body)].p),
-                                         quaternion(mapped.system, z, body)));
+        largest.length = std::max(
+            largest.length,
+            size_above(std::array{z[k] - origin[0], z[k + 1] - origin[1], z[k + 2] - origin[2]}));
+        largest.angle = std::max(
+            largest.angle, angle_above(unit_quaternion<Interval>(
+                                           mapped.state.poses[static_cast<std::size_t>(body)].p),
+                                       quaternion(mapped.system, z, body)));
     }
     const auto joint_wrenches = wrenches(mapped.system, z, Interval(mapped.state.load));
     for (std::size_t joint = 0; joint < joint_wrenches.size(); ++joint) {
-        const auto w = given(mapped.state, joint);
+        const auto w = stored_wrench(mapped.state, joint);
         const auto df = joint_wrenches[joint].force - w.force,
                    dm = joint_wrenches[joint].moment - w.moment;
-        far.force = std::max(far.force, size_above(df.x));
-        far.moment = std::max(far.moment, size_above(dm.x));
+        largest.force = std::max(largest.force, size_above(df.x));
+        largest.moment = std::max(largest.moment, size_above(dm.x));
     }
-    return far;
+    return largest;
 }
 
 bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near) {
     const auto joint_wrenches = wrenches(mapped.system, z, Interval(mapped.state.load));
     for (std::size_t joint = 0; joint < joint_wrenches.size(); ++joint) {
-        const auto w = given(mapped.state, joint);
+        const auto w = stored_wrench(mapped.state, joint);
         for (std::size_t k = 0; k < 3; ++k)
             if (mig(joint_wrenches[joint].force[k] - w.force[k]) > near.force ||
                 mig(joint_wrenches[joint].moment[k] - w.moment[k]) > near.moment)
@@ -230,14 +250,14 @@ bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const
     return false;
 }
 
-bool within(const Extent& far, const Tolerance& tolerance) {
-    return far.length <= tolerance.length && far.angle <= tolerance.angle &&
-           far.force <= tolerance.force && far.moment <= tolerance.moment;
+bool within(const Extent& extent, const Tolerance& tolerance) {
+    return extent.length <= tolerance.length && extent.angle <= tolerance.angle &&
+           extent.force <= tolerance.force && extent.moment <= tolerance.moment;
 }
 
-std::string as_text(const Extent& far) {
-    return fmt::format("{:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m", 1e3 * far.length,
-                       far.angle * 180 / std::numbers::pi, far.force, far.moment);
+std::string as_text(const Extent& extent) {
+    return fmt::format("{:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m", 1e3 * extent.length,
+                       extent.angle * 180 / std::numbers::pi, extent.force, extent.moment);
 }
 
 // μ acts in the balances as the wrench that holds idle motions, in the rows Φ as the gap.

@@ -30,8 +30,8 @@ Extent distance(const StateAt& mapped, const std::vector<Interval>& z);
 // box.
 bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near);
 
-bool within(const Extent& far, const Tolerance& tolerance);
-std::string as_text(const Extent& far);  // "1 mm, 2 deg, 3 N and 4 N·m"
+bool within(const Extent& extent, const Tolerance& tolerance);
+std::string as_text(const Extent& extent);  // "1 mm, 2 deg, 3 N and 4 N·m"
 
 // Upper bounds of U μ (bordered.hpp), given those of |μ|: of the wrench that holds idle motions and
 // of the gap of redundant rows.

@@ -105,7 +105,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     if (const auto failure = impossible_length(path, 0)) return fail(*failure, settling, "");
     State settled;
     if (const auto failure = settle(path, settled)) return fail(*failure, settling, "");
-    path.first = settled.modes;
+    path.start_modes = settled.modes;
     Continuation continuation = start_continuation(path, settled);
     for (const double a : values) {
         if (!std::isfinite(a))

@@ -38,8 +38,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         return ended({Outcome::not_finite, "a point of the branch is not finite"});
 
     Continuation continuation = start(system, options);
-    if (!continuation.here.x.allFinite() || !system.at_design.allFinite() ||
-        !continuation.here.E_rate.allFinite())
+    if (!continuation.current.x.allFinite() || !system.at_design.allFinite() ||
+        !continuation.current.E_rate.allFinite())
         return ended({Outcome::not_finite,
                       "the equations give a number that is not finite at the design pose"});
     double reach = 0;
@@ -50,7 +50,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         failed = vanishing_link(system, *a);
         if (!failed) failed = advance(continuation, *a);
         if (failed) break;
-        Equilibrium point = state_of(system, loading_at(continuation, *a), continuation.here.x);
+        Equilibrium point = state_of(system, loading_at(continuation, *a), continuation.current.x);
         if (visit)
             visit(point);
         else

@@ -13,36 +13,38 @@ using Eigen::VectorXd;
 // Relative part of a right-hand side outside the range of ∂E/∂x that counts as round-off.
 constexpr double residual_round_off = 1e-9;
 
-// Largest displacement under F, over L: beyond it the stiffness is round-off.
-constexpr double farthest = 1e10;
+// Largest |dx| / |E_rate|: beyond it the stiffness is round-off. Both are dimensionless, since the
+// equations are solved with forces over F and lengths over L (system.hpp).
+constexpr double max_flexibility = 1e10;
 
 // Freezes the branch's drivers at a.
-void stop(Affine& path, double a) { path = {path.at(a), 0}; }
-System stopped(System system, double a) {
-    for (Affine& value : system.values) stop(value, a);
-    for (LoadPath& load : system.loads) stop(load.factor, a);
+void freeze(Affine& path, double a) { path = {path.at(a), 0}; }
+System frozen(System system, double a) {
+    for (Affine& value : system.values) freeze(value, a);
+    for (LoadPath& load : system.loads) freeze(load.factor, a);
     for (ElementPath& element : system.elements) {
-        stop(element.free_length, a);
-        for (Affine& preload : element.preload) stop(preload, a);
+        freeze(element.free_length, a);
+        for (Affine& preload : element.preload) freeze(preload, a);
     }
     return system;
 }
 
-// Reactions of least imbalance: E is linear in them.
-void balance(const System& system, const Loading& loading, VectorXd& x, Derivatives& by,
+// Sets the reactions of x to those that leave the least |E|. E is linear in the reactions, so that
+// one least-squares step is exact.
+void balance(const System& system, const Loading& loading, VectorXd& x, Derivatives& at_x,
              Orders& orders) {
     Counts counts;
     const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
-    if (n == 0 || m == 0 || !is_finite(by.J) || !by.E.allFinite()) return;
+    if (n == 0 || m == 0 || !is_finite(at_x.J) || !at_x.E.allFinite()) return;
     const VectorXd R =
-        -least_squares(by.J.topRightCorner(n, m), by.E.head(n), &orders.of_reactions);
+        -least_squares(at_x.J.topRightCorner(n, m), at_x.E.head(n), &orders.of_reactions);
     x.tail(m) += R;
-    add_reactions(system, loading, x, R, by, counts);
+    add_reactions(system, loading, x, R, at_x, counts);
 }
 
-// dx with minimum-norm motion in the idle modes. The border would minimise motion and reactions of
-// the null vectors together, which is not wanted. The small number regularises modes that consist
-// of reactions alone.
+// dx + V c, V the idle modes: c minimises the norm of the motion alone, the first n rows. (The
+// bordered system minimises motion and reactions together, which have no common unit.)
+// `zero_tolerance` keeps VᵀV regular for modes that consist of reactions alone.
 VectorXd with_shortest_motion(const System& system, const Linearisation& at, const VectorXd& dx) {
     constexpr double zero_tolerance = 1e-14;
     if (at.modes.count() == 0) return dx;
@@ -54,8 +56,8 @@ VectorXd with_shortest_motion(const System& system, const Linearisation& at, con
     return dx - at.modes.right * gram.solve(VectorXd(V_T * dx.head(n)));
 }
 
-// Whether the right-hand side has a part outside the range of ∂E/∂x.
-bool is_pushed(const Rate& rate, const VectorXd& E_rate, double rounding = 0) {
+// Whether E_rate has a part outside the range of ∂E/∂x, beyond round-off.
+bool has_no_solution(const Rate& rate, const VectorXd& E_rate, double rounding = 0) {
     return rate.mu.norm() > residual_round_off * E_rate.norm() + rounding;
 }
 
@@ -67,24 +69,24 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     const System moving = make_system(model, branch, {&a, 1});
     if (state.poses.size() != model.bodies.size())
         throw std::invalid_argument("the state belongs to another model");
-    StateTangent t{.system = stopped(moving, a), .loading = {.a = a, .a_rate = 1}};
+    StateTangent t{.system = frozen(moving, a), .loading = {.a = a, .a_rate = 1}};
     t.system.pattern = orders.pattern;
     Counts unused;
     t.x = unknowns_at(t.system, state.poses);
-    Derivatives by = derivatives(t.system, t.loading, t.x, unused);
+    Derivatives at_x = derivatives(t.system, t.loading, t.x, unused);
     orders.pattern = t.system.pattern;
-    balance(t.system, t.loading, t.x, by, orders);
-    if (!t.x.allFinite() || !is_finite(by.J)) {
+    balance(t.system, t.loading, t.x, at_x, orders);
+    if (!t.x.allFinite() || !is_finite(at_x.J)) {
         t.outcome = Outcome::not_finite;
         t.what = "the equations give a number that is not finite";
         return t;
     }
-    t.at = linearise(std::move(by.J), nullptr, unused, &orders.of_J);
-    const VectorXd ahead = rate_of(moving, t.loading, t.x);
+    t.at = linearise(std::move(at_x.J), nullptr, unused, &orders.of_J);
+    const VectorXd E_a = rate_of(moving, t.loading, t.x);
     if (t.system.equations() > 0 &&
-        (t.at.bordered.sign() == 0 || is_pushed(solve_bordered_refined(t.at, ahead), ahead))) {
+        (t.at.bordered.sign() == 0 || has_no_solution(solve_bordered_refined(t.at, E_a), E_a))) {
         t.outcome = Outcome::singular;
-        t.what = "the system is singular, the branch turns back here";
+        t.what = "the system is singular, the branch turns back or bifurcates here";
     }
     return t;
 }
@@ -92,9 +94,9 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
 Solved solve_at_state(const StateTangent& t, const VectorXd& E_rate, double rounding) {
     const Rate rate = solve_bordered_refined(t.at, E_rate);
     if (!rate.dx.allFinite()) return {Outcome::not_finite, "a response that is not finite", {}};
-    if (rate.dx.norm() > farthest * E_rate.norm())
+    if (rate.dx.norm() > max_flexibility * E_rate.norm())
         return {Outcome::singular, "a motion with almost no stiffness", {}};
-    if (is_pushed(rate, E_rate, rounding)) {
+    if (has_no_solution(rate, E_rate, rounding)) {
         const Failure why = unsolvable_load(t.system, t.at.modes.left * rate.mu);
         return {why.outcome, why.what, {}};
     }

@@ -11,9 +11,9 @@ namespace elastocheck::reference::equilibrium {
 struct StateTangent {
     System system;  // of the branch, its drivers frozen at the state's a
     Loading loading;
-    Eigen::VectorXd x = {};  // the poses of the state, with the reactions of least imbalance
+    Eigen::VectorXd x = {};  // poses of the state, and the reactions that leave the least imbalance
     Linearisation at = {};
-    // singular where the branch turns back, not_finite; then `at` must not be used
+    // singular where the branch turns back or bifurcates, not_finite; then `at` must not be used
     Outcome outcome = Outcome::converged;
     std::string what = {};
 };
@@ -27,9 +27,9 @@ struct Orders {
 StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state,
                         Orders& orders);
 
-// Solves J dx = -E_rate, with minimum-norm motion in the idle modes. `rounding`: of the entries of
-// E_rate, where that is more than their own last digits; a part outside the range of J up to this
-// is ignored.
+// Solves J dx = -E_rate, with minimum-norm motion in the idle modes. `rounding`: error of the
+// entries of E_rate, where that is more than their own last digits; a part of E_rate outside the
+// range of J up to this is ignored.
 struct Solved {
     Outcome outcome = Outcome::converged;
     std::string what;  // half a sentence on the failure

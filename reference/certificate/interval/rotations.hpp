@@ -65,9 +65,9 @@ Vec<T> turned(const Quat<T>& p, const Vec<T>& s) {
     const Vec<T> half = cross(p.v, s), u = half + half;
     return s + u * p.w + cross(p.v, u);
 }
-// Rotation of a stored quaternion: its direction, since its length is one only to rounding.
+// p / |p| in intervals: the length of a stored quaternion is one only to rounding.
 template <class T>
-Quat<T> direction_of(const Eigen::Quaterniond& p) {
+Quat<T> unit_quaternion(const Eigen::Quaterniond& p) {
     const Interval size = sqrt(sqr(Interval(p.w())) + sqr(Interval(p.x())) + sqr(Interval(p.y())) +
                                sqr(Interval(p.z())));
     const auto part = [&](double x) { return constant<T>(Interval(x) / size); };

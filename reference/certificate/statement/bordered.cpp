@@ -28,7 +28,7 @@ constexpr int max_unknowns_of_dense = 80;
 // Relative to the largest entry of a null vector: smaller entries are rounding.
 constexpr double no_part = 1e-12;
 
-// D_r A D_c with rows and columns of size one (Ruiz 2001).
+// D_r A D_c, the largest entry of each row and column being one in size (Ruiz 2001).
 struct Equilibrated {
     SparseMatrix A;
     VectorXd D_r, D_c;
@@ -56,7 +56,8 @@ Equilibrated equilibrated(const SparseMatrix& A) {
     return result;
 }
 
-// Null space of A: orthonormal columns x with A x = 0 up to `zero_tolerance`, for rows of size one.
+// Null space of A: orthonormal columns x with A x = 0 up to `zero_tolerance`, for rows of
+// Euclidean norm one.
 MatrixXd null_space(const MatrixXd& A, double zero_tolerance) {
     const Index n = A.cols();
     if (A.size() == 0) return MatrixXd::Identity(n, n);
@@ -64,7 +65,7 @@ MatrixXd null_space(const MatrixXd& A, double zero_tolerance) {
     qr.setThreshold(zero_tolerance / std::max(zero_tolerance, A.rowwise().norm().maxCoeff()));
     return matrix_Q(qr).rightCols(n - qr.rank());
 }
-// Scales the rows to size one and returns the factors.
+// Scales the rows to Euclidean norm one and returns the factors.
 VectorXd normalise(MatrixXd& A) {
     const VectorXd factors =
         A.rowwise().norm().unaryExpr([](double size) { return size > 0 ? 1 / size : 1; });
@@ -72,7 +73,7 @@ VectorXd normalise(MatrixXd& A) {
     return factors;
 }
 
-// Removes rounding from the columns and scales them to size one.
+// Removes rounding from the columns and scales them to Euclidean norm one.
 void clean(MatrixXd& columns) {
     for (Index k = 0; k < columns.cols(); ++k) {
         columns.col(k) /= columns.col(k).norm();
@@ -82,20 +83,26 @@ void clean(MatrixXd& columns) {
     }
 }
 
-// δz of (δr, δπ), r over L: δp = ½ (0, δπ) p.
+// Columns: δ(r, p) of all bodies for each component of (δr / L, δπ), δp = ½ (0, δπ) p
+// [7 nb × 6 nb].
 MatrixXd tangent(const System& system, const VectorXd& z) {
     MatrixXd T = MatrixXd::Zero(7 * system.bodies, 6 * system.bodies);
     for (int b = 0; b < system.bodies; ++b) {
         const int row = system.pose(b), col = 6 * b;
         T.block<3, 3>(row, col) = system.length * Eigen::Matrix3d::Identity();
-        const double w = z[row + 3] / 2, x = z[row + 4] / 2, y = z[row + 5] / 2, u = z[row + 6] / 2;
-        T.block<4, 3>(row + 3, col + 3) << -x, -y, -u, w, u, -y, -u, w, x, y, -x, w;
+        const Eigen::Vector4d half_p = z.segment<4>(row + 3) / 2;
+        const double p_w = half_p[0], p_x = half_p[1], p_y = half_p[2], p_z = half_p[3];
+        T.block<4, 3>(row + 3, col + 3) << -p_x, -p_y, -p_z,  //
+            p_w, p_z, -p_y,                                   //
+            -p_z, p_w, p_x,                                   //
+            p_y, -p_x, p_w;
     }
     return T;
 }
 
-// Combinations of (d / L, θ) that have stiffness in the law, one per row.
-MatrixXd resisted(const ElasticKind& kind, double length) {
+// Combinations of the deformations (d, θ) that have stiffness in the law, one per row.
+// `per_length`: factor of d that makes it dimensionless [1/m].
+MatrixXd resisted(const ElasticKind& kind, double per_length) {
     MatrixXd rows = MatrixXd::Identity(6, 6);
     const auto keep = [&](const std::array<bool, 6>& resists) {
         Index count = 0;
@@ -103,11 +110,12 @@ MatrixXd resisted(const ElasticKind& kind, double length) {
             if (resists[static_cast<std::size_t>(k)]) rows.row(count++) = rows.row(k).eval();
         rows.conservativeResize(count, 6);
     };
-    // K = D Q diag(κ) Qᵀ D, D² its diagonal: independent of the ratio of stiff to soft axes.
+    // K = D Q diag(κ) Qᵀ D, D² its diagonal, so that κ is independent of the ratio of stiff to soft
+    // axes. The rows are those of Qᵀ D with κ > 0.
     const auto keep_of_matrix = [&](const Matrix6& K) {
         const Vector6 D = K.diagonal().cwiseMax(0).cwiseSqrt(),
-                      by = D.unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
-        const Matrix6 C = by.asDiagonal() * K * by.asDiagonal();
+                      inverse_D = D.unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
+        const Matrix6 C = inverse_D.asDiagonal() * K * inverse_D.asDiagonal();
         const Eigen::SelfAdjointEigenSolver<Matrix6> modes(C);
         std::array<bool, 6> resists{};
         for (Index k = 0; k < 6; ++k)
@@ -125,7 +133,7 @@ MatrixXd resisted(const ElasticKind& kind, double length) {
                                      }
                                      keep_of_matrix(*matrix_of(spatial));
                                  }});
-    for (Index k = 0; k < 3; ++k) rows.col(k) *= length;
+    for (Index k = 0; k < 3; ++k) rows.col(k) *= per_length;
     return rows;
 }
 
@@ -148,9 +156,9 @@ SparseMatrix middle(const SparseRows<S>& J) {
     for (const auto& [row, column, value] : J.entries)
         entries.emplace_back(row, column, mid(range(value)));
     const auto n = static_cast<Index>(J.start.size()) - 1;
-    SparseMatrix of(n, n);
-    of.setFromTriplets(entries.begin(), entries.end());
-    return of;
+    SparseMatrix matrix(n, n);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
 }
 template SparseMatrix middle(const SparseRows<double>&);
 template SparseMatrix middle(const SparseRows<Interval>&);
@@ -163,107 +171,163 @@ std::vector<Interval> box(const VectorXd& middle, const VectorXd& radius) {
     return y;
 }
 
+// Coordinates are stored with an error of ε times their distance from the origin. `operations`
+// allows for the roundings that add up in an equation.
 double zero_tolerance_of_rounding(const System& system) {
-    constexpr double unit = std::numeric_limits<double>::epsilon(), operations = 1024;
-    return operations * unit * system.farthest / system.length;
+    constexpr double epsilon = std::numeric_limits<double>::epsilon(), operations = 1024;
+    return operations * epsilon * system.farthest / system.length;
 }
 
 VectorXd rounding_of_equations(const System& system, const VectorXd& z, double a) {
     VectorXd size = VectorXd::Zero(system.n());
     const Geometry fixed = geometry(system, doubles(z), a);
     for (int b = 0; b < system.bodies; ++b) {
-        const double acts = fixed.acts[static_cast<std::size_t>(b)];
-        size.segment<3>(system.balance(b)).setConstant(acts);
-        size.segment<3>(system.balance(b) + 3).setConstant(acts * system.length);
+        const double acting = fixed.acts[static_cast<std::size_t>(b)];
+        size.segment<3>(system.balance(b)).setConstant(acting);
+        size.segment<3>(system.balance(b) + 3).setConstant(acting * system.length);
     }
     size.segment(6 * system.bodies, system.rows) = constraint_sizes(system);
     return zero_tolerance_of_rounding(system) * size;
 }
 
+namespace {
+
+// Structural null spaces at a state, dimensionless: motions are (δr / L, δπ) of every body.
+struct NullSpaces {
+    const System& system;
+    const VectorXd& z;
+    double a, zero_tolerance;
+    MatrixXd J;  // ∂E/∂z [n × n]
+    MatrixXd T;  // tangent() at z
+
+    Index n_q() const { return 6 * system.bodies; }    // balance rows, and coordinates of a motion
+    Index poses() const { return 7 * system.bodies; }  // first entries of z
+    Index m() const { return system.rows; }            // constraint rows
+
+    // Φ_q of a motion, rows scaled to size one by `scale` [m × n_q].
+    MatrixXd constraint_slopes(VectorXd& scale) const {
+        MatrixXd G = J.block(n_q(), 0, m(), poses()) * T;
+        scale = normalise(G);
+        return G;
+    }
+    // y: self-equilibrated reactions, yᵀ Φ_q = 0, one per column [m × k].
+    MatrixXd redundant_rows(const MatrixXd& G, const VectorXd& scale) const {
+        MatrixXd y = scale.asDiagonal() * null_space(G.transpose(), zero_tolerance);
+        clean(y);
+        return y;
+    }
+    // Z: motions without deformation, G Z = 0 with the deformations that have stiffness as further
+    // rows of G. Empty where a deformation has no derivative.
+    std::optional<MatrixXd> undeformed_motions(MatrixXd G) const {
+        for (std::size_t e = 0; e < system.elements.size(); ++e) {
+            MatrixXd rows = resisted(system.model->elastics[e].kind, 1 / system.length) *
+                            deformation_slopes(system, e, doubles(z), a) * T;
+            if (!rows.allFinite()) return {};
+            normalise(rows);
+            G.conservativeResize(G.rows() + rows.rows(), n_q());
+            G.bottomRows(rows.rows()) = rows;
+        }
+        return null_space(G, zero_tolerance);
+    }
+    // v = Z N: the motions of Z that keep all forces in balance, B v + Cᵀ δR = 0 for some δR. With
+    // C x = 0 for the columns x of X, which no reaction acts on, this is Xᵀ B Z N = 0.
+    // `scale`: makes each balance row relative to the acting forces on its body.
+    MatrixXd idle_motions(const MatrixXd& Z, const Geometry& fixed, const VectorXd& scale) const {
+        const MatrixXd B =
+            scale.asDiagonal() * MatrixXd(middle(fixed.J)).topLeftCorner(n_q(), poses()) * T * Z;
+        MatrixXd C = (scale.asDiagonal() * J.block(0, poses(), n_q(), m())).transpose();
+        normalise(C);
+        const MatrixXd balance_change = null_space(C, zero_tolerance).transpose() * B;
+        return Z * null_space(balance_change, zero_tolerance);
+    }
+};
+
+// Size of the acting forces on the body of each balance row [N]; on a body without any, the largest
+// of all bodies, so that the rows can be divided by it.
+VectorXd acting_forces(const System& system, const Geometry& fixed) {
+    const double largest = *std::ranges::max_element(fixed.acts);
+    VectorXd acting(6 * system.bodies);
+    for (Index k = 0; k < acting.size(); ++k) {
+        const double on_body = fixed.acts[static_cast<std::size_t>(k / 6)];
+        acting[k] = on_body > 0 ? on_body : largest > 0 ? largest : 1;
+    }
+    return acting;
+}
+// Factor that turns each balance row into a force: 1 for a force, 1 / L for a moment.
+VectorXd force_scale(const System& system) {
+    VectorXd scale(6 * system.bodies);
+    for (Index k = 0; k < scale.size(); ++k) scale[k] = k % 6 < 3 ? 1 : 1 / system.length;
+    return scale;
+}
+
+}  // namespace
+
 Border border_at(const System& system, const VectorXd& z, double a, double zero_tolerance,
-                 Values<double>* values_at) {
-    const Index nb = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
+                 Values<double>* system_values) {
+    const Index n_q = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
     Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
+
+    // 1. Where ∂E/∂z is regular, there is no border.
     const auto values = evaluate(system, doubles(z), a, Slopes::yes);
-    if (values_at != nullptr) *values_at = values;
+    if (system_values != nullptr) *system_values = values;
     const SparseMatrix slopes = middle(values.J);
-    if (!slopes.coeffs().allFinite() || nb == 0 ||
+    if (!slopes.coeffs().allFinite() || n_q == 0 ||
         factors(slopes).rcond() > surely_regular * zero_tolerance)
         return border;
     border.too_large = n > max_unknowns_of_borders;
     if (border.too_large) return border;
-    const MatrixXd J = slopes;
 
-    // Redundant rows, yᵀ Φ_q = 0: the reactions y are self-equilibrated.
-    const MatrixXd T = tangent(system, z);
-    MatrixXd G = J.block(nb, 0, m, poses) * T;
-    const VectorXd scale = normalise(G);
-    MatrixXd y = scale.asDiagonal() * null_space(G.transpose(), zero_tolerance);
-    clean(y);
-
-    // Z: motions without deformation. v = Z N: those of them that keep all forces in balance.
-    for (std::size_t e = 0; e < system.elements.size(); ++e) {
-        MatrixXd rows = resisted(system.model->elastics[e].kind, 1 / system.length) *
-                        deformation_slopes(system, e, doubles(z), a) * T;
-        if (!rows.allFinite()) return border;
-        normalise(rows);
-        G.conservativeResize(G.rows() + rows.rows(), nb);
-        G.bottomRows(rows.rows()) = rows;
-    }
-    const MatrixXd Z = null_space(G, zero_tolerance);
+    // 2. Redundant rows y and idle motions v.
+    const NullSpaces spaces{system, z, a, zero_tolerance, slopes, tangent(system, z)};
+    VectorXd scale;
+    const MatrixXd G = spaces.constraint_slopes(scale), y = spaces.redundant_rows(G, scale);
+    const std::optional<MatrixXd> Z = spaces.undeformed_motions(G);
+    if (!Z) return border;
     const Geometry fixed = geometry(system, doubles(z), a);
-    const double largest = *std::ranges::max_element(fixed.acts);
-    VectorXd acts(nb), in_forces(nb);  // moments over L
-    for (Index k = 0; k < nb; ++k) {
-        const double on_body = fixed.acts[static_cast<std::size_t>(k / 6)];
-        acts[k] = on_body > 0 ? on_body : largest > 0 ? largest : 1;
-        in_forces[k] = k % 6 < 3 ? 1 : 1 / system.length;
-    }
-    const VectorXd weight = in_forces.cwiseQuotient(acts);
-    MatrixXd turned =
-        weight.asDiagonal() * MatrixXd(middle(fixed.J)).topLeftCorner(nb, poses) * T * Z;
-    MatrixXd C = (weight.asDiagonal() * J.block(0, poses, nb, m)).transpose();
-    normalise(C);
-    // part outside the range of reactions
-    turned = null_space(C, zero_tolerance).transpose() * turned;
-    const MatrixXd v = Z * null_space(turned, zero_tolerance);
+    const VectorXd acting = acting_forces(system, fixed), in_forces = force_scale(system);
+    const MatrixXd v = spaces.idle_motions(*Z, fixed, in_forces.cwiseQuotient(acting));
 
+    // 3. Columns of U and g. For an idle motion U is (δr, δπ) itself, so that Uᵀ E is the work of
+    // the imbalance on it (moments about each body's origin), and g its δz.
     const Index k = y.cols(), i = v.cols();
     border.redundant = static_cast<int>(k);
     border.U = border.g = MatrixXd::Zero(n, k + i);
-    border.U.block(nb, 0, m, k) = y;
+    border.U.block(n_q, 0, m, k) = y;
     border.g.block(poses, 0, m, k) = y;
-    MatrixXd U = v, g = T * v;  // U: wrenches conjugate to v, moments about each body's origin
-    for (Index row = 0; row < nb; ++row)
+    MatrixXd U = v, g = spaces.T * v;
+    for (Index row = 0; row < n_q; ++row)
         if (row % 6 < 3) U.row(row) *= system.length;
     clean(U);
     clean(g);
-    border.U.topRightCorner(nb, i) = U;
+    border.U.topRightCorner(n_q, i) = U;
     border.g.topRightCorner(poses, i) = g;
 
+    // 4. Load on the idle motions: work of the imbalance over L [N], relative to that of the acting
+    // forces. Gap of the redundant rows, relative to the size of the rows.
     const Eigen::Map<const VectorXd> E(values.E.data(), n);
-    const VectorXd work = v.transpose() * (in_forces.asDiagonal() * E.head(nb)),
-                   work_of_acting_forces = v.cwiseAbs().transpose() * acts;
-    border.pushed = (work.array().abs() > zero_tolerance * work_of_acting_forces.array()).any();
-    const VectorXd gap = y.transpose() * E.segment(nb, m);
+    const VectorXd work = v.transpose() * (in_forces.asDiagonal() * E.head(n_q)),
+                   work_of_acting_forces = v.cwiseAbs().transpose() * acting;
+    border.idle_motion_loaded =
+        (work.array().abs() > zero_tolerance * work_of_acting_forces.array()).any();
+    const VectorXd gap = y.transpose() * E.segment(n_q, m);
     const VectorXd size = constraint_sizes(system);
-    border.open =
+    border.redundant_row_gap =
         (gap.array().abs() > zero_tolerance * (y.cwiseAbs().transpose() * size).array()).any();
     return border;
 }
 
 namespace {
 
-// Names with at least a tenth of the largest share.
+// Lists the names whose share is at least a tenth of the largest one.
 std::string largest_named(const std::vector<double>& shares,
                           const std::function<std::string(std::size_t)>& name) {
-    double most = 0;
-    for (const double share : shares) most = std::max(most, share);
-    std::string named;
+    double largest = 0;
+    for (const double share : shares) largest = std::max(largest, share);
+    std::string names;
     for (std::size_t k = 0; k < shares.size(); ++k)
-        if (shares[k] > 0.1 * most)
-            named += fmt::format("{}'{}'", named.empty() ? "" : ", ", name(k));
-    return named;
+        if (shares[k] > 0.1 * largest)
+            names += fmt::format("{}'{}'", names.empty() ? "" : ", ", name(k));
+    return names;
 }
 
 }  // namespace
@@ -302,22 +366,26 @@ std::vector<S> poses_and_reactions(const Problem& problem, const std::vector<S>&
     return {y.begin(), y.begin() + problem.n()};
 }
 
-// Adds U μ and the gauges.
+// Appends to the n equations E of the system the border's terms: U μ in the balances and rows, the
+// gauges gᵀ (z - z_g), and tᵀ (y - y_t) where a is an unknown.
 template <class S>
 void add_border(const Problem& problem, const std::vector<S>& y, std::vector<S>& E) {
     using B = Base<S>;
     const Index n = problem.n(), k = problem.border.count();
-    const auto at = [](auto& all, Index i) -> auto& { return all[static_cast<std::size_t>(i)]; };
+    const auto entry = [](auto& vector, Index i) -> auto& {
+        return vector[static_cast<std::size_t>(i)];
+    };
     E.resize(static_cast<std::size_t>(problem.size()), constant<S>(0.));
     for (Index j = 0; j < k; ++j)
         for (Index i = 0; i < n; ++i) {
             const double U = problem.border.U(i, j), g = problem.border.g(i, j);
-            if (U != 0) at(E, i) = at(E, i) + at(y, n + j) * B(U);
-            if (g != 0) at(E, n + j) = at(E, n + j) + (at(y, i) - B(problem.z_g[i])) * B(g);
+            if (U != 0) entry(E, i) = entry(E, i) + entry(y, n + j) * B(U);
+            if (g != 0)
+                entry(E, n + j) = entry(E, n + j) + (entry(y, i) - B(problem.z_g[i])) * B(g);
         }
     if (!problem.a_is_unknown) return;
     for (Index i = 0; i < problem.size(); ++i)
-        E.back() = E.back() + (at(y, i) - B(problem.y_t[i])) * B(problem.t[i]);
+        E.back() = E.back() + (entry(y, i) - B(problem.y_t[i])) * B(problem.t[i]);
 }
 
 template <class S>
@@ -384,41 +452,44 @@ template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vecto
                                                 const Jet<1>&);
 
 VectorXd Factors::solve(const VectorXd& b) const {
-    if (!of) return VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
-    return D_c.cwiseProduct(of(D_r.cwiseProduct(b), false));
+    if (!solve_A) return VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
+    return D_c.cwiseProduct(solve_A(D_r.cwiseProduct(b), false));
 }
 
 MatrixXd Factors::rows_of_inverse(Index from, Index count) const {
-    if (!of) return MatrixXd::Constant(count, size(), std::numeric_limits<double>::quiet_NaN());
+    if (!solve_A)
+        return MatrixXd::Constant(count, size(), std::numeric_limits<double>::quiet_NaN());
     MatrixXd right = MatrixXd::Zero(size(), count);
     for (Index k = 0; k < count; ++k) right(from + k, k) = D_c[from + k];
-    return (D_r.asDiagonal() * of(right, true)).transpose();
+    return (D_r.asDiagonal() * solve_A(right, true)).transpose();
 }
 
-// ‖A⁻¹‖₁ by Hager's method (Hager 1984, Higham 1988).
+// 1 / (‖A‖₁ ‖A⁻¹‖₁). ‖A⁻¹‖₁ = max ‖A⁻¹ x‖₁ over ‖x‖₁ = 1 is convex in x: Hager's method climbs from
+// vertex to vertex along its gradient z = A⁻ᵀ sign(A⁻¹ x) (Hager 1984, Higham 1988).
 double Factors::rcond() const {
     constexpr int iterations = 5;
     const Index n = size();
-    if (!of) return 0;
+    if (!solve_A) return 0;
     VectorXd x = VectorXd::Constant(n, 1 / static_cast<double>(n));
     double inverse_norm = 0;
     for (int k = 0; k < iterations; ++k) {
-        const VectorXd y = of(x, false);
+        const VectorXd y = solve_A(x, false);
         if (!y.allFinite()) return 0;
         const double size = y.lpNorm<1>();
         if (k > 0 && !(size > inverse_norm)) break;
         inverse_norm = std::max(inverse_norm, size);
         const VectorXd sign = y.unaryExpr([](double v) { return v < 0 ? -1. : 1.; }),
-                       z = of(sign, true);
+                       z = solve_A(sign, true);
         Index largest = 0;
         const double slope = z.cwiseAbs().maxCoeff(&largest);
         if (!z.allFinite()) return 0;
         if (k > 0 && slope <= z.dot(x)) break;
         x = VectorXd::Unit(n, largest);
     }
+    // Higham's vector of alternating signs, for matrices on which the iteration stops too early.
     for (Index k = 0; k < n; ++k)
         x[k] = (k % 2 == 0 ? 1 : -1) * (1 + static_cast<double>(k) / static_cast<double>(n));
-    const VectorXd y = of(x, false);
+    const VectorXd y = solve_A(x, false);
     if (!y.allFinite()) return 0;
     inverse_norm = std::max(inverse_norm, 2 * y.lpNorm<1>() / (3 * static_cast<double>(n)));
     return 1 / (norm * inverse_norm);
@@ -431,8 +502,8 @@ Factors factors(const SparseMatrix& J) {
     const auto [A, D_r, D_c] = equilibrated(J);
     result.D_r = D_r, result.D_c = D_c;
     for (Index j = 0; j < n; ++j) result.norm = std::max(result.norm, A.col(j).cwiseAbs().sum());
-    // of Aᵀ, which most right-hand sides are for
-    const auto solving = [](const auto& lu) {
+    // The factors are those of Aᵀ, since most right-hand sides are for it.
+    const auto solver_of = [](const auto& lu) {
         return [lu](const MatrixXd& b, bool transposed) -> MatrixXd {
             if (transposed) return lu->solve(b);
             return lu->transpose().solve(b);
@@ -440,11 +511,11 @@ Factors factors(const SparseMatrix& J) {
     };
     if (n <= max_unknowns_of_dense) {
         const MatrixXd dense = A.transpose();
-        result.of = solving(std::make_shared<Eigen::PartialPivLU<MatrixXd>>(dense));
+        result.solve_A = solver_of(std::make_shared<Eigen::PartialPivLU<MatrixXd>>(dense));
         return result;
     }
     const auto lu = std::make_shared<Eigen::SparseLU<SparseMatrix>>(SparseMatrix(A.transpose()));
-    if (lu->info() == Eigen::Success) result.of = solving(lu);
+    if (lu->info() == Eigen::Success) result.solve_A = solver_of(lu);
     return result;
 }
 
@@ -452,7 +523,7 @@ MatrixXd inverse(const Factors& factors) { return factors.rows_of_inverse(0, fac
 
 namespace {
 
-// Of a change of the poses: the largest of a body, relative to the model's size.
+// Largest change of a body's pose, relative to the model's size.
 double size_of(const Problem& problem, const VectorXd& step) {
     double size = 0;
     for (int b = 0; b < problem.system.bodies; ++b) {
@@ -463,99 +534,135 @@ double size_of(const Problem& problem, const VectorXd& step) {
     return size;
 }
 
+// Newton's method at a fixed a, or with a among the unknowns.
+struct NewtonSteps {
+    const Problem& problem;
+    double a;
+    Approximate& approximate;
+    double size = std::numeric_limits<double>::infinity();  // of the last step, as size_of()
+
+    // Full step, with factors at y; false if it is not finite, and then not taken. `system_values`:
+    // as of newton().
+    bool full_step(const Values<double>* system_values = nullptr) {
+        const std::vector<double> y = doubles(approximate.y);
+        const Values<double> values = system_values != nullptr
+                                          ? bordered(problem, y, *system_values)
+                                          : evaluate(problem, y, a, Slopes::yes);
+        approximate.J = factors(middle(values.J));
+        approximate.since = 0;
+        return take_step(values.E);
+    }
+    // Chord step, with the factors of the last full step.
+    bool chord_step() {
+        return take_step(evaluate(problem, doubles(approximate.y), a, Slopes::no).E);
+    }
+    bool take_step(const std::vector<double>& E) {
+        const VectorXd dy =
+            -approximate.J.solve(Eigen::Map<const VectorXd>(E.data(), problem.size()));
+        if (!dy.allFinite()) return false;
+        approximate.y += dy;
+        size = size_of(problem, dy);
+        approximate.since += size;
+        return true;
+    }
+};
+
 }  // namespace
 
-// Newton's method until its steps are rounding. The end must be near the start: iterations that
-// diverge along an idle motion also end in small steps, at coordinates of 1e7 and more. The last
-// two steps share their factors, unless they do not decrease: then a knot may lie in between, with
-// the factors from its other side (near a limit point it is only rounding).
 Approximate newton(const Problem& problem, const VectorXd& from, double a,
-                   const Values<double>* values_at) {
-    constexpr int max_steps = 12, max_shared = 2, max_anew = 3;
+                   const Values<double>* system_values) {
+    constexpr int max_full_steps = 12, chord_steps = 2, max_renewals = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
     const double rounding = problem.system.separated.empty() ? 1e-13 : 1e-15;
     Approximate approximate{from, {}};
-    double last_size = std::numeric_limits<double>::infinity();
-    bool share = false;
-    for (int step = 0, shared = 0, anew = 0;
-         shared < max_shared && (approximate.settled || step < max_steps); ++step) {
-        const std::vector<double> y = doubles(approximate.y);
-        const Values<double> values =
-            step == 0 && values_at != nullptr
-                ? bordered(problem, y, *values_at)
-                : evaluate(problem, y, a, share ? Slopes::no : Slopes::yes);
-        if (!share) {
-            approximate.J = factors(middle(values.J));
-            approximate.since = 0;
-        }
-        const VectorXd dy =
-            -approximate.J.solve(Eigen::Map<const VectorXd>(values.E.data(), problem.size()));
-        if (!dy.allFinite()) return {approximate.y, approximate.J, false};
-        approximate.y += dy;
-        const double size = size_of(problem, dy);
-        approximate.since += size;
-        approximate.settled = approximate.settled || size < close;
-        shared += share ? 1 : 0;
-        const bool other_side =
-            share && !(size < last_size / 4 || size < rounding) && anew < max_anew;
-        share = approximate.settled && !other_side;
-        if (other_side) {
-            shared = 0;
-            ++anew;
-        }
-        last_size = size;
+    NewtonSteps steps{problem, a, approximate};
+    const auto unsettled = [&] { return Approximate{approximate.y, approximate.J, false}; };
+
+    // 1. Full steps, until one is small.
+    for (int step = 0; !approximate.settled && step < max_full_steps; ++step) {
+        if (!steps.full_step(step == 0 ? system_values : nullptr)) return unsettled();
+        approximate.settled = steps.size < close;
     }
-    approximate.settled = approximate.settled && size_of(problem, approximate.y - from) <= near;
+    if (!approximate.settled) return approximate;
+
+    // 2. Chord steps, down to rounding. One that does not decrease may have crossed a knot, whose
+    // other side the factors belong to: they are renewed by a full step. Near a limit point it is
+    // only rounding, so the number of renewals is limited.
+    for (int chords = 0, renewals = 0; chords < chord_steps;) {
+        const double last_size = steps.size;
+        if (!steps.chord_step()) return unsettled();
+        ++chords;
+        const bool decreases = steps.size < last_size / 4 || steps.size < rounding;
+        if (decreases || renewals == max_renewals) continue;
+        if (!steps.full_step()) return unsettled();
+        chords = 0;
+        ++renewals;
+    }
+
+    // 3. The end must be near the start: iterations that diverge along an idle motion also end in
+    // small steps, at coordinates of 1e7 and more.
+    approximate.settled = size_of(problem, approximate.y - from) <= near;
     return approximate;
 }
 
 BorderCheck check_border(const Problem& problem, const VectorXd& y, double a) {
     const System& system = problem.system;
-    const Border there =
+    const Border border =
         border_at(system, y.head(system.n()), a, zero_tolerance_of_rounding(system));
-    const bool alike =
-        there.redundant == problem.border.redundant && there.count() == problem.border.count();
-    return {alike && !there.pushed && !there.open && !there.too_large, alike && there.pushed,
-            alike && there.open};
+    const bool same_counts =
+        border.redundant == problem.border.redundant && border.count() == problem.border.count();
+    return {
+        same_counts && !border.idle_motion_loaded && !border.redundant_row_gap && !border.too_large,
+        same_counts && border.idle_motion_loaded, same_counts && border.redundant_row_gap};
 }
+
+namespace {
+
+// Newton's method from z, with the border at z and the gauge at z_g; then checks the border.
+NearEquilibrium equilibrium_from(const System& system, const VectorXd& z, const VectorXd& z_g,
+                                 double a, double zero_tolerance) {
+    const double rounding = zero_tolerance_of_rounding(system);
+    Values<double> values;
+    Problem problem{system, border_at(system, z, a, zero_tolerance, &values), z_g, false, {}, {}};
+    VectorXd y = VectorXd::Zero(problem.size());
+    y.head(system.n()) = z;
+    Approximate found = newton(problem, y, a, &values);
+    BorderCheck check;
+    if (found.settled && found.y.allFinite()) {
+        const Border& border = problem.border;
+        // z is the equilibrium, so its border is that of the equilibrium. If the rounding of the
+        // stored coordinates loads an idle motion or opens a gap, the border is evaluated again at
+        // the corrected state.
+        const bool is_at_start = zero_tolerance == rounding && !border.too_large &&
+                                 !border.idle_motion_loaded && !border.redundant_row_gap &&
+                                 size_of(problem, found.y - y) <= rounding;
+        // Without a border the factors show that J is regular where they were computed, and their
+        // margin covers the movement since then.
+        const bool is_regular = border.count() == 0 &&
+                                found.J.rcond() > surely_regular * std::max(rounding, found.since);
+        check = is_at_start || is_regular ? BorderCheck{true} : check_border(problem, found.y, a);
+    }
+    return {std::move(problem), std::move(found), check};
+}
+
+// Whether the border at the equilibrium has as many columns as that at the start.
+bool has_the_border_of_its_start(const NearEquilibrium& equilibrium) {
+    return equilibrium.there.sound || equilibrium.there.pushed || equilibrium.there.open;
+}
+
+}  // namespace
 
 NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double a) {
     const double rounding = zero_tolerance_of_rounding(system);
-    const auto from = [&](const VectorXd& start, double zero_tolerance) {
-        Values<double> values;
-        Problem problem{system, border_at(system, start, a, zero_tolerance, &values), z, false, {},
-                        {}};
-        VectorXd y = VectorXd::Zero(problem.size());
-        y.head(system.n()) = start;
-        Approximate found = newton(problem, y, a, &values);
-        // Without a border the factors show that J is regular, also after the steps since.
-        BorderCheck there;
-        if (found.settled && found.y.allFinite()) {
-            const Border& border = problem.border;
-            // A state that is loaded or open by its own rounding is checked again at the
-            // equilibrium.
-            const bool is_there = zero_tolerance == rounding && !border.too_large &&
-                                  !border.pushed && !border.open &&
-                                  size_of(problem, found.y - y) <= rounding;
-            const bool is_regular =
-                border.count() == 0 &&
-                found.J.rcond() > surely_regular * std::max(rounding, found.since);
-            there = is_there || is_regular ? BorderCheck{true} : check_border(problem, found.y, a);
-        }
-        return NearEquilibrium{std::move(problem), std::move(found), there};
-    };
-    // Whether the border at the end is that of the start.
-    const auto arrives = [](const BorderCheck& there) {
-        return there.sound || there.pushed || there.open;
-    };
-    NearEquilibrium first = from(z, rounding);
-    if (arrives(first.there)) return first;
+    NearEquilibrium direct = equilibrium_from(system, z, z, a, rounding);
+    if (has_the_border_of_its_start(direct)) return direct;
     // Away from an equilibrium an idle motion has some stiffness, and Newton's method would diverge
-    // along it. So these motions are held first, by the looser threshold.
-    NearEquilibrium held = from(z, loose_zero_tolerance);
-    if (!held.found.settled) return first;
-    NearEquilibrium again = from(held.found.y.head(system.n()), rounding);
-    return arrives(again.there) ? again : held;
+    // along it. So these motions are first taken into the border, by the looser threshold.
+    NearEquilibrium loose = equilibrium_from(system, z, z, a, loose_zero_tolerance);
+    if (!loose.found.settled) return direct;
+    NearEquilibrium repeated =
+        equilibrium_from(system, loose.found.y.head(system.n()), z, a, rounding);
+    return has_the_border_of_its_start(repeated) ? repeated : loose;
 }
 
 }  // namespace elastocheck::reference::certificate

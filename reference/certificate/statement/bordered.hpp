@@ -22,8 +22,8 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 struct Border {
     Eigen::MatrixXd U, g;  // [n × k]: redundant rows first, then idle motions
     int redundant = 0;
-    // at z, beyond rounding: redundant rows have a gap, an idle motion is loaded
-    bool open = false, pushed = false;
+    // at z, beyond rounding
+    bool redundant_row_gap = false, idle_motion_loaded = false;
     // the Jacobian may be singular and is too large for dense null spaces: nothing is known
     bool too_large = false;
     int count() const { return static_cast<int>(U.cols()); }
@@ -46,9 +46,9 @@ double zero_tolerance_of_rounding(const System& system);
 constexpr double loose_zero_tolerance = 1e-5;
 // The rounding of each equation [n]: relative to the forces on its body, to L or to a direction.
 Eigen::VectorXd rounding_of_equations(const System& system, const Eigen::VectorXd& z, double a);
-// `values_at`, if given, receives E and ∂E/∂z at z.
+// `system_values`, if given, receives E and ∂E/∂z at z.
 Border border_at(const System& system, const Eigen::VectorXd& z, double a, double zero_tolerance,
-                 Values<double>* values_at = nullptr);
+                 Values<double>* system_values = nullptr);
 
 // Names of the bodies moved by the idle motions, and of the joints of the
 // redundant rows: "'strut'".
@@ -84,7 +84,7 @@ std::vector<Interval> thin(const Eigen::VectorXd& x);
 struct Factors {
     Eigen::VectorXd D_r, D_c;
     // (b, transposed): A⁻¹ b or A⁻ᵀ b; none if A is singular
-    std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, bool)> of;
+    std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, bool)> solve_A;
     double norm = 0;  // ‖A‖₁
     Eigen::Index size() const { return D_r.size(); }
     Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
@@ -95,26 +95,27 @@ struct Factors {
 Factors factors(const SparseMatrix& J);
 Eigen::MatrixXd inverse(const Factors& factors);
 
-// Newton's method: start of the proof. `values_at`, if given: the equations of the system at y.
+// Approximate solution by Newton's method: start of the proof. `system_values`, if given: the
+// equations of the system at y, and their slopes.
 struct Approximate {
     Eigen::VectorXd y;
-    Factors J;
-    bool settled = false;
-    double since = 0;  // movement since the factors, relative to the model's size
+    Factors J;             // at one of the last steps
+    bool settled = false;  // the steps became rounding, near the start
+    double since = 0;      // movement since J was computed, relative to the model's size
 };
 Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a,
-                   const Values<double>* values_at = nullptr);
+                   const Values<double>* system_values = nullptr);
 
-// Validity of a border at y. `sound`: all its motions and rows are structurally idle or redundant
-// there, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond
+// Validity of a border at y. `sound`: as many motions and rows are structurally idle or redundant
+// at y, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond
 // rounding. Nothing is proved unless it is sound.
 struct BorderCheck {
     bool sound = false, pushed = false, open = false;
 };
 BorderCheck check_border(const Problem& problem, const Eigen::VectorXd& y, double a);
 
-// Floating-point equilibrium near z, if one was found, with the border evaluated
-// at that equilibrium.
+// Floating-point equilibrium near z, if one was found (`found.settled`), with the check of its
+// border at that equilibrium.
 struct NearEquilibrium {
     Problem problem;
     Approximate found;

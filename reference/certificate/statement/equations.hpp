@@ -22,7 +22,7 @@ struct Frame {
     Quat<T> p;
 };
 
-// Action on one body: a force, and a moment about its origin.
+// Wrench on one body: a force, and a moment about its origin.
 template <class T>
 struct Acting {
     Vec<T> force, moment;
@@ -59,7 +59,8 @@ T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i
            free_length;
 }
 
-// δℓ = n · (δp_j - δp_i), n from i to j: tensile force f(ℓ - ℓ₀) on the ends.
+// Wrenches of a spring on its bodies. δℓ = n · (δp_j - δp_i), n from i to j: the tensile force
+// f(ℓ - ℓ₀) acts along n on i and against it on j.
 template <class T, class ForceOf>
 OnBoth<T> pulling(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
                   const Frame<T>& j, const ForceOf& f) {
@@ -88,12 +89,12 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
     Measured<T> m;
     m.p_j = position(j, bushing.j.s_local);
     m.D = m.p_j - position(i, bushing.i.s_local);
-    m.A_i = product(i.p, direction_of<T>(bushing.i.A_local));
+    m.A_i = product(i.p, unit_quaternion<T>(bushing.i.A_local));
     m.A_f = m.A_i;
     const bool middle = bushing.formulation.frame == Formulation::Frame::middle;
     m.angles.theta = constant<T>(Eigen::Vector3d::Zero());
     if (rotational || middle)
-        m.B = product(conjugate(m.A_i), product(j.p, direction_of<T>(bushing.j.A_local)));
+        m.B = product(conjugate(m.A_i), product(j.p, unit_quaternion<T>(bushing.j.A_local)));
     if (middle) {
         m.half = half_of(short_way(m.B));
         m.A_f = product(m.A_i, m.half);
@@ -104,17 +105,18 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
     return m;
 }
 
-// e - e₀, the undeformed d_z raised by its driver.
+// e - e₀, e₀ the undeformed position, whose d_z its driver increases by `rise`.
 template <class T>
-std::array<T, 6> deformation(const Bushing& bushing, const T& raised, const Measured<T>& m) {
+std::array<T, 6> deformation(const Bushing& bushing, const T& rise, const Measured<T>& m) {
     std::array<T, 6> e = m.e;
-    e[2] = e[2] - raised;
+    e[2] = e[2] - rise;
     for (std::size_t k = 0; k < 6; ++k)
         e[k] = e[k] - Base<T>(bushing.undeformed[static_cast<int>(k)]);
     return e;
 }
 
-// (f, g) = ∂u/∂e + preload. With F = A_f f and the frame rotating by δπ_f,
+// Wrenches of a bushing on its bodies from its element forces `f_g`, (f, g) = ∂u/∂e + preload with
+// the energy u. With F = A_f f and the frame rotating by δπ_f,
 //
 //   f · δd = F · (δp_j - δp_i) - (D × F) · δπ_f        g · δθ = (A_i G g) · (δπ_j - δπ_i)
 //
@@ -129,15 +131,15 @@ std::array<T, 6> deformation(const Bushing& bushing, const T& raised, const Meas
 // Not conjugate: A_i g, or A_f g, which are equal for a frame on i. Without the offset moment, F
 // acts on i at p_i, and D × F on neither body.
 template <class T>
-OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& u, const Measured<T>& m,
+OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& f_g, const Measured<T>& m,
                  bool rotational, const Frame<T>& i, const Frame<T>& j) {
     const Formulation& formulation = bushing.formulation;
-    const Vec<T> F = turned(m.A_f, Vec<T>{{u[0], u[1], u[2]}});
+    const Vec<T> F = turned(m.A_f, Vec<T>{{f_g[0], f_g[1], f_g[2]}});
     Vec<T> M = constant<T>(Eigen::Vector3d::Zero());
     if (rotational) {
-        Vec<T> g{{u[3], u[4], u[5]}};
+        Vec<T> g{{f_g[3], f_g[4], f_g[5]}};
         if (formulation.conjugate)
-            g = m.angles.G[0] * u[3] + m.angles.G[1] * u[4] + m.angles.G[2] * u[5];
+            g = m.angles.G[0] * f_g[3] + m.angles.G[1] * f_g[4] + m.angles.G[2] * f_g[5];
         M = turned(m.A_i, g);
     }
     if (!formulation.offset_moment) {
@@ -166,15 +168,15 @@ struct Row {
 template <class T, std::size_t n = 1>
 using Rows = std::array<Row<T>, n>;
 
-// δΦ = n · (δp_i - δp_j), p a common place of both: n at p on i, -n on j.
+// δΦ = n · (δp_i - δp_j), p a point common to both: n at p on i, -n on j.
 template <class T>
-Row<T> of_points(const T& Phi, const Vec<T>& n, const Vec<T>& p, const Frame<T>& i,
+Row<T> point_row(const T& Phi, const Vec<T>& n, const Vec<T>& p, const Frame<T>& i,
                  const Frame<T>& j) {
     return {Phi, opposed(n, constant<T>(Eigen::Vector3d::Zero()), p, i, j)};
 }
 // δ(u_i · u_j) = (u_i × u_j) · (δπ_i - δπ_j)
 template <class T>
-Row<T> of_directions(const T& Phi, const Vec<T>& u_i, const Vec<T>& u_j) {
+Row<T> direction_row(const T& Phi, const Vec<T>& u_i, const Vec<T>& u_j) {
     const Vec<T> about = cross(u_i, u_j), none = constant<T>(Eigen::Vector3d::Zero());
     return {Phi, {{none, about}, {none, -about}}};
 }
@@ -185,20 +187,20 @@ Rows<T, 3> rows_of(const CoincidentPoints& c, const T&, const Frame<T>& i, const
     Rows<T, 3> rows;
     for (std::size_t k = 0; k < 3; ++k)
         rows[k] =
-            of_points(gap[k], constant<T>(Eigen::Vector3d::Unit(static_cast<int>(k))), p, i, j);
+            point_row(gap[k], constant<T>(Eigen::Vector3d::Unit(static_cast<int>(k))), p, i, j);
     return rows;
 }
 // The normal rotates with j: δ(n · (p_i - p_j)) = n · (δp_i - δp_j*), p_j* the point of j at the
-// place of p_i.
+// position of p_i.
 template <class T>
 Rows<T> rows_of(const PointInPlane& c, const T& value, const Frame<T>& i, const Frame<T>& j) {
     const Vec<T> p = position(i, c.i.s_local), n = lever(j, c.normal_j.u_local);
-    return {of_points(T(dot(n, p - position(j, c.j.s_local)) - value), n, p, i, j)};
+    return {point_row(T(dot(n, p - position(j, c.j.s_local)) - value), n, p, i, j)};
 }
 template <class T>
 Rows<T> rows_of(const PerpendicularDirections& c, const T&, const Frame<T>& i, const Frame<T>& j) {
     const Vec<T> u_i = lever(i, c.i.u_local), u_j = lever(j, c.j.u_local);
-    return {of_directions(dot(u_i, u_j), u_i, u_j)};
+    return {direction_row(dot(u_i, u_j), u_i, u_j)};
 }
 template <class T>
 Rows<T> rows_of(const DistanceBetween& c, const T& value, const Frame<T>& i, const Frame<T>& j) {
@@ -206,14 +208,14 @@ Rows<T> rows_of(const DistanceBetween& c, const T& value, const Frame<T>& i, con
     const Vec<T> p = position(i, c.i.s_local), bar = p - position(j, c.j.s_local);
     const T length = sqrt(squared(bar));
     const Vec<T> n{{bar[0] / length, bar[1] / length, bar[2] / length}};
-    return {of_points(T(length - value), n, p, i, j)};
+    return {point_row(T(length - value), n, p, i, j)};
 }
 template <class T>
 Rows<T> rows_of(const DirectionAtAngle& c, const T& value, const Frame<T>& i, const Frame<T>& j) {
-    const Turned<T> at = cos_sin_of(value);
+    const Turned<T> angle = cos_sin_of(value);
     const Vec<T> u_i = lever(i, c.i.u_local),
-                 across = lever(j, c.y_j.u_local) * at.cos - lever(j, c.j.u_local) * at.sin;
-    return {of_directions(dot(u_i, across), u_i, across)};
+                 across = lever(j, c.y_j.u_local) * angle.cos - lever(j, c.j.u_local) * angle.sin;
+    return {direction_row(dot(u_i, across), u_i, across)};
 }
 
 // ---- Loads of unit factor

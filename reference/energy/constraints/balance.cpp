@@ -53,9 +53,10 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
 }
 
 MatrixXd row_space(const Balance& conditions) {
-    const MatrixXd first =
+    const MatrixXd unit_columns =
         MatrixXd::Identity(conditions.null_space.rows(), std::ssize(conditions.independent));
-    return first.cols() > 0 ? times_matrix(conditions.qr.householderQ(), first) : first;
+    return unit_columns.cols() > 0 ? times_matrix(conditions.qr.householderQ(), unit_columns)
+                                   : unit_columns;
 }
 
 VectorXd shortest(const Balance& conditions, const VectorXd& Phi) {
@@ -136,14 +137,15 @@ Blocks load_blocks(const Prescribed& prescribed, const std::vector<Pose>& centre
     }
     const Chart chart = chart_about(centre);
     for (const auto& brake : prescribed.brakes) {
-        const int on = 6 * brake.body, wheel = 6 * brake.patch.body;
+        const int carrier = 6 * brake.body, wheel = 6 * brake.patch.body;
         const Eigen::Matrix3d f = skew(brake.f);
-        const Point held = dead_force(brake, chart).at;
-        add(on + 3, on, -f);
-        add(on + 3, on + 3, f * skew(motion(chart[held.body], held.s_local).lever));
+        const Point application_point = dead_force(brake, chart).at;
+        add(carrier + 3, carrier, -f);
+        add(carrier + 3, carrier + 3,
+            f * skew(motion(chart[application_point.body], application_point.s_local).lever));
         if (brake.patch.body == ground) continue;
-        add(on + 3, wheel, f);
-        add(on + 3, wheel + 3,
+        add(carrier + 3, wheel, f);
+        add(carrier + 3, wheel + 3,
             -f * skew(motion(chart[brake.patch.body], brake.patch.s_local).lever));
     }
     return A;
@@ -163,11 +165,12 @@ double idle_limit(double stiffest) {
 Modes modes_of(const Balance& conditions, const MatrixXd& H) {
     Modes modes;
     if (conditions.null_space.cols() == 0) return {conditions.null_space, VectorXd(0), 0};
-    const bool free = conditions.independent.empty();  // `null_space` is then the unit matrix
-    const MatrixXd reduced = free ? H : congruence(H, conditions.null_space);
+    const bool unconstrained =
+        conditions.independent.empty();  // `null_space` is then the unit matrix
+    const MatrixXd reduced = unconstrained ? H : congruence(H, conditions.null_space);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
-    modes.Z =
-        free ? eigen.eigenvectors() : matrix_product(conditions.null_space, eigen.eigenvectors());
+    modes.Z = unconstrained ? eigen.eigenvectors()
+                            : matrix_product(conditions.null_space, eigen.eigenvectors());
     modes.stiffness = eigen.eigenvalues();
     modes.idle_limit = idle_limit(modes.stiffness.cwiseAbs().maxCoeff());
     return modes;
@@ -178,17 +181,17 @@ bool Modes::unstable() const {
 }
 
 std::vector<int> Modes::resisting() const {
-    std::vector<int> which;
+    std::vector<int> indices;
     for (int i = 0; i < count(); ++i)
-        if (!idle(i)) which.push_back(i);
-    return which;
+        if (!idle(i)) indices.push_back(i);
+    return indices;
 }
 
 MatrixXd Modes::idle_motions() const {
-    std::vector<int> which;
+    std::vector<int> indices;
     for (int i = 0; i < count(); ++i)
-        if (idle(i)) which.push_back(i);
-    return Z(Eigen::all, which);
+        if (idle(i)) indices.push_back(i);
+    return Z(Eigen::all, indices);
 }
 
 namespace {

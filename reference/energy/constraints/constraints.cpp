@@ -38,7 +38,7 @@ void fill(const CoincidentPoints& c, const Chart& chart, const Rows& rows) {
     const PointMotion i = motion(chart[c.i.body], c.i.s_local);
     const PointMotion j = motion(chart[c.j.body], c.j.s_local);
     rows.out.Phi.segment<3>(rows.row) = i.p - j.p;
-    rows.out.dPhi.segment<3>(rows.row) = i.dp - j.dp;
+    rows.out.dPhi.segment<3>(rows.row) = i.displacement - j.displacement;
     for (int k = 0; k < 3; ++k) {  // e_k·δp = e_k·δr + (u × e_k)·δπ
         const Vector3d e = Vector3d::Unit(k);
         rows.add_row(c.i.body, e, i.lever.cross(e), k);
@@ -52,7 +52,7 @@ void fill(const PointInPlane& c, const Chart& chart, const Rows& rows) {
     const PointMotion i = motion(chart[c.i.body], c.i.s_local);
     const PointMotion j = motion(chart[c.j.body], c.j.s_local);
     const DirectionMotion n = turned(chart[c.normal_j.body], c.normal_j.u_local);
-    const Vector3d D = i.p - j.p, dD = i.dp - j.dp;
+    const Vector3d D = i.p - j.p, dD = i.displacement - j.displacement;
     rows.out.Phi[rows.row] = n.u.dot(D) - (c.offset + rows.moved);
     rows.out.dPhi[rows.row] = n.u.dot(dD) + n.du.dot(D - dD);
     rows.add_row(c.i.body, n.u, i.lever.cross(n.u));
@@ -75,7 +75,7 @@ void fill(const PerpendicularDirections& c, const Chart& chart, const Rows& rows
 void fill(const DistanceBetween& c, const Chart& chart, const Rows& rows) {
     const PointMotion i = motion(chart[c.i.body], c.i.s_local);
     const PointMotion j = motion(chart[c.j.body], c.j.s_local);
-    const Vector3d D = i.p - j.p, dD = i.dp - j.dp;
+    const Vector3d D = i.p - j.p, dD = i.displacement - j.displacement;
     const double distance = D.norm(), length = c.length + rows.moved;
     const Vector3d n = D / length;
     rows.out.Phi[rows.row] = (distance - length) * (distance + length) / (2 * length);

@@ -43,8 +43,8 @@ VectorXd shortest(const Eigen::SPQR<Long>& qr, const VectorXd& lambda) {
     null.topRows(rank) = -R_2;
     null.bottomRows(redundant).setIdentity();
     null = (qr.colsPermutation() * null).eval();
-    const VectorXd along = Eigen::HouseholderQR<MatrixXd>(null).solve(lambda);
-    return lambda - null * along;
+    const VectorXd coefficients = Eigen::HouseholderQR<MatrixXd>(null).solve(lambda);
+    return lambda - null * coefficients;
 }
 
 }  // namespace

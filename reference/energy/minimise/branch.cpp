@@ -42,20 +42,21 @@ using Eigen::VectorXd;
 // Consecutive halvings of a step. Where a stop closes, the tangent jumps, and no step over it
 // agrees with both tangents: it is accepted once it is negligible, after about twenty halvings of
 // the whole span.
-constexpr int halvings = 26;
-constexpr double resolution = 1e-9;  // of the parameter: smallest step
+constexpr int max_halvings = 26;
+constexpr double min_step = 1e-9;  // of the parameter: smallest step
 // Smallest step for laws that are almost flat at their start, which looks like a limit
 // point until steps are shorter than the flat part. For other laws it would only make limit
 // points more expensive.
-constexpr double finest = 1e-12;
+constexpr double min_step_of_flat_laws = 1e-12;
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 // of the span: instabilities that appear and vanish within this length are not searched for
 constexpr double min_guarded_step = 1e-3;
-constexpr int internal_points = 2000;  // between two requested values
-constexpr double largest_step = 0.1;   // of L or 1 rad, by the tangent
-constexpr double negligible = 1e-6;    // of L or 1 rad
-constexpr double idle_push = 1e-8;     // of F or F·L: smallest load on an idle mode
-constexpr double spent = 0.01;  // of its first stiffness: a mode with less is about to be unstable
+constexpr int max_points = 2000;        // between two requested values
+constexpr double largest_step = 0.1;    // of L or 1 rad, by the tangent
+constexpr double negligible = 1e-6;     // of L or 1 rad
+constexpr double min_idle_load = 1e-8;  // of F or F·L: smallest load on an idle mode
+// of its first stiffness: a mode with less is about to be unstable
+constexpr double spent_stiffness = 0.01;
 
 // A small gradient does not bound the error along a soft mode. Newton corrections are applied
 // until the last one is at most `last_correction`; after `max_corrections` of them a last one of
@@ -129,19 +130,20 @@ bool bushings_continue(const Path& path, const State& from, const State& to) {
 
 // Whether the prescribed loads at a push an unresisted motion.
 bool idle_mode_loaded(const Path& path, const State& from, double a) {
-    const Balance then =
+    const Balance conditions =
         sparse_balance(path.model, at(path.course, a), path.scales, chart_about(from.poses));
-    const VectorXd push = from.modes.Z.transpose() * then.projected_gradient;
+    const VectorXd load = from.modes.Z.transpose() * conditions.projected_gradient;
     for (int i = 0; i < from.modes.count(); ++i)
-        if (from.modes.idle(i) && std::abs(push[i]) > idle_push) return true;
+        if (from.modes.idle(i) && std::abs(load[i]) > min_idle_load) return true;
     return false;
 }
 
 // Whether the softest mode that resists at the start of the branch has lost almost all
 // of its stiffness.
-bool is_spent(const Modes& first, const Modes& now) {
-    const auto softest = first.idle_motions().cols();
-    return softest < first.count() && now.stiffness[softest] <= spent * first.stiffness[softest];
+bool is_spent(const Modes& at_start, const Modes& modes) {
+    const auto softest = at_start.idle_motions().cols();
+    return softest < at_start.count() &&
+           modes.stiffness[softest] <= spent_stiffness * at_start.stiffness[softest];
 }
 
 // Classifies the singular point at which the softest mode z is spent. The tangent there is t = -z
@@ -151,11 +153,11 @@ bool is_spent(const Modes& first, const Modes& now) {
 // without potential w is that of the minimum and does not classify the branch.
 Failure spent_mode(const Path& path, const Continuation& continuation, const VectorXd& t) {
     if (without_potential(path)) return Failure{Outcome::branch_lost, unstable};
-    constexpr double kept = 0.02;  // of w |t| at the start
-    const auto softest = path.first.idle_motions().cols();
+    constexpr double min_product = 0.02;  // of w |t| at the start
+    const auto softest = path.start_modes.idle_motions().cols();
     const double share =
-        std::abs(continuation.state.modes.stiffness[softest] / path.first.stiffness[softest]);
-    return share * largest(t) >= kept * continuation.first_tangent && largest(t) > 0
+        std::abs(continuation.state.modes.stiffness[softest] / path.start_modes.stiffness[softest]);
+    return share * largest(t) >= min_product * continuation.first_tangent && largest(t) > 0
                ? Failure{Outcome::limit_point, turns_back}
                : Failure{Outcome::bifurcation_point, divides};
 }
@@ -164,18 +166,18 @@ Failure spent_mode(const Path& path, const Continuation& continuation, const Vec
 bool has_small_slope(const Model& model) {
     constexpr double small = 1e-3;
     bool any = false;
-    const auto note = [&](std::size_t, const Curve& curve) {
+    const auto compare_slopes = [&](std::size_t, const Curve& curve) {
         double steepest = 0;
         for (const auto& piece : curve.pieces) steepest = std::max(steepest, piece[1]);
         any |= std::ranges::any_of(curve.pieces, [&](const auto& piece) {
             return piece[1] > 0 && piece[1] < small * steepest;
         });
     };
-    for (const auto& element : model.elastics) each_curve(element.kind, note);
+    for (const auto& element : model.elastics) each_curve(element.kind, compare_slopes);
     return any;
 }
 
-Attempt lost(Attempt attempt, const char* why) {
+Attempt lost_branch(Attempt attempt, const char* why) {
     attempt.failure = {Outcome::branch_lost, why};
     return attempt;
 }
@@ -190,20 +192,21 @@ Attempt lost(Attempt attempt, const char* why) {
 // is used where it changes little.
 VectorXd predicted(const Path& path, const Continuation& continuation, const VectorXd& t,
                    double h) {
-    constexpr double little = 0.5;  // of t h
-    const State &last = continuation.state, &before = continuation.before;
+    constexpr double max_change = 0.5;  // of t h
+    const State &last = continuation.state, &previous = continuation.previous;
     VectorXd xi = t * h;
-    if (continuation.tangent_before.size() == 0 || last.a == before.a) return xi;
-    const double D = last.a - before.a, share = h / D;
-    const VectorXd back = scaled_increment(path, last.poses, before.poses);
-    VectorXd t_0 = continuation.tangent_before;
+    if (continuation.previous_tangent.size() == 0 || last.a == previous.a) return xi;
+    const double D = last.a - previous.a, ratio = h / D;
+    const VectorXd step_back = scaled_increment(path, last.poses, previous.poses);
+    VectorXd t_0 = continuation.previous_tangent;
     for (Eigen::Index b = 3; b < t_0.size(); b += 6)
-        t_0.segment<3>(b) = (inverse_turn_jacobian(back.segment<3>(b)) * t_0.segment<3>(b)).eval();
-    const VectorXd A = back + D * t, B = D * (t_0 - t);
-    VectorXd bent = share * share * (3 * A + B + share * (2 * A + B));
+        t_0.segment<3>(b) =
+            (inverse_turn_jacobian(step_back.segment<3>(b)) * t_0.segment<3>(b)).eval();
+    const VectorXd A = step_back + D * t, B = D * (t_0 - t);
+    VectorXd higher_terms = ratio * ratio * (3 * A + B + ratio * (2 * A + B));
     const MatrixXd idle = last.modes.idle_motions();
-    bent -= idle * (idle.transpose() * bent).eval();
-    if (largest(bent) < little * largest(xi)) xi += bent;
+    higher_terms -= idle * (idle.transpose() * higher_terms).eval();
+    if (largest(higher_terms) < max_change * largest(xi)) xi += higher_terms;
     return xi;
 }
 
@@ -215,16 +218,16 @@ Attempt step(const Path& path, const Continuation& continuation, double a, const
     const State& to = attempt.state;
     if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
     const VectorXd actual = resisted_increment(path, from, to);
-    if (!is_near(actual, expected)) return lost(attempt, jumped);
+    if (!is_near(actual, expected)) return lost_branch(attempt, jumped);
     if (attempt.failure) return attempt;
     if (!is_continuous(actual, expected, tangent(path, to) * (a - from.a)))
-        return lost(attempt, jumped);
-    if (!within_laws(path.model, path.turning, to.poses)) return lost(attempt, law_ended);
-    if (!bushings_continue(path, from, to)) return lost(attempt, law_ended);
-    if (to.modes.unstable()) return lost(attempt, unstable);
+        return lost_branch(attempt, jumped);
+    if (!within_laws(path.model, path.turning, to.poses)) return lost_branch(attempt, law_ended);
+    if (!bushings_continue(path, from, to)) return lost_branch(attempt, law_ended);
+    if (to.modes.unstable()) return lost_branch(attempt, unstable);
     if (std::abs(a - from.a) > min_guarded_step * path.span &&
         !meets_prediction(continuation.record, a, to.modes))
-        return lost(attempt, sudden);
+        return lost_branch(attempt, sudden);
     return attempt;
 }
 
@@ -339,12 +342,12 @@ namespace {
 // Newton corrections of a stationary state along its soft modes.
 Attempt corrected(const Path& path, State state) {
     for (int k = 0;; ++k) {
-        const VectorXd ahead = newton_increment(state, unsymmetric_stiffness(path, state),
-                                                state.balance.projected_gradient);
-        const double size = largest(ahead);
+        const VectorXd xi = newton_increment(state, unsymmetric_stiffness(path, state),
+                                             state.balance.projected_gradient);
+        const double size = largest(xi);
         if (size <= last_correction) {
             // The balance stays that of the poses before: its change is of second order.
-            state.poses = moved(path, state.poses, ahead);
+            state.poses = moved(path, state.poses, xi);
             return {std::move(state), {}};
         }
         if (k == max_corrections && size <= accepted_correction) return {std::move(state), {}};
@@ -354,7 +357,7 @@ Attempt corrected(const Path& path, State state) {
                             fmt::format("beside stiff elements the minimum along a soft motion is "
                                         "determined only to {:.1g} of the model's size",
                                         size)}};
-        state = state_at(path, state.a, moved(path, state.poses, ahead));
+        state = state_at(path, state.a, moved(path, state.poses, xi));
     }
 }
 
@@ -377,21 +380,21 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
         path.counts.evaluations += m.evaluations;
         path.counts.factorisations += m.evaluations;
         if (!std::isfinite(m.excess)) return {state, Failure{Outcome::not_finite, not_finite}};
-        const VectorXd moved_by = scaled_increment(path, state.poses, m.poses);
+        const VectorXd xi = scaled_increment(path, state.poses, m.poses);
         state = state_at(path, a, m.poses);
         if (is_stationary(path, state)) {
             Attempt attempt = corrected(path, state);
             if (attempt.failure || is_stationary(path, attempt.state)) return attempt;
             state = std::move(attempt.state);
         }
-        if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same
+        if (largest(xi) <= path.scales.roundoff) break;  // the next chart would be the same
         if (!prescribed.without_potential()) continue;
         // A new centre rotates the moments relative to the bodies, and moves the patches. Without
         // this Newton increment the charts converge only linearly.
-        const VectorXd ahead = newton_increment(state, unsymmetric_stiffness(path, state),
-                                                state.balance.projected_gradient);
-        if (largest(ahead) <= largest_step)
-            state = state_at(path, a, moved(path, state.poses, ahead));
+        const VectorXd newton_xi = newton_increment(state, unsymmetric_stiffness(path, state),
+                                                    state.balance.projected_gradient);
+        if (largest(newton_xi) <= largest_step)
+            state = state_at(path, a, moved(path, state.poses, newton_xi));
     }
     return {state,
             Failure{Outcome::iteration_limit, "the minimisation did not reach its tolerance"}};
@@ -399,10 +402,10 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
 
 std::optional<Failure> advance(const Path& path, Continuation& continuation, double to) {
     State& state = continuation.state;
-    const double smallest = resolution * std::max(std::abs(to), std::abs(state.a));
-    int halved = 0;  // since the last equilibrium
+    const double smallest = min_step * std::max(std::abs(to), std::abs(state.a));
+    int halvings = 0;  // since the last equilibrium
     for (int points = 0; state.a != to; ++points) {
-        if (points == internal_points) return Failure{Outcome::iteration_limit, "too many steps"};
+        if (points == max_points) return Failure{Outcome::iteration_limit, "too many steps"};
         const VectorXd t = tangent(path, state);
         if (!std::isfinite(largest(t))) return Failure{Outcome::not_finite, not_finite};
         if (continuation.record.samples.size() == 1) continuation.first_tangent = largest(t);
@@ -411,9 +414,9 @@ std::optional<Failure> advance(const Path& path, Continuation& continuation, dou
         if (!attempt.failure) {
             continuation.next_step =
                 std::max(a == to ? continuation.next_step : 0.0, 2 * std::abs(h));
-            halved = 0;
-            continuation.before = std::move(state);
-            continuation.tangent_before = t;
+            halvings = 0;
+            continuation.previous = std::move(state);
+            continuation.previous_tangent = t;
             state = std::move(attempt.state);
             continuation.record.add(a, state.modes);
             continue;
@@ -423,15 +426,16 @@ std::optional<Failure> advance(const Path& path, Continuation& continuation, dou
                            "the load acts on a motion that nothing resists"};
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
         continuation.next_step = 0.5 * std::abs(h);
-        if (++halved <= halvings && (continuation.next_step > smallest ||
-                                     (continuation.next_step > finest / resolution * smallest &&
-                                      has_small_slope(path.model))))
+        if (++halvings <= max_halvings &&
+            (continuation.next_step > smallest ||
+             (continuation.next_step > min_step_of_flat_laws / min_step * smallest &&
+              has_small_slope(path.model))))
             continue;
         // The end of a bushing's law takes precedence as the reason.
         const bool may_be_spent = attempt.failure->outcome == Outcome::iteration_limit ||
                                   (attempt.failure->outcome == Outcome::branch_lost &&
                                    attempt.failure->what != law_ended);
-        if (may_be_spent && is_spent(path.first, state.modes))
+        if (may_be_spent && is_spent(path.start_modes, state.modes))
             return spent_mode(path, continuation, t);
         return attempt.failure;
     }

@@ -43,7 +43,7 @@ struct Path {
     std::vector<int> turning;  // bushings with rotational stiffness
     double span;               // the largest requested |a|
     Counts& counts;
-    Modes first = {};  // modes where the branch starts
+    Modes start_modes = {};  // modes where the branch starts
 };
 
 // State of the continuation.
@@ -52,8 +52,8 @@ struct Continuation {
     double next_step;          // |step| to try next
     StiffnessRecord record;    // stiffnesses of the equilibria so far
     double first_tangent = 0;  // largest entry of the tangent at the start
-    State before = {};  // the equilibrium before the last, and its tangent; empty at the start
-    Eigen::VectorXd tangent_before = {};
+    State previous = {};  // the equilibrium before the last, and its tangent; empty at the start
+    Eigen::VectorXd previous_tangent = {};
 };
 
 Continuation start_continuation(const Path& path, const State& state);

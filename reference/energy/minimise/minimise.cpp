@@ -40,17 +40,18 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double aim = 0.01;   // of the tolerance: stop at once below it
-constexpr double holding = 1;  // stiffness given to idle motions, in units of F·L
+constexpr double stop_excess = 0.01;   // of the tolerance: the minimisation stops below it
+constexpr double added_stiffness = 1;  // stiffness given to idle motions, in units of F·L
 // consecutive calls at one point: SLSQP's step has vanished and it would not end
-constexpr int same_point = 20;
-constexpr int patience = 5;        // evaluations without improvement, once within the tolerance
-constexpr int long_patience = 20;  // before that: a chart of large steps ends at their roundoff
+constexpr int max_repeats = 20;
+// evaluations without improvement, once within the tolerance and before that (a chart of large steps
+// ends at their roundoff)
+constexpr int max_stagnation = 5, max_stagnation_at_first = 20;
 // A chart that has reduced its residual by this factor and needs more evaluations than this is
 // ended: the Hessian of the next chart achieves in one step what SLSQP's update learns slowly (long
 // chains, closing stops).
-constexpr double closer = 1e-3;
-constexpr int long_enough = 8;
+constexpr double chart_reduction = 1e-3;
+constexpr int min_chart_evaluations = 8;
 
 // The matrix T of item 1.
 MatrixXd well_scaled_coordinates(const Balance& centre, const MatrixXd& H, const Modes& modes) {
@@ -113,7 +114,7 @@ double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorX
 // Evaluates f, c and their derivatives at y, and the stop criteria.
 void evaluate(Problem& p, const VectorXd& y) {
     if (p.best.evaluations > 0 && p.y == y) {
-        if (++p.repeats >= same_point && p.opt) nlopt_force_stop(p.opt);
+        if (++p.repeats >= max_repeats && p.opt) nlopt_force_stop(p.opt);
         return;
     }
     p.y = y;
@@ -130,10 +131,10 @@ void evaluate(Problem& p, const VectorXd& y) {
     const VectorXd g = S.cwiseProduct(V.gradient) / energy + J_t * p.lambda;
 
     p.c = p.row_scale.cwiseProduct(DPhi(p.balance.independent));
-    const VectorXd idle = p.idle.transpose() * xi;
+    const VectorXd idle_part = p.idle.transpose() * xi;
     p.f = V.change / energy + p.lambda.dot(p.D.cwiseProduct(Phi.dPhi)) +
-          0.5 * holding * idle.squaredNorm();
-    p.f_y = p.T_t * (g + holding * p.idle * idle);
+          0.5 * added_stiffness * idle_part.squaredNorm();
+    p.f_y = p.T_t * (g + added_stiffness * p.idle * idle_part);
     p.c_y_t =
         times_transposed(p.T_t, J)(Eigen::all, p.balance.independent) * p.row_scale.asDiagonal();
 
@@ -152,10 +153,10 @@ void evaluate(Problem& p, const VectorXd& y) {
     }
     if (p.best.evaluations == 1) p.excess_at_centre = e;
     const bool accepted = p.best.excess <= p.tolerance;
-    const bool ends_chart = p.best.evaluations >= long_enough &&
-                            p.best.excess <= closer * p.excess_at_centre && !accepted;
-    if (ends_chart || p.best.excess <= aim * p.tolerance ||
-        p.since_best >= (accepted ? patience : long_patience) ||
+    const bool ends_chart = p.best.evaluations >= min_chart_evaluations &&
+                            p.best.excess <= chart_reduction * p.excess_at_centre && !accepted;
+    if (ends_chart || p.best.excess <= stop_excess * p.tolerance ||
+        p.since_best >= (accepted ? max_stagnation : max_stagnation_at_first) ||
         p.best.evaluations >= p.evaluation_limit || !std::isfinite(p.best.excess))
         if (p.opt) nlopt_force_stop(p.opt);
 }
@@ -186,9 +187,9 @@ Minimisation minimise(const Path& path, const State& centre, const MatrixXd& idl
     const Balance& balance_at_centre = centre.balance;
     const Prescribed prescribed = at(path.course, centre.a);
     const int rank = static_cast<int>(balance_at_centre.independent.size());
-    const MatrixXd H_held = centre.H + holding * idle * idle.transpose();
-    const Modes modes = idle.cols() > 0 ? modes_of(balance_at_centre, H_held) : centre.modes;
-    const MatrixXd T = well_scaled_coordinates(balance_at_centre, H_held, modes);
+    const MatrixXd H_with_idle = centre.H + added_stiffness * idle * idle.transpose();
+    const Modes modes = idle.cols() > 0 ? modes_of(balance_at_centre, H_with_idle) : centre.modes;
+    const MatrixXd T = well_scaled_coordinates(balance_at_centre, H_with_idle, modes);
     const int n = static_cast<int>(T.cols());
     Problem p{.model = model,
               .prescribed = prescribed,

@@ -33,8 +33,8 @@ Chart chart_about(const std::vector<Pose>& centre) {
 void move_to(Placement& body, const Vector6& x) {
     body.dr = x.head<3>();
     body.phi = x.tail<3>();
-    body.turn = turn_minus_one(body.phi);
-    body.dp = quaternion_minus_one(body.phi);
+    body.rotation_minus_one = rotation_minus_one(body.phi);
+    body.quaternion_minus_one = quaternion_minus_one(body.phi);
     body.J = turn_jacobian(body.phi);
 }
 
@@ -46,9 +46,9 @@ void move_to(Chart& chart, const VectorXd& x) {
 std::vector<Pose> poses(const Chart& chart) {
     std::vector<Pose> result;
     for (const auto& body : chart.placements) {
-        Quaterniond turn = body.dp;
-        turn.w() += 1;
-        result.push_back({body.centre.r + body.dr, (turn * body.centre.p).normalized()});
+        Quaterniond rotation = body.quaternion_minus_one;
+        rotation.w() += 1;
+        result.push_back({body.centre.r + body.dr, (rotation * body.centre.p).normalized()});
     }
     return result;
 }
@@ -65,13 +65,13 @@ VectorXd increment(const std::vector<Pose>& from, const std::vector<Pose>& to) {
 
 PointMotion motion(const Placement& body, const Vector3d& s_local) {
     const Vector3d lever_c = body.A_c * s_local;
-    const Vector3d dlever = body.turn * lever_c;
+    const Vector3d dlever = body.rotation_minus_one * lever_c;
     return {body.centre.r + lever_c + (body.dr + dlever), body.dr + dlever, lever_c + dlever};
 }
 
 DirectionMotion turned(const Placement& body, const Vector3d& u_local) {
     const Vector3d u_c = body.A_c * u_local;
-    const Vector3d du = body.turn * u_c;
+    const Vector3d du = body.rotation_minus_one * u_c;
     return {u_c + du, du};
 }
 

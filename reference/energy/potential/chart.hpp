@@ -16,11 +16,11 @@ namespace elastocheck::reference::energy {
 struct Placement {
     Pose centre;
     Eigen::Matrix3d A_c = Eigen::Matrix3d::Identity();
-    Eigen::Vector3d dr = Eigen::Vector3d::Zero();            // Δr [m]
-    Eigen::Vector3d phi = Eigen::Vector3d::Zero();           // φ [rad]
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();          // exp(φ) - 1
-    Eigen::Quaterniond dp = Eigen::Quaterniond(0, 0, 0, 0);  // the same as a quaternion
-    Eigen::Matrix3d J = Eigen::Matrix3d::Identity();         // δπ = J δφ
+    Eigen::Vector3d dr = Eigen::Vector3d::Zero();                  // Δr [m]
+    Eigen::Vector3d phi = Eigen::Vector3d::Zero();                 // φ [rad]
+    Eigen::Matrix3d rotation_minus_one = Eigen::Matrix3d::Zero();  // exp(φ) - 1
+    Eigen::Quaterniond quaternion_minus_one = {0, 0, 0, 0};        // the same as a quaternion
+    Eigen::Matrix3d J = Eigen::Matrix3d::Identity();               // δπ = J δφ
 };
 
 struct Chart {
@@ -39,8 +39,8 @@ Eigen::VectorXd increment(const std::vector<Pose>& from,
 
 // Current position of a body point, and its displacement from the centre pose.
 struct PointMotion {
-    Eigen::Vector3d p, dp;  // [m]
-    Eigen::Vector3d lever;  // A s, from the body's origin [m]
+    Eigen::Vector3d p, displacement;  // [m]
+    Eigen::Vector3d lever;            // A s, from the body's origin [m]
 };
 PointMotion motion(const Placement& body, const Eigen::Vector3d& s_local);
 

@@ -51,16 +51,16 @@ void add_pair(BodyId a, int rows, BodyId b, int columns, const Matrix3d& M, Bloc
     add_block(b, columns, a, rows, M.transpose(), H);
 }
 
-void add_curvature_along(const Vector3d& f, const Carried& at, Blocks& H) {
-    add_block(at.body, 3, at.body, 3, turn_curvature(f, at.u), H);
+void add_curvature_along(const Vector3d& f, const Carried& point, Blocks& H) {
+    add_block(point.body, 3, point.body, 3, turn_curvature(f, point.u), H);
 }
 
 // δD = P x - P' x':  δDᵀ M δD, and f·δ²D.
-void add_curvature_of_difference(const Vector3d& f, const Matrix3d& M, const Carried& at,
-                                 const Carried& minus, Blocks& H) {
-    add_curvature_along(f, at, H);
-    add_curvature_along(-f, minus, H);
-    const std::array ends{&at, &minus};
+void add_curvature_of_difference(const Vector3d& f, const Matrix3d& M, const Carried& point,
+                                 const Carried& other_point, Blocks& H) {
+    add_curvature_along(f, point, H);
+    add_curvature_along(-f, other_point, H);
+    const std::array ends{&point, &other_point};
     for (const auto* a : ends)
         for (const auto* b : ends) {
             const Matrix3d sign_M = a == b ? M : Matrix3d(-M);
@@ -73,16 +73,16 @@ void add_curvature_of_difference(const Vector3d& f, const Matrix3d& M, const Car
 }
 
 // n·δ²D + D·δ²n + 2 δn·δD, δn = -ñ φ, so δn·δD = φᵀ ñ (P x - P' x').
-void add_curvature_of_offset(const Carried& n, const Vector3d& D, const Carried& at,
-                             const Carried& minus, Blocks& H) {
-    add_curvature_along(n.u, at, H);
-    add_curvature_along(-n.u, minus, H);
+void add_curvature_of_offset(const Carried& n, const Vector3d& D, const Carried& point,
+                             const Carried& other_point, Blocks& H) {
+    add_curvature_along(n.u, point, H);
+    add_curvature_along(-n.u, other_point, H);
     add_curvature_along(D, n, H);
     const Matrix3d n_skew = skew(n.u);
-    add_pair(n.body, 3, at.body, 0, n_skew, H);
-    add_pair(n.body, 3, at.body, 3, -n_skew * skew(at.u), H);
-    add_pair(n.body, 3, minus.body, 0, -n_skew, H);
-    add_pair(n.body, 3, minus.body, 3, n_skew * skew(minus.u), H);
+    add_pair(n.body, 3, point.body, 0, n_skew, H);
+    add_pair(n.body, 3, point.body, 3, -n_skew * skew(point.u), H);
+    add_pair(n.body, 3, other_point.body, 0, -n_skew, H);
+    add_pair(n.body, 3, other_point.body, 3, n_skew * skew(other_point.u), H);
 }
 
 // v·δ²u + u·δ²v + 2 δu·δv, δu·δv = φᵀ ũ (-ṽ) φ'

@@ -33,7 +33,7 @@ struct Deformation {
 Deformation<1> deformation(const AxialSpring& spring, const Chart& chart) {
     const PointMotion i = motion(chart[spring.i.body], spring.i.s_local);
     const PointMotion j = motion(chart[spring.j.body], spring.j.s_local);
-    const Vector3d D = j.p - i.p, dD = j.dp - i.dp, D_c = D - dD;
+    const Vector3d D = j.p - i.p, dD = j.displacement - i.displacement, D_c = D - dD;
     const double l = D.norm(), l_c = D_c.norm();
     const Vector3d n = D / l;
     Deformation<1> e;
@@ -64,22 +64,23 @@ Deformation<6> deformation(const Bushing& bushing, const Chart& chart) {
     const Placement& body_j = chart[bushing.j.body];
     const PointMotion i = motion(body_i, bushing.i.s_local);
     const PointMotion j = motion(body_j, bushing.j.s_local);
-    const Vector3d D = j.p - i.p, dD = j.dp - i.dp, D_c = D - dD;
+    const Vector3d D = j.p - i.p, dD = j.displacement - i.displacement, D_c = D - dD;
     const Quaterniond q_i = body_i.centre.p * bushing.i.A_local.normalized();
     const Quaterniond q_j = body_j.centre.p * bushing.j.A_local.normalized();
     const Matrix3d A_c = q_i.toRotationMatrix();
-    const Matrix3d dA = body_i.turn * A_c;
+    const Matrix3d dA = body_i.rotation_minus_one * A_c;
     const Matrix3d A = A_c + dA;
 
-    Quaterniond dq = body_i.dp.conjugate() * body_j.dp;
-    dq.coeffs() += body_i.dp.conjugate().coeffs() + body_j.dp.coeffs();
+    Quaterniond dq = body_i.quaternion_minus_one.conjugate() * body_j.quaternion_minus_one;
+    dq.coeffs() +=
+        body_i.quaternion_minus_one.conjugate().coeffs() + body_j.quaternion_minus_one.coeffs();
     dq = q_i.conjugate() * dq * q_j;
     Quaterniond q_c = q_i.conjugate() * q_j;
     if (q_c.w() < 0) {
         q_c.coeffs() *= -1;
         dq.coeffs() *= -1;
     }
-    const Matrix3d A_Jc = q_j.toRotationMatrix(), dA_J = body_j.turn * A_Jc;
+    const Matrix3d A_Jc = q_j.toRotationMatrix(), dA_J = body_j.rotation_minus_one * A_Jc;
     const RelativeRotation B{q_c, dq, q_c.toRotationMatrix(),
                              A.transpose() * dA_J + dA.transpose() * A_Jc};
     const AngleChange theta = angles(bushing.formulation.angles, B);
@@ -220,12 +221,12 @@ void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& c
                  A * half_way_curvature(q, A.transpose() * m) * A.transpose();
             add_pair(i, 3, j, 3, D_n_Gamma, H);
             add_pair(i, 3, i, 3, -D_n_Gamma, H);
-            for (const auto& [end, sign] : {std::pair{&u_j, 1.0}, {&u_i, -1.0}}) {
-                const Matrix3d turned = sign * skew(end->u) * n_Gamma;
-                add_pair(end->body, 0, j, 3, -sign * n_Gamma, H);
-                add_pair(end->body, 0, i, 3, sign * n_Gamma, H);
-                add_pair(end->body, 3, j, 3, -turned, H);
-                add_pair(end->body, 3, i, 3, turned, H);
+            for (const auto& [lever, sign] : {std::pair{&u_j, 1.0}, {&u_i, -1.0}}) {
+                const Matrix3d lever_n_Gamma = sign * skew(lever->u) * n_Gamma;
+                add_pair(lever->body, 0, j, 3, -sign * n_Gamma, H);
+                add_pair(lever->body, 0, i, 3, sign * n_Gamma, H);
+                add_pair(lever->body, 3, j, 3, -lever_n_Gamma, H);
+                add_pair(lever->body, 3, i, 3, lever_n_Gamma, H);
             }
         }
         add_curvature_of_offset({i, n}, D, u_j, u_i, H);
@@ -240,10 +241,10 @@ void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& c
 double add_forces(const Prescribed& prescribed, const Chart& chart, VectorXd& g) {
     double change = 0;
     const auto add = [&](const DeadForce& force) {
-        const PointMotion at = motion(chart[force.at.body], force.at.s_local);
-        change -= force.f.dot(at.dp);
+        const PointMotion point = motion(chart[force.at.body], force.at.s_local);
+        change -= force.f.dot(point.displacement);
         g.segment<3>(6 * force.at.body) -= force.f;
-        g.segment<3>(6 * force.at.body + 3) -= at.lever.cross(force.f);
+        g.segment<3>(6 * force.at.body + 3) -= point.lever.cross(force.f);
     };
     for (const auto& force : prescribed.forces) add(force);
     for (const auto& brake : prescribed.brakes) add(dead_force(brake, chart));
@@ -352,20 +353,20 @@ double stress_size(const Model& model, const Prescribed& prescribed, const Chart
 }
 
 std::vector<int> turning_bushings(const Model& model, const Course& course) {
-    std::vector<int> which;
+    std::vector<int> bushings;
     for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k) {
-        const auto turns = [&](const Bushing& b) {
+        const auto depends_on_rotation = [&](const Bushing& b) {
             Vector6 sigma = b.preload.cwiseAbs() + course.start.preload.col(k).cwiseAbs() +
                             course.rate.preload.col(k).cwiseAbs();
-            const bool d_turns = b.formulation.frame == Formulation::Frame::middle;
+            const bool force_turns = b.formulation.frame == Formulation::Frame::middle;
             return resists_rotation(b.law) || !sigma.tail<3>().isZero(0) ||
-                   (d_turns && (resists(b.law) || !sigma.isZero(0)));
+                   (force_turns && (resists(b.law) || !sigma.isZero(0)));
         };
         const auto* bushing =
             std::get_if<Bushing>(&model.elastics[static_cast<std::size_t>(k)].kind);
-        if (bushing && turns(*bushing)) which.push_back(k);
+        if (bushing && depends_on_rotation(*bushing)) bushings.push_back(k);
     }
-    return which;
+    return bushings;
 }
 
 namespace {

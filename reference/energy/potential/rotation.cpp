@@ -30,7 +30,7 @@ Matrix3d skew(const Vector3d& v) {
 }
 
 // exp(φ) - 1 = sinc φ φ̃ + (1 - cos φ)/φ² φ̃²
-Matrix3d turn_minus_one(const Vector3d& phi) {
+Matrix3d rotation_minus_one(const Vector3d& phi) {
     const double angle = phi.norm();
     const Matrix3d w = skew(phi);
     return sinc(angle) * w + versine_ratio(angle) * w * w;

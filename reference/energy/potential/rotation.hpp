@@ -13,7 +13,7 @@ namespace elastocheck::reference::energy {
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);  // skew(v) w = v × w
 
 // exp(φ) - 1 as a matrix, and as a quaternion.
-Eigen::Matrix3d turn_minus_one(const Eigen::Vector3d& phi);
+Eigen::Matrix3d rotation_minus_one(const Eigen::Vector3d& phi);
 Eigen::Quaterniond quaternion_minus_one(const Eigen::Vector3d& phi);
 
 // δπ = J(φ) δφ: the small rotation (ground axes) of exp(φ) when φ changes by δφ.

@@ -35,7 +35,7 @@ struct Station {
     Eigen::VectorXd E_rate;   // dE/dt [n]
     Eigen::VectorXd tangent;  // dx/dt [n]
     Eigen::VectorXd mu;       // part of dE/dt outside the range of J [k]
-    std::vector<OnCurve> curves;
+    std::vector<CurveDeformation> curves;
 };
 
 struct Continuation {
@@ -46,9 +46,9 @@ struct Continuation {
     double first_stiffness = 1;
     double first_tangent = 0;
     Stage stage = Stage::settling;
-    Pieces pieces = {};  // current pieces of the curves
-    Station here = {};
-    std::optional<Station> before = std::nullopt;  // on the same pieces
+    Pieces pieces = {};                              // current pieces of the curves
+    Station current = {};                            // the last accepted equilibrium
+    std::optional<Station> previous = std::nullopt;  // before it, on the same pieces
     Counts counts = {};
 };
 
@@ -85,8 +85,9 @@ struct Failure {
     std::string what;
 };
 
-Continuation start(const System& system, const Options& options);  // at the design pose, held
-void hold(Continuation& continuation);  // restarts at the design pose, with the present system
+// At the design pose, where the homotopy of `system` starts.
+Continuation start(const System& system, const Options& options);
+void restart(Continuation& continuation);  // the same, with the present terms of its system
 
 // After settling: starts the branch at a = 0; its points extend to `reach`.
 std::optional<Failure> begin_branch(Continuation& continuation, double reach);

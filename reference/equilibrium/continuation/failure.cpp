@@ -11,11 +11,12 @@ namespace {
 
 using Eigen::VectorXd;
 
-std::string body_with_largest(const System& system, const VectorXd& n) {
+// Name of the body with the largest of the six entries that each has in `by_body` [n].
+std::string body_with_largest(const System& system, const VectorXd& by_body) {
     double largest_part = -1;
     std::string name;
     for (int body = 0; body < system.bodies; ++body) {
-        const double part = n.segment<6>(6 * body).norm();
+        const double part = by_body.segment<6>(6 * body).norm();
         if (part > largest_part * 1.000001) {
             largest_part = part;
             name = system.model->bodies[static_cast<std::size_t>(body)].name;
@@ -24,15 +25,16 @@ std::string body_with_largest(const System& system, const VectorXd& n) {
     return name;
 }
 
-// Names of the joints that take part in a dependency of the constraints, one entry per row [m].
-std::string joints_in(const System& system, const VectorXd& by_row) {
-    constexpr double no_part = 1e-6;  // below round-off
+// Names of the joints that take part in a dependency of the constraints, `left` [m], one entry per
+// row.
+std::string joints_in(const System& system, const VectorXd& left) {
+    constexpr double min_part = 1e-6;  // below round-off
     std::string names;
     int row = 0, last = -1;
     for (const auto& constraint : system.model->constraints) {
-        const double part = by_row.segment(row, rows(constraint.kind)).norm();
+        const double part = left.segment(row, rows(constraint.kind)).norm();
         row += rows(constraint.kind);
-        if (!(part > no_part * by_row.norm()) || constraint.joint == last) continue;
+        if (!(part > min_part * left.norm()) || constraint.joint == last) continue;
         last = constraint.joint;
         names += (names.empty() ? "'" : ", '") +
                  system.model->joints[static_cast<std::size_t>(last)].name + "'";
@@ -63,7 +65,7 @@ VectorXd gap(Continuation& continuation, double a, VectorXd x) {
 }
 
 // Tolerance of the scaled Φ: smaller gaps count as closed.
-constexpr double closed = 1e-9;
+constexpr double gap_tolerance = 1e-9;
 
 // Whether a limit point lies just ahead, in contrast to a bifurcation. With u the left null vector
 // of J at the singular point, M u = 0, the tangent near it is x' = -(u · dE/dt) / μ v + ..., μ the
@@ -71,11 +73,11 @@ constexpr double closed = 1e-9;
 // of J and another curve crosses this one. So at a limit point μ |x'| keeps its value, at a
 // bifurcation it goes to zero with μ.
 bool turns_back(const Continuation& continuation) {
-    constexpr double spent = 0.15, kept = 0.02;  // relative to their values at a = 0
-    const double share = continuation.here.stiffness.least / continuation.first_stiffness;
-    return continuation.stage == Stage::branch && std::abs(share) <= spent &&
-           std::abs(share) * pose_size(continuation.system, continuation.here.tangent) >=
-               kept * continuation.first_tangent;
+    constexpr double max_stiffness = 0.15, min_product = 0.02;  // relative to their values at a = 0
+    const double share = continuation.current.stiffness.least / continuation.first_stiffness;
+    return continuation.stage == Stage::branch && std::abs(share) <= max_stiffness &&
+           std::abs(share) * pose_size(continuation.system, continuation.current.tangent) >=
+               min_product * continuation.first_tangent;
 }
 
 // Whether a bifurcation was passed: beyond the singular point the same curve continues
@@ -84,7 +86,7 @@ bool turns_back(const Continuation& continuation) {
 bool has_bifurcated(const Continuation& continuation, const Trial& trial) {
     const Stiffness& past = trial.station.stiffness;
     return trial.verdict == Verdict::past_singular_point && past.least < -past.round_off &&
-           constraints_keep_their_side(continuation.system, continuation.here.linearised,
+           constraints_keep_their_side(continuation.system, continuation.current.linearised,
                                        trial.station.linearised);
 }
 
@@ -93,14 +95,14 @@ bool has_bifurcated(const Continuation& continuation, const Trial& trial) {
 Failure unsolvable_load(const System& system, const VectorXd& left) {
     // Truly redundant joints balance each other, and leave only round-off on the bodies.
     constexpr double round_off = 1e-11;
-    const double of_joints = left.tail(system.constraint_rows).norm(),
-                 of_bodies = left.head(6 * system.bodies).norm();
-    if (of_joints > of_bodies && of_bodies > round_off * of_joints)
+    const double joint_part = left.tail(system.constraint_rows).norm(),
+                 body_part = left.head(6 * system.bodies).norm();
+    if (joint_part > body_part && body_part > round_off * joint_part)
         return {Outcome::iteration_limit,
                 fmt::format("the joints {} are nearly redundant, and the motions that they leave "
                             "free cannot be computed in double precision",
                             joints_in(system, left.tail(system.constraint_rows)))};
-    if (of_joints > of_bodies)
+    if (joint_part > body_part)
         return {Outcome::inconsistent_constraints,
                 fmt::format("the joints {} are inconsistent",
                             joints_in(system, left.tail(system.constraint_rows)))};
@@ -126,20 +128,20 @@ std::string softest_motion(const System& system, const Linearisation& linearised
     const Eigen::MatrixXd M = congruence((K + K.transpose()) / 2, Z);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(M);
     const VectorXd motion = Z * solver.eigenvectors().col(0);
-    VectorXd turns = motion, moves = motion;
+    VectorXd rotations = motion, displacements = motion;
     for (int body = 0; body < system.bodies; ++body) {
-        turns.segment<3>(6 * body).setZero();
-        moves.segment<3>(6 * body + 3).setZero();
+        rotations.segment<3>(6 * body).setZero();
+        displacements.segment<3>(6 * body + 3).setZero();
     }
-    const double farthest = largest(moves);
+    const double largest_displacement = largest(displacements);
     std::string text;
     for (int body = 0; body < system.bodies; ++body)
-        if (largest(moves.segment<6>(6 * body)) > std::max(farthest / 2, 1e-6))
+        if (largest(displacements.segment<6>(6 * body)) > std::max(largest_displacement / 2, 1e-6))
             text += (text.empty() ? "bodies that are displaced: '" : ", '") +
                     system.model->bodies[static_cast<std::size_t>(body)].name + "'";
-    if (largest(turns) > 1e-6)
+    if (largest(rotations) > 1e-6)
         text += (text.empty() ? "body that turns most: '" : "; body that turns most: '") +
-                body_with_largest(system, turns) + "'";
+                body_with_largest(system, rotations) + "'";
     return text;
 }
 
@@ -157,10 +159,11 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
     const bool settling = continuation.stage == Stage::settling;
     const std::string where =
         settling ? fmt::format("while settling at {}, at {:.0f} % of the homotopy", parameter_at(0),
-                               100 * continuation.here.t)
-        : parameter_at(continuation.here.t) == parameter_at(t)
+                               100 * continuation.current.t)
+        : parameter_at(continuation.current.t) == parameter_at(t)
             ? "at " + parameter_at(t)
-            : fmt::format("between {} and {}", parameter_at(continuation.here.t), parameter_at(t));
+            : fmt::format("between {} and {}", parameter_at(continuation.current.t),
+                          parameter_at(t));
 
     if (!settling && has_bifurcated(continuation, trial))
         return {Outcome::bifurcation_point,
@@ -176,24 +179,25 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
             Outcome::singular,
             "the system is too close to singular to decide whether the branch continues " + where};
     // A mechanism at the end of its range has almost no gap here: its gap is evaluated farther on.
-    constexpr double further = 12, far = 1.8e-4;  // trial steps; share of the whole stage
+    constexpr double probe_steps = 12, min_probe = 1.8e-4;  // trial steps; share of the whole stage
     const double target =
         settling ? 0
-                 : continuation.here.t +
-                       std::copysign(std::max(further * std::abs(t - continuation.here.t),
-                                              far * continuation.length),
-                                     t - continuation.here.t);
+                 : continuation.current.t +
+                       std::copysign(std::max(probe_steps * std::abs(t - continuation.current.t),
+                                              min_probe * continuation.length),
+                                     t - continuation.current.t);
     const VectorXd Phi =
-        system.constraint_rows > 0 ? gap(continuation, target, continuation.here.x) : VectorXd();
-    if (const double open = largest(Phi); !(std::isfinite(open) && open <= closed))
+        system.constraint_rows > 0 ? gap(continuation, target, continuation.current.x) : VectorXd();
+    if (const double largest_gap = largest(Phi);
+        !(std::isfinite(largest_gap) && largest_gap <= gap_tolerance))
         return {Outcome::inconsistent_constraints,
                 settling
                     ? fmt::format("no pose near the design pose satisfies all joints at {}: {} "
                                   "cannot be closed",
                                   parameter_at(0), joints_in(system, Phi))
                     : fmt::format("no pose satisfies all joints beyond {}: {} cannot be closed",
-                                  parameter_at(continuation.here.t), joints_in(system, Phi))};
-    if (const std::string bushing = bushing_without_angles(system, continuation.here.x);
+                                  parameter_at(continuation.current.t), joints_in(system, Phi))};
+    if (const std::string bushing = bushing_without_angles(system, continuation.current.x);
         !bushing.empty())
         return {Outcome::branch_lost, fmt::format("{}, {}", bushing, where)};
     if (turns_back(continuation))
@@ -210,20 +214,22 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
         if (!std::isfinite(attempt.residual))
             return {Outcome::not_finite, "the equations give a number that is not finite " + where};
         const VectorXd remainder = residual(system, loading_at(continuation, t), attempt.x);
-        const Sparse& U = continuation.here.linearised.modes.left;
-        constexpr double mostly = 0.9;
-        if (U.cols() > 0 && (U.transpose() * remainder).norm() > mostly * remainder.norm())
+        const Sparse& U = continuation.current.linearised.modes.left;
+        constexpr double dominant_part = 0.9;
+        if (U.cols() > 0 && (U.transpose() * remainder).norm() > dominant_part * remainder.norm())
             return unsolvable_load(system, U * (U.transpose() * remainder));
         // At a limit point a large part of the step remains unsolved. A far smaller remainder is
         // the rounding limit, in proportion to the largest distance of a body from the centre, over
         // L.
-        constexpr double good_part = 1e-6, relative_rounding = 1e-13;
+        constexpr double max_unsolved_part = 1e-6, relative_rounding = 1e-13;
         double distance = 1;
         for (int body = 0; body < system.bodies; ++body)
-            distance = std::max(distance, continuation.here.x.segment<3>(7 * body).norm());
+            distance = std::max(distance, continuation.current.x.segment<3>(7 * body).norm());
         const double rounding_limit = distance * relative_rounding;
-        const double step = std::abs(t - continuation.here.t) * largest(continuation.here.E_rate);
-        if (attempt.out_of_time || attempt.residual <= std::max(good_part * step, rounding_limit))
+        const double step =
+            std::abs(t - continuation.current.t) * largest(continuation.current.E_rate);
+        if (attempt.out_of_time ||
+            attempt.residual <= std::max(max_unsolved_part * step, rounding_limit))
             return {Outcome::iteration_limit,
                     fmt::format("the scaled residual is {:.1e} after the last iteration {}",
                                 attempt.residual, where)};

@@ -19,11 +19,11 @@ using Eigen::VectorXd;
 constexpr double longest_correction = 0.3;
 
 // Below this step size Newton's method converges without a step limit [L or rad].
-constexpr double close = 1e-3;
+constexpr double convergence_radius = 1e-3;
 
 // Two states closer than this are the same [L or rad]: the uncertainty of a soft spring beside
 // stiff ones.
-constexpr double one_state = 1e-6;
+constexpr double same_state_distance = 1e-6;
 
 // Motions with less stiffness than this, relative to the largest, are idle.
 constexpr double idle_eigenvalue = 1e-10;
@@ -103,14 +103,14 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
         slopes = derivatives(system, loading, x, counts);
         if (!slopes.E.allFinite() || !is_finite(slopes.J)) return {Outcome::not_finite};
         linearisation = linearise(slopes.J, &linearisation, counts);
-        if (size <= close) break;
+        if (size <= convergence_radius) break;
     }
     const Attempt attempt =
         newton(system, loading, x, linearise(slopes.J, nullptr, counts), options, counts);
     if (!(attempt.residual <= options.tolerance))
         return {std::isfinite(attempt.residual) ? Outcome::iteration_limit : Outcome::not_finite};
     for (const auto& other : others)
-        if (pose_size(system, other.difference(system, attempt.x)) <= one_state)
+        if (pose_size(system, other.difference(system, attempt.x)) <= same_state_distance)
             return {Outcome::branch_lost};
     const Stiffness softest = stiffness(
         system, linearise(derivatives(system, loading, attempt.x, counts).J, nullptr, counts));

@@ -9,21 +9,23 @@ namespace elastocheck::reference::equilibrium {
 namespace {
 
 // A deformation whose movement over the whole stage is below this multiple of `at_knot` is at rest.
-constexpr double standing = 1e-3;
+constexpr double min_movement = 1e-3;
 
 struct Ends {
     double lower, upper;
 };
 Ends ends(const Curve& curve, int piece) {
-    constexpr double never = std::numeric_limits<double>::infinity();
+    constexpr double unbounded = std::numeric_limits<double>::infinity();
     const auto k = static_cast<std::size_t>(piece);
-    return {k == 0 ? -never : curve.knots[k - 1], k == curve.knots.size() ? never : curve.knots[k]};
+    return {k == 0 ? -unbounded : curve.knots[k - 1],
+            k == curve.knots.size() ? unbounded : curve.knots[k]};
 }
 
 // x(s) = x₀ + s (b + s (c + s d)), 0 ≤ s ≤ 1: the cubic with x and h x' at both ends.
 struct Cubic {
     double x_0, b, c, d;
-    Cubic(const OnCurve& from, const OnCurve& to, double h) : x_0(from.x), b(h * from.rate) {
+    Cubic(const CurveDeformation& from, const CurveDeformation& to, double h)
+        : x_0(from.x), b(h * from.rate) {
         const double chord = to.x - from.x, b_1 = h * to.rate;
         c = 3 * chord - 2 * b - b_1;
         d = b + b_1 - 2 * chord;
@@ -41,19 +43,19 @@ struct Cubic {
     }
 };
 
-// First s at which sign · x exceeds limit by half of `tolerance`, if it exceeds it by `tolerance`
-// anywhere.
+// First s at which x is past `limit` in the direction `sign` by half of `tolerance`, if it is past it
+// by `tolerance` at an end or an extremum. Bisection, until no number lies between the bounds.
 std::optional<double> first_past(const Cubic& x, double sign, double limit, double tolerance) {
-    const auto past = [&](double s) { return sign * (x(s) - limit); };
+    const auto excess = [&](double s) { return sign * (x(s) - limit); };
     const auto ends = x.extrema();
     for (std::size_t k = 1; k < ends.size(); ++k) {
-        double in = ends[k - 1], out = ends[k];
-        if (!(past(out) > tolerance)) continue;
-        for (int n = 0; n < 60 && in < out; ++n) {
-            const double middle = (in + out) / 2;
-            (past(middle) > tolerance / 2 ? out : in) = middle;
+        double inside = ends[k - 1], outside = ends[k];
+        if (!(excess(outside) > tolerance)) continue;
+        for (int n = 0; n < 60 && inside < outside; ++n) {
+            const double middle = (inside + outside) / 2;
+            (excess(middle) > tolerance / 2 ? outside : inside) = middle;
         }
-        return out;
+        return outside;
     }
     return std::nullopt;
 }
@@ -62,22 +64,24 @@ std::optional<double> first_past(const Cubic& x, double sign, double limit, doub
 
 Pieces pieces_at(const System& system, const Loading& loading, const Eigen::VectorXd& x) {
     Pieces pieces(system.elements.size(), all_by_themselves);
-    for (const auto& at : on_curves(system, loading, x, Eigen::VectorXd::Zero(system.equations())))
-        pieces[at.element][at.axis] = piece_at(*at.curve, at.x);
+    for (const auto& component :
+         curve_deformations(system, loading, x, Eigen::VectorXd::Zero(system.equations())))
+        pieces[component.element][component.axis] = piece_at(*component.curve, component.x);
     return pieces;
 }
 
-int leaves(const OnCurve& at, int piece, double direction, double length) {
-    const auto [lower, upper] = ends(*at.curve, piece);
-    const double near = at_knot * at.size, onward = direction * at.rate;
-    if (!(std::abs(onward) * length > standing * near)) return 0;
-    if (onward > 0 && at.x >= upper - near) return +1;
-    if (onward < 0 && at.x <= lower + near) return -1;
+int exit_side(const CurveDeformation& component, int piece, double direction, double length) {
+    const auto [lower, upper] = ends(*component.curve, piece);
+    const double near = at_knot * component.size, rate = direction * component.rate;
+    if (!(std::abs(rate) * length > min_movement * near)) return 0;
+    if (rate > 0 && component.x >= upper - near) return +1;
+    if (rate < 0 && component.x <= lower + near) return -1;
     return 0;
 }
 
-std::optional<double> first_exit(const std::vector<OnCurve>& from, const std::vector<OnCurve>& to,
-                                 double h, const Pieces& pieces) {
+std::optional<double> first_exit(const std::vector<CurveDeformation>& from,
+                                 const std::vector<CurveDeformation>& to, double h,
+                                 const Pieces& pieces) {
     std::optional<double> first;
     for (std::size_t n = 0; n < from.size(); ++n) {
         const auto [lower, upper] = ends(*from[n].curve, pieces[from[n].element][from[n].axis]);

@@ -23,12 +23,13 @@ Pieces pieces_at(const System& system, const Loading& loading, const Eigen::Vect
 
 // End of its piece at which the deformation leaves it, for continuation in `direction` (±1) over
 // `length` of t: -1 or +1, or 0 where it stays.
-int leaves(const OnCurve& at, int piece, double direction, double length);
+int exit_side(const CurveDeformation& component, int piece, double direction, double length);
 
 // Share 0 < s ≤ 1 of the step h between two stations after which the first deformation is past its
 // piece, by half of `at_knot` so that the exit is detected. Each deformation is interpolated by the
 // cubic Hermite polynomial, with error O(h⁴).
-std::optional<double> first_exit(const std::vector<OnCurve>& from, const std::vector<OnCurve>& to,
-                                 double h, const Pieces& pieces);
+std::optional<double> first_exit(const std::vector<CurveDeformation>& from,
+                                 const std::vector<CurveDeformation>& to, double h,
+                                 const Pieces& pieces);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -6,14 +6,14 @@ namespace {
 using Eigen::VectorXd;
 
 // After a correction of this size the next one would be of its square, which is round-off.
-constexpr double smallest_step = 1e-8;
+constexpr double quadratic_step = 1e-8;
 
 // A damped step is accepted if it reduces the level by at least this part of
 // the predicted reduction.
 constexpr double min_promise_kept = 1e-3;
 
 // Limit of the damping: at stagnation no shorter step is an improvement.
-constexpr int halvings = 10;
+constexpr int max_damping_halvings = 10;
 
 // Newton's steps are invariant under multiplication of the equations by a regular matrix; a
 // monotonicity test is not. A member rotated along its tangent by δ is stretched by ½ δ². Measured
@@ -42,7 +42,7 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
     attempt.residual = largest(derivative.E);
     if (!std::isfinite(attempt.residual) || system.equations() == 0) return attempt;
 
-    double before = level(near, derivative.E);
+    double last_level = level(near, derivative.E);
     for (int iteration = 0;; ++iteration) {
         if (iteration == options.iteration_limit) {
             attempt.out_of_time = true;
@@ -54,20 +54,20 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
         const VectorXd dx = solve_bordered(bordered_like(near, derivative.J), derivative.E).dx;
         if (!dx.allFinite()) return attempt;
 
-        double part = 1, now = 0;
-        VectorXd there, E;
-        for (int halving = 0;; ++halving, part /= 2) {
-            there = moved(system, x, part * dx);
+        double damping = 1, next_level = 0;
+        VectorXd next_x, E;
+        for (int halving = 0;; ++halving, damping /= 2) {
+            next_x = moved(system, x, damping * dx);
             ++counts.evaluations;
-            E = residual(system, loading, there);
-            now = level(near, E);
-            if (now <= (1 - min_promise_kept * part) * before) break;
-            if (halving == halvings) return attempt;
+            E = residual(system, loading, next_x);
+            next_level = level(near, E);
+            if (next_level <= (1 - min_promise_kept * damping) * last_level) break;
+            if (halving == max_damping_halvings) return attempt;
         }
-        x = std::move(there);
+        x = std::move(next_x);
         attempt.residual = largest(E);
-        before = now;
-        if (attempt.residual <= options.tolerance && part * dx.norm() <= smallest_step)
+        last_level = next_level;
+        if (attempt.residual <= options.tolerance && damping * dx.norm() <= quadratic_step)
             return attempt;
         derivative = derivatives(system, loading, x, counts);
     }

@@ -37,13 +37,13 @@ std::optional<Failure> settle(Continuation& continuation, System& system, double
     const auto failed = settles();
     if (!failed) return failed;
     balance_by_reactions(system, continuation.counts);
-    hold(continuation);
+    restart(continuation);
     if (!settles()) return std::nullopt;
     grow_forces(system);
-    hold(continuation);
+    restart(continuation);
     if (!settles()) return std::nullopt;
     put_on_springs(system);
-    hold(continuation);
+    restart(continuation);
     if (!settles()) return std::nullopt;
     return failed;
 }

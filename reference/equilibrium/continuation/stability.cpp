@@ -20,9 +20,9 @@ using Eigen::VectorXd;
 // Round-off of an eigenvalue, relative to the largest entry of ∂(balance)/∂q.
 constexpr double eigenvalue_round_off = 1e-13;
 
-// Share of its least node, and of the range of its nodes, below which the parabola may not dip;
-// otherwise the step is halved.
-constexpr double deepest_dip = 0.5, curved = 0.02;
+// The parabola may not dip below the larger of these shares of the least and of the range of its
+// three values; otherwise the step is halved.
+constexpr double min_dip = 0.5, min_dip_of_range = 0.02;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -56,14 +56,15 @@ struct Spectrum {
 
 // With Z from a QR factorisation of Φ_qᵀ, all eigenvalues of M are cheaper than a sparse
 // factorisation. Those of the `idle` modes are zero, the others have enough digits beside the
-// rounding of M; otherwise, and for more coordinates than `few`, the result is empty.
-std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle, Index redundant) {
-    constexpr Index few = 72;
+// rounding of M; otherwise, and for more coordinates than `max_coordinates`, the result is empty.
+std::optional<Spectrum> spectrum_of_few(const System& system, const Sparse& J, Index idle,
+                                        Index redundant) {
+    constexpr Index max_coordinates = 72;
     // of the largest entry: the largest idle eigenvalue, and the smallest other one; of that one:
     // the largest asymmetry of a symmetric M
-    constexpr double zero = 1e-11, enough = 1e-6, may_matter = 1e-3;
+    constexpr double max_idle = 1e-11, min_resisting = 1e-6, max_asymmetry = 1e-3;
     const Index n = 6 * system.bodies, m = system.constraint_rows, d = n - m + redundant;
-    if (n > few || d <= idle) return std::nullopt;
+    if (n > max_coordinates || d <= idle) return std::nullopt;
     const MatrixXd dense = J;
     MatrixXd Z = MatrixXd::Identity(n, n).rightCols(d);
     if (m > 0) {
@@ -74,7 +75,7 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
     const double size = dense.topLeftCorner(n, n).cwiseAbs().maxCoeff();
     if (!M.allFinite()) return std::nullopt;
     Eigen::VectorXcd mu;
-    const auto take = [&](const auto& solver) {
+    const auto sort_eigenvalues = [&](const auto& solver) {
         if (solver.info() != Eigen::Success) return false;
         mu = solver.eigenvalues();
         std::sort(mu.data(), mu.data() + d,
@@ -83,11 +84,12 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
     };
     const bool symmetric =
         system.conservative &&
-        take(Eigen::SelfAdjointEigenSolver<MatrixXd>(S, Eigen::EigenvaluesOnly)) &&
-        (M - S).norm() <= may_matter * std::abs(mu[idle]);
-    if (!symmetric && !take(Eigen::EigenSolver<MatrixXd>(M, false))) return std::nullopt;
-    if (idle > 0 && !(std::abs(mu[idle - 1]) <= zero * size)) return std::nullopt;
-    if (!(std::abs(mu[idle]) > enough * size)) return std::nullopt;
+        sort_eigenvalues(Eigen::SelfAdjointEigenSolver<MatrixXd>(S, Eigen::EigenvaluesOnly)) &&
+        (M - S).norm() <= max_asymmetry * std::abs(mu[idle]);
+    if (!symmetric && !sort_eigenvalues(Eigen::EigenSolver<MatrixXd>(M, false)))
+        return std::nullopt;
+    if (idle > 0 && !(std::abs(mu[idle - 1]) <= max_idle * size)) return std::nullopt;
+    if (!(std::abs(mu[idle]) > min_resisting * size)) return std::nullopt;
     Spectrum spectrum;
     for (Index k = idle; k < d; ++k) spectrum.add(mu[k]);
     return spectrum;
@@ -98,20 +100,20 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
 // Idle modes are fixed by adding a stiffness to one unknown per mode in which the mode is large. By
 // inertia, k added terms create at most k positive eigenvalues, so a matrix with k null vectors
 // that becomes positive definite had no negative eigenvalue.
-std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
-    std::vector<Index> held;
+std::vector<Index> fixed_unknowns(const Sparse& modes, Index n) {
+    std::vector<Index> unknowns;
     for (Index k = 0; k < modes.cols(); ++k) {
         Index largest = -1;
         double size = 0;
-        for (Sparse::InnerIterator at(modes, k); at; ++at)
-            if (at.row() < n && std::abs(at.value()) > size &&
-                std::ranges::find(held, at.row()) == held.end()) {
-                largest = at.row();
-                size = std::abs(at.value());
+        for (Sparse::InnerIterator entry(modes, k); entry; ++entry)
+            if (entry.row() < n && std::abs(entry.value()) > size &&
+                std::ranges::find(unknowns, entry.row()) == unknowns.end()) {
+                largest = entry.row();
+                size = std::abs(entry.value());
             }
-        if (largest >= 0) held.push_back(largest);
+        if (largest >= 0) unknowns.push_back(largest);
     }
-    return held;
+    return unknowns;
 }
 
 // Whether no eigenvalue of the symmetric part of M is below -round_off. `false` is inconclusive: ρ
@@ -120,13 +122,13 @@ bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle,
                    double round_off) {
     constexpr double penalties[] = {1e4, 1e7, 1e10};  // ρ over the largest entry of K
     const Index n = K.rows();
-    Sparse held(n, n), K_T = K.transpose(), Phi_T = Phi_q.transpose();
+    Sparse added(n, n), K_T = K.transpose(), Phi_T = Phi_q.transpose();
     std::vector<Eigen::Triplet<double>> diagonal;
     for (int k = 0; k < n; ++k) diagonal.emplace_back(k, k, round_off);
-    for (const Index k : held_unknowns(idle.right, n))
+    for (const Index k : fixed_unknowns(idle.right, n))
         diagonal.emplace_back(static_cast<int>(k), static_cast<int>(k), size);
-    held.setFromTriplets(diagonal.begin(), diagonal.end());
-    const Sparse S = (K + K_T) / 2 + held, constraints = Phi_T * Phi_q;
+    added.setFromTriplets(diagonal.begin(), diagonal.end());
+    const Sparse S = (K + K_T) / 2 + added, constraints = Phi_T * Phi_q;
     for (const double rho : penalties) {
         const Eigen::SimplicialLDLT<Sparse> factors(Sparse(S + rho * size * constraints));
         if (factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all()) return true;
@@ -203,15 +205,15 @@ std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free
         Q.col(k) = next / remainder;
         next = inverse(Q.col(k));
         for (int pass = 0; pass < 2; ++pass) {
-            const VectorXd part = Q.leftCols(k + 1).transpose() * next;
-            next -= Q.leftCols(k + 1) * part;
-            H.col(k).head(k + 1) += part;
+            const VectorXd overlap = Q.leftCols(k + 1).transpose() * next;
+            next -= Q.leftCols(k + 1) * overlap;
+            H.col(k).head(k + 1) += overlap;
         }
         remainder = next.norm();
         if (!std::isfinite(remainder)) return std::nullopt;
         const MatrixXd H_k = H.topLeftCorner(k + 1, k + 1);
-        const bool last = k + 1 == size || remainder <= round_off * H_k.norm();
-        if (!last && (all || (k + 1) % steps_between_checks != 0)) continue;
+        const bool is_last = k + 1 == size || remainder <= round_off * H_k.norm();
+        if (!is_last && (all || (k + 1) % steps_between_checks != 0)) continue;
         const auto values = ritz(H_k, conservative);
         if (!values) return std::nullopt;
         std::vector<Index> order(static_cast<std::size_t>(k + 1));
@@ -219,19 +221,19 @@ std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free
         std::ranges::sort(order, std::greater{},
                           [&](Index j) { return std::abs(values->theta[j]); });
         const double largest = std::abs(values->theta[order.front()]);
-        const bool complete = last && (size == free || remainder <= round_off * largest);
+        const bool complete = is_last && (size == free || remainder <= round_off * largest);
         Spectrum spectrum;
-        Index seen = 0;
+        Index count = 0;
         for (const Index j : order) {
             const double theta = std::abs(values->theta[j]);
             if (theta <= round_off * largest ||
                 (!complete && remainder * values->last[j] > tolerance * theta))
                 break;
             spectrum.add(1. / values->theta[j]);
-            ++seen;
+            ++count;
         }
-        if (seen > 0) return spectrum;
-        if (last) return std::nullopt;
+        if (count > 0) return spectrum;
+        if (is_last) return std::nullopt;
     }
     return std::nullopt;
 }
@@ -252,7 +254,7 @@ MatrixXd self_stresses(const System& system, const NullSpaces& modes) {
 std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J, Index idle,
                                           Index redundant) {
     if (!is_finite(J)) return std::nullopt;
-    const auto spectrum = formed(system, J, idle, redundant);
+    const auto spectrum = spectrum_of_few(system, J, idle, redundant);
     if (!spectrum) return std::nullopt;
     Stiffness result =
         spectrum->of(system, eigenvalue_round_off * largest_entry(balance_rows(system, J)));
@@ -273,12 +275,13 @@ Stiffness stiffness(const System& system, const Linearisation& linearisation) {
     if (free < 0) return {nan, nan};
     const Sparse K = -balance_rows(system, linearisation.J);
     const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
-    if (auto few = stiffness_of_few(system, linearisation.J, k - redundant, redundant)) return *few;
-    const bool surely =
+    if (const auto direct = stiffness_of_few(system, linearisation.J, k - redundant, redundant))
+        return *direct;
+    const bool is_surely_stable =
         system.conservative && surely_stable(K, constraint_rows(system, linearisation.J),
                                              linearisation.modes, std::max(size, 1.0), round_off);
     const auto spectrum =
-        next_to_zero(Inverse(linearisation, n), n, free, system.conservative, !surely);
+        next_to_zero(Inverse(linearisation, n), n, free, system.conservative, !is_surely_stable);
     Stiffness result = spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
     result.redundant = redundant;
     return result;
@@ -321,11 +324,11 @@ namespace {
 // may lie within it, and the next step begins past it.
 bool dips(double l_0, double l_m, double l_1, double round_off) {
     const double b = -3 * l_0 + 4 * l_m - l_1, c = 2 * (l_0 - 2 * l_m + l_1);
-    const auto [least, most] = std::minmax({l_0, l_m, l_1});
-    constexpr double outside = 0.1;
-    return c > 0 && b < 2 * outside * c && -b < 2 * (1 + outside) * c &&
+    const auto [smallest, largest] = std::minmax({l_0, l_m, l_1});
+    constexpr double margin = 0.1;
+    return c > 0 && b < 2 * margin * c && -b < 2 * (1 + margin) * c &&
            l_0 - b * b / (4 * c) <
-               std::max(deepest_dip * least, curved * (most - least)) - round_off;
+               std::max(min_dip * smallest, min_dip_of_range * (largest - smallest)) - round_off;
 }
 
 }  // namespace
@@ -341,12 +344,12 @@ Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffn
     // Two eigenvalues became negative: through zero together, or around it as a complex pair.
     // In the second case the least modulus is not small, and hardly changes over a
     // sufficiently short step.
-    constexpr double hardly = 0.25;
+    constexpr double max_growth = 0.25;
     const bool pair = from.negative != to.negative || from.negative != middle.negative;
-    if (pair && std::max({l_0, l_m, l_1}) > (1 + hardly) * least) return Stability::uncertain;
+    if (pair && std::max({l_0, l_m, l_1}) > (1 + max_growth) * least) return Stability::uncertain;
     if (dips(l_0, l_m, l_1, round_off)) return Stability::uncertain;
-    const double most = std::max({logs[0], logs[1], logs[2]});
-    const auto determinant = [&](std::size_t k) { return std::exp2(logs[k] - most); };
+    const double largest_log = std::max({logs[0], logs[1], logs[2]});
+    const auto determinant = [&](std::size_t k) { return std::exp2(logs[k] - largest_log); };
     if (dips(determinant(0), determinant(1), determinant(2), 0)) return Stability::uncertain;
     return Stability::kept;
 }

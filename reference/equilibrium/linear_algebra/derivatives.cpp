@@ -319,12 +319,12 @@ VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x
     return std::move(sum.E_rate);
 }
 
-Deforming deforming(const System& system, const Loading& loading, const VectorXd& x,
-                    const VectorXd& dx) {
+DeformationRates deformation_rates(const System& system, const Loading& loading, const VectorXd& x,
+                                   const VectorXd& dx) {
     constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
     const auto& elastics = system.model->elastics;
     const auto rows = 6 * static_cast<Eigen::Index>(elastics.size());
-    Deforming rates{VectorXd::Zero(rows), VectorXd::Zero(rows)};
+    DeformationRates rates{VectorXd::Zero(rows), VectorXd::Zero(rows)};
     for (std::size_t e = 0; e < elastics.size(); ++e) {
         const auto [i, j] = bodies_of(elastics[e].kind);
         const ElementPieces& on = loading.pieces.empty() ? all_by_themselves : loading.pieces[e];
@@ -347,9 +347,9 @@ Deforming deforming(const System& system, const Loading& loading, const VectorXd
     return rates;
 }
 
-std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const VectorXd& x,
-                               const VectorXd& dx) {
-    std::vector<OnCurve> components;
+std::vector<CurveDeformation> curve_deformations(const System& system, const Loading& loading,
+                                                 const VectorXd& x, const VectorXd& dx) {
+    std::vector<CurveDeformation> components;
     Dual a(loading.a);
     a.v[0] = loading.a_rate;
     const auto& elastics = system.model->elastics;

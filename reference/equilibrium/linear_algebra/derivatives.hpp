@@ -25,7 +25,7 @@ void add_reactions(const System& system, const Loading& loading, const Eigen::Ve
 Eigen::VectorXd rate_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
 
 // A deformation whose law is a curve, and its rate.
-struct OnCurve {
+struct CurveDeformation {
     std::size_t element, axis;
     const Curve* curve;
     double size;  // reference size of the deformation: L [m] or 1 [rad]
@@ -36,14 +36,15 @@ struct OnCurve {
 // Deformation rates e' of the elements along dx [n] and the forces of their laws, (∂²u/∂e²) e' over
 // F L, six rows per element (of a spring the first). They are in the element's axes, where a soft
 // axis keeps its digits beside stiff ones. A force that is only rounding is zero.
-struct Deforming {
+struct DeformationRates {
     Eigen::VectorXd rate, force_rate;
 };
-Deforming deforming(const System& system, const Loading& loading, const Eigen::VectorXd& x,
-                    const Eigen::VectorXd& dx);
+DeformationRates deformation_rates(const System& system, const Loading& loading,
+                                   const Eigen::VectorXd& x, const Eigen::VectorXd& dx);
 
 // The deformations at x whose laws are curves, with dx/dt = `rate` [n].
-std::vector<OnCurve> on_curves(const System& system, const Loading& loading,
-                               const Eigen::VectorXd& x, const Eigen::VectorXd& rate);
+std::vector<CurveDeformation> curve_deformations(const System& system, const Loading& loading,
+                                                 const Eigen::VectorXd& x,
+                                                 const Eigen::VectorXd& rate);
 
 }  // namespace elastocheck::reference::equilibrium

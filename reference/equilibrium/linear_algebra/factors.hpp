@@ -29,7 +29,7 @@ class Factors {
     // log₂ |determinant|; -infinity where a pivot is zero
     double log_determinant() const;
 
-    // Condition number of A in the 1-norm, rows and columns scaled to size one (Higham & Tisseur
+    // `A`: the factorised matrix. Its condition number in the 1-norm, rows and columns scaled to size one (Higham & Tisseur
     // 2000 estimate); infinite where a pivot is zero.
     double condition(const Sparse& A) const;
 
@@ -44,8 +44,8 @@ class Factors {
 };
 
 // Bases of the null spaces of A (square) and Aᵀ: A right = 0, Aᵀ left = 0. Neither is orthonormal;
-// both are sparse where possible. A column within `threshold` of the span of those before it counts
-// as dependent.
+// both are sparse where possible. A column whose distance from the span of those before it is
+// at most `threshold`, in the unit of A's entries, counts as dependent.
 struct NullBases {
     Sparse right, left;
 };

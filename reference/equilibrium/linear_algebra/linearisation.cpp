@@ -33,30 +33,30 @@ constexpr int equilibration_sweeps = 10;
 constexpr double idle_stiffness = 1e-10;
 
 // Relative to the length of a mode: smaller entries are round-off and dropped.
-constexpr double no_part = 1e-14;
+constexpr double min_entry = 1e-14;
 
 // Orthonormal basis of the columns with their orientation: Gram-Schmidt applied twice, which is as
 // accurate as Householder and keeps the sparsity of columns without a common row.
 Sparse orthonormal(const Sparse& columns) {
     Sparse Q(columns.rows(), columns.cols());
-    std::vector<Eigen::SparseVector<double>> done;
+    std::vector<Eigen::SparseVector<double>> earlier_columns;
     for (Index k = 0; k < columns.cols(); ++k) {
         Eigen::SparseVector<double> q = columns.col(k);
         for (int pass = 0; pass < 2; ++pass)
-            for (const auto& before : done)
-                if (const double part = before.dot(q); part != 0) q -= part * before;
+            for (const auto& earlier : earlier_columns)
+                if (const double overlap = earlier.dot(q); overlap != 0) q -= overlap * earlier;
         q /= q.norm();
-        q.prune(1., no_part);
+        q.prune(1., min_entry);
         Q.startVec(k);
-        for (Eigen::SparseVector<double>::InnerIterator at(q); at; ++at)
-            Q.insertBack(at.index(), k) = at.value();
-        done.push_back(std::move(q));
+        for (Eigen::SparseVector<double>::InnerIterator entry(q); entry; ++entry)
+            Q.insertBack(entry.index(), k) = entry.value();
+        earlier_columns.push_back(std::move(q));
     }
     Q.finalize();
     return Q;
 }
 
-// D_r A D_c with rows and columns of size one (Ruiz 2001).
+// D_r A D_c, the largest entry of each row and column being one in size (Ruiz 2001).
 struct Equilibrated {
     Sparse A;
     VectorXd D_r, D_c;
@@ -84,11 +84,11 @@ Equilibrated equilibrated(const Sparse& J) {
 }
 
 // Number n of body unknowns: A_ij = 0 for all i, j ≥ n, the block of the reactions.
-Index of_bodies(const Sparse& A) {
+Index body_unknowns(const Sparse& A) {
     Index n = 0;
     for (Index j = 0; j < A.cols(); ++j)
-        for (Sparse::InnerIterator at(A, j); at; ++at)
-            n = std::max(n, std::min<Index>(at.row(), j) + 1);
+        for (Sparse::InnerIterator entry(A, j); entry; ++entry)
+            n = std::max(n, std::min<Index>(entry.row(), j) + 1);
     return n;
 }
 
@@ -102,7 +102,7 @@ Sparse without_nearly_redundant(const Sparse& A, const Sparse& columns) {
     if (all_null) return columns;
     MatrixXd V = times_matrix(Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ(),
                               MatrixXd::Identity(columns.rows(), columns.cols()));
-    const Svd svd = svd_of(V.topRows(of_bodies(A)), Eigen::ComputeThinV);
+    const Svd svd = svd_of(V.topRows(body_unknowns(A)), Eigen::ComputeThinV);
     V = matrix_product(V, svd.V);
     std::vector<Index> kept;
     for (Index k = 0; k < V.cols(); ++k) {
@@ -122,14 +122,15 @@ Sparse bordered_matrix(const Sparse& J, const NullSpaces& modes) {
     B.reserve(J.nonZeros() + modes.left.nonZeros() + modes.right.nonZeros());
     for (Index j = 0; j < n; ++j) {
         B.startVec(j);
-        for (Sparse::InnerIterator at(J, j); at; ++at) B.insertBack(at.row(), j) = at.value();
-        for (Sparse::InnerIterator at(V_rows, j); at; ++at)
-            B.insertBack(n + at.row(), j) = at.value();
+        for (Sparse::InnerIterator entry(J, j); entry; ++entry)
+            B.insertBack(entry.row(), j) = entry.value();
+        for (Sparse::InnerIterator entry(V_rows, j); entry; ++entry)
+            B.insertBack(n + entry.row(), j) = entry.value();
     }
     for (Index j = 0; j < k; ++j) {
         B.startVec(n + j);
-        for (Sparse::InnerIterator at(modes.left, j); at; ++at)
-            B.insertBack(at.row(), n + j) = at.value();
+        for (Sparse::InnerIterator entry(modes.left, j); entry; ++entry)
+            B.insertBack(entry.row(), n + j) = entry.value();
     }
     B.finalize();
     return B;
@@ -147,8 +148,8 @@ bool track(Linearisation& linearisation) {
     if (!right.allFinite() || !left.allFinite() ||
         !(stiffness <= idle_stiffness * largest_entry(linearisation.J)))
         return false;
-    linearisation.modes = {orthonormal(right.topRows(n).sparseView(1., no_part)),
-                           orthonormal(left.topRows(n).sparseView(1., no_part))};
+    linearisation.modes = {orthonormal(right.topRows(n).sparseView(1., min_entry)),
+                           orthonormal(left.topRows(n).sparseView(1., min_entry))};
     return true;
 }
 
@@ -174,16 +175,16 @@ Factors bordered_like(const Linearisation& like, const Sparse& J) {
     return Factors(bordered_matrix(J, like.modes), &like.bordered);
 }
 
-Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts, Factors* order) {
+Linearisation linearise(Sparse J, const Linearisation* previous, Counts& counts, Factors* order) {
     Linearisation result;
     result.J = std::move(J);
     if (result.J.rows() == 0 || !is_finite(result.J)) return result;
-    if (before != nullptr) {
-        result.modes = before->modes;
-        result.bordered = bordered_like(*before, result.J);
+    if (previous != nullptr) {
+        result.modes = previous->modes;
+        result.bordered = bordered_like(*previous, result.J);
         ++counts.factorisations;
         result.modes_are_new = result.modes.count() > 0 && !track(result);
-        result.modes_are_soft = before->modes_are_soft;
+        result.modes_are_soft = previous->modes_are_soft;
         if (!result.modes_are_new) return result;
         result.modes_are_soft = false;
     }
@@ -235,24 +236,25 @@ Rate solve_bordered_refined(const Linearisation& linearisation, const VectorXd& 
 // right: x is in the row space of A, and the border takes the part of b outside the range of A.
 VectorXd least_squares(const Sparse& A, const VectorXd& b, Factors* order) {
     const bool tall = A.rows() >= A.cols();
-    const Index first = std::max(A.rows(), A.cols()), size = A.rows() + A.cols();
+    const Index long_side = std::max(A.rows(), A.cols()), size = A.rows() + A.cols();
     std::vector<Eigen::Triplet<double>> entries;
-    for (Index k = 0; k < first; ++k)
+    for (Index k = 0; k < long_side; ++k)
         entries.emplace_back(static_cast<int>(k), static_cast<int>(k), 1.);
     for (Index k = 0; k < A.cols(); ++k)
-        for (Sparse::InnerIterator at(A, k); at; ++at) {
-            const Index i = tall ? at.row() : at.col(), j = first + (tall ? at.col() : at.row());
-            entries.emplace_back(static_cast<int>(i), static_cast<int>(j), at.value());
-            entries.emplace_back(static_cast<int>(j), static_cast<int>(i), at.value());
+        for (Sparse::InnerIterator entry(A, k); entry; ++entry) {
+            const Index i = tall ? entry.row() : entry.col(),
+                        j = long_side + (tall ? entry.col() : entry.row());
+            entries.emplace_back(static_cast<int>(i), static_cast<int>(j), entry.value());
+            entries.emplace_back(static_cast<int>(j), static_cast<int>(i), entry.value());
         }
     Sparse G(size, size);
     G.setFromTriplets(entries.begin(), entries.end());
     VectorXd right = VectorXd::Zero(size);
-    right.segment(tall ? 0 : first, b.size()) = -b;
+    right.segment(tall ? 0 : long_side, b.size()) = -b;
     Counts counts;
     const VectorXd solution =
         solve_bordered_refined(linearise(std::move(G), nullptr, counts, order), right).dx;
-    return solution.segment(tall ? first : 0, A.cols());
+    return solution.segment(tall ? long_side : 0, A.cols());
 }
 
 }  // namespace elastocheck::reference::equilibrium

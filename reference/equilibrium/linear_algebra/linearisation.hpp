@@ -32,10 +32,10 @@ struct Linearisation {
     int orientation() const { return bordered.sign(); }
 };
 
-// `before`: linearisation at the previous point of the branch, from which the modes are tracked;
+// `previous`: linearisation at the previous point of the branch, from which the modes are tracked;
 // nullptr at the first point. `order`: factors of a matrix of the same pattern, whose elimination
 // order is used again; replaced by the factors of J.
-Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts,
+Linearisation linearise(Sparse J, const Linearisation* previous, Counts& counts,
                         Factors* order = nullptr);
 
 // J bordered by the modes of `like`.
@@ -48,8 +48,8 @@ struct Rate {
 // Solves the bordered system for the right-hand side -E_rate; NaN without factors.
 Rate solve_bordered(const Factors& bordered, const Eigen::VectorXd& E_rate);
 
-// With one step of iterative refinement, which recovers digits lost in the factors.
-Rate solve_bordered_refined(const Linearisation& at, const Eigen::VectorXd& E_rate);
+// The same with one step of iterative refinement, which recovers digits lost in the factors.
+Rate solve_bordered_refined(const Linearisation& linearisation, const Eigen::VectorXd& E_rate);
 
 // Minimum-norm solution of the least-squares problem min |A x - b|. `order`: as in linearise().
 Eigen::VectorXd least_squares(const Sparse& A, const Eigen::VectorXd& b, Factors* order = nullptr);

@@ -43,18 +43,19 @@ SplitModes split_modes(const System& system, const Loading& loading, const Vecto
     const Index n = 6 * system.bodies;
     const double size = largest_entry(J);
     std::vector<Index> idle, resisted;
-    std::vector<Deforming> deformations_of;
+    std::vector<DeformationRates> deformations_of;
     for (Index k = 0; k < modes.cols(); ++k) {
         const VectorXd v = modes.col(k);
         const double motion = v.head(n).norm(), imbalance = (J * v).head(n).norm();
-        Deforming deformation = deforming(system, loading, x, v);
+        DeformationRates deformation = deformation_rates(system, loading, x, v);
         const double zero_tolerance = std::max(std::pow(no_deformation * motion, 2) * size,
                                                imbalance * imbalance / (threshold * size));
         // The elastic stiffness may be cancelled by the geometric one, as of a loaded bushing that
         // spins: then G exceeds |J v|.
         const double stored = deformation.rate.dot(deformation.force_rate),
-                     most = max_ratio * imbalance * motion + entry_rounding * size;
-        if (motion < part_of_bodies * v.norm() || !(stored > zero_tolerance && stored <= most)) {
+                     max_stored = max_ratio * imbalance * motion + entry_rounding * size;
+        if (motion < part_of_bodies * v.norm() ||
+            !(stored > zero_tolerance && stored <= max_stored)) {
             idle.push_back(k);
         } else {
             resisted.push_back(k);
@@ -73,16 +74,16 @@ SplitModes split_modes(const System& system, const Loading& loading, const Vecto
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
     const double largest = solver.eigenvalues()[count - 1];
     const Index zeros = (solver.eigenvalues().array() <= zero_eigenvalue * largest).count();
-    MatrixXd all(modes.rows(), static_cast<Index>(idle.size()) + zeros);
+    MatrixXd idle_modes(modes.rows(), static_cast<Index>(idle.size()) + zeros);
     for (std::size_t k = 0; k < idle.size(); ++k)
-        all.col(static_cast<Index>(k)) = VectorXd(modes.col(idle[k]));
-    MatrixXd soft(modes.rows(), count);
+        idle_modes.col(static_cast<Index>(k)) = VectorXd(modes.col(idle[k]));
+    MatrixXd resisted_modes(modes.rows(), count);
     for (Index k = 0; k < count; ++k)
-        soft.col(k) = VectorXd(modes.col(resisted[static_cast<std::size_t>(k)]));
-    all.rightCols(zeros) = soft * solver.eigenvectors().leftCols(zeros);
+        resisted_modes.col(k) = VectorXd(modes.col(resisted[static_cast<std::size_t>(k)]));
+    idle_modes.rightCols(zeros) = resisted_modes * solver.eigenvectors().leftCols(zeros);
     // relative to motions of size one
-    const VectorXd softest = soft * solver.eigenvectors().col(zeros);
-    result.idle = all.sparseView();
+    const VectorXd softest = resisted_modes * solver.eigenvectors().col(zeros);
+    result.idle = idle_modes.sparseView();
     result.resisted = count - zeros;
     result.least = solver.eigenvalues()[zeros] / softest.head(n).squaredNorm();
     return result;
@@ -91,16 +92,19 @@ SplitModes split_modes(const System& system, const Loading& loading, const Vecto
 }  // namespace
 
 void remove_resisted_modes(const System& system, const Loading& loading, const VectorXd& x,
-                           Linearisation& at, Counts& counts) {
-    if (at.modes.count() == 0 || system.elements.empty()) return;
-    const double size = largest_entry(at.J);
-    const SplitModes right = split_modes(system, loading, x, at.J, at.modes.right);
+                           Linearisation& linearisation, Counts& counts) {
+    if (linearisation.modes.count() == 0 || system.elements.empty()) return;
+    const double size = largest_entry(linearisation.J);
+    const SplitModes right =
+        split_modes(system, loading, x, linearisation.J, linearisation.modes.right);
     if (right.resisted == 0) return;
-    const SplitModes left = split_modes(system, loading, x, at.J.transpose(), at.modes.left);
-    at.modes_are_soft = !(right.least > entry_rounding * size) || left.resisted != right.resisted;
-    if (at.modes_are_soft) return;
-    at.modes = {right.idle, left.idle};
-    at.bordered = bordered_like(at, at.J);
+    const SplitModes left =
+        split_modes(system, loading, x, linearisation.J.transpose(), linearisation.modes.left);
+    linearisation.modes_are_soft =
+        !(right.least > entry_rounding * size) || left.resisted != right.resisted;
+    if (linearisation.modes_are_soft) return;
+    linearisation.modes = {right.idle, left.idle};
+    linearisation.bordered = bordered_like(linearisation, linearisation.J);
     ++counts.factorisations;
 }
 

@@ -15,8 +15,8 @@
 namespace elastocheck::reference::equilibrium {
 
 // Removes from the border the modes with elastic stiffness, if the precision of J suffices to
-// resolve it; otherwise they stay, and `modes_are_soft` is set. J of `at` is evaluated at x.
+// resolve it; otherwise they stay, and `modes_are_soft` is set. `linearisation` is that at x.
 void remove_resisted_modes(const System& system, const Loading& loading, const Eigen::VectorXd& x,
-                           Linearisation& at, Counts& counts);
+                           Linearisation& linearisation, Counts& counts);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -162,7 +162,7 @@ void angles(double y, double x) {
 
 // θ = 2 atan2(|v|, w) v / |v| of the direction of q, and c = (1 - (θ/2) cot(θ/2)) / θ².
 void logarithms(const Eigen::Quaterniond& stored) {
-    const auto [theta, c] = logarithm(direction_of<Interval>(stored));
+    const auto [theta, c] = logarithm(unit_quaternion<Interval>(stored));
     if (!bounded(c)) return;
     const double sign = stored.w() < 0 ? -1 : 1;
     const Real w(sign * stored.w()), x(sign * stored.x()), y(sign * stored.y()),

@@ -22,7 +22,7 @@ TEST(Rotation, MatrixAndQuaternionOfARotationVectorAreTheSameRotation) {
         const Vector3d phi = random.unit() * std::pow(10, random(-9, 0.5));
         const Quaterniond q = turned_by(phi), dq = quaternion_minus_one(phi);
         worst = std::max(
-            worst, (turn_minus_one(phi) + Matrix3d::Identity() - q.toRotationMatrix()).norm());
+            worst, (rotation_minus_one(phi) + Matrix3d::Identity() - q.toRotationMatrix()).norm());
         worst =
             std::max(worst, (dq.coeffs() + Quaterniond::Identity().coeffs() - q.coeffs()).norm());
     }
@@ -31,7 +31,7 @@ TEST(Rotation, MatrixAndQuaternionOfARotationVectorAreTheSameRotation) {
 
 TEST(Rotation, RotationMatrixMinusOneIsExactForTheSmallestAngles) {
     const Vector3d phi(3e-200, -4e-200, 0);
-    EXPECT_LE((turn_minus_one(phi) - skew(phi)).norm(), 1e-15 * phi.norm());
+    EXPECT_LE((rotation_minus_one(phi) - skew(phi)).norm(), 1e-15 * phi.norm());
     EXPECT_TRUE(turn_jacobian(Vector3d::Zero()).isIdentity(0));
     EXPECT_TRUE(inverse_turn_jacobian(Vector3d::Zero()).isIdentity(0));
 }

@@ -69,7 +69,7 @@ void expect_null_spaces_of(const MatrixXd& J, const NullSpaces& modes, const std
 TEST(EquilibriumSparse, ComputedAndTrackedNullSpacesEqualTheDenseOnes) {
     int with_modes = 0;
     at_stations([&](const Continuation& continuation, const std::string& what) {
-        const auto& at = continuation.here.linearised;
+        const auto& at = continuation.current.linearised;
         expect_null_spaces_of(at.J, at.modes, what + ", tracked");
         expect_null_spaces_of(at.J, null_spaces(at.J), what + ", found");
         with_modes += at.modes.count() > 0;
@@ -84,10 +84,11 @@ TEST(EquilibriumSparse, ReusedPatternCoversTheEntriesOfANewOne) {
         System fresh = continuation.system;
         fresh.pattern = nullptr;
         Counts counts;
-        const Loading loading = loading_at(continuation, continuation.here.t);
+        const Loading loading = loading_at(continuation, continuation.current.t);
         const Sparse kept =
-                         derivatives(continuation.system, loading, continuation.here.x, counts).J,
-                     J = derivatives(fresh, loading, continuation.here.x, counts).J;
+                         derivatives(continuation.system, loading, continuation.current.x, counts)
+                             .J,
+                     J = derivatives(fresh, loading, continuation.current.x, counts).J;
         EXPECT_EQ((MatrixXd(kept) - MatrixXd(J)).cwiseAbs().maxCoeff(), 0) << what;
     });
 }
@@ -127,8 +128,8 @@ double dense_smallest(const System& system, const Linearisation& at) {
 TEST(EquilibriumSparse, LeastStiffnessEqualsTheDenseEigenvalue) {
     Worst worst;
     at_stations([&](const Continuation& continuation, const std::string& what) {
-        const double least = dense_smallest(continuation.system, continuation.here.linearised);
-        worst.add(std::abs(continuation.here.stiffness.least / least - 1), what);
+        const double least = dense_smallest(continuation.system, continuation.current.linearised);
+        worst.add(std::abs(continuation.current.stiffness.least / least - 1), what);
     });
     EXPECT_TRUE(within(worst, 1e-6));
 }
@@ -170,15 +171,15 @@ TEST(EquilibriumSparse, SignOfTheConstraintDeterminantEqualsTheDenseOne) {
     at_stations([&](const Continuation& continuation, const std::string& what) {
         const System& system = continuation.system;
         const Index n = 6 * system.bodies, m = system.constraint_rows;
-        const Linearisation& from = continuation.here.linearised;
+        const Linearisation& from = continuation.current.linearised;
         if (m == 0) return;
         Counts counts;
         for (const double away : {0.1, 1., 2.}) {
             const VectorXd dx =
                 away * VectorXd::NullaryExpr(system.equations(), [&] { return in(random); });
             Linearisation to;
-            to.J = derivatives(system, loading_at(continuation, continuation.here.t),
-                               moved(system, continuation.here.x, dx), counts)
+            to.J = derivatives(system, loading_at(continuation, continuation.current.t),
+                               moved(system, continuation.current.x, dx), counts)
                        .J;
             const MatrixXd begin = MatrixXd(from.J).bottomLeftCorner(m, n),
                            end = MatrixXd(to.J).bottomLeftCorner(m, n);
@@ -318,7 +319,7 @@ TEST(EquilibriumSparse, NullSpacesOfHundredsOfRodsHaveSparseColumns) {
         ASSERT_FALSE(begin_branch(continuation, 100));
         const auto failed = advance(continuation, 100);
         ASSERT_FALSE(failed) << failed->what;
-        const NullSpaces& modes = continuation.here.linearised.modes;
+        const NullSpaces& modes = continuation.current.linearised.modes;
         EXPECT_EQ(modes.count(), 2 * n);
         EXPECT_LE(modes.right.nonZeros(), 12 * modes.count());
         EXPECT_LE(modes.left.nonZeros(), 12 * modes.count());
