@@ -114,7 +114,7 @@ Singularity nearest_singularity(const SteppingState& s, const Coefficients<doubl
             binomial *= std::abs((1.5 - k) / k);
             power *= unit;
         }
-        if (k >= from - 2) y.col(k) = weighted(k) * (power / binomial);
+        if (k >= first_order - 2) y.col(k) = weighted(k) * (power / binomial);
     }
     // Least squares for y_k = b_1 y_{k-1} + b_2 y_{k-2}.
     const int orders = p - first_order + 1;
