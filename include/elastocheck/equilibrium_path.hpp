@@ -88,6 +88,6 @@ struct EquilibriumPath {
 
 // Visitor that receives each point as it is found, in order, so that the path need not be stored: with a
 // visitor a leg returns the path without points. The reference is valid during the call only.
-using Visit = std::function<void(const Equilibrium&)>;
+using PointVisitor = std::function<void(const Equilibrium&)>;
 
 }  // namespace elastocheck

@@ -58,7 +58,7 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
 }
 
 EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points,
-                       const Visit& visit) {
+                       const PointVisitor& visit) {
     constexpr std::size_t max_batch = 64;  // points, so that memory does not grow with their number
     EquilibriumPath result;
     result.outcome = path.outcome;
