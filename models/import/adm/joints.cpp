@@ -54,7 +54,7 @@ struct JointConversion {
     }
     void require(Position position) const {
         const Vector3d d = separation(), z = J.axis(2);
-        if (position == meet) require_small(d.norm(), "I and J are apart by");
+        if (position == coincident) require_small(d.norm(), "I and J are apart by");
         if (position == on_line)
             require_small((d - z * z.dot(d)).norm(), "I is off the axis of J by");
         if (position == on_plane) require_small(std::abs(z.dot(d)), "I is off the plane of J by");
