@@ -23,8 +23,8 @@ std::optional<Vanishing> vanishing_length(const Model& model, const Branch& side
             }
         const double end = start + rate * side.to;
         if (start > 0 && end > 0) continue;
-        const double at = start > 0 ? -start / rate : 0;
-        if (!first || std::abs(at) < std::abs(first->at)) first = Vanishing{joint, at, end};
+        const double a = start > 0 ? -start / rate : 0;
+        if (!first || std::abs(a) < std::abs(first->parameter)) first = Vanishing{joint, a, end};
     }
     return first;
 }

@@ -10,8 +10,8 @@
 
 namespace elastocheck::recursive {
 
-Analysis analyse(const Model& model, const EliminationOrder& like) {
-    if (const auto c = far_centre(model)) return analyse(centred(model, *c), like);
+Analysis analyse(const Model& model, const EliminationOrder& reused_order) {
+    if (const auto c = far_centre(model)) return analyse(centred(model, *c), reused_order);
     Analysis result;
     result.diagnosis = diagnose(model);
     if (std::isnan(result.diagnosis.constraint_error)) return result;
@@ -20,18 +20,21 @@ Analysis analyse(const Model& model, const EliminationOrder& like) {
     const double L = result.diagnosis.length;
     const State<double> q = design_state<double>(model);
     const Branch undriven;  // no driver
-    const Inputs<double> drawn = inputs_as_drawn<double>(model);
+    const Inputs<double> design_inputs = inputs_as_drawn<double>(model);
+    constexpr double t = 0, a = 0;
     Inputs<double> inputs;
-    set_inputs<double>(model, undriven, drawn, 0, 0, inputs);
+    set_inputs<double>(model, undriven, design_inputs, t, a, inputs);
 
+    // The matrix (24) with K, for the scaling, the borders and the elimination order.
     Vector<double> Phi(m);
     system.M = saddle_matrix(model);
     system.weight.setOnes(n + m);
     for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(L);
     assemble<double>(model, inputs, q, system.M, Phi);
     analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space,
-            pattern(model), loops(model), like);
+            pattern(model), loops(model), reused_order);
 
+    // The consistent tangent in the same pattern, whose factors the start of a branch uses.
     assemble_constraints<double>(model, inputs, q, system.M, Phi);
     add_consistent_tangent<double>(model, undriven, inputs, q, Vector<double>::Zero(m), system.M);
     result.pivot_ratio = factorise(system);

@@ -8,10 +8,10 @@
 namespace elastocheck::recursive {
 namespace {
 
-// Load carried by the border of a held direction in the last back-substitution, b μ of
-// saddle_point.hpp without the scaling: a force on an idle mode, as |W⁻¹ f|, or the gap of
+// Load |W⁻¹ b μ| on the border b of held direction c in the last back-substitution, μ its multiplier
+// (saddle_point.hpp; system.solution and border() are scaled): a force on an idle mode, or the gap of
 // redundant constraints.
-double load_on_border(const SaddlePoint<double>& system, int c) {
+double border_load(const SaddlePoint<double>& system, int c) {
     const Held<double>& held = system.held;
     const double mu = system.solution[system.n + system.m + c];
     double sum = 0;
@@ -24,8 +24,16 @@ double load_on_border(const SaddlePoint<double>& system, int c) {
     return std::sqrt(sum);
 }
 
-// A held direction does not respond, so its border must carry no load. μ detects a force on an idle
-// mode, and a mode that is idle in K but not in the tangent.
+// A held direction does not respond, so its border must carry no load: a load is a force on an idle
+// mode (loaded_idle_mode), also where the mode is idle in K but not in the tangent, or a gap of
+// redundant constraints (inconsistent_constraints). The limits are `limit` times
+//
+//   force     size of the forces that act on the bodies, for idle modes; `rounding` [same unit] is
+//             added for their rounding
+//   opening   size of the constraint residual and of the motion that would close it, for redundant
+//             constraints [m]
+//
+// `limit` is the rounding plus a share of the constraint error Φ of the state.
 Outcome check_border(SteppingState& s, CheckedDirections checked, double rounding) {
     const Held<double>& held = s.system.held;
     if (held.size() == 0 || checked == CheckedDirections::none) return Outcome::converged;
@@ -38,8 +46,7 @@ Outcome check_border(SteppingState& s, CheckedDirections checked, double roundin
     const int count = checked == CheckedDirections::all ? held.size() : held.idle;
     for (int c = 0; c < count; ++c) {
         const bool idle = c < held.idle;
-        if (!(load_on_border(s.system, c) <=
-              limit * (idle ? force : opening) + (idle ? rounding : 0)))
+        if (!(border_load(s.system, c) <= limit * (idle ? force : opening) + (idle ? rounding : 0)))
             return idle ? Outcome::loaded_idle_mode : Outcome::inconsistent_constraints;
     }
     return Outcome::converged;
@@ -61,7 +68,8 @@ void leave_out_idle_motion(SteppingState& s) {
     }
 }
 
-// Factorises at (s.q, s.lambda), first in `order`.
+// Factorises at (s.q, s.lambda), in the elimination order `order` if it is set; sets it to the order
+// used.
 Outcome factorise_in(SteppingState& s, EliminationOrder& order) {
     SparseLU<double>& lu = s.system.lu;
     if (order) take_order(lu, order);
@@ -76,7 +84,7 @@ Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& or
     if (const Outcome outcome = factorise_in(s, orders.with_K); outcome != Outcome::converged)
         return outcome;
     if (!consistent) return Outcome::converged;
-    residual_at(s, s.q, s.lambda);  // λ = 0: f_ext - f_elast
+    residual_at(s, s.q, s.lambda);  // the caller's λ is 0, so that this is f_ext - f_elast
     s.work.lower.setZero();
     back_substitute(s);
     if (!s.work.x.allFinite()) return Outcome::not_finite;

@@ -85,7 +85,7 @@ std::string reason_of_end(const Model& model, const Diagnosis& diagnosis, const 
 // The path by one method. Where a method with equal steps could step over the end of the branch,
 // the end is located first (branch_events.hpp), and points past it are dropped.
 EquilibriumPath solve_by_method(const Model& model, const Branch& branch, const Options& options,
-                                const Analysis& analysis, const Visit& visit) {
+                                const Analysis& analysis, const PointVisitor& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
         return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
     if (const auto vanished = vanishing_length(model, branch); vanished && vanished->at == 0)
@@ -105,7 +105,7 @@ EquilibriumPath solve_by_method(const Model& model, const Branch& branch, const 
     std::optional<Event> event;
     if (has_steps(options.method)) event = watch(model, branch, analysis);
     const auto is_past = [&](double a) { return event && !(std::abs(a) <= std::abs(event->load)); };
-    const Visit until = [&](const Equilibrium& point) {
+    const PointVisitor until = [&](const Equilibrium& point) {
         if (!is_past(point.load)) visit(point);
     };
     Stop stop;
@@ -152,15 +152,15 @@ bool settles_otherwise(const Method& method, Outcome outcome) {
 
 EquilibriumPath solve_centred(const Model& model, const Eigen::Vector3d& c, const Branch& branch,
                               const Options& options, const Analysis& analysis,
-                              const Visit& visit) {
+                              const PointVisitor& visit) {
     Equilibrium moved;
-    const Visit visit_moved = [&](const Equilibrium& point) {
+    const PointVisitor visit_moved = [&](const Equilibrium& point) {
         moved = point;
         move_back(moved, c);
         visit(moved);
     };
     EquilibriumPath path =
-        solve(centred(model, c), branch, options, analysis, visit ? visit_moved : Visit{});
+        solve(centred(model, c), branch, options, analysis, visit ? visit_moved : PointVisitor{});
     for (Equilibrium& point : path.points) move_back(point, c);
     return path;
 }
@@ -168,7 +168,7 @@ EquilibriumPath solve_centred(const Model& model, const Eigen::Vector3d& c, cons
 }  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit) {
+                      const Analysis& analysis, const PointVisitor& visit) {
     check(model, branch);
     if (const auto c = far_centre(model))
         return solve_centred(model, *c, branch, options, analysis, visit);
@@ -178,26 +178,27 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
                 {},
                 {}};
     bool begun = false;
-    const Visit counted = [&](const Equilibrium& point) {
+    const PointVisitor counted = [&](const Equilibrium& point) {
         begun = true;
         visit(point);
     };
     EquilibriumPath path =
-        solve_by_method(model, branch, options, analysis, visit ? counted : Visit{});
+        solve_by_method(model, branch, options, analysis, visit ? counted : PointVisitor{});
     if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
         return path;
     // Where a design position far from equilibrium has several equilibria nearby, the two
     // homotopies may settle at different ones.
     if (const auto other = with_growing_forces(model, branch)) {
-        EquilibriumPath again = solve_by_method(other->model, other->branch, options,
-                                                analyse(other->model), visit ? counted : Visit{});
+        EquilibriumPath again =
+            solve_by_method(other->model, other->branch, options, analyse(other->model),
+                            visit ? counted : PointVisitor{});
         if (begun || !again.points.empty()) return again;
     }
     return path;
 }
 
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
-                      const Visit& visit) {
+                      const PointVisitor& visit) {
     check(model, branch);
     return solve(model, branch, options, analyse(model), visit);
 }

@@ -38,10 +38,10 @@ std::vector<double> grid(const Branch& side, int every) {
 }
 
 EquilibriumPath recursion(const BranchSide& side, recursive::Options options, int refine, int every,
-                          const Visit& visit) {
+                          const PointVisitor& visit) {
     options.record = side.branch.steps;
     options.steps = side.branch.steps * refine;
-    const Visit requested = [&, k = 0](const Equilibrium& state) mutable {
+    const PointVisitor requested = [&, k = 0](const Equilibrium& state) mutable {
         if (is_requested(side.branch, k++, every)) visit(state);
     };
     return side.analysis
@@ -51,7 +51,7 @@ EquilibriumPath recursion(const BranchSide& side, recursive::Options options, in
 
 // Runs the leg, which extrapolates tabulated curves beyond their ends; solve_branch() checks those.
 EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solver,
-                             const Visit& visit) {
+                             const PointVisitor& visit) {
     const auto& [model, branch] = std::tie(side.model, side.branch);
     switch (solver.leg) {
         case Leg::recursive:
@@ -72,7 +72,7 @@ EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solve
 // Runs solve(visit), and ends the path before the first state at which an element is deformed beyond the
 // end of its tabulated curve.
 template <class Solve>
-EquilibriumPath solve_within_tables(const BranchSide& side, const Visit& visit,
+EquilibriumPath solve_within_tables(const BranchSide& side, const PointVisitor& visit,
                                     const Solve& solve) {
     std::string ended;
     EquilibriumPath path = solve([&](const Equilibrium& state) {
@@ -185,12 +185,12 @@ const BranchSide& side_at(const std::vector<BranchSide>& sides, double a) {
 }
 
 EquilibriumPath solve_branch(const BranchSide& side, const SolverSettings& solver,
-                             const Visit& visit) {
+                             const PointVisitor& visit) {
     std::vector<Equilibrium> kept;
-    const Visit keep = [&](const Equilibrium& state) { kept.push_back(state); };
+    const PointVisitor keep = [&](const Equilibrium& state) { kept.push_back(state); };
     EquilibriumPath path = solve_within_tables(
         side, visit ? visit : keep,
-        [&](const Visit& checked) { return solve_by_leg(side, solver, checked); });
+        [&](const PointVisitor& checked) { return solve_by_leg(side, solver, checked); });
     path.points = std::move(kept);
     return path;
 }
@@ -277,8 +277,8 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
 }
 
 EquilibriumPath solve_at(const BranchSide& side, Leg leg, std::span<const double> points,
-                         const Visit& visit) {
-    EquilibriumPath path = solve_within_tables(side, visit, [&](const Visit& checked) {
+                         const PointVisitor& visit) {
+    EquilibriumPath path = solve_within_tables(side, visit, [&](const PointVisitor& checked) {
         EquilibriumPath solved;
         switch (leg) {
             case Leg::equilibrium:

@@ -64,7 +64,7 @@ EquilibriumPath settle_start(const BranchSide& side, Leg leg);
 // States of a leg at these values of the parameter [SI], of the sign of the side and in ascending
 // size. As in solve_branch(), the path ends where a tabulated curve ends.
 EquilibriumPath solve_at(const BranchSide& side, Leg leg, std::span<const double> points,
-                         const Visit& visit);
+                         const PointVisitor& visit);
 
 // ---- The references along a branch.
 

@@ -53,7 +53,7 @@ struct Options {
 //
 // Thread-safe: calls share nothing except a model that must not change meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
-                      const Options& options = {}, const Visit& visit = {});
+                      const Options& options = {}, const PointVisitor& visit = {});
 
 // Residuals of a state from any leg in this leg's conditions at its parameter value: the constraints, and the
 // gradient of the potential projected by the least-squares multipliers. `direction` includes the deviation of

@@ -36,7 +36,7 @@ struct Options {
 //
 // Thread-safe: calls share nothing except a model that must not change meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
-                      const Options& options = {}, const Visit& visit = {});
+                      const Options& options = {}, const PointVisitor& visit = {});
 
 // Residuals of a state from any leg in this leg's equations at a = state.load; balances use
 // Equilibrium::reactions. NaN unless the state has one pose per body and one reaction per joint.

@@ -1,4 +1,5 @@
-// Result of every leg: the equilibria along one branch, stored or streamed, and the outcome.
+// Result of every leg, that is of every solver (recursive methods and references): the equilibria along
+// one branch, stored or streamed, and the outcome.
 #pragma once
 
 #include <functional>
@@ -25,7 +26,8 @@ struct Equilibrium {
 
 // How a path ended. J is the matrix of the linearised equations, ∂(G, Φ)/∂(q, λ); M its reduced
 // Hessian, the stiffness of the motions that the joints allow; z' = dz/da the tangent of the path of
-// z = (q, λ); ε the unit round-off, 2⁻⁵². The thresholds are those of the leg that returns the outcome.
+// z = (q, λ); nb bodies, m rows of Φ; ε = 2⁻⁵², the machine epsilon. The thresholds are those of the leg
+// that returns the outcome; its tolerance for |u·f| is relative to the forces on the bodies.
 enum class Outcome {
     // every requested point is reached, with the residual of each below the tolerance of its leg
     converged,
@@ -86,6 +88,6 @@ struct EquilibriumPath {
 
 // Visitor that receives each point as it is found, in order, so that the path need not be stored: with a
 // visitor a leg returns the path without points. The reference is valid during the call only.
-using Visit = std::function<void(const Equilibrium&)>;
+using PointVisitor = std::function<void(const Equilibrium&)>;
 
 }  // namespace elastocheck

@@ -46,7 +46,7 @@ struct SolverSettings {
 // Runs one branch side by any leg. Ends with Outcome::outside_table before the first point at which an element
 // is deformed beyond the end of a curve that is not extrapolated. With a `visit`, points are not kept.
 EquilibriumPath solve_branch(const BranchSide& side, const SolverSettings& solver,
-                             const Visit& visit = {});
+                             const PointVisitor& visit = {});
 
 // Joins the sides into one path from `from` to `to`; one side is returned as it was run. The path
 // has the outcome of the first side that failed, and the points reached on either side of a = 0.

@@ -34,9 +34,9 @@ struct Options {
 //
 // Thread-safe: calls keep no state and may share a model that no thread changes meanwhile.
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit = {});
+                      const Analysis& analysis, const PointVisitor& visit = {});
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options = {},
-                      const Visit& visit = {});
+                      const PointVisitor& visit = {});
 
 // ---- Many variants of a model: the same parts between the same bodies, with other numbers.
 

@@ -14,14 +14,15 @@ namespace {
 
 constexpr std::size_t largest_file = 16 << 20;  // [bytes]
 constexpr std::size_t max_errors = 20;
-constexpr std::string_view name_of_text = "scene";
+// File name that the reader writes at the start of its messages on the scene of an import.
+constexpr std::string_view scene_text_name = "scene";
 
 std::string where(const SourceLocation& place) {
     return place.line > 0 ? fmt::format(":{}", place.line) : std::string();
 }
 
 // Throws one error with all missing parts, one a line.
-[[noreturn]] void refuse(const std::string& file, const Notes& notes) {
+[[noreturn]] void throw_missing_parts(const std::string& file, const Notes& notes) {
     std::string message;
     for (std::size_t k = 0; k < std::min(notes.missing.size(), max_errors); ++k) {
         const auto& [place, what] = notes.missing[k];
@@ -39,11 +40,11 @@ std::string where(const SourceLocation& place) {
 }
 
 // Throws the reader's error on the draft with the place in the imported file in front.
-[[noreturn]] void throw_with_source(const std::string& file, const Text& text,
+[[noreturn]] void throw_scene_error(const std::string& file, const Text& text,
                                     std::string_view message) {
     int line = 0;
-    if (message.starts_with(name_of_text)) {
-        message.remove_prefix(name_of_text.size() + 1);
+    if (message.starts_with(scene_text_name)) {
+        message.remove_prefix(scene_text_name.size() + 1);
         const auto [end, error] =
             std::from_chars(message.data(), message.data() + message.size(), line);
         if (error == std::errc{})
@@ -82,7 +83,8 @@ constexpr Format formats[] = {
     {".ini", "suspensions.ini of Assetto Corsa", import_assetto, false, "--as --axle"},
 };
 
-// "tables of points (.csv), points of Lotus SHARK (.shk)": the formats that take the option.
+// "tables of points (.csv), points of Lotus SHARK (.shk)": the formats that take the option; all
+// formats if it is empty.
 std::string formats_with(std::string_view option) {
     std::string list;
     for (const Format& format : formats)
@@ -124,10 +126,11 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
              reader::quote(ending), formats_with(""));
     check_options(*format, given, file);
     Options options = given;
-    Draft draft = format->read(text, file, options);
+    Draft draft = format->read(text, file, options);  // may set options.as
     const bool makes_mechanism = !options.as.empty(),
                points_only = !format->has_bodies && !makes_mechanism;
-    if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
+    if (!draft.notes.missing.empty() && !options.allow_missing)
+        throw_missing_parts(file, draft.notes);
     if (makes_mechanism) make_mechanism(file, options, draft);
     if (draft.bodies.empty() && !points_only)
         fail(file, 0, "",
@@ -137,12 +140,12 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
     Imported result{.yaml = written.yaml, .notes = draft.notes};
     if (points_only) return result;
     try {
-        const Scene scene = parse_scene(written.yaml, std::string(name_of_text));
+        const Scene scene = parse_scene(written.yaml, std::string(scene_text_name));
         result.bodies = static_cast<int>(scene.bodies.size());
         result.joints = static_cast<int>(scene.joints.size());
         result.elements = static_cast<int>(scene.elastics.size());
     } catch (const SceneError& error) {
-        throw_with_source(file, written, error.what());
+        throw_scene_error(file, written, error.what());
     }
     return result;
 }

@@ -12,8 +12,8 @@ namespace {
 // a variant may have an idle mode or a redundancy that the design has not, and leaves its lane.
 constexpr double min_share_of_ratio = 1e-3;
 // Strain up to which a held mode is exactly idle, or a combination exactly redundant.
-constexpr double exactly_idle = 1e-12;
-constexpr double largest_multiplier = 1e4;  // as in the scalar path
+constexpr double max_strain_of_held = 1e-12;
+constexpr double largest_multiplier = 1e4;  // as series_state() in recursive/series/path.cpp
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void Pack::factorise(const Mask& mask, bool at_design) {
                              lu.largest_multiplier[lane] <= largest_multiplier &&
                              check_factors(s, s.q, ratio) == Outcome::converged;
         slot.inside = regular && (!at_design || (ratio > min_share_of_ratio * design.pivot_ratio &&
-                                                 strain_of_held(s, s.q) <= exactly_idle));
+                                                 strain_of_held(s, s.q) <= max_strain_of_held));
     });
 }
 
@@ -100,7 +100,8 @@ void Pack::correct_ends(Drive drive, const LaneEnds& to) {
         if (slot.last) set_parameter(*slot.s, drive, to[static_cast<std::size_t>(lane)]);
         slot.last_correction = std::numeric_limits<double>::infinity();
     });
-    for (int k = 0; k < 8 && std::ranges::count(correcting, true) > 0; ++k) {
+    constexpr int max_corrections = 8;
+    for (int k = 0; k < max_corrections && std::ranges::count(correcting, true) > 0; ++k) {
         each(correcting, [&](Slot&, int lane) { assemble(lane); });
         factorise(correcting, false);
         each(correcting, [&](Slot& slot, int lane) {

@@ -13,8 +13,9 @@ namespace {
 
 constexpr int max_coordinates = 300;  // of a stability test with a dense matrix
 
-// Whether an idle mode may be unstable under load: the first test of negative_idle_stiffness().
-bool may_push_idle(SteppingState& s) {
+// Whether an idle mode may be unstable under load: screening by the first test of
+// negative_idle_stiffness(), a stiffness below -10⁻⁶ (forces / L).
+bool may_be_unstable_idle(SteppingState& s) {
     constexpr double significant = 1e-6;
     const double stiffness = min_of_idle(s);
     if (!(stiffness < 0)) return false;
@@ -24,9 +25,80 @@ bool may_push_idle(SteppingState& s) {
     return !(stiffness >= -significant * forces / s.setup.length);
 }
 
+// Lower half of a dense symmetric matrix in one lane.
+struct LaneMatrix {
+    Matrix<Lanes>& values;
+    int lane;
+
+    void add(Eigen::Index i, Eigen::Index j, double value) {
+        set_lane(values(i, j), lane, values(i, j)[lane] + value);
+    }
+};
+
+// Adds the symmetric part of W⁻¹ K W⁻¹ and returns κ, the largest entry of that matrix. Each pair
+// (i, j), (j, i) is visited twice, so that half of each of its entries is added.
+double add_tangent(const SteppingState& s, LaneMatrix& A) {
+    const SaddleMatrix<double>& M = s.system.M;
+    const Vector<double>& W = s.system.weight;
+    const int n = s.n();
+    double stiffness = 0;
+    for_each_entry(M, [&](int i, int j, int entry) {
+        if (i >= n || j >= n) return;
+        const double K = M.values[static_cast<std::size_t>(entry)] / (W[i] * W[j]);
+        stiffness = std::max(stiffness, std::abs(K));
+        A.add(std::max(i, j), std::min(i, j), i == j ? K : K / 2);
+    });
+    return stiffness;
+}
+
+// Adds κ r rᵀ / r·r for each row r of Φ_q W⁻¹. A row has at most two bodies, six coordinates each.
+void add_constraint_penalty(const SteppingState& s, double stiffness, LaneMatrix& A) {
+    const SaddleMatrix<double>& M = s.system.M;
+    const Vector<double>& W = s.system.weight;
+    for (int row = 0; row < M.m; ++row) {
+        std::array<double, 12> r{};
+        std::array<int, 12> coordinate{};
+        double square = 0;
+        std::size_t count = 0;
+        for (int end = 0; end < 2; ++end) {
+            const BodyId b = M.ends[static_cast<std::size_t>(row)][static_cast<std::size_t>(end)];
+            for (int k = 0; b != ground && k < 6; ++k, ++count) {
+                coordinate[count] = 6 * b + k;
+                r[count] = M.part(row, end)[k] / W[6 * b + k];
+                square += r[count] * r[count];
+            }
+        }
+        const double rho = square > 0 ? stiffness / square : 0;
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t j = 0; j < count; ++j)
+                if (coordinate[i] >= coordinate[j])
+                    A.add(coordinate[i], coordinate[j], rho * r[i] * r[j]);
+    }
+}
+
+// Adds κ to the diagonal at the largest unknown of each idle mode: it holds that mode, which another
+// test covers.
+void add_idle_penalty(const SteppingState& s, double stiffness, LaneMatrix& A) {
+    const Held<double>& held = s.system.held;
+    for (int c = 0; c < held.idle; ++c) {
+        int largest_row = -1;
+        double largest = 0;
+        for (int e = held.begin(c); e < held.end(c); ++e) {
+            const auto k = static_cast<std::size_t>(e);
+            const double size = std::abs(held.value[k] * s.system.weight[held.row[k]]);
+            if (size > largest) {
+                largest_row = held.row[k];
+                largest = size;
+            }
+        }
+        if (largest_row >= 0) A.add(largest_row, largest_row, stiffness);
+    }
+}
+
 }  // namespace
 
-// As min_stiffness() of one variant: the same iteration with the factors of the lanes.
+// As min_stiffness() of one variant, with the factors of the lanes: inverse subspace iteration
+// V = K⁻¹ W² U, in the inner product a·b = aᵀ W² b, and the eigenvalues 1/μ of H = Uᵀ W² V.
 std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, Matrix<Lanes>& U) {
     constexpr int vectors = 3, first_iterations = 5, iterations = 2;
     std::array<LeastStiffness, Lanes::count> stiffness{};
@@ -49,23 +121,23 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
     const auto orthonormalise_columns = [&] {
         constexpr double zero_tolerance = 1e-9;
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
-            const Lanes whole = inner(U, c, U, c);
+            const Lanes square = inner(U, c, U, c);
             for (int pass = 0; pass < 2; ++pass)
                 for (Eigen::Index b = 0; b < c; ++b) {
                     const Lanes part = inner(U, b, U, c);
                     for (int k = 0; k < n; ++k) U(k, c) -= part * U(k, b);
                 }
-            const Lanes left = inner(U, c, U, c), inverse = 1 / sqrt(left);
+            const Lanes remainder = inner(U, c, U, c), inverse = 1 / sqrt(remainder);
             for (int k = 0; k < n; ++k) U(k, c) *= inverse;
-            // one variant alone drops the dependent vector
+            // The scalar path would drop a dependent vector. A lane cannot, so its variant leaves it.
             each(mask, [&](Slot& slot, int lane) {
-                if (!(left[lane] > zero_tolerance * zero_tolerance * whole[lane]))
+                if (!(remainder[lane] > zero_tolerance * zero_tolerance * square[lane]))
                     slot.inside = false;
             });
         }
     };
-    const bool begins = U.cols() == 0;
-    if (begins) {
+    const bool is_first = U.cols() == 0;
+    if (is_first) {
         U.resize(n, std::min(vectors, free));
         for (Eigen::Index c = 0; c < U.cols(); ++c)
             for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / W[k];
@@ -73,7 +145,7 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
     }
     const Vector<double>& scale = design.system.scale;
     Matrix<Lanes> V(n, U.cols()), H(U.cols(), U.cols());
-    for (int iteration = begins ? first_iterations : iterations; iteration > 0; --iteration) {
+    for (int iteration = is_first ? first_iterations : iterations; iteration > 0; --iteration) {
         std::fill(rhs.begin(), rhs.end(), Lanes(0));
         for (Eigen::Index c = 0; c < U.cols(); ++c) {
             for (int k = 0; k < n; ++k)
@@ -89,9 +161,9 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
         orthonormalise_columns();
     }
     each(mask, [&](Slot&, int lane) {
-        Eigen::MatrixXd own(H.rows(), H.cols());
-        for (Eigen::Index k = 0; k < H.size(); ++k) own.data()[k] = H.data()[k][lane];
-        stiffness[static_cast<std::size_t>(lane)] = detail::min_of(own);
+        Eigen::MatrixXd H_lane(H.rows(), H.cols());
+        for (Eigen::Index k = 0; k < H.size(); ++k) H_lane.data()[k] = H.data()[k][lane];
+        stiffness[static_cast<std::size_t>(lane)] = detail::min_of(H_lane);
     });
     return stiffness;
 }
@@ -101,65 +173,27 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
 //
 //   W⁻¹ K W⁻¹ + κ Σ r rᵀ / r·r + κ (rounding I + Σ e eᵀ)     κ the largest entry of W⁻¹ K W⁻¹
 //
-// r the rows of Φ_q W⁻¹ and e the largest unknown of each idle mode: where it is positive definite,
-// K is on the motions that the constraints allow (Finsler). `definite` holds the lower half.
+// r the rows of Φ_q W⁻¹ and e the unit vector of the largest unknown of each idle mode: where it is
+// positive definite, so is K on the motions that the constraints allow (Finsler), and it is positive
+// definite where the pivots of its LDLᵀ are positive (Sylvester). `rounding` covers the rounding of the
+// factorisation. `definite` holds the lower half.
 void Pack::judge_start(Matrix<Lanes>& softest) {
     const int n = design.system.n;
     const auto least = min_stiffness(inside(), softest);
     if (n > max_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
     each(inside(), [&](Slot& slot, int lane) {
         const auto& [mu, of_energy] = least[static_cast<std::size_t>(lane)];
-        slot.inside = of_energy && mu > 0 && !may_push_idle(*slot.s);
+        slot.inside = of_energy && mu > 0 && !may_be_unstable_idle(*slot.s);
     });
     definite.setZero(n, n);
     each(inside(), [&](Slot& slot, int lane) {
         const SteppingState& s = *slot.s;
-        const SaddleMatrix<double>& M = s.system.M;
-        const Vector<double>& W = s.system.weight;
-        const auto add = [&](Eigen::Index i, Eigen::Index j, double by) {
-            set_lane(definite(i, j), lane, definite(i, j)[lane] + by);
-        };
-        double stiffness = 0;
-        for_each_entry(M, [&](int i, int j, int entry) {
-            if (i >= n || j >= n) return;
-            const double K = M.values[static_cast<std::size_t>(entry)] / (W[i] * W[j]);
-            stiffness = std::max(stiffness, std::abs(K));
-            add(std::max(i, j), std::min(i, j), i == j ? K : K / 2);
-        });
-        for (int row = 0; row < M.m; ++row) {
-            std::array<double, 12> r{};
-            std::array<int, 12> place{};
-            double square = 0;
-            std::size_t count = 0;
-            for (int end = 0; end < 2; ++end) {
-                const BodyId b =
-                    M.ends[static_cast<std::size_t>(row)][static_cast<std::size_t>(end)];
-                for (int k = 0; b != ground && k < 6; ++k, ++count) {
-                    place[count] = 6 * b + k;
-                    r[count] = M.part(row, end)[k] / W[6 * b + k];
-                    square += r[count] * r[count];
-                }
-            }
-            const double by = square > 0 ? stiffness / square : 0;
-            for (std::size_t i = 0; i < count; ++i)
-                for (std::size_t j = 0; j < count; ++j)
-                    if (place[i] >= place[j]) add(place[i], place[j], by * r[i] * r[j]);
-        }
+        LaneMatrix A{definite, lane};
+        const double stiffness = add_tangent(s, A);
+        add_constraint_penalty(s, stiffness, A);
         const double rounding = 16 * std::numeric_limits<double>::epsilon() * n;
-        for (int k = 0; k < n; ++k) add(k, k, rounding * stiffness);
-        const Held<double>& held = s.system.held;
-        for (int c = 0; c < held.idle; ++c) {
-            int most = -1;
-            double size = 0;
-            for (int e = held.begin(c); e < held.end(c); ++e) {
-                const auto k = static_cast<std::size_t>(e);
-                if (const double here = std::abs(held.value[k] * W[held.row[k]]); here > size) {
-                    most = held.row[k];
-                    size = here;
-                }
-            }
-            if (most >= 0) add(most, most, stiffness);
-        }
+        for (int k = 0; k < n; ++k) A.add(k, k, rounding * stiffness);
+        add_idle_penalty(s, stiffness, A);
     });
     const Lanes min_of_all = min_pivot(definite);
     each(inside(), [&](Slot& slot, int lane) { slot.inside = min_of_all[lane] > 0; });
@@ -176,7 +210,7 @@ void Pack::check_ends(bool with_stiffness, Matrix<Lanes>& softest) {
                       !any_reversed(slot.s->model, slot.from, slot.s->q);
         if (with_stiffness) {
             const auto& [mu, of_energy] = least[static_cast<std::size_t>(lane)];
-            slot.inside = slot.inside && of_energy && mu > 0 && !may_push_idle(*slot.s) &&
+            slot.inside = slot.inside && of_energy && mu > 0 && !may_be_unstable_idle(*slot.s) &&
                           !may_reach_zero({1, slot.at_middle, std::exp2(log_end - slot.log_begin)});
         }
         slot.log_begin = log_end;

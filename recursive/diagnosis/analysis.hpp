@@ -57,7 +57,7 @@ inline bool is_at_rest(const SaddlePoint<double>& system, const Vector<double>& 
 }
 
 // Analyses the model. A model far from the origin is first moved to its centre (recentre.hpp).
-// `like`: the elimination order of a similar model, which spares the search for one.
-Analysis analyse(const Model& model, const EliminationOrder& like = nullptr);
+// `reused_order`: the elimination order of a similar model, which spares the search for one.
+Analysis analyse(const Model& model, const EliminationOrder& reused_order = nullptr);
 
 }  // namespace elastocheck::recursive

@@ -47,27 +47,29 @@ double largest_eigenvalue(Eigen::Index size, const Complement& P, const Operator
     constexpr double accuracy = 1e-10;
     const Eigen::Index max_steps = std::min<Eigen::Index>(4 * size, 256);
     std::mt19937 random(1);  // the same sequence on every platform
-    VectorXd v(size), before = VectorXd::Zero(size), alpha(max_steps), beta(max_steps);
+    VectorXd v(size), previous = VectorXd::Zero(size), alpha(max_steps), beta(max_steps);
     for (auto& entry : v) entry = static_cast<double>(random()) / 4294967296.0 - 0.5;
     v = P(v).normalized();
     double largest = 0;
-    for (Eigen::Index k = 0, look = 8; k < max_steps; ++k) {
+    // The tridiagonal matrix T of step k has the diagonal alpha and the off-diagonal beta. Its eigenvalues
+    // are computed at steps that grow by half.
+    for (Eigen::Index k = 0, next_check = 8; k < max_steps; ++k) {
         VectorXd w = A(v);
         alpha[k] = v.dot(w);
         w -= alpha[k] * v;
-        if (k > 0) w -= beta[k - 1] * before;
+        if (k > 0) w -= beta[k - 1] * previous;
         beta[k] = w.norm();
         const bool is_last =
             k + 1 == max_steps || !(beta[k] > accuracy * alpha.head(k + 1).cwiseAbs().maxCoeff());
-        if (is_last || k + 1 == look) {
+        if (is_last || k + 1 == next_check) {
             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> T;
             T.computeFromTridiagonal(alpha.head(k + 1), beta.head(k), Eigen::EigenvaluesOnly);
-            const double found = T.eigenvalues().cwiseAbs().maxCoeff();
-            if (is_last || std::abs(found - largest) <= accuracy * found) return found;
-            largest = found;
-            look += look / 2;
+            const double estimate = T.eigenvalues().cwiseAbs().maxCoeff();
+            if (is_last || std::abs(estimate - largest) <= accuracy * estimate) return estimate;
+            largest = estimate;
+            next_check += next_check / 2;
         }
-        before = v;
+        previous = v;
         v = w / beta[k];
     }
     return largest;
@@ -99,15 +101,17 @@ Conditioning conditioning(const Model& model, const Diagnosis& diagnosis) {
         const VectorXd inverse = S.cwiseInverse();
         const Complement P(inverse.asDiagonal() * diagnosis.null_space);
         VectorXd x(n + m);
+        // A
         const auto matrix = [&](const VectorXd& v) -> VectorXd {
             return S.asDiagonal() * (M * (S.asDiagonal() * v).eval());
         };
-        const auto inverted = [&](const VectorXd& v) -> VectorXd {
+        // A⁺
+        const auto pseudoinverse = [&](const VectorXd& v) -> VectorXd {
             const VectorXd f = inverse.asDiagonal() * P(v);
             back_substitute<double>(system, f.head(n), f.tail(m), x);
             return P(inverse.asDiagonal() * x);
         };
-        return largest_eigenvalue(n + m, P, matrix) * largest_eigenvalue(n + m, P, inverted);
+        return largest_eigenvalue(n + m, P, matrix) * largest_eigenvalue(n + m, P, pseudoinverse);
     };
     return {condition_of(VectorXd::Ones(n + m)), condition_of(system.scale)};
 }

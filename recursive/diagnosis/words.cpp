@@ -61,7 +61,7 @@ std::string idle_modes(const Diagnosis& diagnosis) {
 std::string no_length(const Model& model, const Branch& branch, const Vanishing& vanishing) {
     return fmt::format("joint '{}' would have no length from {} on",
                        model.joints[static_cast<std::size_t>(vanishing.joint)].name,
-                       parameter_text(branch.unit, vanishing.at));
+                       parameter_text(branch.unit, vanishing.parameter));
 }
 
 std::string end_by_diagnosis(Outcome outcome, const Diagnosis& diagnosis) {

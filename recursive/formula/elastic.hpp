@@ -247,10 +247,11 @@ ElementForce<Real> force_of_stress(const Bushing& e, const Spatial<Real>& g,
     const Vector3<Real> theta = g.theta();
     Vector3<Real> F = stress.template head<3>(), M = stress.template tail<3>();
     if (e.formulation.conjugate)
-        M = jacobian<Real>(e.formulation.angles, g.B, theta).transpose() * M;
+        M = angle_jacobian<Real>(e.formulation.angles, g.B, theta).transpose() * M;
     if (in_the_middle(e)) {
         const Middle<Real> frame = middle<Real>(g.B);
-        if (e.formulation.offset_moment) M -= jacobian<Real>(frame).transpose() * g.d().cross(F);
+        if (e.formulation.offset_moment)
+            M -= middle_jacobian<Real>(frame).transpose() * g.d().cross(F);
         F = frame.S * F;
     }
     Vector3<Real> lever_i = g.s_i;

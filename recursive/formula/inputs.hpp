@@ -118,7 +118,7 @@ inline void check(const Model& model, const Branch& branch) {
 inline double last_parameter(const Model& model, const Branch& branch) {
     constexpr double share = 1 - 1e-3;
     const auto vanishing = vanishing_length(model, branch);
-    return vanishing ? share * vanishing->at : branch.to;
+    return vanishing ? share * vanishing->parameter : branch.to;
 }
 
 // The inputs at (t, a), from those at the design position. Allocates only on the first call with

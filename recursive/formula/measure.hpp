@@ -4,7 +4,9 @@
 //
 // Relative to i, j is at x = A_iᵀ D, D = p_j - p_i, rotated by B = A_iᵀ A_j. A small motion is
 //
-//   δx = A_iᵀ (δp_j - δp_i - δπ_i × D),   δφ = A_iᵀ (δπ_j - δπ_i),   δB = δφ~ B .
+//   δx = A_iᵀ (δp_j - δp_i - δπ_i × D),   δφ = A_iᵀ (δπ_j - δπ_i),   δB = (δφ)~ B ,
+//
+// ~ the cross product matrix of a vector.
 //
 // Three angles θ of B, with H = ∂θ/∂φ and ∂(Hᵀ m)/∂φ for a constant m:
 //
@@ -70,7 +72,7 @@ Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
 // ∂(J(θ)⁻ᵀ m)/∂θ. With J⁻ᵀ = I + ½ θ̃ + c θ̃² and ∇c = h θ, h = c'(θ)/θ:
 //   δ(J⁻ᵀ m) = ½ δθ × m + c (δθ × (θ × m) + θ × (δθ × m)) + h (θ·δθ) θ × (θ × m)
 template <class Real>
-Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m) {
+Matrix3<Real> moment_derivative(const Vector3<Real>& theta, const Vector3<Real>& m) {
     using std::sin;
     using std::sqrt;
     using std::tan;
@@ -85,9 +87,9 @@ Matrix3<Real> turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m)
         c = (1 - u / tan(u)) / t2;
         h = ((u / (sin(u) * sin(u)) - 1 / tan(u)) / (2 * t) - 2 * c) / t2;
     }
-    const Vector3<Real> turned = theta.cross(m);
-    return -tilde(m) / 2 - c * (tilde(turned) + tilde(theta) * tilde(m)) +
-           h * theta.cross(turned) * theta.transpose();
+    const Vector3<Real> theta_m = theta.cross(m);
+    return -tilde(m) / 2 - c * (tilde(theta_m) + tilde(theta) * tilde(m)) +
+           h * theta.cross(theta_m) * theta.transpose();
 }
 
 // ---- Cardan angles. H is divided by cos θ_y: singular at θ_y = ±90°, as any three
@@ -112,7 +114,7 @@ Matrix3<Real> cardan_jacobian(const Vector3<Real>& theta) {
 }
 // ∂(Hᵀ m)/∂θ
 template <class Real>
-Matrix3<Real> cardan_turning_moment(const Vector3<Real>& theta, const Vector3<Real>& m) {
+Matrix3<Real> cardan_moment_derivative(const Vector3<Real>& theta, const Vector3<Real>& m) {
     using std::cos;
     using std::sin;
     using std::tan;
@@ -127,16 +129,17 @@ Matrix3<Real> cardan_turning_moment(const Vector3<Real>& theta, const Vector3<Re
 
 // ---- Projected angles.
 
-// One angle atan2(n, c), in the letters above.
+// One projected angle atan2(n, c), in the letters above. `u_axis`, `v_axis`: the axes u and v of i,
+// u times `u_sign`.
 template <class Real>
 struct Projection {
     Vector3<Real> w, u, v;  // column of B; axes of i
     Real n, c;
 
-    Projection(const Matrix3<Real>& B, int column, int up, Real sign, int along)
+    Projection(const Matrix3<Real>& B, int column, int u_axis, Real u_sign, int v_axis)
         : w(B.col(column)),
-          u(sign * Vector3<Real>::Unit(up)),
-          v(Vector3<Real>::Unit(along)),
+          u(u_sign * Vector3<Real>::Unit(u_axis)),
+          v(Vector3<Real>::Unit(v_axis)),
           n(u.dot(w)),
           c(v.dot(w)) {}
     Vector3<Real> g() const { return c * u - n * v; }
@@ -164,7 +167,7 @@ Matrix3<Real> projected_jacobian(const Matrix3<Real>& B) {
 // ∂(Hᵀ m)/∂φ: with δn = (w × u)·δφ, δc = (w × v)·δφ
 //   δh = (δw × g + w × (u δc - v δn) - h δ(r²)) / r²
 template <class Real>
-Matrix3<Real> projected_turning_moment(const Matrix3<Real>& B, const Vector3<Real>& m) {
+Matrix3<Real> projected_moment_derivative(const Matrix3<Real>& B, const Vector3<Real>& m) {
     Matrix3<Real> N = Matrix3<Real>::Zero();
     for (int k = 0; const auto& [w, u, v, n, c] : projections<Real>(B)) {
         const Vector3<Real> dn = w.cross(u), dc = w.cross(v), g = c * u - n * v;
@@ -192,7 +195,7 @@ Vector3<Real> angles_of(Angles angles, const Matrix3<Real>& B) {
 }
 // H = ∂θ/∂φ [3 × 3]
 template <class Real>
-Matrix3<Real> jacobian(Angles angles, const Matrix3<Real>& B, const Vector3<Real>& theta) {
+Matrix3<Real> angle_jacobian(Angles angles, const Matrix3<Real>& B, const Vector3<Real>& theta) {
     switch (angles) {
         case Angles::rotation_vector: break;
         case Angles::cardan: return cardan_jacobian<Real>(theta);
@@ -202,14 +205,14 @@ Matrix3<Real> jacobian(Angles angles, const Matrix3<Real>& B, const Vector3<Real
 }
 // ∂(Hᵀ m)/∂φ [3 × 3]
 template <class Real>
-Matrix3<Real> turning_moment(Angles angles, const Matrix3<Real>& B, const Vector3<Real>& theta,
-                             const Matrix3<Real>& H, const Vector3<Real>& m) {
+Matrix3<Real> moment_derivative(Angles angles, const Matrix3<Real>& B, const Vector3<Real>& theta,
+                                const Matrix3<Real>& H, const Vector3<Real>& m) {
     switch (angles) {
         case Angles::rotation_vector: break;
-        case Angles::cardan: return cardan_turning_moment<Real>(theta, m) * H;
-        case Angles::projected: return projected_turning_moment<Real>(B, m);
+        case Angles::cardan: return cardan_moment_derivative<Real>(theta, m) * H;
+        case Angles::projected: return projected_moment_derivative<Real>(B, m);
     }
-    return turning_moment<Real>(theta, m) * H;
+    return moment_derivative<Real>(theta, m) * H;
 }
 
 // ---- Frame in the middle.
@@ -230,7 +233,7 @@ Middle<Real> middle(const Matrix3<Real>& B) {
 }
 // P = ∂η/∂φ [3 × 3]
 template <class Real>
-Matrix3<Real> jacobian(const Middle<Real>& frame) {
+Matrix3<Real> middle_jacobian(const Middle<Real>& frame) {
     return (Matrix3<Real>::Identity() - tilde(frame.t)) * frame.S.transpose() / 2;
 }
 

@@ -106,7 +106,7 @@ Matrix6<Real> strain_rate(const Bushing& e, const Spatial<Real>& g, const Matrix
     if (in_the_middle(e)) {
         const Middle<Real> frame = middle<Real>(g.B);
         E.template topLeftCorner<3, 3>() = frame.S.transpose();
-        E.template topRightCorner<3, 3>() = tilde(g.d()) * jacobian<Real>(frame);
+        E.template topRightCorner<3, 3>() = tilde(g.d()) * middle_jacobian<Real>(frame);
     }
     return E;
 }
@@ -125,10 +125,10 @@ Matrix6<Real> turning_stress(const Bushing& e, const Spatial<Real>& g, const Mat
     Matrix6<Real> N = Matrix6<Real>::Zero();
     if (e.formulation.conjugate)
         N.template bottomRightCorner<3, 3>() =
-            turning_moment<Real>(e.formulation.angles, g.B, theta, H, M);
+            moment_derivative<Real>(e.formulation.angles, g.B, theta, H, M);
     if (!in_the_middle(e)) return N;
     const Middle<Real> frame = middle<Real>(g.B);
-    const Matrix3<Real> P = jacobian<Real>(frame), I = Matrix3<Real>::Identity(),
+    const Matrix3<Real> P = middle_jacobian<Real>(frame), I = Matrix3<Real>::Identity(),
                         t = tilde(frame.t);
     N.template topRightCorner<3, 3>() -= frame.S * tilde(F) * P;
     if (!e.formulation.offset_moment) return N;
@@ -154,7 +154,7 @@ void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q,
     const Matrix6<Real> K = hessian<Real>(
         e.law, [&] { return deflection; }, rest.piece);
     const Vector6<Real> stress = gradient<Real>(e.law, deflection, rest.piece) + rest.preload;
-    const Matrix3<Real> H = jacobian<Real>(e.formulation.angles, g.B, g.theta());
+    const Matrix3<Real> H = angle_jacobian<Real>(e.formulation.angles, g.B, g.theta());
     const Matrix6<Real> E = strain_rate<Real>(e, g, H);
 
     // (F_x, M_φ) = Eᵀ σ: conjugate forces act through E; F_x alone where the offset's moment

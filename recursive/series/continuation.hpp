@@ -11,29 +11,36 @@
 
 namespace elastocheck::recursive::series {
 
-// One continuation: t from 0 to 1 while the start settles, or a from 0 to the branch's end.
+// One continuation: t from 0 to 1 while the start settles (a homotopy from the design position to
+// the equilibrium at load factor 0), or a from 0 to the branch's end.
 struct Continuation {
-    SteppingState& s;
+    SteppingState& s;  // present point, its inputs and the factors there
     const recursive::Series& options;
-    Equations<double> e;
-    Coefficients<double> c;
+    Equations<double> e;     // series of every term of the equations about the present point
+    Coefficients<double> c;  // of the present expansion
     std::vector<CurvePiece>& curves;
-    KnotTolerance near;
-    double to;   // end of the branch in the parameter
-    double end;  // last value that is followed: `to`, or less where a driven length becomes zero
-    double a_1;  // of the next expansion; by arc length only its sign counts, where `ahead` is zero
-    double per_unit;       // metres equivalent to an error of one unit of the parameter
-    Vector<double> ahead;  // x'(τ) at the end of the last expansion: the forward direction
-    // a'(τ) at the end of the last expansion: positive where the parameter increases
-    double heading = 0;
-    int sign_at_start = 0;        // determinant_sign() at the start of the path
-    Matrix<double> softest = {};  // the basis that min_stiffness() keeps
-    bool stable = false;          // whether the start is stable; then every later point must be
-    double log_begin = 0;         // log₂ |determinant| at the start of the expansion
-    // determinant() at the midpoint of the expansion; -1 if the matrix is singular there
-    double at_middle = 1;
+    KnotTolerance knot_tolerance;
+    double branch_end;      // end of the branch in the parameter
+    double last_parameter;  // branch_end, or less where a driven length becomes zero before it
+    // a_1 of the next expansion; with arc length only its sign is used, and only while there is no
+    // previous direction
+    double a_1;
+    double
+        metres_per_unit;  // length that counts as much as a unit of the parameter in an error [m]
+    // Direction of the last expansion: x'(τ) at its end with arc length, else x_1; zero if there is
+    // none, or a slope has jumped since
+    Vector<double> previous_direction;
+    // has the sign of a'(τ) at the last point that record_limit_points() has tested
+    double parameter_rate = 0;
+    int sign_at_start = 0;              // determinant_sign() at the start of the path
+    Matrix<double> softest_modes = {};  // start of the iteration of min_stiffness(), updated by it
+    bool stable = false;  // whether the start is stable; then every later point must be
+    double start_log_determinant = 0;  // log₂ |determinant| at the start of the expansion
+    // determinant() at the midpoint of the expansion, relative to that at its start; -1 if the
+    // matrix is singular there
+    double middle_determinant = 1;
     bool reversed = false;  // whether an element reversed at the end of the last expansion
-    Vector<double> x;       // value of the polynomial
+    Vector<double> x;       // workspace: value of the polynomial
     Path path;
 
     Continuation(SteppingState& s_, std::vector<CurvePiece>& curves_,
@@ -43,18 +50,21 @@ struct Continuation {
           e(equations<double>(s.model, s.branch, options.order, drive)),
           c(reserve_coefficients<double>(s.n() + s.m(), options.order)),
           curves(curves_),
-          near{s.setup.length, 0.1 * options.tolerance, 10 * options.tolerance},
-          to(drive == Drive::start ? 1 : s.branch.to),
-          end(drive == Drive::start ? 1 : s.setup.end),
-          a_1(to),
-          per_unit(s.setup.length / std::abs(to)),
-          ahead(Vector<double>::Zero(s.n() + s.m())) {
+          // A corrected point may miss a knot by the accepted error, ten tolerances.
+          knot_tolerance{.length = s.setup.length,
+                         .overshoot = 0.1 * options.tolerance,
+                         .start = 10 * options.tolerance},
+          branch_end(drive == Drive::start ? 1 : s.branch.to),
+          last_parameter(drive == Drive::start ? 1 : s.setup.end),
+          a_1(branch_end),
+          metres_per_unit(s.setup.length / std::abs(branch_end)),
+          previous_direction(Vector<double>::Zero(s.n() + s.m())) {
         e.G_d = -s.start.R_d;
         e.Phi_d = s.start.Phi_d;
-        for (const auto& curve : curves) use(curve);
+        for (const auto& curve : curves) use_piece(curve);
     }
     // Sets the piece of the curve in the equations and in the inputs.
-    void use(const CurvePiece& curve) {
+    void use_piece(const CurvePiece& curve) {
         set_piece(curve, e);
         set_piece(curve, s.inputs);
     }
@@ -73,17 +83,16 @@ struct Crossing {
     int direction = 0;
 };
 
-// Range of τ in which the present expansion is used, whether the branch ends there, and knots
-// crossed there.
-struct End {
+// Range of the present expansion, 0 ≤ τ ≤ tau, and the knots at its end.
+struct Range {
     double tau = 0;
-    bool last = false;
+    bool reaches_end = false;  // whether the branch ends at tau
     std::vector<Crossing> crossings = {};
     // deformations that leave their piece at τ = 0: the expansion is invalid
     std::vector<Crossing> wrong_pieces = {};
 };
 
 // Sets the state to the polynomial about `from` at τ.
-void move_to(Continuation& w, const State<double>& from, double tau);
+void move_to(Continuation& run, const State<double>& from, double tau);
 
 }  // namespace elastocheck::recursive::series

@@ -73,7 +73,7 @@ struct SpringSeries {
     Driven<Real> free_length;
     Arm<Real> i, j;
     Vector3Series<Real> D, F;
-    // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
+    // ℓ², ℓ, 1/ℓ, ℓ - ℓ₀, U'(ℓ - ℓ₀), U'/ℓ
     Series<Real> length_squared, length, inverse, stretch, force, tension;
     CubicSeries<Real> cubic;  // if the law is a curve
 };
@@ -82,7 +82,7 @@ struct SpringSeries {
 template <class Real>
 struct AxisSeries {
     Real k = 0;               // of a linear law
-    Series<Real> x, force;    // a component of e - e₀, u'(x)
+    Series<Real> x, force;    // a component of e - e₀, U'(x)
     CubicSeries<Real> cubic;  // if the law is a curve
 };
 
@@ -98,7 +98,7 @@ struct MiddleSeries {
 
 // One of the three Cardan or projected angles of B: the polar angle of a vector in a plane, with
 // its row of H, δθ = H ω, ω the rotation of j relative to i in axes of i:
-// row = fixed + z/r · along.
+// row = axis + z/r · along.
 template <class Real>
 struct PlaneAngleSeries {
     Vector2Series<Real> xy, unit;  // r (cos, sin), (cos, sin)
@@ -129,7 +129,7 @@ struct BushingSeries {
     Vector3Series<Real> rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1,
         spread_2, force_i, moment_i, F, M;
     Series<Vector4<Real>> relative;
-    Vector6Series<Real> e, gradient, stress;  // (d, θ) - e₀, ∂u/∂e, ∂u/∂e + preload
+    Vector6Series<Real> e, gradient, element_force;  // (d, θ) - e₀, ∂U/∂e, ∂U/∂e + preload
     Series<Real> dot_g, W, inverse, s;
     Composition<Real> phi, psi;
     // Allocated only if the law or the formulation needs them.

@@ -7,112 +7,115 @@
 
 namespace elastocheck::recursive::series {
 
-void move_to(Continuation& w, const State<double>& from, double tau) {
-    horner(w.c.x, tau, w.x);
-    displace(from, w.x, w.s.q);
-    w.s.lambda = w.x.tail(w.s.m());
-    w.go_to(polynomial(w.c.load, tau));
+void move_to(Continuation& run, const State<double>& from, double tau) {
+    horner(run.c.x, tau, run.x);
+    displace(from, run.x, run.s.q);
+    run.s.lambda = run.x.tail(run.s.m());
+    run.go_to(polynomial(run.c.load, tau));
 }
 
-int determinant_sign(const Continuation& w, double parameter_rate) {
-    const int sign = w.s.system.lu.orientation;
-    return w.by_arc() && parameter_rate < 0 ? -sign : sign;
+int determinant_sign(const Continuation& run, double parameter_rate) {
+    const int sign = run.s.system.lu.orientation;
+    return run.by_arc() && parameter_rate < 0 ? -sign : sign;
 }
 
-double parameter_rate_ahead(const Continuation& w) {
-    const auto W2 = w.s.system.weight.head(w.s.n()).array().square();
-    return (w.ahead.head(w.s.n()).array() * W2 * w.c.unit.head(w.s.n()).array()).sum();
+double parameter_rate_ahead(const Continuation& run) {
+    const auto W2 = run.s.system.weight.head(run.s.n()).array().square();
+    return (run.previous_direction.head(run.s.n()).array() * W2 *
+            run.c.unit.head(run.s.n()).array())
+        .sum();
 }
 
-bool is_past(Continuation& w, double parameter_rate) {
-    if (determinant_sign(w, parameter_rate) != w.sign_at_start) return true;
-    if (!w.stable) return false;
-    const LeastStiffness least = min_stiffness(w.s, w.softest);
+bool is_past(Continuation& run, double parameter_rate) {
+    if (determinant_sign(run, parameter_rate) != run.sign_at_start) return true;
+    if (!run.stable) return false;
+    const LeastStiffness least = min_stiffness(run.s, run.softest_modes);
     return (least.of_energy && least.value < 0) ||
-           negative_idle_stiffness(w.s, w.s.q, w.s.lambda) < 0;
+           negative_idle_stiffness(run.s, run.s.q, run.s.lambda) < 0;
 }
 
-double determinant(const Continuation& w) {
-    const double size = std::exp2(log_determinant(w.s.system) - w.log_begin);
-    return determinant_sign(w, w.to) == w.sign_at_start ? size : -size;
+double determinant(const Continuation& run) {
+    const double size = std::exp2(log_determinant(run.s.system) - run.start_log_determinant);
+    return determinant_sign(run, run.branch_end) == run.sign_at_start ? size : -size;
 }
 
-void record_limit_points(Continuation& w, double reach) {
+void record_limit_points(Continuation& run, double reach) {
     constexpr int pieces = 64;
-    const auto rate = [&](double t) { return slope(w.c.load, t); };
-    if (w.path.expansions.empty()) w.heading = rate(0);
+    const auto rate = [&](double t) { return slope(run.c.load, t); };
+    if (run.path.expansions.empty()) run.parameter_rate = rate(0);
     for (int k = 1; k <= pieces; ++k) {
         const double from = reach * (k - 1) / pieces, to = reach * k / pieces;
-        if (rate(to) * w.heading >= 0) continue;
-        const double turn = rate(from) * w.heading > 0 ? bisect(rate, from, to) : from;
-        w.path.limits.push_back(polynomial(w.c.load, turn));
-        w.heading = rate(to);
+        if (rate(to) * run.parameter_rate >= 0) continue;
+        const double turn = rate(from) * run.parameter_rate > 0 ? bisect(rate, from, to) : from;
+        run.path.limits.push_back(polynomial(run.c.load, turn));
+        run.parameter_rate = rate(to);
     }
 }
 
-double locate_bifurcation(Continuation& w, const State<double>& from, double reach) {
+double locate_bifurcation(Continuation& run, const State<double>& from, double reach) {
     constexpr int halvings = 40;
     double before = 0, past = reach;
-    for (int k = 0; k < halvings && !w.by_arc(); ++k) {
+    for (int k = 0; k < halvings && !run.by_arc(); ++k) {
         const double middle = before + (past - before) / 2;
-        move_to(w, from, middle);
-        const bool regular = factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged;
-        (regular && !is_past(w, w.to) ? before : past) = middle;
+        move_to(run, from, middle);
+        const bool regular = factorise_at(run.s, run.s.q, run.s.lambda) == Outcome::converged;
+        (regular && !is_past(run, run.branch_end) ? before : past) = middle;
     }
-    move_to(w, from, past);
+    move_to(run, from, past);
     return before;
 }
 
-std::optional<double> find_instability(Continuation& w, const State<double>& from, double reach) {
-    if (!w.stable) return std::nullopt;
-    if (w.at_middle < 0) return reach / 2;
-    const double a = w.parameter_now(), here = determinant(w);
-    const State<double> end = w.s.q;
-    const Vector<double> lambda_end = w.s.lambda;
+std::optional<double> find_instability(Continuation& run, const State<double>& from, double reach) {
+    if (!run.stable) return std::nullopt;
+    if (run.middle_determinant < 0) return reach / 2;
+    const double a = run.parameter_now(), here = determinant(run);
+    const State<double> end = run.s.q;
+    const Vector<double> lambda_end = run.s.lambda;
     bool moved = false;
-    const Dip lowest = lowest_determinant({1, w.at_middle, here}, [&](double t) {
+    const Dip lowest = lowest_determinant({1, run.middle_determinant, here}, [&](double t) {
         moved = true;
-        move_to(w, from, t * reach);
-        return factorise_at(w.s, w.s.q, w.s.lambda) != Outcome::converged || is_past(w, w.to)
+        move_to(run, from, t * reach);
+        return factorise_at(run.s, run.s.q, run.s.lambda) != Outcome::converged ||
+                       is_past(run, run.branch_end)
                    ? -1
-                   : determinant(w);
+                   : determinant(run);
     });
     if (lowest.value < 0) return lowest.t * reach;
     if (moved) {
-        w.go_to(a);
-        w.s.q = end;
-        w.s.lambda = lambda_end;
-        (void)factorise_at(w.s, w.s.q, w.s.lambda);
+        run.go_to(a);
+        run.s.q = end;
+        run.s.lambda = lambda_end;
+        (void)factorise_at(run.s, run.s.q, run.s.lambda);
     }
     return std::nullopt;
 }
 
-std::optional<double> find_reversal(Continuation& w, const State<double>& from, double reach) {
+std::optional<double> find_reversal(Continuation& run, const State<double>& from, double reach) {
     constexpr int pieces = 32, halvings = 40;
-    const Model& model = w.s.model;
-    if (!any_reversed(model, from, w.s.q)) return std::nullopt;
-    const State<double> end = w.s.q;
-    const Vector<double> lambda_end = w.s.lambda;
-    const double a = w.parameter_now();
+    const Model& model = run.s.model;
+    if (!any_reversed(model, from, run.s.q)) return std::nullopt;
+    const State<double> end = run.s.q;
+    const Vector<double> lambda_end = run.s.lambda;
+    const double a = run.parameter_now();
     State<double> before = from;
     for (int k = 1; k <= pieces; ++k) {
         double low = reach * (k - 1) / pieces, high = reach * k / pieces;
-        move_to(w, from, high);
-        if (!any_reversed(model, before, w.s.q)) {
-            before = w.s.q;
+        move_to(run, from, high);
+        if (!any_reversed(model, before, run.s.q)) {
+            before = run.s.q;
             continue;
         }
         for (int n = 0; n < halvings; ++n) {
             const double middle = (low + high) / 2;
-            move_to(w, from, middle);
-            (any_reversed(model, before, w.s.q) ? high : low) = middle;
+            move_to(run, from, middle);
+            (any_reversed(model, before, run.s.q) ? high : low) = middle;
         }
-        move_to(w, from, low);
+        move_to(run, from, low);
         return low;
     }
-    w.go_to(a);  // no element reverses: one has only rotated far
-    w.s.q = end;
-    w.s.lambda = lambda_end;
+    run.go_to(a);  // no element reverses: one has only rotated far
+    run.s.q = end;
+    run.s.lambda = lambda_end;
     return std::nullopt;
 }
 

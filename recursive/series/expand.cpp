@@ -11,94 +11,102 @@ double parameter(const SteppingState& s, Drive drive) {
 }
 
 void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double a_1,
-            bool arc_length, const Vector<double>& ahead) {
+            bool arc_length, const Vector<double>& previous_direction) {
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     const auto inner = [&](const auto& a, const auto& b) {
         return (a.head(n).array() * W2 * b.head(n).array()).sum();
     };
-    const double here = parameter(s, e.drive);
-    begin(e, s.q, s.lambda, here);
+    // Order 0: the present point.
+    const double a_0 = parameter(s, e.drive);
+    begin(e, s.q, s.lambda, a_0);
     evaluate(e, {0, Pass::known});
-    drive_at(s, e.drive, 1.0, s.q, s.lambda);
-    back_substitute(s);
-    c.unit = s.work.x;
     c.x.setZero();
     c.x.col(0).tail(s.m()) = s.lambda;
     c.load.setZero();
-    c.load[0] = here;
+    c.load[0] = a_0;
+
+    // Order 1: x_1 = a_1 x̂; with arc length |x_1| = 1, in the previous direction.
+    drive_at(s, e.drive, 1.0, s.q, s.lambda);
+    back_substitute(s);
+    c.unit = s.work.x;
     if (arc_length) {
         const double size = std::sqrt(inner(c.unit, c.unit));
-        const bool back = ahead.isZero(0) ? a_1 < 0 : inner(c.unit, ahead) < 0;
-        c.load[1] = (back ? -1 : 1) / size;
+        const bool decreases =
+            previous_direction.isZero(0) ? a_1 < 0 : inner(c.unit, previous_direction) < 0;
+        c.load[1] = (decreases ? -1 : 1) / size;
     } else {
         c.load[1] = a_1;
     }
     c.x.col(1) = c.load[1] * c.unit;
     s.work.x = c.x.col(1);
 
-    compute_orders(e, c, s.work.x,
-                   OrderSteps{[&] {
-                                  s.work.upper = -e.G;
-                                  s.work.lower = -e.Phi;
-                                  back_substitute(s);
-                              },
-                              [&](int k) {  // x_k ⟂ x_1
-                                  if (!arc_length) return;
-                                  c.load[k] =
-                                      -inner(s.work.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
-                                  s.work.x += c.load[k] * c.unit;
-                              },
-                              [&](auto&& correct) {
-                                  if (arc_length) return false;
-                                  correct();
-                                  return !(s.work.x.head(n).norm() <=
-                                           loses_digits * c.x.col(1).head(n).norm());
-                              },
-                              [] {}});
+    // Higher orders.
+    const auto solve = [&] {
+        s.work.upper = -e.G;
+        s.work.lower = -e.Phi;
+        back_substitute(s);
+    };
+    // x_k + a_k x̂ ⟂ x_1
+    const auto straighten = [&](int k) {
+        if (!arc_length) return;
+        c.load[k] = -inner(s.work.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
+        s.work.x += c.load[k] * c.unit;
+    };
+    const auto loses = [&](auto&& correct) {
+        if (arc_length) return false;
+        correct();
+        return !(s.work.x.head(n).norm() <= loses_digits * c.x.col(1).head(n).norm());
+    };
+    const auto keep_all = [] {};
+    compute_orders(e, c, s.work.x, OrderSteps{solve, straighten, loses, keep_all});
 }
 
 double reach(const SteppingState& s, const Coefficients<double>& c, double tolerance,
-             double per_load, double radius) {
+             double metres_per_unit, double radius) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     // Where constraints alone determine the motion, λ has a longer series than the motion. A force
     // counts as the displacement that it causes at the largest stiffness.
-    const double most = stiffest(s.system.M), per_force = most > 0 ? 1 / most : 0;
+    const double max_stiffness = stiffest(s.system.M);
+    const double metres_per_force = max_stiffness > 0 ? 1 / max_stiffness : 0;
     const auto size = [&](int k) {
         return std::hypot(c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n)).norm(),
-                          per_force * c.x.col(k).tail(s.m()).norm(),
-                          k > 1 ? per_load * c.load[k] : 0.0);
+                          metres_per_force * c.x.col(k).tail(s.m()).norm(),
+                          k > 1 ? metres_per_unit * c.load[k] : 0.0);
     };
-    double last = size(p);
-    if (p > 1 && std::isfinite(radius)) last = std::max(last, size(p - 1) / radius);
-    if (!std::isfinite(last)) return std::numeric_limits<double>::quiet_NaN();
-    if (last == 0) return std::numeric_limits<double>::infinity();
-    double tau = std::pow(tolerance / last, 1.0 / p);
+    double last_size = size(p);
+    if (p > 1 && std::isfinite(radius)) last_size = std::max(last_size, size(p - 1) / radius);
+    if (!std::isfinite(last_size)) return std::numeric_limits<double>::quiet_NaN();
+    if (last_size == 0) return std::numeric_limits<double>::infinity();
+    const double tau = std::pow(tolerance / last_size, 1.0 / p);
     if (!(tau > radius / 2)) return tau;
-    double least = 0;
-    tau = std::min(tau, radius);
-    for (int k = 0; k < 50; ++k) {
-        const double middle = (least + tau) / 2;
-        (last * std::pow(middle, p) * middle / (radius - middle) <= tolerance ? least : tau) =
-            middle;
+    // |x_p| τᵖ (τ/R) / (1 - τ/R) = tolerance, by bisection
+    constexpr int halvings = 50;
+    double low = 0, high = std::min(tau, radius);
+    for (int k = 0; k < halvings; ++k) {
+        const double middle = (low + high) / 2;
+        const double tail = last_size * std::pow(middle, p) * middle / (radius - middle);
+        (tail <= tolerance ? low : high) = middle;
     }
-    return least;
+    return low;
 }
 
 Singularity nearest_singularity(const SteppingState& s, const Coefficients<double>& c) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
-    const int from = std::max(4, p - 5);
+    // The last six orders, which the nearest singularity dominates; y_2 is the lowest order used.
+    const int first_order = std::max(4, p - 5);
     Singularity none{std::numeric_limits<double>::infinity(), 0, 1};
     const auto weighted = [&](int k) -> Vector<double> {
         return c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n));
     };
-    const double last = weighted(p).norm(), before = weighted(p - 1).norm();
-    if (p < 5 || !(last > 0 || before > 0)) return none;
+    const double last = weighted(p).norm(), last_but_one = weighted(p - 1).norm();
+    if (p < 5 || !(last > 0 || last_but_one > 0)) return none;
     // Scale τ so that the last coefficients are near one and all orders have the same weight
     // in the fit.
-    const double unit = std::min(
-        last > 0 ? std::pow(last, -1.0 / p) : std::numeric_limits<double>::infinity(),
-        before > 0 ? std::pow(before, -1.0 / (p - 1)) : std::numeric_limits<double>::infinity());
+    const double unit =
+        std::min(last > 0 ? std::pow(last, -1.0 / p) : std::numeric_limits<double>::infinity(),
+                 last_but_one > 0 ? std::pow(last_but_one, -1.0 / (p - 1))
+                                  : std::numeric_limits<double>::infinity());
     Matrix<double> y(n, p + 1);
     double binomial = 1, power = 1;
     for (int k = 0; k <= p; ++k) {
@@ -106,18 +114,21 @@ Singularity nearest_singularity(const SteppingState& s, const Coefficients<doubl
             binomial *= std::abs((1.5 - k) / k);
             power *= unit;
         }
-        if (k >= from - 2) y.col(k) = weighted(k) * (power / binomial);
+        if (k >= first_order - 2) y.col(k) = weighted(k) * (power / binomial);
     }
-    const int rows = p - from + 1;
-    Matrix<double> A(rows * n, 2);
-    Vector<double> b(rows * n);
-    for (int k = from; k <= p; ++k) {
-        A.block((k - from) * n, 0, n, 1) = y.col(k - 1);
-        A.block((k - from) * n, 1, n, 1) = y.col(k - 2);
-        b.segment((k - from) * n, n) = y.col(k);
+    // Least squares for y_k = b_1 y_{k-1} + b_2 y_{k-2}.
+    const int orders = p - first_order + 1;
+    Matrix<double> A(orders * n, 2);
+    Vector<double> b(orders * n);
+    for (int k = first_order; k <= p; ++k) {
+        const int row = (k - first_order) * n;
+        A.block(row, 0, n, 1) = y.col(k - 1);
+        A.block(row, 1, n, 1) = y.col(k - 2);
+        b.segment(row, n) = y.col(k);
     }
     if (!A.allFinite() || !(b.norm() > 0)) return none;
     const Eigen::VectorXd fit = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(A).solve(b);
+    // z² = b_1 z + b_2; the root of largest modulus belongs to the nearest singularity, τ_s = 1 / z.
     const std::complex<double> root = std::sqrt(std::complex<double>(fit[0] * fit[0] / 4 + fit[1]));
     std::complex<double> z = fit[0] / 2 + root;
     if (std::abs(fit[0] / 2 - root) > std::abs(z)) z = fit[0] / 2 - root;

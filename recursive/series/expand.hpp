@@ -83,21 +83,21 @@ void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x,
 inline constexpr double loses_digits = 1e-13;
 
 // Computes the polynomial x(τ) about (s.q, s.lambda, s.a), with the factors in s.system. `a_1` is
-// a_1 with a as parameter. With arc length only its sign counts, or, where `ahead` [n] is not zero,
-// the direction of the previous motion. Allocates nothing.
+// a_1 with a as parameter. With arc length only its sign counts, or, where `previous_direction` [n] is
+// not zero, the direction of that motion. Allocates nothing.
 void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double a_1,
-            bool arc_length, const Vector<double>& ahead);
+            bool arc_length, const Vector<double>& previous_direction);
 
 // The present parameter of the equations: a, or t while settling.
 double parameter(const SteppingState& s, Drive drive);
 
 // Range of τ in which the truncation error is below `tolerance` [m]: (ε / |x_p|)^(1/p),
-// |x| = √(|Δr|² + L²|Δπ|² + |λ|²/k² + (per_load a_k)²) with k the largest stiffness of (24) and
-// `per_load` metres for a unit of a. The range is shorter where the radius of convergence R is less
+// |x| = √(|Δr|² + L²|Δπ|² + |λ|²/k² + (metres_per_unit a_k)²) with k the largest stiffness of (24)
+// and `metres_per_unit` the length that counts as much as a unit of a. The range is shorter where the radius of convergence R is less
 // than twice that: the terms fall as (τ/R)^k and sum to |x_p| τ^p (τ/R) / (1 - τ/R). An x_p that
 // vanishes by symmetry is replaced by |x_{p-1}| / R. NaN if a coefficient is not finite.
 double reach(const SteppingState& s, const Coefficients<double>& c, double tolerance,
-             double per_load, double radius);
+             double metres_per_unit, double radius);
 
 // Singularity nearest to τ = 0. Near a limit point, and near most branch points, x ~ (1 - τ/τ_s)^½:
 // the coefficients divided by the binomial coefficients (½ over k) form a geometric series, and two

@@ -27,24 +27,33 @@ bool became_inconsistent(SteppingState& s) {
     return is_inconsistent(s, s.q);
 }
 
-// Newton corrections at the present point; the last factors serve the next expansion. The first
-// correction is the error of the expansion. With arc length the parameter is corrected too, so that
-// nothing moves along the path.
-Outcome correct_at_end(Continuation& w, Certificate* certificate, double& error) {
-    SteppingState& s = w.s;
+// Newton corrections at the present point; the last factors serve the next expansion. `error` is the
+// size of the first correction [m], the error of the expansion. With arc length the parameter a is
+// corrected too: with x_0 the correction at constant a, x̂ the solution for a unit of a and x' the
+// direction of the path,
+//
+//   x = x_0 + x̂ Δa,   Δa = -(x'·x_0) / (x'·x̂),   a·b = aᵀ W² b over the bodies,
+//
+// so that x'·x = 0: nothing moves along the path.
+Outcome correct_at_end(Continuation& run, Certificate* certificate, double& error) {
+    SteppingState& s = run.s;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.setup.length;
-    double before = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 8; ++k) {
+    constexpr int max_corrections = 8;
+    // A correction below this share of the tolerance is the last one: the factors belong to the point
+    // before it, which is accurate enough for the next expansion.
+    constexpr double final_share = 1e-2;
+    double last_size = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < max_corrections; ++k) {
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
         double parameter_change = 0;  // [m]
-        const bool free_parameter = w.by_arc() && !w.ahead.isZero(0);
-        if (free_parameter) {
-            drive_at(s, w.e.drive, 1.0, s.q, s.lambda);
+        const bool corrects_parameter = run.by_arc() && !run.previous_direction.isZero(0);
+        if (corrects_parameter) {
+            drive_at(s, run.e.drive, 1.0, s.q, s.lambda);
             back_substitute(s);
-            w.c.unit = s.work.x;
+            run.c.unit = s.work.x;
         }
         residual_at(s, s.q, s.lambda);
         if (k == 0 && certificate != nullptr) {
@@ -52,28 +61,27 @@ Outcome correct_at_end(Continuation& w, Certificate* certificate, double& error)
             certificate->constraint_end = largest_violation(s);
         }
         back_substitute(s);
-        if (free_parameter) {
-            const auto along = w.ahead.head(n).array() * W2;
+        if (corrects_parameter) {
+            const auto along = run.previous_direction.head(n).array() * W2;
             const double da = -(along * s.work.x.head(n).array()).sum() /
-                              (along * w.c.unit.head(n).array()).sum();
-            s.work.x += da * w.c.unit;
-            w.go_to(w.parameter_now() + da);
-            parameter_change = w.per_unit * std::abs(da);
+                              (along * run.c.unit.head(n).array()).sum();
+            s.work.x += da * run.c.unit;
+            run.go_to(run.parameter_now() + da);
+            parameter_change = run.metres_per_unit * std::abs(da);
         }
         if (!s.work.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
-        const double missed = std::max(size, parameter_change);
-        if (const Outcome outcome = check_idle_load_here(w.s, missed);
+        const double correction = std::max(size, parameter_change);
+        if (const Outcome outcome = check_idle_load_here(run.s, correction);
             outcome != Outcome::converged)
             return outcome;
-        if (k == 0) error = missed;
-        if (!(size < before)) break;  // at rounding level
-        before = size;
+        if (k == 0) error = correction;
+        if (!(size < last_size)) break;  // at rounding level
+        last_size = size;
         s.step.dq = s.work.x.head(n);
         advance(s.q, s.step.dq);
         s.lambda += s.work.x.tail(s.m());
-        // The factors belong to the point before this correction: accurate enough if it was small.
-        if (size <= std::max(rounding, 1e-2 * w.options.tolerance)) break;
+        if (size <= std::max(rounding, final_share * run.options.tolerance)) break;
     }
     return became_inconsistent(s) ? Outcome::inconsistent_constraints : Outcome::converged;
 }
@@ -85,137 +93,163 @@ std::vector<Pose> poses_of(const State<double>& q) {
     return poses;
 }
 
-// Shortens the range to where the first deformation leaves its piece.
-void stop_at_knots(const Continuation& w, End& end) {
-    const double reach = end.tau;
-    std::vector<std::pair<Crossing, PieceExit>> met;
-    for (std::size_t k = 0; k < w.curves.size(); ++k)
-        if (const auto there =
-                exit_from_piece(deformation_series(w.e, w.curves[k]), w.curves[k], reach, w.near)) {
-            met.push_back({{k, there->direction}, *there});
-            if (there->wrong_piece) end.wrong_pieces.push_back(met.back().first);
-            if (there->tau < end.tau)
-                end = {.tau = there->tau, .wrong_pieces = std::move(end.wrong_pieces)};
-        }
+// Shortens the range to where the first deformation leaves its piece. The branch does not end there:
+// `reaches_end` becomes false.
+void stop_at_knots(const Continuation& run, Range& range) {
+    const double reach = range.tau;
+    std::vector<std::pair<Crossing, PieceExit>> exits;
+    for (std::size_t k = 0; k < run.curves.size(); ++k) {
+        const auto exit = exit_from_piece(deformation_series(run.e, run.curves[k]), run.curves[k],
+                                          reach, run.knot_tolerance);
+        if (!exit) continue;
+        exits.push_back({{k, exit->direction}, *exit});
+        if (exit->wrong_piece) range.wrong_pieces.push_back(exits.back().first);
+        if (exit->tau < range.tau)
+            range = {.tau = exit->tau, .wrong_pieces = std::move(range.wrong_pieces)};
+    }
     // Several deformations may reach their knots at the same τ.
-    for (const auto& [crossing, there] : met)
-        if (there.tau <= end.tau ||
-            is_at_knot(deformation_series(w.e, w.curves[crossing.curve]), w.curves[crossing.curve],
-                       crossing.direction, end.tau, w.near))
-            end.crossings.push_back(crossing);
+    for (const auto& [crossing, exit] : exits)
+        if (exit.tau <= range.tau ||
+            is_at_knot(deformation_series(run.e, run.curves[crossing.curve]),
+                       run.curves[crossing.curve], crossing.direction, range.tau,
+                       run.knot_tolerance))
+            range.crossings.push_back(crossing);
 }
 
 // Whether a curve leaves its piece before a limit point at τ_s straight ahead. Such a limit point
 // belongs to polynomials that are not valid that far. Near it x_s - x ~ (1 - τ/τ_s)^½, so that a
 // deformation still moves by 2 τ_s times its present rate; the test allows twice that, for the
 // terms that the square root omits.
-bool meets_knot_before(const Continuation& w, double tau_s) {
-    return std::ranges::any_of(w.curves, [&](const CurvePiece& f) {
-        const double rate = deformation(w.e, f.elastic, f.axis, 1);
-        const auto to = distance_to_knot(w.e, f, rate < 0 ? -1 : +1);
-        return to && *to <= 4 * tau_s * std::abs(rate);
+bool meets_knot_before(const Continuation& run, double tau_s) {
+    return std::ranges::any_of(run.curves, [&](const CurvePiece& f) {
+        const double rate = deformation(run.e, f.elastic, f.axis, 1);
+        const auto distance = distance_to_knot(run.e, f, rate < 0 ? -1 : +1);
+        return distance && *distance <= 4 * tau_s * std::abs(rate);
     });
 }
 
 // Range of validity of the expansion at the parameter a_0; an outcome other than `converged` if the
-// branch does not continue.
-Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singularity, End& end) {
-    end = {.tau = reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius)};
-    if (std::isnan(end.tau)) return Outcome::not_finite;
-    const double reached = end.tau;
-    if (w.by_arc()) {
-        // [m]; a branch without curvature would have an infinite range
-        end.tau = std::min(end.tau, 1.0);
-        if (const auto first =
-                first_zero([&](double t) { return polynomial(w.c.load, t) - w.end; }, end.tau))
-            end = {.tau = *first, .last = true};
-        stop_at_knots(w, end);
+// branch does not continue. The range ends at the truncation tolerance, at the end of the branch or
+// at a knot, whichever comes first.
+Outcome range_of_validity(Continuation& run, double a_0, const Singularity& singularity,
+                          Range& range) {
+    // Truncation.
+    const double accurate_range =
+        reach(run.s, run.c, run.options.tolerance, run.metres_per_unit, singularity.radius);
+    range = {.tau = accurate_range};
+    if (std::isnan(range.tau)) return Outcome::not_finite;
+
+    // End of the branch, then knots.
+    if (run.by_arc()) {
+        constexpr double max_arc = 1;  // [m]; a branch without curvature has an infinite range
+        range.tau = std::min(range.tau, max_arc);
+        if (const auto end =
+                first_zero([&](double t) { return polynomial(run.c.load, t) - run.last_parameter; },
+                           range.tau))
+            range = {.tau = *end, .reaches_end = true};
+        stop_at_knots(run, range);
         return Outcome::converged;
     }
-    const double rest = (w.end - a_0) / w.to;
-    if (end.tau >= rest) end = {.tau = rest, .last = true};
-    stop_at_knots(w, end);
-    if (end.last || !end.crossings.empty() || !end.wrong_pieces.empty()) return Outcome::converged;
-    // distance of the singularity, as a share of the branch: close; too close to resolve
-    constexpr double near = 1e-4, unresolved = 1e-8;
-    const bool straight_ahead = singularity.angle < 1e-3 && singularity.misfit < 1e-2;
-    if (singularity.radius < near && straight_ahead &&
-        (singularity.radius < unresolved || !meets_knot_before(w, singularity.radius))) {
-        // A branch point straight ahead that comes nearer with each expansion is a limit point.
-        w.path.limits.push_back(a_0 + singularity.radius * w.to);
+    const double tau_end = (run.last_parameter - a_0) / run.branch_end;
+    if (range.tau >= tau_end) range = {.tau = tau_end, .reaches_end = true};
+    stop_at_knots(run, range);
+    if (range.reaches_end || !range.crossings.empty() || !range.wrong_pieces.empty())
+        return Outcome::converged;
+
+    // Limit point. τ is a share of the branch here, as a_1 is branch_end. Ranges that follow one
+    // another shrink with the distance τ_s of the limit point, so that a singularity straight ahead
+    // at a small τ_s is taken for one; at the very small τ_s whatever the knots.
+    constexpr double small_distance = 1e-4, very_small_distance = 1e-8;
+    constexpr double max_angle = 1e-3, max_misfit = 1e-2;  // of a singularity straight ahead
+    const bool straight_ahead = singularity.angle < max_angle && singularity.misfit < max_misfit;
+    if (singularity.radius < small_distance && straight_ahead &&
+        (singularity.radius < very_small_distance || !meets_knot_before(run, singularity.radius))) {
+        run.path.limits.push_back(a_0 + singularity.radius * run.branch_end);
         return Outcome::limit_point;
     }
-    if (reached < 1e-9 && singularity.radius < 1e-6)
-        return Outcome::branch_lost;  // or the order is too low for the tolerance
+    // Another singularity so near that the path cannot be resolved, or too low an order for the
+    // tolerance.
+    constexpr double min_range = 1e-9, min_radius = 1e-6;
+    if (accurate_range < min_range && singularity.radius < min_radius) return Outcome::branch_lost;
     return Outcome::converged;
 }
 
 // Evaluates the expansion about `from` at its midpoint and end, corrects the end by Newton's method
-// and fills the certificate. If the error at the end is too large, the range is shortened
-// and the evaluation repeated.
-Outcome accept_expansion(Continuation& w, const State<double>& from, End& end,
+// and fills the certificate. If the error at the end is above the limit, the range is shortened and
+// the evaluation repeated: the error of order p grows as τᵖ⁺¹, so that (tolerance / error)^(1/(p+1))
+// times the range meets the tolerance.
+Outcome accept_expansion(Continuation& run, const State<double>& from, Range& range,
                          Certificate& certificate) {
-    for (int shorter = 0; shorter <= 20; ++shorter) {
-        move_to(w, from, end.tau / 2);
-        residual_at(w.s, w.s.q, w.s.lambda);
-        certificate.force_middle = largest_force(w.s);
-        certificate.constraint_middle = largest_violation(w.s);
-        if (w.stable)
-            w.at_middle =
-                factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged ? determinant(w) : -1;
+    constexpr int max_shortenings = 20;
+    constexpr double accepted = 10;  // times the tolerance: the error is only estimated before
+    constexpr double safety = 0.9, min_factor = 0.3, max_factor = 0.9;
+    constexpr double factor_without_error = 0.5;  // Newton's method did not converge
+    for (int shortening = 0; shortening <= max_shortenings; ++shortening) {
+        move_to(run, from, range.tau / 2);
+        residual_at(run.s, run.s.q, run.s.lambda);
+        certificate.force_middle = largest_force(run.s);
+        certificate.constraint_middle = largest_violation(run.s);
+        if (run.stable)
+            run.middle_determinant =
+                factorise_at(run.s, run.s.q, run.s.lambda) == Outcome::converged ? determinant(run)
+                                                                                 : -1;
 
-        move_to(w, from, end.tau);
-        if (end.last && !w.by_arc()) w.go_to(w.end);
-        w.ahead = w.by_arc() ? derivative(w.c.x, end.tau) : Vector<double>(w.c.x.col(1));
-        const Outcome outcome = correct_at_end(w, &certificate, certificate.error_end);
+        move_to(run, from, range.tau);
+        if (range.reaches_end && !run.by_arc()) run.go_to(run.last_parameter);
+        run.previous_direction =
+            run.by_arc() ? derivative(run.c.x, range.tau) : Vector<double>(run.c.x.col(1));
+        const Outcome outcome = correct_at_end(run, &certificate, certificate.error_end);
         const double error = certificate.error_end;
-        if (outcome == Outcome::converged && error <= 10 * w.options.tolerance) return outcome;
+        if (outcome == Outcome::converged && error <= accepted * run.options.tolerance)
+            return outcome;
         if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode ||
             outcome == Outcome::inconsistent_constraints)
             return outcome;
-        ++w.path.rejected;
-        const double shrink = std::pow(w.options.tolerance / error, 1.0 / (w.e.order() + 1));
-        end = {.tau = end.tau *
-                      (outcome == Outcome::converged ? std::clamp(0.9 * shrink, 0.3, 0.9) : 0.5)};
+        ++run.path.rejected;
+        const double factor = std::pow(run.options.tolerance / error, 1.0 / (run.e.order() + 1));
+        range = {.tau = range.tau * (outcome == Outcome::converged
+                                         ? std::clamp(safety * factor, min_factor, max_factor)
+                                         : factor_without_error)};
     }
     return Outcome::branch_lost;
 }
 
 // Starts at the design position with the factors of the analysis.
-Outcome begin_at_design(Continuation& w, const Analysis& analysis) {
-    w.go_to(0);
+Outcome begin_at_design(Continuation& run, const Analysis& analysis) {
+    run.go_to(0);
     // Select the piece of each curve: at a knot the analysis may have used the other piece.
-    if (!w.curves.empty()) {
-        begin(w.e, w.s.q, w.s.lambda, w.parameter_now());
-        evaluate(w.e, {0, Pass::known});
+    if (!run.curves.empty()) {
+        begin(run.e, run.s.q, run.s.lambda, run.parameter_now());
+        evaluate(run.e, {0, Pass::known});
     }
-    for (auto& curve : w.curves) {
-        find_piece(w.e, curve);
-        w.use(curve);
+    for (auto& curve : run.curves) {
+        find_piece(run.e, curve);
+        run.use_piece(curve);
     }
-    w.go_to(w.to);  // with all forces at the end of the branch
-    if (w.e.drive == Drive::start ? loads_idle_mode(w.s)
-                                  : check_idle_load_here(w.s, 0) != Outcome::converged)
+    run.go_to(run.branch_end);  // with all forces at the end of the branch
+    if (run.e.drive == Drive::start ? loads_idle_mode(run.s)
+                                    : check_idle_load_here(run.s, 0) != Outcome::converged)
         return Outcome::loaded_idle_mode;
-    w.go_to(0);
-    if (w.curves.empty()) return check_factors(w.s, w.s.q, analysis.pivot_ratio);
-    return factorise_at(w.s, w.s.q, w.s.lambda);
+    run.go_to(0);
+    if (run.curves.empty()) return check_factors(run.s, run.s.q, analysis.pivot_ratio);
+    return factorise_at(run.s, run.s.q, run.s.lambda);
 }
 
 // Changes every curve in `crossings` to its neighbouring piece. The matrix is factorised again if a
 // slope jumps; the direction of the motion jumps there too. With arc length the path continues on
 // the side on which the product of the determinant's sign and a' is unchanged.
-Outcome cross_knots(Continuation& w, const std::vector<Crossing>& crossings) {
+Outcome cross_knots(Continuation& run, const std::vector<Crossing>& crossings) {
     bool jumps = false;
     for (const auto& [k, direction] : crossings) {
-        jumps = cross_knot(w.curves[k], direction) || jumps;
-        w.use(w.curves[k]);
+        jumps = cross_knot(run.curves[k], direction) || jumps;
+        run.use_piece(run.curves[k]);
     }
     if (!jumps) return Outcome::converged;
-    const Outcome outcome = factorise_at(w.s, w.s.q, w.s.lambda);
-    if (w.by_arc() && !w.path.expansions.empty()) {
-        w.ahead.setZero();
-        w.a_1 = w.s.system.lu.orientation == w.sign_at_start ? std::abs(w.to) : -std::abs(w.to);
+    const Outcome outcome = factorise_at(run.s, run.s.q, run.s.lambda);
+    if (run.by_arc() && !run.path.expansions.empty()) {
+        run.previous_direction.setZero();
+        run.a_1 = run.s.system.lu.orientation == run.sign_at_start ? std::abs(run.branch_end)
+                                                                   : -std::abs(run.branch_end);
     }
     return outcome;
 }
@@ -231,41 +265,42 @@ std::vector<Piece> pieces_of(const std::vector<CurvePiece>& curves) {
 // the motion: a linear complementarity problem. All such curves change piece together; once a set
 // of pieces would repeat, only the first of them does, which ends where a solution exists (Murty
 // 1974). Where no set agrees with its motion, the path turns back at the knot.
-Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
+Outcome expand_here(Continuation& run, Singularity& singularity, Range& range) {
     std::vector<std::vector<Piece>> tried;
     bool together = true;
     for (;;) {
-        expand(w.s, w.e, w.c, w.a_1, w.by_arc(), w.ahead);
-        singularity = nearest_singularity(w.s, w.c);
-        if (const Outcome o = range_of_validity(w, w.parameter_now(), singularity, end);
+        expand(run.s, run.e, run.c, run.a_1, run.by_arc(), run.previous_direction);
+        singularity = nearest_singularity(run.s, run.c);
+        if (const Outcome o = range_of_validity(run, run.parameter_now(), singularity, range);
             o != Outcome::converged)
             return o;
-        if (end.wrong_pieces.empty()) return Outcome::converged;
-        tried.push_back(pieces_of(w.curves));
-        const auto would_repeat = [&] {
-            auto next = pieces_of(w.curves);
-            for (const auto& [k, direction] : end.wrong_pieces) next[k] += direction;
+        if (range.wrong_pieces.empty()) return Outcome::converged;
+        tried.push_back(pieces_of(run.curves));
+        const auto repeats_pieces = [&] {
+            auto next = pieces_of(run.curves);
+            for (const auto& [k, direction] : range.wrong_pieces) next[k] += direction;
             return std::ranges::find(tried, next) != tried.end();
         };
-        if (together && would_repeat()) {
+        if (together && repeats_pieces()) {
             together = false;
-            tried.assign(1, pieces_of(w.curves));
+            tried.assign(1, pieces_of(run.curves));
         }
-        if (!together) end.wrong_pieces.resize(1);
-        if (would_repeat()) {
-            w.path.limits.push_back(w.parameter_now());
+        if (!together) range.wrong_pieces.resize(1);
+        if (repeats_pieces()) {
+            run.path.limits.push_back(run.parameter_now());
             return Outcome::limit_point;
         }
-        if (const Outcome o = cross_knots(w, end.wrong_pieces); o != Outcome::converged) return o;
+        if (const Outcome o = cross_knots(run, range.wrong_pieces); o != Outcome::converged)
+            return o;
     }
 }
 
 // Maximum number of expansions: the option's number, and as many again for each crossing of a knot;
 // crossings count up to the number of knots.
-std::size_t max_expansions(const Continuation& w, std::size_t knots_crossed) {
+std::size_t max_expansions(const Continuation& run, std::size_t knots_crossed) {
     std::size_t knots = 0;
-    for (const auto& curve : w.curves) knots += curve.curve->knots.size();
-    return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(knots_crossed, knots));
+    for (const auto& curve : run.curves) knots += curve.curve->knots.size();
+    return static_cast<std::size_t>(run.options.expansions) * (1 + std::min(knots_crossed, knots));
 }
 
 // What the sides of a branch share: the start, its stability and the coefficients x_k of the
@@ -273,7 +308,7 @@ std::size_t max_expansions(const Continuation& w, std::size_t knots_crossed) {
 struct SharedStart {
     State<double> q;
     Vector<double> lambda;
-    std::vector<double> held;  // Held::value
+    std::vector<double> held_values;  // Held::value
     Matrix<double> x;
     Vector<double> load;
     double log_determinant = 0;
@@ -282,126 +317,173 @@ struct SharedStart {
 };
 
 // The expansion at the start from that of another side of the branch.
-Outcome expand_shared(Continuation& w, const SharedStart& shared, Singularity& singularity,
-                      End& end) {
-    const double r = w.a_1 / shared.load[1];
+Outcome expand_shared(Continuation& run, const SharedStart& shared, Singularity& singularity,
+                      Range& range) {
+    const double r = run.a_1 / shared.load[1];
     double power = 1;
     for (Eigen::Index k = 0; k < shared.x.cols(); ++k, power *= r)
-        w.c.x.col(k) = power * shared.x.col(k);
-    w.c.load = shared.load;
-    w.c.load[1] = w.a_1;
-    singularity = nearest_singularity(w.s, w.c);
-    return range_of_validity(w, w.parameter_now(), singularity, end);
+        run.c.x.col(k) = power * shared.x.col(k);
+    run.c.load = shared.load;
+    run.c.load[1] = run.a_1;
+    singularity = nearest_singularity(run.s, run.c);
+    return range_of_validity(run, run.parameter_now(), singularity, range);
+}
+
+// Determinant and stability at the start of a path.
+struct StartConditions {
+    // the start of another side of the branch (null: none); with a value, expand_shared() has used it
+    std::optional<SharedStart>* shared = nullptr;
+    bool uses_shared = false;
+    const StartStability* stability = nullptr;  // where it is known
+};
+
+// Notes the determinant's sign at the start of the path and, with the load as parameter, checks the
+// stability there. Fills the empty shared start for the other side of the branch.
+Outcome note_start(Continuation& run, const StartConditions& conditions) {
+    SteppingState& s = run.s;
+    const auto& [shared, uses_shared, known_stability] = conditions;
+    run.sign_at_start =
+        uses_shared ? (*shared)->determinant_sign : determinant_sign(run, run.branch_end);
+    if (run.e.drive != Drive::rate || run.by_arc()) return Outcome::converged;
+    const StartStability stability = uses_shared                  ? (*shared)->stability
+                                     : known_stability != nullptr ? *known_stability
+                                                                  : start_stability(s);
+    run.softest_modes = stability.softest;
+    run.stable = stability.least.of_energy && stability.least.value > 0;
+    if (const Outcome outcome = check_start_stability(s, stability); outcome != Outcome::converged)
+        return outcome;
+    if (shared != nullptr && !uses_shared)
+        *shared = {s.q,
+                   s.lambda,
+                   s.system.held.value,
+                   run.c.x,
+                   run.c.load,
+                   log_determinant(s.system),
+                   run.sign_at_start,
+                   stability};
+    return Outcome::converged;
+}
+
+// Shortens the range to the first event inside it, which the polynomial passes smoothly, and moves
+// the state there. The outcome of the path at that event, `converged` if there is none.
+Outcome stop_at_event(Continuation& run, const State<double>& from, Range& range) {
+    if (const auto reversal = find_reversal(run, from, range.tau)) {
+        range = {.tau = *reversal};
+        run.reversed = true;
+        return Outcome::branch_lost;
+    }
+    bool singular = is_past(run, parameter_rate_ahead(run));
+    if (!singular)
+        if (const auto instability = find_instability(run, from, range.tau)) {
+            singular = true;
+            range.tau = *instability;
+        }
+    if (!singular) return Outcome::converged;
+    range.tau = locate_bifurcation(run, from, range.tau);
+    return Outcome::bifurcation_point;
 }
 
 // Follows the path from an equilibrium, with its factors in s.system, to the end. `known`:
 // stability of that equilibrium, if known. `shared`: the start of another side of the branch;
 // filled if it is empty.
-Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
+Outcome follow_to_end(Continuation& run, const StartStability* known = nullptr,
                       std::optional<SharedStart>* shared = nullptr) {
-    SteppingState& s = w.s;
+    // With arc length the path may return; beyond this multiple of the branch it does not.
+    constexpr double max_excursion = 2;
+    SteppingState& s = run.s;
     std::size_t knots_crossed = 0;
-    const std::vector<Piece> pieces = pieces_of(w.curves);
-    while (w.path.expansions.size() < max_expansions(w, knots_crossed)) {
-        const bool starts = w.path.expansions.empty();
-        const bool has_shared = starts && shared != nullptr && *shared;
+    const std::vector<Piece> pieces = pieces_of(run.curves);
+    while (run.path.expansions.size() < max_expansions(run, knots_crossed)) {
+        // Expansion and its range of validity.
+        const bool starts = run.path.expansions.empty();
+        const bool uses_shared = starts && shared != nullptr && *shared;
         const State<double> from = s.q;
         Singularity singularity;
-        End end;
+        Range range;
         Certificate certificate;
-        if (const Outcome o = has_shared ? expand_shared(w, **shared, singularity, end)
-                                         : expand_here(w, singularity, end);
+        if (const Outcome o = uses_shared ? expand_shared(run, **shared, singularity, range)
+                                          : expand_here(run, singularity, range);
             o != Outcome::converged)
             return o;
-        // Crossing a knot must not have changed the sign of the determinant.
-        if (const int sign_here =
-                has_shared ? (*shared)->determinant_sign : determinant_sign(w, w.to);
-            starts) {
-            w.sign_at_start = sign_here;
-            if (w.e.drive == Drive::rate && !w.by_arc()) {
-                const bool is_known = known != nullptr && pieces_of(w.curves) == pieces;
-                const StartStability start = has_shared ? (*shared)->stability
-                                             : is_known ? *known
-                                                        : start_stability(s);
-                w.softest = start.softest;
-                w.stable = start.least.of_energy && start.least.value > 0;
-                if (const Outcome o = check_start_stability(s, start); o != Outcome::converged)
-                    return o;
-                if (shared != nullptr && !has_shared)
-                    *shared = {s.q,       s.lambda, s.system.held.value,
-                               w.c.x,     w.c.load, log_determinant(s.system),
-                               sign_here, start};
-            }
-        } else if (sign_here != w.sign_at_start && !w.by_arc()) {
+
+        // Determinant and stability where the expansion starts. Crossing a knot must not have
+        // changed the sign of the determinant.
+        if (starts) {
+            // A stability that is known belongs to the pieces before expand_here().
+            const bool is_known = known != nullptr && pieces_of(run.curves) == pieces;
+            if (const Outcome o =
+                    note_start(run, {shared, uses_shared, is_known ? known : nullptr});
+                o != Outcome::converged)
+                return o;
+        } else if (!run.by_arc() && determinant_sign(run, run.branch_end) != run.sign_at_start) {
             return Outcome::singular;
         }
-        w.log_begin = has_shared ? (*shared)->log_determinant : log_determinant(s.system);
-        if (const Outcome o = accept_expansion(w, from, end, certificate); o != Outcome::converged)
+        run.start_log_determinant =
+            uses_shared ? (*shared)->log_determinant : log_determinant(s.system);
+
+        // Correction at the end of the range, and events inside it.
+        if (const Outcome o = accept_expansion(run, from, range, certificate);
+            o != Outcome::converged)
             return o;
-        const auto reversed = find_reversal(w, from, end.tau);
-        if (reversed) {
-            end = {.tau = *reversed};
-            w.reversed = true;
-        }
-        // The polynomial continues past a bifurcation point, and the branch past a
-        // loss of stability.
-        bool past = !reversed && is_past(w, parameter_rate_ahead(w));
-        if (!past && !reversed)
-            if (const auto lost = find_instability(w, from, end.tau)) {
-                past = true;
-                end.tau = *lost;
-            }
-        if (past) end.tau = locate_bifurcation(w, from, end.tau);
-        if (w.by_arc()) record_limit_points(w, end.tau);
-        w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,
-                                     static_cast<int>(end.crossings.size()), singularity,
-                                     certificate});
-        knots_crossed += end.crossings.size();
-        if (past) return Outcome::bifurcation_point;
-        if (reversed) return Outcome::branch_lost;
-        if (end.last) return w.end == w.to ? Outcome::converged : Outcome::inconsistent_constraints;
-        if (w.by_arc() && !(std::abs(w.parameter_now()) <= 2 * std::abs(w.to)))
+        const Outcome event = stop_at_event(run, from, range);
+        if (run.by_arc()) record_limit_points(run, range.tau);
+        run.path.expansions.push_back({poses_of(from), run.c.x, run.c.load, range.tau,
+                                       static_cast<int>(range.crossings.size()), singularity,
+                                       certificate});
+        knots_crossed += range.crossings.size();
+        if (event != Outcome::converged) return event;
+
+        // End of the branch, or the next pieces of the curves. A branch that is cut at
+        // last_parameter ends where a driven length vanishes.
+        if (range.reaches_end)
+            return run.last_parameter == run.branch_end ? Outcome::converged
+                                                        : Outcome::inconsistent_constraints;
+        if (run.by_arc() &&
+            !(std::abs(run.parameter_now()) <= max_excursion * std::abs(run.branch_end)))
             return Outcome::branch_lost;
-        if (const Outcome o = cross_knots(w, end.crossings); o != Outcome::converged) return o;
+        if (const Outcome o = cross_knots(run, range.crossings); o != Outcome::converged) return o;
     }
     return Outcome::iteration_limit;
 }
 
-std::string failure_text(const Continuation& w, Outcome outcome, const Diagnosis& diagnosis) {
-    const bool settles = w.e.drive == Drive::start;
-    const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
+std::string failure_text(const Continuation& run, Outcome outcome, const Diagnosis& diagnosis) {
+    const bool settles = run.e.drive == Drive::start;
+    const std::string branch = fmt::format("branch '{}'", run.s.branch.name);
     const std::string place =
-        settles
-            ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch,
-                          w.parameter_now())
-            : fmt::format("{}: at {}", branch, parameter_text(w.s.branch.unit, w.parameter_now()));
-    if (!w.s.start.unstable.empty())
+        settles ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch,
+                              run.parameter_now())
+                : fmt::format("{}: at {}", branch,
+                              parameter_text(run.s.branch.unit, run.parameter_now()));
+    if (!run.s.start.unstable.empty())
         return fmt::format("{}: the equilibrium that settles at 0 is unstable: {}", branch,
-                           w.s.start.unstable);
+                           run.s.start.unstable);
     switch (outcome) {
         case Outcome::limit_point:
-            return settles ? fmt::format(
-                                 "{}: settling the start, limit point at {:.9g} of the homotopy, "
-                                 "past it "
-                                 "no equilibrium continues it",
-                                 branch, w.path.limits.back())
-                           : fmt::format(
-                                 "{}: limit point near {}, past it no equilibrium continues "
-                                 "the branch",
-                                 branch, parameter_text(w.s.branch.unit, w.path.limits.back(), 9));
+            return settles
+                       ? fmt::format(
+                             "{}: settling the start, limit point at {:.9g} of the homotopy, "
+                             "past it "
+                             "no equilibrium continues it",
+                             branch, run.path.limits.back())
+                       : fmt::format(
+                             "{}: limit point near {}, past it no equilibrium continues "
+                             "the branch",
+                             branch, parameter_text(run.s.branch.unit, run.path.limits.back(), 9));
         case Outcome::iteration_limit:
-            return place + fmt::format(": {} expansions were not enough", w.path.expansions.size());
+            return place +
+                   fmt::format(": {} expansions were not enough", run.path.expansions.size());
         case Outcome::singular:
             return place +
                    ": the matrix is or was singular: the branch bifurcates or loses its stability" +
                    end_by_diagnosis(outcome, diagnosis);
         case Outcome::inconsistent_constraints:
-            if (const auto vanishing = vanishing_length(w.s.model, w.s.branch);
-                vanishing && std::abs(w.parameter_now()) >= 0.99 * std::abs(w.end))
-                return fmt::format("{}: {}", branch, no_length(w.s.model, w.s.branch, *vanishing));
+            if (const auto vanishing = vanishing_length(run.s.model, run.s.branch);
+                vanishing && std::abs(run.parameter_now()) >= 0.99 * std::abs(run.last_parameter))
+                return fmt::format("{}: {}", branch,
+                                   no_length(run.s.model, run.s.branch, *vanishing));
             return place + end_by_diagnosis(outcome, diagnosis);
         case Outcome::branch_lost:
-            if (w.reversed)
+            if (run.reversed)
                 return place +
                        ": a spring passes through zero length or a bushing through half a turn, "
                        "where its force jumps";
@@ -417,8 +499,10 @@ SteppingState series_state(const Model& model, const Branch& branch, const Analy
     return s;
 }
 
-// Settles from the design position. Pre: s.start.Phi_d is the constraint error of the analysis,
-// also where SteppingState has set it to zero as closed: t = 0 is then exact.
+// Finds the equilibrium at load factor 0 by a homotopy t from the design position (t = 0) to it
+// (t = 1). Pre: s.start.Phi_d is the constraint error of the analysis, also where SteppingState has
+// set it to zero because it is below guard::closed: t = 0 is then exact. At t = 1 such an error
+// counts as zero again.
 Outcome settle(Continuation& settling, const Analysis& analysis) {
     SteppingState& s = settling.s;
     if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged) return o;
@@ -436,49 +520,50 @@ void place_at_start(SteppingState& s, std::vector<CurvePiece>& curves, const Sta
 }
 
 // Newton's method from the start of another branch. Returns whether it converges to the tolerance,
-// within a hundredth of L and on the same pieces of the curves. Not with idle modes, whose
-// positions depend on the path.
+// within a hundredth of L and on the same pieces of the curves. Not used with idle modes: their
+// positions would depend on the start of Newton's method.
 bool settle_near(SteppingState& s, std::vector<CurvePiece>& curves,
                  const recursive::Series& options, const Start& other) {
-    constexpr double near = 1e-2;
+    constexpr double max_distance = 1e-2;  // in L
     if (s.system.held.idle > 0) return false;
     place_at_start(s, curves, other);
-    Continuation w(s, curves, options, Drive::rate);
-    w.go_to(0);
-    for (const double limit : {near * s.setup.length, options.tolerance}) {
+    Continuation run(s, curves, options, Drive::rate);
+    run.go_to(0);
+    for (const double limit : {max_distance * s.setup.length, options.tolerance}) {
         double correction = 0;
-        if (correct_at_end(w, nullptr, correction) != Outcome::converged || !(correction <= limit))
+        if (correct_at_end(run, nullptr, correction) != Outcome::converged ||
+            !(correction <= limit))
             return false;
     }
-    begin(w.e, s.q, s.lambda, w.parameter_now());
-    evaluate(w.e, {0, Pass::known});
+    begin(run.e, s.q, s.lambda, run.parameter_now());
+    evaluate(run.e, {0, Pass::known});
     return std::ranges::all_of(curves, [&](CurvePiece curve) {
         const Piece piece = curve.piece;
-        find_piece(w.e, curve);
+        find_piece(run.e, curve);
         return curve.piece == piece;
     });
 }
 
-bool is_at_rest(const Branch& branch) {
+bool has_no_rate(const Branch& branch) {
     return std::ranges::all_of(branch.drivers, [](const Driver& d) { return d.rate == 0; });
 }
 
 // The path of a branch on which nothing moves: one constant expansion at its start.
-Outcome stay_at_start(Continuation& w, const StartStability* known) {
-    SteppingState& s = w.s;
+Outcome stay_at_start(Continuation& run, const StartStability* known) {
+    SteppingState& s = run.s;
     const Outcome outcome =
         check_start_stability(s, known != nullptr ? *known : start_stability(s));
     if (outcome != Outcome::converged) return outcome;
-    Expansion here{poses_of(s.q),
-                   Matrix<double>::Zero(s.n() + s.m(), 2),
-                   Vector<double>::Zero(2),
-                   1,
-                   0,
-                   {},
-                   {}};
-    here.x.col(0).tail(s.m()) = s.lambda;
-    here.load[1] = w.to;
-    w.path.expansions.push_back(std::move(here));
+    Expansion constant{poses_of(s.q),
+                       Matrix<double>::Zero(s.n() + s.m(), 2),
+                       Vector<double>::Zero(2),
+                       1,
+                       0,
+                       {},
+                       {}};
+    constant.x.col(0).tail(s.m()) = s.lambda;
+    constant.load[1] = run.branch_end;
+    run.path.expansions.push_back(std::move(constant));
     return Outcome::converged;
 }
 
@@ -503,31 +588,32 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     }
     SteppingState s = series_state(model, branch, analysis);
     std::vector<CurvePiece> curves = curves_of(model);
-    const auto finish = [&](Continuation& w, Outcome outcome) {
-        w.path.outcome = outcome;
+    const auto finish = [&](Continuation& run, Outcome outcome) {
+        run.path.outcome = outcome;
         if (outcome != Outcome::converged)
-            w.path.detail = failure_text(w, outcome, analysis.diagnosis);
-        w.path.counts = s.counts;
-        w.path.arc_length = options.arc_length;
-        if (w.e.drive == Drive::start) w.path.expansions.clear();
-        return std::move(w.path);
+            run.path.detail = failure_text(run, outcome, analysis.diagnosis);
+        run.path.counts = s.counts;
+        run.path.arc_length = options.arc_length;
+        if (run.e.drive == Drive::start) run.path.expansions.clear();
+        return std::move(run.path);
     };
     const auto finish_from_start = [&](const StartStability* stability) {
-        Continuation w(s, curves, options, Drive::rate);
-        w.go_to(0);
-        if (is_at_rest(branch)) return finish(w, stay_at_start(w, stability));
-        return finish(w, follow_to_end(w, stability, shared));
+        Continuation run(s, curves, options, Drive::rate);
+        run.go_to(0);
+        if (has_no_rate(branch)) return finish(run, stay_at_start(run, stability));
+        return finish(run, follow_to_end(run, stability, shared));
     };
     if (!curves.empty() || options.arc_length) shared = nullptr;
     if (shared != nullptr && *shared) {
         s.q = (*shared)->q;
         s.lambda = (*shared)->lambda;
-        s.system.held.value = (*shared)->held;
-        Continuation w(s, curves, options, Drive::rate);
-        w.go_to(w.to);  // with all forces at the end of the branch
-        const Outcome loaded = check_idle_load_here(w.s, 0);
-        w.go_to(0);
-        return finish(w, loaded == Outcome::converged ? follow_to_end(w, nullptr, shared) : loaded);
+        s.system.held.value = (*shared)->held_values;
+        Continuation run(s, curves, options, Drive::rate);
+        run.go_to(run.branch_end);  // with all forces at the end of the branch
+        const Outcome loaded = check_idle_load_here(run.s, 0);
+        run.go_to(0);
+        return finish(run,
+                      loaded == Outcome::converged ? follow_to_end(run, nullptr, shared) : loaded);
     }
     if (const Start* start = analysis.settled.get();
         start != nullptr && same_values(start->drivers, start_values(branch))) {
@@ -543,10 +629,10 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
             return finish(settling, o);
         return finish_from_start(nullptr);
     }
-    Continuation w(s, curves, options, Drive::rate);
-    if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged)
-        return finish(w, o);
-    return finish(w, follow_to_end(w, curves.empty() ? &analysis.start : nullptr, shared));
+    Continuation run(s, curves, options, Drive::rate);
+    if (const Outcome o = begin_at_design(run, analysis); o != Outcome::converged)
+        return finish(run, o);
+    return finish(run, follow_to_end(run, curves.empty() ? &analysis.start : nullptr, shared));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
 // The same at `points` equal increments of the load factor from 0 to branch.to, as far as the path
 // extends; with arc length as parameter, at equal increments of arc length along the path.
 EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points,
-                       const Visit& visit = {});
+                       const PointVisitor& visit = {});
 
 // Derivative of the path with respect to the load factor, exact for the polynomial.
 struct Rates {

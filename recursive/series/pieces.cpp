@@ -50,32 +50,34 @@ double knot(const CurvePiece& f, int direction) {
     return f.curve->knots[static_cast<std::size_t>(direction > 0 ? f.piece : f.piece - 1)];
 }
 // Distance of the deformation x from that knot, positive inside the piece.
-Polynomial inside(const Polynomial& x, const CurvePiece& f, int direction) {
+Polynomial distance_inside(const Polynomial& x, const CurvePiece& f, int direction) {
     Polynomial c = -direction * x;
     c[0] += direction * knot(f, direction);
     return c;
 }
-std::optional<PieceExit> exit_from_piece(const Polynomial& f, int direction, double reach,
-                                         double overshoot, double start) {
+// First exit at one knot. f: distance from it, positive inside the piece; overshoot, start: those of
+// KnotTolerance in units of f.
+std::optional<PieceExit> exit_at_knot(const Polynomial& f, int direction, double reach,
+                                      double overshoot, double start) {
     if (f[0] < -start) return PieceExit{0, direction, true};
     // A start slightly beyond the knot, within its tolerance, counts as on the knot.
     Polynomial g = f;
     g[0] = std::max(g[0], 0.0);
     constexpr int halvings = 50;
-    const auto out = first_below(bernstein(g, reach), -overshoot, 0, reach, halvings);
-    if (!out) return std::nullopt;
-    // The zero before `out`: step back until g is positive, then bisect.
-    double from = *out, to = *out;
-    for (double back = std::ldexp(reach, -halvings); from > 0 && !(polynomial(g, from) > 0);
+    const auto tau_outside = first_below(bernstein(g, reach), -overshoot, 0, reach, halvings);
+    if (!tau_outside) return std::nullopt;
+    // The zero before tau_outside: step back until g is positive, then bisect.
+    double low = *tau_outside, high = *tau_outside;
+    for (double back = std::ldexp(reach, -halvings); low > 0 && !(polynomial(g, low) > 0);
          back *= 2)
-        from = std::max(0.0, *out - back);
-    if (!(polynomial(g, from) > 0)) from = to = 0;
-    while (from != to) {
-        const double middle = from + (to - from) / 2;
-        if (middle == from || middle == to) break;
-        (polynomial(g, middle) > 0 ? from : to) = middle;
+        low = std::max(0.0, *tau_outside - back);
+    if (!(polynomial(g, low) > 0)) low = high = 0;
+    while (low != high) {
+        const double middle = low + (high - low) / 2;
+        if (middle == low || middle == high) break;
+        (polynomial(g, middle) > 0 ? low : high) = middle;
     }
-    return PieceExit{to, direction, bernstein(g, to).maxCoeff() <= overshoot};
+    return PieceExit{high, direction, bernstein(g, high).maxCoeff() <= overshoot};
 }
 
 double slope(const Curve& curve, Piece piece, double x) {
@@ -116,10 +118,12 @@ std::optional<double> distance_to_knot(const Equations<double>& e, const CurvePi
 
 bool cross_knot(CurvePiece& f, int direction) {
     const double x = knot(f, direction);
-    const double before = slope(*f.curve, f.piece, x);
+    constexpr double rounding = 1e-12;
+    const double slope_before = slope(*f.curve, f.piece, x);
     f.piece += direction;
-    const double behind = slope(*f.curve, f.piece, x);
-    return std::abs(behind - before) > 1e-12 * std::max(std::abs(before), std::abs(behind));
+    const double slope_after = slope(*f.curve, f.piece, x);
+    return std::abs(slope_after - slope_before) >
+           rounding * std::max(std::abs(slope_before), std::abs(slope_after));
 }
 
 Eigen::VectorXd deformation_series(const Equations<double>& e, const CurvePiece& f) {
@@ -129,22 +133,22 @@ Eigen::VectorXd deformation_series(const Equations<double>& e, const CurvePiece&
 }
 
 std::optional<PieceExit> exit_from_piece(const Eigen::VectorXd& x, const CurvePiece& f,
-                                         double reach, const KnotTolerance& near) {
-    const double unit = f.is_angle() ? near.length : 1;
+                                         double reach, const KnotTolerance& tolerance) {
+    const double unit = f.is_angle() ? tolerance.length : 1;
     std::optional<PieceExit> first;
     for (const int direction : {+1, -1}) {
         if (!has_knot(f, direction)) continue;
-        const auto there = exit_from_piece(inside(x, f, direction), direction, reach,
-                                           near.overshoot / unit, near.start / unit);
-        if (there && (!first || there->tau < first->tau)) first = there;
+        const auto exit = exit_at_knot(distance_inside(x, f, direction), direction, reach,
+                                       tolerance.overshoot / unit, tolerance.start / unit);
+        if (exit && (!first || exit->tau < first->tau)) first = exit;
     }
     return first;
 }
 
 bool is_at_knot(const Eigen::VectorXd& x, const CurvePiece& f, int direction, double tau,
-                const KnotTolerance& near) {
-    return std::abs(polynomial(inside(x, f, direction), tau)) <=
-           near.overshoot / (f.is_angle() ? near.length : 1);
+                const KnotTolerance& tolerance) {
+    return std::abs(polynomial(distance_inside(x, f, direction), tau)) <=
+           tolerance.overshoot / (f.is_angle() ? tolerance.length : 1);
 }
 
 }  // namespace elastocheck::recursive::series

@@ -60,10 +60,10 @@ struct PieceExit {
 };
 // `x`: coefficients of the deformation [p + 1], as of deformation_series().
 std::optional<PieceExit> exit_from_piece(const Eigen::VectorXd& x, const CurvePiece& curve,
-                                         double reach, const KnotTolerance& near);
+                                         double reach, const KnotTolerance& tolerance);
 
 // Whether the deformation at τ is at the knot in that direction.
 bool is_at_knot(const Eigen::VectorXd& x, const CurvePiece& curve, int direction, double tau,
-                const KnotTolerance& near);
+                const KnotTolerance& tolerance);
 
 }  // namespace elastocheck::recursive::series

@@ -12,7 +12,7 @@ namespace {
 
 // Tolerance on τ at a load where the load is the parameter: rounding of the reach and of the load
 // itself, which is larger in τ for short expansions.
-double slack(const Expansion& x, double load) {
+double tau_tolerance(const Expansion& x, double load) {
     constexpr double eps = std::numeric_limits<double>::epsilon();
     return 1e-12 * x.reach + 4 * eps * (std::abs(load) + std::abs(x.load[0])) / std::abs(x.load[1]);
 }
@@ -28,7 +28,7 @@ std::optional<Place> find(const Path& path, double load) {
         const double rounding = 1e-12 * std::abs(to - from);
         if (linear) {
             const double tau = (load - from) / x.load[1];
-            if (tau >= -slack(x, load) && tau <= x.reach + slack(x, load))
+            if (tau >= -tau_tolerance(x, load) && tau <= x.reach + tau_tolerance(x, load))
                 return Place{k, std::clamp(tau, 0.0, x.reach)};
         } else {
             if (std::abs(load - from) <= rounding) return Place{k, 0};
@@ -58,39 +58,40 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
 }
 
 EquilibriumPath sample(const Model& model, const Path& path, const Branch& branch, int points,
-                       const Visit& visit) {
-    constexpr std::size_t at_once = 64;  // points, so that memory does not grow with their number
+                       const PointVisitor& visit) {
+    constexpr std::size_t max_batch = 64;  // points, so that memory does not grow with their number
     EquilibriumPath result;
     result.outcome = path.outcome;
     result.detail = path.detail;
     result.counts = path.counts;
     if (path.expansions.empty()) return result;
     Recording recording(model, points + 1, result, visit);
-    double whole = 0, before = 0;  // τ summed over expansions
-    for (const auto& expansion : path.expansions) whole += expansion.reach;
+    double total_tau = 0, tau_before = 0;  // τ summed over all and over the previous expansions
+    for (const auto& expansion : path.expansions) total_tau += expansion.reach;
     std::vector<double> loads, taus;
     Matrix<double> powers, x;
     Vector<double> lambda(constraint_rows(model));
-    const Inputs<double> drawn = inputs_as_drawn<double>(model);
+    const Inputs<double> design_inputs = inputs_as_drawn<double>(model);
     Inputs<double> inputs;
-    set_inputs<double>(model, branch, drawn, 1, 0, inputs);
+    set_inputs<double>(model, branch, design_inputs, 1, 0, inputs);
     // Of the driven inputs, wrenches depend on joint offsets only.
-    const bool moves = std::ranges::any_of(
+    const bool drives_offset = std::ranges::any_of(
         branch.drivers, [](const Driver& driver) { return driven_joint(driver.what) >= 0; });
     for (std::size_t k = 0; k < path.expansions.size();) {
         const Expansion& expansion = path.expansions[k];
         const bool last = k + 1 == path.expansions.size();
         taus.clear();
         loads.clear();
-        for (std::size_t next = recording.reached; next < recording.points && taus.size() < at_once;
-             ++next) {
+        for (std::size_t next = recording.reached;
+             next < recording.points && taus.size() < max_batch; ++next) {
             // Same expression as in the other methods, to the last bit: curves are compared at
             // equal loads only.
             const double load = branch.to * static_cast<double>(next) / points;
-            double tau = path.arc_length ? whole * static_cast<double>(next) / points - before
-                                         : (load - expansion.load[0]) / expansion.load[1];
+            double tau = path.arc_length
+                             ? total_tau * static_cast<double>(next) / points - tau_before
+                             : (load - expansion.load[0]) / expansion.load[1];
             const double rounding =
-                path.arc_length ? 1e-12 * expansion.reach : slack(expansion, load);
+                path.arc_length ? 1e-12 * expansion.reach : tau_tolerance(expansion, load);
             const bool beyond = tau > expansion.reach + rounding;
             if (beyond && !(last && path.arc_length && next + 1 == recording.points)) break;
             tau = std::clamp(tau, 0.0, expansion.reach);
@@ -112,11 +113,11 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
             const double load = loads[static_cast<std::size_t>(c)];
             displace(from, x.col(c), q);
             lambda = x.col(c).tail(lambda.size());
-            if (moves) set_inputs<double>(model, branch, drawn, 1, load, inputs);
+            if (drives_offset) set_inputs<double>(model, branch, design_inputs, 1, load, inputs);
             recording.keep(model, inputs, q, q, lambda, load);
         }
-        if (taus.size() == at_once) continue;  // the expansion may hold more points
-        before += expansion.reach;
+        if (taus.size() == max_batch) continue;  // the expansion may hold more points
+        tau_before += expansion.reach;
         ++k;
     }
     recording.finish();

@@ -1,18 +1,28 @@
 // Coefficient k of every element, constraint and load, from the lower ones.
+//
+// Each evaluate() is a straight-line program for one term. Order o says which coefficient k it computes
+// in which pass (taylor.hpp): in pass `known` x_k counts as zero, and coefficient k of G and Φ is added;
+// in pass `change` the contribution of x_k is added to the term's own series, which is all that the
+// next orders need. Its instructions are
+//
+//   linear(o, c, f)          c = f(of), where of(s) stands for the series s, in a linear expression
+//   product(o, a, b, c, ×)   c = a × b, any bilinear product: a convolution of the coefficients
+//
+// and reciprocal(), square_root(), ... of taylor.hpp. A constant is added at k = 0 only.
 #pragma once
 
 #include "recursive/series/term_values.hpp"
 
 namespace elastocheck::recursive::series {
-// Unnamed, for the two files that instantiate them: the compiler inlines a function of one caller only
-// where no other file can call it, a seventh of the instructions of a coefficient.
+// In an unnamed namespace for the reason given in term_values.hpp.
 namespace detail {
 namespace {
 
-// ---- Coefficient k.
+// ---- Rotations, arms and forces of the bodies.
 
+// C(g) = (1 - h·g) I + h̃ + h gᵀ,  h = 2 g / (1 + g·g), where h·g is the trace of h gᵀ.
 template <class Real>
-void move(Order o, TurnSeries<Real>& b) {
+void rotation_coefficients(Order o, TurnSeries<Real>& b) {
     product(o, b.g, b.g, b.stretch, dot);
     if (o.k == 0) b.stretch.c[0] += 1;
     reciprocal(o, b.stretch, b.shrink);
@@ -24,51 +34,58 @@ void move(Order o, TurnSeries<Real>& b) {
     });
     if (o.k == 0) b.C.c[0] += Matrix3<Real>::Identity();
 }
+// s = C fixed
 template <class Real>
-void turn(Order o, const Equations<Real>& e, Arm<Real>& arm) {
+void rotate_arm(Order o, const Equations<Real>& e, Arm<Real>& arm) {
     if (o.k > 0 && arm.body == ground) return;
     linear(o, arm.s, [&](auto of) -> Vector3<Real> { return of(e[arm.body].C) * arm.fixed; });
 }
 
-// Adds a force with its moment from the lever to coefficient k of G, times sign.
+// Adds `sign` times a force, with its moment lever × F, to coefficient k of G. G is f_elast + Φ_qᵀ λ
+// - f_ext: forces that resist a motion of the body count as positive.
 template <class Real>
-void push(Equations<Real>& e, int k, BodyId b, int sign, const Vector3Series<Real>& lever,
-          const Vector3Series<Real>& F) {
+void add_force(Equations<Real>& e, int k, BodyId b, int sign, const Vector3Series<Real>& lever,
+               const Vector3Series<Real>& F) {
     if (b == ground) return;
     e.G.template segment<3>(6 * b) += Real(sign) * at(F, k);
     e.G.template segment<3>(6 * b + 3) += Real(sign) * convolution(k, lever, F, cross);
 }
+// Adds `sign` times a moment likewise.
 template <class Real>
-void twist(Equations<Real>& e, int k, BodyId b, int sign, const Vector3Series<Real>& M) {
+void add_moment(Equations<Real>& e, int k, BodyId b, int sign, const Vector3Series<Real>& M) {
     if (b != ground) e.G.template segment<3>(6 * b + 3) += Real(sign) * at(M, k);
 }
 
+// D = p_j - p_i
 template <class Real>
-void distance(Order o, const Equations<Real>& e, const Arm<Real>& i, const Arm<Real>& j,
-              Vector3Series<Real>& D) {  // p_j - p_i
+void separation(Order o, const Equations<Real>& e, const Arm<Real>& i, const Arm<Real>& j,
+                Vector3Series<Real>& D) {
     const Vector3Series<Real>&r_i = e[i.body].r, &r_j = e[j.body].r;
     linear(o, D, [&](auto of) -> Vector3<Real> { return of(r_j) + of(j.s) - of(r_i) - of(i.s); });
 }
 
-// Coefficient k of start + rate · a.
+// s = start + rate · a
 template <class Real, class T>
-void follow(Order o, const Equations<Real>& e, const Driven<T>& driven, Series<T>& s) {
+void driven_value(Order o, const Equations<Real>& e, const Driven<T>& driven, Series<T>& s) {
     linear(o, s, [&](auto of) -> T { return driven.rate * of(e.a); });
     if (o.k == 0) s.c[0] += driven.start;
 }
+// Its coefficient k, for an input that needs no series.
 template <class Real, class T>
 T coefficient(const Equations<Real>& e, const Driven<T>& driven, int k) {
-    const T moved = driven.rate * at(e.a, k);
-    return k == 0 ? T(moved + driven.start) : moved;
+    const T change = driven.rate * at(e.a, k);
+    return k == 0 ? T(change + driven.start) : change;
 }
 
-// ---- Laws: ∂u/∂x of a deformation x, ∂u/∂e of the deformations e.
+// ---- Laws: ∂U/∂x of a deformation x, ∂U/∂e of the deformations e, U the energy of the element.
 
 template <class Real>
 void law_gradient(Order o, const LinearRate&, const Real& rate, CubicSeries<Real>&,
                   const Series<Real>& x, Series<Real>& f) {
     linear(o, f, [&](auto of) -> Real { return rate * of(x); });
 }
+// The cubic piece in Horner's form, with the steps of CubicSeries:
+// f = c_0 + ξ slope,  slope = c_1 + ξ inner,  inner = c_2 + ξ c_3;  f = c_0 + c_1 ξ on a straight piece.
 template <class Real>
 void law_gradient(Order o, const Curve&, const Real&, CubicSeries<Real>& t, const Series<Real>& x,
                   Series<Real>& f) {
@@ -111,12 +128,12 @@ void law_gradient(Order o, const PerAxis& law, BushingSeries<Real>& t) {
 
 // ---- Elements, by geometry.
 
-// F = u'(ℓ - ℓ₀) D / ℓ
+// F = U'(ℓ - ℓ₀) D / ℓ
 template <class Real>
 void evaluate(Equations<Real>& e, SpringSeries<Real>& t, Order o) {
-    turn(o, e, t.i);
-    turn(o, e, t.j);
-    distance(o, e, t.i, t.j, t.D);
+    rotate_arm(o, e, t.i);
+    rotate_arm(o, e, t.j);
+    separation(o, e, t.i, t.j, t.D);
     product(o, t.D, t.D, t.length_squared, dot);
     square_root(o, t.length_squared, t.length);
     reciprocal(o, t.length, t.inverse);
@@ -127,8 +144,8 @@ void evaluate(Equations<Real>& e, SpringSeries<Real>& t, Order o) {
     product(o, t.force, t.inverse, t.tension, std::multiplies<>());
     product(o, t.tension, t.D, t.F, scale);
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.j.body, +1, t.j.s, t.F);
-    push(e, o.k, t.i.body, -1, t.i.s, t.F);
+    add_force(e, o.k, t.j.body, +1, t.j.s, t.F);
+    add_force(e, o.k, t.i.body, -1, t.i.s, t.F);
 }
 
 // p = (W, V), the quaternion of B = A_iᵀ A_j of any length.
@@ -149,7 +166,7 @@ void evaluate_relative(Equations<Real>& e, BushingSeries<Real>& t, Order o) {
 
 // ---- Measures of rotation: θ, then M = Hᵀ M' where δθ = H ω, both in axes of i.
 
-// u = tan(|θ|/2) θ/|θ|,  θ = 2 F_1(u·u) u
+// u = V / W = tan(|θ|/2) θ/|θ|,  θ = 2 F_1(u·u) u,  F_1(t²) = atan(t) / t (taylor.hpp)
 template <class Real>
 void rotation_vector(BushingSeries<Real>& t, Order o) {
     reciprocal(o, t.W, t.inverse);
@@ -164,7 +181,7 @@ void rotation_vector(BushingSeries<Real>& t, Order o) {
     product(o, t.phi.f, t.u, t.theta,
             [](const Real& phi, const Vector3<Real>& u) -> Vector3<Real> { return 2 * phi * u; });
 }
-// J(θ)⁻ᵀ = I + F_1 ũ + F_3 ũ²
+// M = J(θ)⁻ᵀ M' = M' + F_1 u × M' + F_3 u × (u × M'),  F_3(t²) = (1 - F_1(t²)) / t²
 template <class Real>
 void moment_of_rotation_vector(BushingSeries<Real>& t, Order o) {
     product(o, t.u, t.moment_local, t.u_M, cross);
@@ -176,15 +193,16 @@ void moment_of_rotation_vector(BushingSeries<Real>& t, Order o) {
     });
 }
 
-// p·p B(p), as a bilinear map of p with itself
+// p·p B(p) = (W² - V·V) I + 2 V Vᵀ + 2 W Ṽ as a bilinear map of p = (W, V) with itself.
 template <class Real>
-Matrix3<Real> rotation_of(const Vector4<Real>& a, const Vector4<Real>& b) {
+Matrix3<Real> scaled_rotation(const Vector4<Real>& a, const Vector4<Real>& b) {
     const Vector3<Real> v = a.template tail<3>(), w = b.template tail<3>();
     return (a[0] * b[0] - v.dot(w)) * Matrix3<Real>::Identity() + 2 * v * w.transpose() +
            2 * a[0] * tilde<Real>(w);
 }
+// Polar angle of xy, with r and (cos, sin).
 template <class Real>
-void angle(Order o, PlaneAngleSeries<Real>& t) {
+void polar_angle(Order o, PlaneAngleSeries<Real>& t) {
     product(o, t.xy, t.xy, t.squared,
             [](const Vector2<Real>& a, const Vector2<Real>& b) -> Real { return a.dot(b); });
     square_root(o, t.squared, t.r);
@@ -193,17 +211,17 @@ void angle(Order o, PlaneAngleSeries<Real>& t) {
             [](const Real& a, const Vector2<Real>& b) -> Vector2<Real> { return a * b; });
     arc(o, t.unit, t.angle);
 }
-// row = fixed + z/r (cos · of_cosine + sin · of_sine)
+// Row of H for one polar angle: row = axis + z/r (cos · cosine_axis + sin · sine_axis)
 template <class Real>
-void row_of(Order o, PlaneAngleSeries<Real>& t, const Vector3<std::type_identity_t<Real>>& fixed,
-            const Vector3<std::type_identity_t<Real>>& of_cosine,
-            const Vector3<std::type_identity_t<Real>>& of_sine) {
+void angle_row(Order o, PlaneAngleSeries<Real>& t, const Vector3<std::type_identity_t<Real>>& axis,
+               const Vector3<std::type_identity_t<Real>>& cosine_axis,
+               const Vector3<std::type_identity_t<Real>>& sine_axis) {
     product(o, t.z, t.inverse, t.factor, std::multiplies<>());
     linear(o, t.along, [&](auto of) -> Vector3<Real> {
-        return of(t.unit).x() * of_cosine + of(t.unit).y() * of_sine;
+        return of(t.unit).x() * cosine_axis + of(t.unit).y() * sine_axis;
     });
     product(o, t.factor, t.along, t.row, scale);
-    if (o.k == 0) t.row.c[0] += fixed;
+    if (o.k == 0) t.row.c[0] += axis;
 }
 // B = R_x R_y R_z. With c, s of the first angle:
 //   ω = θ_x' (1, 0, 0) + θ_y' (0, c, s) + θ_z' (sin θ_y, -s cos θ_y, c cos θ_y)
@@ -215,12 +233,12 @@ void cardan(BushingSeries<Real>& t, Order o) {
     const Matrix3Series<Real>& B = t.angles->B;
     linear(o, x.xy, [&](auto of) -> Vector2<Real> { return {of(B)(2, 2), -of(B)(1, 2)}; });
     linear(o, x.z, [&](auto of) -> Real { return of(B)(0, 2); });
-    angle(o, x);  // r = p·p cos θ_y
+    polar_angle(o, x);  // r = p·p cos θ_y
     linear(o, y.xy, [&](auto of) -> Vector2<Real> { return {of(x.r), of(B)(0, 2)}; });
-    angle(o, y);  // r = p·p
+    polar_angle(o, y);  // r = p·p
     linear(o, z.xy, [&](auto of) -> Vector2<Real> { return {of(B)(0, 0), -of(B)(0, 1)}; });
-    angle(o, z);
-    row_of(o, x, Vector3<Real>::UnitX(), -Vector3<Real>::UnitZ(), Vector3<Real>::UnitY());
+    polar_angle(o, z);
+    angle_row(o, x, Vector3<Real>::UnitX(), -Vector3<Real>::UnitZ(), Vector3<Real>::UnitY());
     linear(o, y.row, [&](auto of) -> Vector3<Real> { return {0, of(x.unit).x(), of(x.unit).y()}; });
     product(o, y.r, x.inverse, z.factor, std::multiplies<>());
     linear(o, z.along, [&](auto of) -> Vector3<Real> {
@@ -242,14 +260,14 @@ void projected(BushingSeries<Real>& t, Order o) {
     linear(o, x.z, [&](auto of) -> Real { return of(B)(0, 2); });
     linear(o, y.z, [&](auto of) -> Real { return of(B)(1, 2); });
     linear(o, z.z, [&](auto of) -> Real { return of(B)(2, 0); });
-    for (auto* each : {&x, &y, &z}) angle(o, *each);
-    row_of(o, x, Vector3<Real>::UnitX(), -Vector3<Real>::UnitZ(), Vector3<Real>::UnitY());
-    row_of(o, y, Vector3<Real>::UnitY(), -Vector3<Real>::UnitZ(), -Vector3<Real>::UnitX());
-    row_of(o, z, Vector3<Real>::UnitZ(), -Vector3<Real>::UnitX(), -Vector3<Real>::UnitY());
+    for (auto* each : {&x, &y, &z}) polar_angle(o, *each);
+    angle_row(o, x, Vector3<Real>::UnitX(), -Vector3<Real>::UnitZ(), Vector3<Real>::UnitY());
+    angle_row(o, y, Vector3<Real>::UnitY(), -Vector3<Real>::UnitZ(), -Vector3<Real>::UnitX());
+    angle_row(o, z, Vector3<Real>::UnitZ(), -Vector3<Real>::UnitX(), -Vector3<Real>::UnitY());
 }
 template <class Real>
 void plane_angles(BushingSeries<Real>& t, Order o) {
-    product(o, t.relative, t.relative, t.angles->B, rotation_of<Real>);
+    product(o, t.relative, t.relative, t.angles->B, scaled_rotation<Real>);
     if (t.kind.formulation.angles == Formulation::Angles::cardan)
         cardan(t, o);
     else
@@ -288,8 +306,9 @@ void deformation_on_i(BushingSeries<Real>& t, Order o) {
 }
 template <class Real>
 void force_on_i(BushingSeries<Real>& t, Order o) {
-    linear(o, t.force_i,
-           [&](auto of) -> Vector3<Real> { return t.E_i * of(t.stress).template head<3>(); });
+    linear(o, t.force_i, [&](auto of) -> Vector3<Real> {
+        return t.E_i * of(t.element_force).template head<3>();
+    });
 }
 
 // ---- The frame in the middle: d = B^-½ d_i.
@@ -303,7 +322,7 @@ void middle_deformation(BushingSeries<Real>& t, Order o) {
     linear(o, s.sum, [&](auto of) -> Real { return of(s.size) + of(t.W); });
     reciprocal(o, s.sum, s.inverse);
     product(o, s.inverse, t.V, s.half.g, scale);
-    move(o, s.half);
+    rotation_coefficients(o, s.half);
     linear(o, s.d_i, [&](auto of) -> Vector3<Real> { return t.E_i.transpose() * of(t.strain); });
     product(o, s.half.C, s.d_i, s.d, apply_transposed);
     linear(o, t.e, [&](auto of) -> Vector6<Real> {
@@ -314,11 +333,13 @@ void middle_deformation(BushingSeries<Real>& t, Order o) {
 }
 // B^½ rotates by ω_½ = (I + B^½)⁻¹ ω = ½ (I - g̃) ω while B rotates by ω, so that with F_i = B^½ F'
 //   F'·δd = F_i·(δd_i + d_i × ω_½) = F_i·δd_i + ½ (m + g × m)·ω,   m = F_i × d_i
-// which is the part of the offset's moment that acts on j; left out where the moment is left out.
+// The moment ½ (m + g × m) acts on j, its opposite on i. A formulation without offset_moment has
+// neither.
 template <class Real>
 void middle_force(BushingSeries<Real>& t, Order o) {
     MiddleSeries<Real>& s = *t.middle;
-    linear(o, s.F_local, [&](auto of) -> Vector3<Real> { return of(t.stress).template head<3>(); });
+    linear(o, s.F_local,
+           [&](auto of) -> Vector3<Real> { return of(t.element_force).template head<3>(); });
     product(o, s.half.C, s.F_local, s.F_i, apply);
     product(o, s.F_i, s.d_i, s.m, cross);
     product(o, s.half.g, s.m, s.g_m, cross);
@@ -329,7 +350,7 @@ void middle_force(BushingSeries<Real>& t, Order o) {
 template <class Real>
 void evaluate_moment(Equations<Real>& e, BushingSeries<Real>& t, Order o) {
     linear(o, t.moment_local,
-           [&](auto of) -> Vector3<Real> { return of(t.stress).template tail<3>(); });
+           [&](auto of) -> Vector3<Real> { return of(t.element_force).template tail<3>(); });
     if (!t.rotational || !t.kind.formulation.conjugate)
         linear(o, t.moment_i, [&](auto of) -> Vector3<Real> { return t.E_i * of(t.moment_local); });
     else
@@ -341,12 +362,12 @@ void evaluate_moment(Equations<Real>& e, BushingSeries<Real>& t, Order o) {
     product(o, e[t.i.body].C, t.moment_i, t.M, apply);
 }
 
-// F = A_f F',  (F', M') = ∂u/∂e(e - e₀) + preload,  e = (d, θ)
+// F = A_f F',  (F', M') = ∂U/∂e(e - e₀) + preload,  e = (d, θ), A_f the axes of the formulation's frame
 template <class Real>
 void evaluate(Equations<Real>& e, BushingSeries<Real>& t, Order o) {
     const BodySeries<Real>&b_i = e[t.i.body], &b_j = e[t.j.body];
-    turn(o, e, t.i);
-    turn(o, e, t.j);
+    rotate_arm(o, e, t.i);
+    rotate_arm(o, e, t.j);
     linear(o, t.rho, [&](auto of) -> Vector3<Real> { return of(b_j.r) + of(t.j.s) - of(b_i.r); });
     linear(o, t.D, [&](auto of) -> Vector3<Real> { return of(t.rho) - of(t.i.s); });
     product(o, b_i.C, t.D, t.strain, apply_transposed);
@@ -361,58 +382,62 @@ void evaluate(Equations<Real>& e, BushingSeries<Real>& t, Order o) {
         if (o.k == 0) t.e.c[0][2] -= t.rise.start;
     }
     std::visit([&](const auto& law) { law_gradient(o, law, t); }, t.kind.law);
-    linear(o, t.stress,
+    linear(o, t.element_force,
            [&](auto of) -> Vector6<Real> { return of(t.gradient) + of(e.a) * t.preload.rate; });
-    if (o.k == 0) t.stress.c[0] += t.preload.start;
+    if (o.k == 0) t.element_force.c[0] += t.preload.start;
     t.middle != nullptr ? middle_force(t, o) : force_on_i(t, o);
     product(o, b_i.C, t.force_i, t.F, apply);
     if (t.twists()) evaluate_moment(e, t, o);
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.j.body, +1, t.j.s, t.F);
-    push(e, o.k, t.i.body, -1, t.kind.formulation.offset_moment ? t.rho : t.i.s, t.F);
+    add_force(e, o.k, t.j.body, +1, t.j.s, t.F);
+    add_force(e, o.k, t.i.body, -1, t.kind.formulation.offset_moment ? t.rho : t.i.s, t.F);
     if (!t.twists()) return;
-    twist(e, o.k, t.j.body, +1, t.M);
-    twist(e, o.k, t.i.body, -1, t.M);
+    add_moment(e, o.k, t.j.body, +1, t.M);
+    add_moment(e, o.k, t.i.body, -1, t.M);
 }
 
-// ---- Constraints: adds Φ_qᵀ λ to G, and sets Φ.
+// ---- Constraints: each adds its Φ_qᵀ λ to G and sets its rows of Φ.
+
+// Φ = p_i - p_j
 
 template <class Real>
 void evaluate(Equations<Real>& e, CoincidentSeries<Real>& t, const Series<Real>* lambda, Real* Phi,
               Order o) {
-    turn(o, e, t.i);
-    turn(o, e, t.j);
+    rotate_arm(o, e, t.i);
+    rotate_arm(o, e, t.j);
     linear(o, t.F, [&](auto of) -> Vector3<Real> {
         return {of(lambda[0]), of(lambda[1]), of(lambda[2])};
     });
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.i.body, +1, t.i.s, t.F);
-    push(e, o.k, t.j.body, -1, t.j.s, t.F);
+    add_force(e, o.k, t.i.body, +1, t.i.s, t.F);
+    add_force(e, o.k, t.j.body, -1, t.j.s, t.F);
     Eigen::Map<Vector3<Real>> value(Phi);
     value = at(e[t.i.body].r, o.k) + at(t.i.s, o.k) - at(e[t.j.body].r, o.k) - at(t.j.s, o.k);
 }
 
+// Φ = n_j·(p_i - p_j) - offset, whose force λ n_j acts at p_i: rho is the lever of p_i on j
 template <class Real>
 void evaluate(Equations<Real>& e, PlaneSeries<Real>& t, const Series<Real>* lambda, Real* Phi,
               Order o) {
-    turn(o, e, t.i);
-    turn(o, e, t.j);
-    turn(o, e, t.normal);
-    distance(o, e, t.j, t.i, t.d);
+    rotate_arm(o, e, t.i);
+    rotate_arm(o, e, t.j);
+    rotate_arm(o, e, t.normal);
+    separation(o, e, t.j, t.i, t.d);
     const Vector3Series<Real>&r_i = e[t.i.body].r, &r_j = e[t.j.body].r;
     linear(o, t.rho, [&](auto of) -> Vector3<Real> { return of(r_i) + of(t.i.s) - of(r_j); });
     product(o, *lambda, t.normal.s, t.F, scale);
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.i.body, +1, t.i.s, t.F);
-    push(e, o.k, t.j.body, -1, t.rho, t.F);
+    add_force(e, o.k, t.i.body, +1, t.i.s, t.F);
+    add_force(e, o.k, t.j.body, -1, t.rho, t.F);
     *Phi = convolution(o.k, t.normal.s, t.d, dot) - coefficient(e, t.offset, o.k);
 }
 
+// Φ = u_i·u_j, whose moment is λ u_i × u_j
 template <class Real>
 void evaluate(Equations<Real>& e, PerpendicularSeries<Real>& t, const Series<Real>* lambda,
               Real* Phi, Order o) {
-    turn(o, e, t.i);
-    turn(o, e, t.j);
+    rotate_arm(o, e, t.i);
+    rotate_arm(o, e, t.j);
     product(o, t.i.s, t.j.s, t.M, cross);
     if (o.pass == Pass::change) return;
     const Vector3<Real> M = convolution(o.k, *lambda, t.M, scale);
@@ -425,33 +450,33 @@ void evaluate(Equations<Real>& e, PerpendicularSeries<Real>& t, const Series<Rea
 template <class Real>
 void evaluate(Equations<Real>& e, DistanceSeries<Real>& t, const Series<Real>* lambda, Real* Phi,
               Order o) {
-    turn(o, e, t.i);
-    turn(o, e, t.j);
-    distance(o, e, t.j, t.i, t.d);
+    rotate_arm(o, e, t.i);
+    rotate_arm(o, e, t.j);
+    separation(o, e, t.j, t.i, t.d);
     if (o.k <= t.ell.last) {
-        follow(o, e, t.length, t.ell);
+        driven_value(o, e, t.length, t.ell);
         reciprocal(o, t.ell, t.inverse);
     }
     product(o, *lambda, t.inverse, t.share, std::multiplies<>());
     product(o, t.share, t.d, t.F, scale);
     if (o.pass == Pass::change) return;
-    push(e, o.k, t.i.body, +1, t.i.s, t.F);
-    push(e, o.k, t.j.body, -1, t.j.s, t.F);
+    add_force(e, o.k, t.i.body, +1, t.i.s, t.F);
+    add_force(e, o.k, t.j.body, -1, t.j.s, t.F);
     Real squared_over_length = 0;
     for (int l = 0; l <= std::min(o.k, t.inverse.last); ++l)
         squared_over_length += at(t.inverse, l) * convolution(o.k - l, t.d, t.d, dot);
     *Phi = (squared_over_length - at(t.ell, o.k)) / 2;
 }
 
-// Φ = u_i·w,  w = cos α y_j - sin α x_j
+// Φ = u_i·w,  w = cos α y_j - sin α x_j, whose moment is λ u_i × w
 template <class Real>
 void evaluate(Equations<Real>& e, AngleSeries<Real>& t, const Series<Real>* lambda, Real* Phi,
               Order o) {
-    turn(o, e, t.i);
-    turn(o, e, t.x);
-    turn(o, e, t.y);
+    rotate_arm(o, e, t.i);
+    rotate_arm(o, e, t.x);
+    rotate_arm(o, e, t.y);
     if (o.k <= t.alpha.last) {
-        follow(o, e, t.angle, t.alpha);
+        driven_value(o, e, t.angle, t.alpha);
         cosine_sine(o, t.alpha, t.cosine, t.sine);
     }
     product(o, t.cosine, t.y.s, t.along, scale);
@@ -465,10 +490,12 @@ void evaluate(Equations<Real>& e, AngleSeries<Real>& t, const Series<Real>* lamb
     *Phi = convolution(o.k, t.i.s, t.w, dot);
 }
 
+// ---- Loads: each subtracts its force and moment about the body's origin from G.
+
 template <class Real>
 void evaluate(Equations<Real>& e, ForceSeries<Real>& t, Order o) {
-    turn(o, e, t.at);
-    follow(o, e, t.factor, t.size);
+    rotate_arm(o, e, t.at);
+    driven_value(o, e, t.factor, t.size);
     if (o.pass == Pass::change) return;
     const BodyId b = t.at.body;
     e.G.template segment<3>(6 * b) -= at(t.size, o.k) * t.f;
@@ -476,11 +503,11 @@ void evaluate(Equations<Real>& e, ForceSeries<Real>& t, Order o) {
 }
 template <class Real>
 void evaluate(Equations<Real>& e, BrakeSeries<Real>& t, Order o) {
-    turn(o, e, t.patch);
-    follow(o, e, t.factor, t.size);
-    const BodySeries<Real>&on = e[t.kind.body], &wheel = e[t.patch.body];
+    rotate_arm(o, e, t.patch);
+    driven_value(o, e, t.factor, t.size);
+    const BodySeries<Real>&carrier = e[t.kind.body], &wheel = e[t.patch.body];
     linear(o, t.lever,
-           [&](auto of) -> Vector3<Real> { return of(wheel.r) + of(t.patch.s) - of(on.r); });
+           [&](auto of) -> Vector3<Real> { return of(wheel.r) + of(t.patch.s) - of(carrier.r); });
     if (o.pass == Pass::change) return;
     const BodyId b = t.kind.body;
     e.G.template segment<3>(6 * b) -= at(t.size, o.k) * t.f;
@@ -493,9 +520,9 @@ void evaluate(Equations<Real>& e, MomentSeries<Real>& t, Order o) {
 }
 template <class Real>
 void evaluate(Equations<Real>& e, FollowerSeries<Real>& t, Order o) {
-    turn(o, e, t.f);
-    turn(o, e, t.m);
-    follow(o, e, t.factor, t.size);
+    rotate_arm(o, e, t.f);
+    rotate_arm(o, e, t.m);
+    driven_value(o, e, t.factor, t.size);
     if (o.pass == Pass::change) return;
     const BodyId b = t.f.body;
     e.G.template segment<3>(6 * b) -= convolution(o.k, t.size, t.f.s, scale);

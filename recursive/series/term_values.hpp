@@ -57,9 +57,9 @@ template <class Real>
 ElasticSeries<Real> term(Arena& room, const Bushing& e) {
     using T = BushingSeries<Real>;
     T t = between<T>(room, e, &T::rho, &T::D, &T::strain, &T::cross_g, &T::V, &T::u, &T::theta,
-                     &T::relative, &T::e, &T::gradient, &T::stress, &T::moment_local, &T::u_M,
-                     &T::u_u_M, &T::spread_1, &T::spread_2, &T::force_i, &T::moment_i, &T::F, &T::M,
-                     &T::dot_g, &T::W, &T::inverse, &T::s);
+                     &T::relative, &T::e, &T::gradient, &T::element_force, &T::moment_local,
+                     &T::u_M, &T::u_u_M, &T::spread_1, &T::spread_2, &T::force_i, &T::moment_i,
+                     &T::F, &T::M, &T::dot_g, &T::W, &T::inverse, &T::s);
     reserve(room, t.phi);
     reserve(room, t.psi, &t.phi);
     if (const auto* law = std::get_if<PerAxis>(&e.law)) {

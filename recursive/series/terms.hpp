@@ -116,7 +116,8 @@ void evaluate(Equations<Real>& e, Order o) {
         e.G.setZero();
         e.Phi.setZero();
     }
-    for (std::size_t b = o.k == 0 ? 0 : 1; b < e.slots.size(); ++b) detail::move(o, e.slots[b]);
+    for (std::size_t b = o.k == 0 ? 0 : 1; b < e.slots.size(); ++b)
+        detail::rotation_coefficients(o, e.slots[b]);
     for (auto& elastic : e.elastics)
         std::visit([&](auto& t) { detail::evaluate(e, t, o); }, elastic);
     std::size_t row = 0;

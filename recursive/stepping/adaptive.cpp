@@ -210,7 +210,7 @@ Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& re
 }  // namespace
 
 EquilibriumPath sweep_adaptive(const Model& model, const Branch& branch, const Options& options,
-                               const Analysis& analysis, const Visit& visit, Stop& stop) {
+                               const Analysis& analysis, const PointVisitor& visit, Stop& stop) {
     const int steps = options.steps > 0 ? options.steps : branch.steps;
     SteppingState s(model, branch, analysis);
     EquilibriumPath path;

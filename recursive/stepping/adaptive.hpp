@@ -32,6 +32,6 @@ inline constexpr int max_steps = 20'000;
 // Follows the branch and records `points` equal increments of the parameter (options.record, or
 // steps), as sweep() does. In double precision.
 EquilibriumPath sweep_adaptive(const Model& model, const Branch& branch, const Options& options,
-                               const Analysis& analysis, const Visit& visit, Stop& stop);
+                               const Analysis& analysis, const PointVisitor& visit, Stop& stop);
 
 }  // namespace elastocheck::recursive

@@ -11,13 +11,13 @@ void interpolate(const Node& from, const Node& to, double t, State<double>& q,
     lambda = from.lambda + h01 * (to.lambda - from.lambda) + h10 * from.dlambda + h11 * to.dlambda;
     for (BodyId b = 0; b < from.q.bodies(); ++b) {
         const auto d0 = from.dq.segment<6>(6 * b), d1 = to.dq.segment<6>(6 * b);
-        const Matrix3<double> turned = to.q[b].A * from.q[b].A.transpose();
-        const Vector3<double> pi = logarithm<double>(turned);
+        const Matrix3<double> rotation = to.q[b].A * from.q[b].A.transpose();
+        const Vector3<double> pi = logarithm<double>(rotation);
         const Vector3<double> pi1 = inverse_left_jacobian<double>(pi) * d1.tail<3>();
         q[b].r =
             from.q[b].r + h01 * (to.q[b].r - from.q[b].r) + h10 * d0.head<3>() + h11 * d1.head<3>();
-        const Vector3<double> at = h01 * pi + h10 * d0.tail<3>() + h11 * pi1;
-        q[b].p = (exponential<double>(at) * from.q[b].p).normalized();
+        const Vector3<double> pi_t = h01 * pi + h10 * d0.tail<3>() + h11 * pi1;
+        q[b].p = (exponential<double>(pi_t) * from.q[b].p).normalized();
         q[b].A = q[b].p.toRotationMatrix();
     }
 }
@@ -25,8 +25,8 @@ void interpolate(const Node& from, const Node& to, double t, State<double>& q,
 namespace {
 
 // Distance within which a deflection counts as lying on the knot, on either side [m] or [rad].
-double slack(const ContinuationSettings& settings, const CurvePlace& at) {
-    return 1e-6 * (at.angle ? settings.angle_tolerance : settings.length_tolerance);
+double knot_tolerance(const ContinuationSettings& settings, const CurvePlace& curve) {
+    return 1e-6 * (curve.angle ? settings.angle_tolerance : settings.length_tolerance);
 }
 
 // x(t) through x(0), x(⅓), x(⅔), x(1).
@@ -36,20 +36,21 @@ double cubic(const std::array<double, 4>& x, double t) {
            x[3] * a * b * c / 6;
 }
 
-// First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t
-// of the step.
-template <class At>
+// First knot reached in the step of size h from `from`; `set_state(t, q)` sets q to the state at the
+// fraction t of the step. Each deflection is interpolated by a cubic in t; its first sample beyond the
+// knot brackets the crossing, which bisection locates.
+template <class SetState>
 KnotCrossing first_crossing(SteppingState& s, const ContinuationSettings& settings, double from,
-                            double h, State<double>& q, At&& at) {
+                            double h, State<double>& q, SetState&& set_state) {
     for (int k = 0; k < 4; ++k) {
         const double t = static_cast<double>(k) / 3;
-        at(t, q);
+        set_state(t, q);
         go_to(s, settings.at(from + t * h));
         for (std::size_t c = 0; c < s.kinks.curves.size(); ++c)
             s.kinks.deflections[c][static_cast<std::size_t>(k)] =
                 deflection(s.model, s.inputs, q, s.kinks.curves[c]);
     }
-    constexpr int samples = 24;
+    constexpr int samples = 24, halvings = 40;
     KnotCrossing first;
     for (std::size_t c = 0; c < s.kinks.curves.size(); ++c) {
         const CurvePlace& place = s.kinks.curves[c];
@@ -58,16 +59,16 @@ KnotCrossing first_crossing(SteppingState& s, const ContinuationSettings& settin
         const auto& x = s.kinks.deflections[c];
         const auto search = [&](double knot, int side) {
             const auto beyond = [&](double t) { return side * (cubic(x, t) - knot); };
-            double before = 0;
+            double inside = 0;  // last sample not beyond the knot
             for (int k = 1; k <= samples; ++k) {
                 const double t = static_cast<double>(k) / samples;
-                if (t >= first.t && before >= first.t) return;
-                if (!(beyond(t) > slack(settings, place))) {
-                    before = t;
+                if (t >= first.t && inside >= first.t) return;
+                if (!(beyond(t) > knot_tolerance(settings, place))) {
+                    inside = t;
                     continue;
                 }
-                double low = before, high = t;  // not beyond, beyond
-                for (int halving = 0; halving < 40; ++halving) {
+                double low = inside, high = t;  // not beyond, beyond
+                for (int halving = 0; halving < halvings; ++halving) {
                     const double middle = (low + high) / 2;
                     (beyond(middle) > 0 ? high : low) = middle;
                 }
@@ -81,7 +82,7 @@ KnotCrossing first_crossing(SteppingState& s, const ContinuationSettings& settin
     return first;
 }
 
-// Moves `next`, an equilibrium near the knot with its derivative, onto the knot. Returns false
+// Moves stride.next, an equilibrium near the knot with its derivative, onto the knot. Returns false
 // where the iteration leaves the interval between the node and `limit`. The factors are those of
 // `next`.
 bool move_to_knot(SteppingState& s, const ContinuationSettings& settings, const KnotCrossing& knot,
@@ -89,10 +90,11 @@ bool move_to_knot(SteppingState& s, const ContinuationSettings& settings, const 
     const CurvePlace& place = *knot.curve;
     Node& next = stride.next;
     const double p = stride.node.p, step = next.p - p;
-    for (int k = 0; k < 5; ++k) {
+    constexpr int max_corrections = 5;  // secant steps
+    for (int k = 0; k < max_corrections; ++k) {
         go_to(s, settings.at(next.p));
         const double x = deflection(s.model, s.inputs, next.q, place);
-        if (std::abs(x - knot.knot) <= slack(settings, place)) return true;
+        if (std::abs(x - knot.knot) <= knot_tolerance(settings, place)) return true;
         const double ahead = step * 1e-4;
         stride.q = next.q;
         advance(stride.q, ahead * next.dq);
@@ -125,25 +127,26 @@ Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Strid
     met = {};
     if (s.kinks.curves.empty())
         return try_step(s, settings, node, curvature, lambda_curvature, next);
-    const double whole = next.p;
-    KnotCrossing expected = first_crossing(s, settings, node.p, whole - node.p, stride.q,
-                                           [&](double t, State<double>& at) {
-                                               const double h = t * (whole - node.p);
+    const double requested = next.p;
+    KnotCrossing expected = first_crossing(s, settings, node.p, requested - node.p, stride.q,
+                                           [&](double t, State<double>& q) {
+                                               const double h = t * (requested - node.p);
                                                s.step.dq = h * node.dq + h * h / 2 * curvature;
-                                               at = node.q;
-                                               advance(at, s.step.dq);
+                                               q = node.q;
+                                               advance(q, s.step.dq);
                                            });
-    double h = whole - node.p;
+    double h = requested - node.p;
     Trial trial;
     for (int k = 0; k < 4; ++k) {
-        next.p = expected.curve ? node.p + expected.t * h : whole;
+        next.p = expected.curve ? node.p + expected.t * h : requested;
         if (next.p == node.p) {  // the node lies on the knot and the step leaves the piece
             met = expected;
             return trial;
         }
         trial = try_step(s, settings, node, curvature, lambda_curvature, next);
         if (trial.verdict != Verdict::accepted) return trial;
-        const bool at_knot = expected.curve && move_to_knot(s, settings, expected, whole, stride);
+        const bool at_knot =
+            expected.curve && move_to_knot(s, settings, expected, requested, stride);
         if (expected.curve && !at_knot && k == 0) {  // the path misses the knot of the predictor
             expected = {};
             continue;
@@ -151,7 +154,7 @@ Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, Strid
         h = next.p - node.p;
         const KnotCrossing earlier = first_crossing(
             s, settings, node.p, h, stride.q,
-            [&](double t, State<double>& at) { interpolate(node, next, t, at, stride.lambda); });
+            [&](double t, State<double>& q) { interpolate(node, next, t, q, stride.lambda); });
         if (!earlier.curve) {
             if (at_knot) met = expected;
             return trial;
@@ -175,7 +178,7 @@ void take_pieces(SteppingState& s, const ContinuationSettings& settings, const N
         const auto& knots = place.curve->knots;
         Piece piece = piece_at(*place.curve, x);
         for (std::size_t k = 0; k < knots.size(); ++k)
-            if (std::abs(x - knots[k]) <= slack(settings, place))
+            if (std::abs(x - knots[k]) <= knot_tolerance(settings, place))
                 piece = static_cast<Piece>(rises ? k + 1 : k);
         piece_of(s, place) = piece;
     }

@@ -15,10 +15,10 @@ struct Stop {
 
 struct Recording {
     EquilibriumPath& path;
-    const Visit& visit;
+    const PointVisitor& visit;
     std::size_t points, reached = 0;
 
-    Recording(const Model& model, int recorded, EquilibriumPath& into, const Visit& visits)
+    Recording(const Model& model, int recorded, EquilibriumPath& into, const PointVisitor& visits)
         : path(into), visit(visits), points(static_cast<std::size_t>(recorded)) {
         const Equilibrium blank{0, std::vector<Pose>(model.bodies.size()),
                                 std::vector<Wrench>(model.joints.size()), 0};

@@ -6,7 +6,7 @@ namespace {
 // Whether joints that are open at the design position are still open after settling, by more than
 // `share` of their gap. An angle counts as closed on one side only (u_i·w = 0 has two solutions).
 bool remains_open(const SteppingState& s, double share) {
-    const double open = s.start.Phi_d.norm();
+    const double design_gap = s.start.Phi_d.norm();
     const double rounding =
         std::max(10 * guard::closed,
                  100 * std::numeric_limits<double>::epsilon() * std::max(1.0, s.setup.length));
@@ -15,7 +15,7 @@ bool remains_open(const SteppingState& s, double share) {
         const ConstraintKind& kind = s.model.constraints[c].kind;
         if (is_angle(kind) && !(slope<double>(kind, s.inputs.offset[c], s.q) < 0)) return true;
     }
-    return !(Phi.norm() <= share * open + rounding);
+    return !(Phi.norm() <= share * design_gap + rounding);
 }
 
 }  // namespace
@@ -24,10 +24,10 @@ bool loads_idle_mode(const SteppingState& s) {
     Vector<double> f_ext, f_elast;
     external_force<double>(s.model, s.branch, s.inputs, s.q, f_ext);
     elastic_force<double>(s.model, s.inputs, s.q, f_elast);
-    const double whole = size_of_force(s, f_ext) + size_of_force(s, f_elast);
+    const double total_force = size_of_force(s, f_ext) + size_of_force(s, f_elast);
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
     const double uncertainty = s.start.Phi_d.norm() / std::min(1.0, s.setup.length);
-    return !(load_on_idle_modes(s, f_ext - f_elast, whole) <=
+    return !(load_on_idle_modes(s, f_ext - f_elast, total_force) <=
              rounding + guard::share_per_error * uncertainty);
 }
 
@@ -44,7 +44,7 @@ Outcome settled(const SteppingState& s, Outcome outcome, double share) {
 
 Outcome settle(SteppingState& s, const Linear& method, int steps) {
     // The error of one linear step is the square of its size: below rounding for this size.
-    const double at_rest = 1e-6 * s.setup.length;  // |W Δq| [m]
+    const double accurate_step = 1e-6 * s.setup.length;  // |W Δq| [m]
     for (const int N : {1, steps}) {
         s.setup.consistent = false;
         s.q = s.step.before = design_state<double>(s.model);
@@ -68,12 +68,14 @@ Outcome settle(SteppingState& s, const Linear& method, int steps) {
         for (int k = 1; k <= N && outcome == Outcome::converged; ++k)
             outcome =
                 step(s, method, {k == N ? 1 : static_cast<double>(k) / static_cast<double>(N), 0});
-        const bool rested = outcome == Outcome::converged && s.step.last.norm() <= at_rest;
+        const bool is_accurate =
+            outcome == Outcome::converged && s.step.last.norm() <= accurate_step;
         s.step.swings = 0;
         s.step.last.setZero();
-        // The gap left by linear steps falls with their number; a gap of more than half
-        // is not closing.
-        if (rested || N == steps) return settled(s, outcome, 0.5);
+        // The gap left by linear steps falls with their number; more than this share of the gap at the
+        // design position is not closing.
+        constexpr double max_share = 0.5;
+        if (is_accurate || N == steps) return settled(s, outcome, max_share);
     }
     return Outcome::converged;
 }

@@ -101,7 +101,8 @@ double strain_of_held(SteppingState& s, const State<double>& q) {
 bool has_diverged(SteppingState& s) {
     const auto weighted = s.step.dq.array() * s.system.weight.head(s.n()).array();
     const double size = weighted.matrix().squaredNorm(), size_before = s.step.last.squaredNorm();
-    if (s.setup.consistent) s.step.missed = (weighted - s.step.last.array()).matrix().norm();
+    if (s.setup.consistent)
+        s.step.equilibrium_distance = (weighted - s.step.last.array()).matrix().norm();
     const bool comparable = s.kinks.uncompared == 0;
     if (!comparable) --s.kinks.uncompared;
     const bool swung =
@@ -129,7 +130,7 @@ Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_rat
     return Outcome::converged;
 }
 
-Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed) {
+Outcome check_idle_load(SteppingState& s, const State<double>& q, double equilibrium_distance) {
     if (s.system.held.idle == 0) return Outcome::converged;
     double uncertainty = s.work.Phi.norm(), whole = size_of_force(s, s.work.applied), share = 0;
     if (s.setup.consistent ? s.idle.elements.empty() : s.idle.pushing.empty()) {
@@ -145,7 +146,7 @@ Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed)
         whole += size_of_force(s, s.work.force);
         s.work.force = s.work.applied - s.work.force;
         share = load_on_idle_modes(s, s.work.force, whole);
-        uncertainty += missed;
+        uncertainty += equilibrium_distance;
     }
     const double rounding = guard::rounding * std::numeric_limits<double>::epsilon();
     uncertainty /= std::min(1.0, s.setup.length);
@@ -153,11 +154,11 @@ Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed)
                                                                     : Outcome::loaded_idle_mode;
 }
 
-Outcome check_idle_load_here(SteppingState& s, double missed) {
+Outcome check_idle_load_here(SteppingState& s, double equilibrium_distance) {
     if (s.system.held.idle == 0) return Outcome::converged;
     external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
     s.work.applied -= (1 - s.parameters.t) * s.start.R_d;
-    return check_idle_load(s, s.q, missed);
+    return check_idle_load(s, s.q, equilibrium_distance);
 }
 
 Outcome factorise_at(SteppingState& s, const State<double>& q, const Vector<double>& lambda) {

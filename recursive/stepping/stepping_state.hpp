@@ -126,7 +126,8 @@ struct SteppingState {
         State<double> before;        // qⁿ⁻¹
         Vector<double> lambda_half;  // halfway to λⁿ
         Vector<double> dq, last;     // last: W Δqⁿ⁻¹
-        double missed = 0;  // estimated distance of qⁿ from equilibrium: |W Δqⁿ⁻¹ - W Δqⁿ⁻²| [m]
+        // estimated distance of qⁿ from equilibrium: |W Δqⁿ⁻¹ - W Δqⁿ⁻²| [m]
+        double equilibrium_distance = 0;
         int swings = 0;  // steps in a row that reversed the one before and were larger
     } step;
 
@@ -263,12 +264,12 @@ inline bool is_regular(const SteppingState& s, double pivot_ratio) {
 Outcome check_factors(SteppingState& s, const State<double>& q, double pivot_ratio);
 
 // Whether s.work.applied and the elements at q load an idle mode. The border of (24) would carry
-// that load like a joint, and the result would be a false equilibrium. `missed` is the distance of
-// q from equilibrium [m], which adds to the uncertainty as |Φ| does.
-Outcome check_idle_load(SteppingState& s, const State<double>& q, double missed);
+// that load like a joint, and the result would be a false equilibrium. `equilibrium_distance` is the
+// distance of q from equilibrium [m], which adds to the uncertainty as |Φ| does.
+Outcome check_idle_load(SteppingState& s, const State<double>& q, double equilibrium_distance);
 
 // The same for the forces at the present configuration.
-Outcome check_idle_load_here(SteppingState& s, double missed);
+Outcome check_idle_load_here(SteppingState& s, double equilibrium_distance);
 
 // Assembles and factorises the method's matrix at (q, λ) with the present inputs, and checks it.
 Outcome factorise_at(SteppingState& s, const State<double>& q, const Vector<double>& lambda);

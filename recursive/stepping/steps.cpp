@@ -3,20 +3,21 @@
 namespace elastocheck::recursive {
 namespace {
 
-// f_ext for the step, less the part `held` of the imbalance R_d at the design position, which falls
-// from 1 to 0 while the start settles. Where the load does not follow, the applied load keeps its
-// moment and only the increment acts at the current lever.
-void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amount, double held) {
+// f_ext for the step, less `unreleased_share` of the imbalance R_d = f_ext - f_elast at the design
+// position; the share falls from 1 to 0 while the start settles. If follow.load is false, the applied
+// load keeps its moment and only the increment acts at the current lever.
+void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amount,
+                double unreleased_share) {
     if (follow.load) {
         external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
-        if (held != 0) s.work.applied -= held * s.start.R_d;
+        if (unreleased_share != 0) s.work.applied -= unreleased_share * s.start.R_d;
     } else {
         add_load_rate<double>(s.branch, drive, amount, s.q, s.work.applied);
         if (drive == Drive::start) s.work.applied += amount * s.start.R_d;
     }
 }
 
-// f_elast at the new configuration, according to `follow`:
+// Updates the stored forces, f_elast at the new configuration, according to `follow`:
 //
 //   nothing   f_elast⁺ = f_ext - Φ_q(qⁿ)ᵀ λⁿ: the upper row just solved. With it the next right-
 //             hand side f_ext - f_elast is that of (29), and by induction that of (28)
@@ -34,8 +35,8 @@ void store(SteppingState& s, const Follow& follow) {
     for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
         const ElasticKind& kind = s.model.elastics[k].kind;
         const auto [i, j] = bodies_of(kind);
-        ElementForce<double>& kept = s.work.element[k];
-        const ElementForce<double> now = element_force<double>(kind, s.inputs.rest[k], s.q);
+        ElementForce<double>& stored = s.work.element[k];
+        const ElementForce<double> current = element_force<double>(kind, s.inputs.rest[k], s.q);
         const auto motion = [&](BodyId b) -> Vector6<double> {
             return b == ground ? Vector6<double>::Zero()
                                : Vector6<double>(s.step.dq.segment<6>(6 * b));
@@ -43,17 +44,19 @@ void store(SteppingState& s, const Follow& follow) {
         const auto k_e = element_stiffness<double>(kind, s.inputs.rest[k], s.step.before);
         if (follow.lever) {
             const Vector6<double> dq_i = motion(k_e.i), dq_j = motion(k_e.j);
-            Vector6<double> de;  // (12)-(13)
+            Vector6<double> de;  // Δr'_j - Δr'_i, eqs. (13), (12); Δπ_j - Δπ_i
             de << dq_j.head<3>() - k_e.s_j.cross(dq_j.tail<3>()) - dq_i.head<3>() +
                       k_e.s_i.cross(dq_i.tail<3>()),
                 dq_j.tail<3>() - dq_i.tail<3>();
             const Vector6<double> df = k_e.K * de;
-            kept = {kept.F + df.head<3>(), kept.M + df.tail<3>(), now.lever_i, now.lever_j};
-            add_element_force<double>(i, j, kept, s.work.stored);
+            stored = {stored.F + df.head<3>(), stored.M + df.tail<3>(), current.lever_i,
+                      current.lever_j};
+            add_element_force<double>(i, j, stored, s.work.stored);
         } else {
-            const ElementForce<double> increment{now.F - kept.F, now.M - kept.M, k_e.s_i, k_e.s_j};
+            const ElementForce<double> increment{current.F - stored.F, current.M - stored.M,
+                                                 k_e.s_i, k_e.s_j};
             add_element_force<double>(i, j, increment, s.work.stored);
-            kept = now;
+            stored = current;
         }
     }
 }
@@ -93,8 +96,10 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
     if (s.setup.end != s.branch.to && !(std::abs(next.a) <= std::abs(s.setup.end)))
         return Outcome::inconsistent_constraints;
     if (turns_too_far(s, drive, amount)) return Outcome::diverged;
-    const Parameters here = s.parameters;
-    if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
+    // Lower row of (29) at (qⁿ, aⁿ). The loads are those at aⁿ⁺¹, the matrix that at aⁿ; with
+    // method.closed the whole system is that at aⁿ⁺¹.
+    const Parameters present = s.parameters;
+    if (!method.closed) {
         s.work.lower.setZero();
         add_constraint_rate<double>({s.model, s.branch, s.inputs, drive, -amount, s.q},
                                     s.work.lower);
@@ -103,7 +108,7 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
     go_to(s, next);
     apply_load(s, method.follow, drive, amount, 1 - next.t);
     store_driven(s, method.follow, drive, amount);
-    if (!method.closed) go_to(s, here);
+    if (!method.closed) go_to(s, present);
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
     if (!method.closed) go_to(s, next);
@@ -138,7 +143,7 @@ Outcome step(SteppingState& s, const Consistent& method, Parameters next) {
     external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
-    if (const Outcome outcome = check_idle_load(s, s.q, s.step.missed);
+    if (const Outcome outcome = check_idle_load(s, s.q, s.step.equilibrium_distance);
         outcome != Outcome::converged)
         return outcome;
     // A determinant with another sign than at a = 0 has passed through zero: there the branch

@@ -26,7 +26,7 @@ inline Outcome check_held_modes(SteppingState& s) {
     if (s.idle.pushing.empty()) return Outcome::converged;
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
-    return check_idle_load(s, s.q, s.setup.consistent ? s.step.missed : 0);
+    return check_idle_load(s, s.q, s.setup.consistent ? s.step.equilibrium_distance : 0);
 }
 
 // Error of the last step, by a correction with its own factors; for other steps the next

@@ -11,7 +11,7 @@ namespace elastocheck::recursive {
 // Returns the recorded points up to the end or the failure; with a visitor they are streamed
 // instead. On failure `stop` says where; the caller writes the message. Pre: Linear or Consistent.
 inline EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
-                             const Analysis& analysis, const Visit& visit, Stop& stop) {
+                             const Analysis& analysis, const PointVisitor& visit, Stop& stop) {
     const int N = options.steps > 0 ? options.steps : branch.steps;
     const int points = options.record > 0 ? options.record : N;
     SteppingState s(model, branch, analysis);

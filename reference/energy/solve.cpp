@@ -61,7 +61,7 @@ Failure reason(const Path& path, const State& last, double a, const Failure& fai
 }  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
-                      const Options& options, const Visit& visit) {
+                      const Options& options, const PointVisitor& visit) {
     if (!fits_branch(model, branch))
         throw std::invalid_argument("the model has parts that are inactive on branch '" +
                                     branch.name + "', or the branch has two sides");

@@ -26,7 +26,7 @@ std::optional<Failure> vanishing_link(const System& system, double a) {
 }  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
-                      const Options& options, const Visit& visit) {
+                      const Options& options, const PointVisitor& visit) {
     EquilibriumPath path;
     const auto ended = [&](const Failure& failed) {
         path.outcome = failed.outcome;

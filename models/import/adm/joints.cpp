@@ -54,7 +54,7 @@ struct JointConversion {
     }
     void require(Position position) const {
         const Vector3d d = separation(), z = J.axis(2);
-        if (position == meet) require_small(d.norm(), "I and J are apart by");
+        if (position == coincident) require_small(d.norm(), "I and J are apart by");
         if (position == on_line)
             require_small((d - z * z.dot(d)).norm(), "I is off the axis of J by");
         if (position == on_plane) require_small(std::abs(z.dot(d)), "I is off the plane of J by");
@@ -84,13 +84,13 @@ struct JointConversion {
     }
 
     std::size_t put(const std::string& name, const JointOfAdams& kind) const {
-        const bool either_way = kind.parallel != Parallel::z_and_x_one_way;
+        const bool either_way = kind.parallel != Parallel::z_and_x_same_sense;
         require(kind.position);
         if (kind.parallel != Parallel::none) require_parallel(2, either_way);
         if (kind.parallel == Parallel::z_and_x || !either_way) require_parallel(0, either_way);
         Fields joint_fields = fields(kind.type);
         if (kind.position != any) joint_fields.add("at", c.point(I));
-        if (kind.along) joint_fields.add(kind.along, direction(J.axis(2)));
+        if (kind.z_field) joint_fields.add(kind.z_field, direction(J.axis(2)));
         if (kind.axis_i >= 0) {  // the second is made exactly perpendicular
             const Vector3d u = I.axis(kind.axis_i), v = J.axis(kind.axis_j);
             require_small_angle(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))),

@@ -22,78 +22,81 @@ const std::vector<std::string> keys = {"name",   "x",      "y",       "z",      
 
 bool is_number(std::string_view cell) { return coordinate(cell, true) || coordinate(cell, false); }
 
-// ---- The map of the option --columns: "name=Punkt,x=X_mm,y=4,z=E".
+// ---- The value of --columns, which maps properties of a point to columns: "name=Punkt,x=X_mm,y=4,z=E".
 
 struct Assignment {
     std::string key, column;
 };
-using Map = std::vector<Assignment>;
+using ColumnChoice = std::vector<Assignment>;
 
-constexpr const char* form_of_map =
+constexpr const char* expected_choice =
     "expected name=COLUMN,x=COLUMN,y=COLUMN,z=COLUMN, each a heading, a number from 1 or letters; "
     "a heading with a comma by its number";
 
-bool has(const Map& map, const std::string& key) {
-    return std::ranges::find(map, key, &Assignment::key) != map.end();
+bool has(const ColumnChoice& choice, const std::string& key) {
+    return std::ranges::find(choice, key, &Assignment::key) != choice.end();
 }
 
-Map map_of(const std::string& text, const std::string& file) {
-    Map map;
+ColumnChoice read_choice(const std::string& text, const std::string& file) {
+    ColumnChoice choice;
     for (const std::string& piece : split(text, ",")) {
         const auto equals = piece.find('=');
         if (equals == piece.npos)
-            fail(file, 0, "--columns", "{} has no '='; {}", reader::quote(piece), form_of_map);
+            fail(file, 0, "--columns", "{} has no '='; {}", reader::quote(piece), expected_choice);
         const Assignment chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
                                 std::string(reader::trimmed(piece.substr(equals + 1)))};
         if (std::ranges::find(keys, chosen.key) == keys.end())
             fail(file, 0, "--columns", "{} is not a property of a point{}",
                  reader::quote(chosen.key), reader::did_you_mean(chosen.key, keys, "allowed"));
-        if (has(map, chosen.key)) fail(file, 0, "--columns", "{} is given twice", chosen.key);
+        if (has(choice, chosen.key)) fail(file, 0, "--columns", "{} is given twice", chosen.key);
         if (chosen.column.empty()) fail(file, 0, "--columns", "no column for {}", chosen.key);
-        map.push_back(chosen);
+        choice.push_back(chosen);
     }
-    const bool sides =
-        std::ranges::any_of(map, [](const Assignment& c) { return c.key.find('.') != c.key.npos; });
+    const bool sides = std::ranges::any_of(
+        choice, [](const Assignment& c) { return c.key.find('.') != c.key.npos; });
     std::vector<std::string> needed{"name"};
     for (const char* prefix : {"left.", "right."})
         for (const std::string& axis : axis_names) {
             if (sides) needed.push_back(prefix + axis);
-            if (sides && (has(map, axis) || has(map, "side")))
+            if (sides && (has(choice, axis) || has(choice, "side")))
                 fail(file, 0, "--columns", "left.x ... right.z are instead of x, y, z and side");
         }
     if (!sides) needed.insert(needed.end(), axis_names.begin(), axis_names.end());
     for (const auto& key : needed)
-        if (!has(map, key))
-            fail(file, 0, "--columns", "no {} in {}; {}", key, reader::quote(text), form_of_map);
-    return map;
+        if (!has(choice, key))
+            fail(file, 0, "--columns", "no {} in {}; {}", key, reader::quote(text),
+                 expected_choice);
+    return choice;
 }
 
 // Position of a column given by its number from 1 or by its letters, in a table of `width` columns.
 std::optional<std::size_t> position(const std::string& column, std::size_t width) {
-    std::size_t at = 0;  // from 1
+    std::size_t number = 0;  // from 1
     if (std::ranges::all_of(column, reader::is_digit)) {
-        const auto [end, error] = std::from_chars(column.data(), column.data() + column.size(), at);
+        const auto [end, error] =
+            std::from_chars(column.data(), column.data() + column.size(), number);
         if (error != std::errc{}) return std::nullopt;
     } else if (column.size() <= 3 && std::ranges::all_of(column, reader::is_letter)) {
-        for (const char letter : reader::capitals(column)) at = 26 * at + (letter - 'A' + 1);
+        for (const char letter : reader::capitals(column))
+            number = 26 * number + (letter - 'A' + 1);
     }
-    if (at < 1 || at > width) return std::nullopt;
-    return at - 1;
+    if (number < 1 || number > width) return std::nullopt;
+    return number - 1;
 }
 
 // Columns with this heading in a row.
-std::vector<std::size_t> columns_headed(const SheetRow& row, const std::string& heading) {
+std::vector<std::size_t> columns_with_heading(const SheetRow& row, const std::string& heading) {
     const std::string word = reader::small_letters(heading);
-    std::vector<std::size_t> at;
+    std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < row.cells.size(); ++c)
-        if (reader::small_letters(row.cells[c]) == word) at.push_back(c);
-    return at;
+        if (reader::small_letters(row.cells[c]) == word) columns.push_back(c);
+    return columns;
 }
 
 // ---- Headings.
 
 // The first row with three numbers; the number of rows if there is none.
-std::size_t first_numbers(const Sheet& sheet) {
+std::size_t first_row_with_numbers(const Sheet& sheet) {
     const auto first = std::ranges::find_if(sheet.rows, [](const SheetRow& row) {
         return std::ranges::count_if(row.cells, is_number) >= 3;
     });
@@ -101,37 +104,39 @@ std::size_t first_numbers(const Sheet& sheet) {
 }
 
 // The row above the numbers with most words, probably that of the headings; null if there is none.
-const SheetRow* likely_head(const Sheet& sheet) {
-    const SheetRow* head = nullptr;
-    std::ptrdiff_t most = 0;
-    for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) {
+const SheetRow* likely_heading_row(const Sheet& sheet) {
+    const SheetRow* heading_row = nullptr;
+    std::ptrdiff_t most_words = 0;
+    for (std::size_t r = 0, end = first_row_with_numbers(sheet); r < end; ++r) {
         const auto words = std::ranges::count_if(sheet.rows[r].cells, [](const std::string& cell) {
             return !cell.empty() && !is_number(cell);
         });
-        if (words > most) {
-            most = words;
-            head = &sheet.rows[r];
+        if (words > most_words) {
+            most_words = words;
+            heading_row = &sheet.rows[r];
         }
     }
-    return head;
+    return heading_row;
 }
 
 // "'Name' (A), 'X' (B), none (C)"
-std::string with_letters(const SheetRow& head) {
+std::string with_letters(const SheetRow& heading_row) {
     std::vector<std::string> words;
-    for (std::size_t c = 0; c < head.cells.size(); ++c)
-        words.push_back(head.cells[c].empty()
-                            ? fmt::format("none ({})", letters_of(c))
-                            : fmt::format("{} ({})", reader::quote(head.cells[c]), letters_of(c)));
+    for (std::size_t c = 0; c < heading_row.cells.size(); ++c)
+        words.push_back(
+            heading_row.cells[c].empty()
+                ? fmt::format("none ({})", letters_of(c))
+                : fmt::format("{} ({})", reader::quote(heading_row.cells[c]), letters_of(c)));
     return reader::listed(words);
 }
 
 // Whether a heading has the word: "Koord. X", "X-Wert", "x_mm".
 bool has_word(const std::string& heading, std::string_view word) {
     const std::string text = reader::small_letters(heading);
-    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
-        const std::size_t end = at + word.size();
-        if ((at == 0 || !reader::is_letter(text[at - 1])) &&
+    for (std::size_t start = text.find(word); start != text.npos;
+         start = text.find(word, start + 1)) {
+        const std::size_t end = start + word.size();
+        if ((start == 0 || !reader::is_letter(text[start - 1])) &&
             (end == text.size() || !reader::is_letter(text[end])))
             return true;
     }
@@ -139,40 +144,43 @@ bool has_word(const std::string& heading, std::string_view word) {
 }
 
 // "--columns name=Punkt,x=X-Wert,y=Y-Wert,z=HEADING": the option as far as the headings suggest it.
-std::string proposal(const Sheet& sheet, const SheetRow& head) {
-    std::string map;
-    const std::size_t data = first_numbers(sheet);
+std::string proposal(const Sheet& sheet, const SheetRow& heading_row) {
+    std::string choice;
+    const std::size_t first_point = first_row_with_numbers(sheet);
     for (const std::string key : {"name", "x", "y", "z"}) {
         const auto fits = [&](std::size_t c) {
-            if (key != "name") return has_word(head.cells[c], key);
-            const std::string_view cell = data < sheet.rows.size() ? sheet.rows[data].at(c) : "";
+            if (key != "name") return has_word(heading_row.cells[c], key);
+            const std::string_view cell =
+                first_point < sheet.rows.size() ? sheet.rows[first_point].at(c) : "";
             return !cell.empty() && !is_number(cell);
         };
         std::size_t c = 0;
-        while (c < head.cells.size() && !fits(c)) ++c;
+        while (c < heading_row.cells.size() && !fits(c)) ++c;
         std::string column = "HEADING";
-        if (c < head.cells.size()) {
-            const std::string& word = head.cells[c];
+        if (c < heading_row.cells.size()) {
+            const std::string& word = heading_row.cells[c];
             const bool plain = !word.empty() && std::ranges::all_of(word, [](char ch) {
                 return reader::is_word(ch) || ch == '-' || ch == '.';
             });
-            column = plain && columns_headed(head, word).size() == 1 ? word : letters_of(c);
+            column =
+                plain && columns_with_heading(heading_row, word).size() == 1 ? word : letters_of(c);
         }
-        map += fmt::format("{}{}={}", map.empty() ? "" : ",", key, column);
+        choice += fmt::format("{}{}={}", choice.empty() ? "" : ",", key, column);
     }
-    return "--columns " + map;
+    return "--columns " + choice;
 }
 
 [[noreturn]] void refuse(const Sheet& sheet, const std::string& file, const std::string& what) {
-    const SheetRow* head = likely_head(sheet);
+    const SheetRow* heading_row = likely_heading_row(sheet);
     if (sheet.rows.empty()) fail(file, 0, "", "no point in this file");
-    if (head == nullptr)
+    if (heading_row == nullptr)
         fail(file, sheet.rows.front().line, "",
              "{}; no headings above the numbers; choose columns by their numbers or letters: "
              "--columns name=A,x=B,y=C,z=D",
              what);
-    fail(file, head->line, "", "{}; headings: {}; choose with {} (by heading, number or letters)",
-         what, with_letters(*head), proposal(sheet, *head));
+    fail(file, heading_row->line, "",
+         "{}; headings: {}; choose with {} (by heading, number or letters)", what,
+         with_letters(*heading_row), proposal(sheet, *heading_row));
 }
 
 // Columns of name, x, y, z by the first words of their headings in a row: "Point Name", "X [mm]", "y_m".
@@ -190,27 +198,28 @@ std::array<std::vector<std::size_t>, 4> recognised(const SheetRow& row) {
 
 constexpr std::size_t no_row = static_cast<std::size_t>(-1);
 
-struct FoundColumns {
+struct ChosenColumns {
     PointColumns columns;
-    std::size_t head = no_row;  // row of the headings; no_row: chosen by position alone
+    std::size_t heading_row = no_row;  // no_row: the columns are chosen by position alone
 };
 
-// Columns without a heading in the row `head` that have words in all rows of numbers below it.
-std::vector<std::size_t> unnamed_columns(const Sheet& sheet, std::size_t head) {
-    std::vector<std::size_t> words;
+// Columns with an empty heading in the row `heading_row` whose cell is text in every row below it that
+// has three numbers.
+std::vector<std::size_t> unnamed_columns(const Sheet& sheet, std::size_t heading_row) {
+    std::vector<std::size_t> text_columns;
     for (std::size_t c = 0; c < SheetRow::max_cells; ++c) {
-        std::size_t cells = 0, wide = 0;
-        for (std::size_t r = head + 1; r < sheet.rows.size(); ++r) {
+        std::size_t width = 0;
+        bool all_text = true;
+        for (std::size_t r = heading_row + 1; r < sheet.rows.size(); ++r) {
             const SheetRow& row = sheet.rows[r];
             if (std::ranges::count_if(row.cells, is_number) < 3) continue;
-            wide = std::max(wide, row.cells.size());
-            if (row.at(c).empty() || is_number(row.at(c))) cells = SheetRow::max_cells;
-            ++cells;
+            width = std::max(width, row.cells.size());
+            if (row.at(c).empty() || is_number(row.at(c))) all_text = false;
         }
-        if (c >= wide) break;
-        if (cells < SheetRow::max_cells && sheet.rows[head].at(c).empty()) words.push_back(c);
+        if (c >= width) break;
+        if (all_text && sheet.rows[heading_row].at(c).empty()) text_columns.push_back(c);
     }
-    return words;
+    return text_columns;
 }
 
 // "LF_", "left_" of a heading above several columns: "Front left", "LEFT".
@@ -225,76 +234,83 @@ std::string prefix_of(const std::string& heading) {
 
 // The coordinate columns of several groups, whose names are in the row above the headings; empty if the
 // columns do not form such groups.
-std::vector<Triple> grouped(const Sheet& sheet, std::size_t head,
-                            const std::array<std::vector<std::size_t>, 4>& places) {
+std::vector<Triple> grouped(const Sheet& sheet, std::size_t heading_row,
+                            const std::array<std::vector<std::size_t>, 4>& columns) {
     std::vector<Triple> triples;
-    if (head == 0 || places[1].size() != places[2].size() || places[1].size() != places[3].size())
+    if (heading_row == 0 || columns[1].size() != columns[2].size() ||
+        columns[1].size() != columns[3].size())
         return {};
-    for (std::size_t n = 0; n < places[1].size(); ++n) {
-        // the name is in the last filled cell up to x, behind the z of the group before
-        const auto x = places[1][n], begin = n == 0 ? 0 : places[3][n - 1] + 1;
+    const SheetRow& name_row = sheet.rows[heading_row - 1];
+    for (std::size_t n = 0; n < columns[1].size(); ++n) {
+        // A merged heading stands in its first cell: search from x to the left, not beyond the z of the
+        // previous group.
+        const auto x = columns[1][n], begin = n == 0 ? 0 : columns[3][n - 1] + 1;
         std::size_t end = x + 1;
-        while (end > begin && sheet.rows[head - 1].at(end - 1).empty()) --end;
+        while (end > begin && name_row.at(end - 1).empty()) --end;
         if (end == begin) return {};
-        const std::string prefix = prefix_of(std::string(sheet.rows[head - 1].at(end - 1)));
+        const std::string prefix = prefix_of(std::string(name_row.at(end - 1)));
         if (std::ranges::find(triples, prefix, &Triple::prefix) != triples.end()) return {};
-        triples.push_back({prefix, {x, places[2][n], places[3][n]}});
+        triples.push_back({prefix, {x, columns[2][n], columns[3][n]}});
     }
     return triples;
 }
 
-FoundColumns by_headings(const Sheet& sheet, const std::string& file) {
+ChosenColumns by_headings(const Sheet& sheet, const std::string& file) {
     std::vector<std::string> missing{"name", "x", "y", "z"};
     for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
-        auto head = recognised(sheet.rows[r]);
-        const bool has_places = !head[1].empty() && !head[2].empty() && !head[3].empty();
-        if (head[0].empty() && has_places && r > 0) head[0] = recognised(sheet.rows[r - 1])[0];
-        if (head[0].empty() && has_places) {
-            head[0] = unnamed_columns(sheet, r);
-            if (head[0].size() > 1) head[0].clear();
+        auto columns = recognised(sheet.rows[r]);
+        const bool has_coordinates =
+            !columns[1].empty() && !columns[2].empty() && !columns[3].empty();
+        // The heading of the names may stand one row higher, or be empty.
+        if (columns[0].empty() && has_coordinates && r > 0)
+            columns[0] = recognised(sheet.rows[r - 1])[0];
+        if (columns[0].empty() && has_coordinates) {
+            columns[0] = unnamed_columns(sheet, r);
+            if (columns[0].size() > 1) columns[0].clear();
         }
-        std::vector<std::string> lacks;
+        std::vector<std::string> missing_here;
         for (std::size_t k = 0; k < 4; ++k)
-            if (head[k].empty()) lacks.emplace_back(k == 0 ? "name" : axis_names[k - 1]);
-        if (!lacks.empty()) {
-            if (lacks.size() < missing.size()) missing = lacks;
+            if (columns[k].empty()) missing_here.emplace_back(k == 0 ? "name" : axis_names[k - 1]);
+        if (!missing_here.empty()) {
+            if (missing_here.size() < missing.size()) missing = missing_here;
             continue;
         }
-        FoundColumns result;
-        if (head[1].size() > 1) result.columns.triples = grouped(sheet, r, head);
+        ChosenColumns result;
+        if (columns[1].size() > 1) result.columns.triples = grouped(sheet, r, columns);
         for (std::size_t k = 0; k < 4; ++k)
-            if (head[k].size() > 1 && (k == 0 || result.columns.triples.empty()))
+            if (columns[k].size() > 1 && (k == 0 || result.columns.triples.empty()))
                 refuse(sheet, file,
                        fmt::format("two columns of {}", std::array{"names", "x", "y", "z"}[k]));
-        result.columns.name = head[0][0];
+        result.columns.name = columns[0][0];
         if (result.columns.triples.empty())
-            result.columns.triples = {{"", {head[1][0], head[2][0], head[3][0]}}};
-        result.head = r;
+            result.columns.triples = {{"", {columns[1][0], columns[2][0], columns[3][0]}}};
+        result.heading_row = r;
         return result;
     }
     refuse(sheet, file, fmt::format("no column {}", fmt::join(missing, ", ")));
 }
 
-// Column of an assignment: by a heading in row `head`, else in another row above the numbers, else by number
+// Column of an assignment: by a heading in row `heading_row`, else in another row above the numbers, else by number
 // or letters.
 std::size_t resolved_column(const Sheet& sheet, const std::string& file, const Assignment& chosen,
-                            std::size_t head) {
+                            std::size_t heading_row) {
     const auto& [key, column] = chosen;
-    std::vector<std::size_t> lines;
-    if (head != no_row) lines.push_back(head);
-    for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) lines.push_back(r);
-    for (const std::size_t r : lines) {
-        const auto at = columns_headed(sheet.rows[r], column);
-        if (at.size() > 1)
+    std::vector<std::size_t> rows;
+    if (heading_row != no_row) rows.push_back(heading_row);
+    for (std::size_t r = 0, end = first_row_with_numbers(sheet); r < end; ++r) rows.push_back(r);
+    for (const std::size_t r : rows) {
+        const auto columns = columns_with_heading(sheet.rows[r], column);
+        if (columns.size() > 1)
             fail(file, sheet.rows[r].line, "--columns",
                  "{}: columns {} and {} have the heading {}; choose one by its letter", key,
-                 letters_of(at[0]), letters_of(at[1]), reader::quote(column));
-        if (!at.empty()) return at[0];
+                 letters_of(columns[0]), letters_of(columns[1]), reader::quote(column));
+        if (!columns.empty()) return columns[0];
     }
     std::size_t width = 0;
     for (const auto& row : sheet.rows) width = std::max(width, row.cells.size());
-    if (const auto at = position(column, width)) return *at;
-    const SheetRow* row = head != no_row ? &sheet.rows[head] : likely_head(sheet);
+    if (const auto index = position(column, width)) return *index;
+    const SheetRow* row =
+        heading_row != no_row ? &sheet.rows[heading_row] : likely_heading_row(sheet);
     std::vector<std::string> words;
     if (row != nullptr)
         std::ranges::copy_if(row->cells, std::back_inserter(words),
@@ -304,36 +320,36 @@ std::size_t resolved_column(const Sheet& sheet, const std::string& file, const A
          reader::quote(column), width, reader::did_you_mean(column, words, "headings"));
 }
 
-FoundColumns by_map(const Sheet& sheet, const std::string& file, const Map& map) {
-    FoundColumns found;
-    std::ptrdiff_t most = 0;
-    for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) {
-        const auto matches = std::ranges::count_if(map, [&](const Assignment& c) {
-            return !columns_headed(sheet.rows[r], c.column).empty();
+ChosenColumns by_choice(const Sheet& sheet, const std::string& file, const ColumnChoice& choice) {
+    ChosenColumns result;
+    std::ptrdiff_t most_matches = 0;
+    for (std::size_t r = 0, end = first_row_with_numbers(sheet); r < end; ++r) {
+        const auto matches = std::ranges::count_if(choice, [&](const Assignment& c) {
+            return !columns_with_heading(sheet.rows[r], c.column).empty();
         });
-        if (matches > most) {
-            most = matches;
-            found.head = r;
+        if (matches > most_matches) {
+            most_matches = matches;
+            result.heading_row = r;
         }
     }
     std::map<std::size_t, std::string> used;
     std::map<std::string, Triple> triples;  // by the prefix of their names
-    for (const auto& chosen : map) {
-        const std::size_t column = resolved_column(sheet, file, chosen, found.head);
+    for (const auto& chosen : choice) {
+        const std::size_t column = resolved_column(sheet, file, chosen, result.heading_row);
         if (const auto [other, is_new] = used.emplace(column, chosen.key); !is_new)
             fail(file, 0, "--columns", "{} and {} are the same column {}", other->second,
                  chosen.key, letters_of(column));
         const auto dot = chosen.key.find('.');
         const std::string prefix = dot == chosen.key.npos ? "" : chosen.key.substr(0, dot) + "_";
         if (chosen.key == "name")
-            found.columns.name = column;
+            result.columns.name = column;
         else if (chosen.key == "side")
-            found.columns.side = column;
+            result.columns.side = column;
         else
             triples[prefix].at[static_cast<std::size_t>(chosen.key.back() - 'x')] = column;
     }
-    for (auto& [prefix, triple] : triples) found.columns.triples.push_back({prefix, triple.at});
-    return found;
+    for (auto& [prefix, triple] : triples) result.columns.triples.push_back({prefix, triple.at});
+    return result;
 }
 
 // ---- Units.
@@ -364,7 +380,7 @@ struct DeclaredUnit {
     int line = 0;
 };
 
-// The last unit of a column in the rows `rows` (first, end) above the points.
+// The unit of a column: that in the last of the rows `rows` (first, end) above the points that has one.
 DeclaredUnit unit_of(const Sheet& sheet, const std::string& file,
                      std::pair<std::size_t, std::size_t> rows, std::size_t column,
                      const std::string& axis, bool may_be_unknown) {
@@ -388,17 +404,18 @@ DeclaredUnit unit_of(const Sheet& sheet, const std::string& file,
     return declared;
 }
 
-// Sets the unit of the coordinates: that of the headings, the same for all columns, or that of the option.
-void find_unit(const Sheet& sheet, const std::string& file, std::size_t head,
+// Sets the unit of the coordinates: that of --unit, `option`, or that of the headings, which must agree
+// in all columns.
+void find_unit(const Sheet& sheet, const std::string& file, std::size_t heading_row,
                const std::string& option, PointColumns& columns) {
-    std::string first_without;  // a column for which no line says a unit
-    const std::pair rows{head == no_row ? 0 : head, columns.first};
+    std::string first_without_unit;  // the first column for which no row states a unit
+    const std::pair rows{heading_row == no_row ? 0 : heading_row, columns.first};
     for (const Triple& triple : columns.triples)
         for (std::size_t k = 0; k < 3; ++k) {
             const auto [unit, from, line] =
                 unit_of(sheet, file, rows, triple.at[k], axis_names[k], !option.empty());
             if (unit.empty()) {
-                if (first_without.empty()) first_without = triple.prefix + axis_names[k];
+                if (first_without_unit.empty()) first_without_unit = triple.prefix + axis_names[k];
                 continue;
             }
             if (!columns.unit.empty() && columns.unit != unit)
@@ -412,9 +429,9 @@ void find_unit(const Sheet& sheet, const std::string& file, std::size_t head,
     if (!option.empty()) {
         columns.unit = option;
         columns.unit_from = "by --unit";
-    } else if (!first_without.empty())
-        fail(file, sheet.rows[head == no_row ? columns.first : head].line, first_without,
-             "no unit in its heading or below it; say it with --unit: {}",
+    } else if (!first_without_unit.empty())
+        fail(file, sheet.rows[heading_row == no_row ? columns.first : heading_row].line,
+             first_without_unit, "no unit in its heading or below it; say it with --unit: {}",
              fmt::join(length_units, ", "));
 }
 
@@ -442,25 +459,25 @@ std::optional<double> coordinate(std::string_view cell, bool decimal_comma) {
     return value;
 }
 
-PointColumns point_columns(const Sheet& sheet, const std::string& file, const std::string& map,
+PointColumns point_columns(const Sheet& sheet, const std::string& file, const std::string& choice,
                            const std::string& unit) {
-    FoundColumns found =
-        map.empty() ? by_headings(sheet, file) : by_map(sheet, file, map_of(map, file));
-    PointColumns& columns = found.columns;
+    ChosenColumns chosen = choice.empty() ? by_headings(sheet, file)
+                                          : by_choice(sheet, file, read_choice(choice, file));
+    PointColumns& columns = chosen.columns;
     // without a line of headings, lines above the points may have numbers too
     const auto has_numbers = [&](const SheetRow& row) {
         return std::ranges::any_of(columns.triples, [&](const Triple& triple) {
             const auto count = std::ranges::count_if(
                 triple.at, [&](std::size_t c) { return is_number(row.at(c)); });
-            return count >= (found.head == no_row ? 3 : 1);
+            return count >= (chosen.heading_row == no_row ? 3 : 1);
         });
     };
-    columns.first = found.head == no_row ? 0 : found.head + 1;
+    columns.first = chosen.heading_row == no_row ? 0 : chosen.heading_row + 1;
     while (columns.first < sheet.rows.size() && !has_numbers(sheet.rows[columns.first]))
         ++columns.first;
     if (columns.first == sheet.rows.size()) fail(file, 0, "", "no point in this file");
-    find_unit(sheet, file, found.head, unit, columns);
-    return std::move(found.columns);
+    find_unit(sheet, file, chosen.heading_row, unit, columns);
+    return std::move(chosen.columns);
 }
 
 }  // namespace elastocheck::importer

@@ -32,14 +32,15 @@ struct Parameter {
     Unit unit;
 };
 
-double weight_of(const Term& term, const char* what) {
-    const double weight = term.number();
-    if (weight == 0) term.at.fail(fmt::format("zero, which {}; remove it", what));
-    return weight;
+// The rate of a driver; SceneError at the term if it is zero, with the clause `objection`.
+double nonzero_rate(const Term& term, const char* objection) {
+    const double rate = term.number();
+    if (rate == 0) term.at.fail(fmt::format("zero, which {}; remove it", objection));
+    return rate;
 }
 
-// Converts a moment load from the declared unit of moment/force to metres.
-void convert_arm(Load& load, const Unit& arm) {
+// Converts a moment per unit force from the declared unit of moment/force to metres.
+void convert_moment_to_per_force(Load& load, const Unit& arm) {
     if (!is_moment(load.kind)) return;
     Vector3& m = load_vector(load.kind);
     m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
@@ -51,7 +52,7 @@ Parameter read_loads_moved(const Cursor& field, const Units& units, const Loads&
     for (const Term& term : terms(field, "a load")) {
         chosen.push_back(look_up_load(term, loads));
         branch.drivers.push_back(
-            {.what = Load{}, .start = 0, .rate = weight_of(term, "loads nothing")});
+            {.what = Load{}, .start = 0, .rate = nonzero_rate(term, "loads nothing")});
     }
     const auto zero = [](const Load& load) { return load_vector(load.kind).isZero(0); };
     const auto moment = [](const Load& load) { return is_moment(load.kind); };
@@ -59,7 +60,7 @@ Parameter read_loads_moved(const Cursor& field, const Units& units, const Loads&
         field.fail("zero in every component; a branch needs a nonzero load");
     const bool only_moments = std::ranges::all_of(chosen, moment);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
-        if (!only_moments) convert_arm(chosen[k], units.arm);
+        if (!only_moments) convert_moment_to_per_force(chosen[k], units.arm);
         branch.drivers[k].what = chosen[k];
     }
     return only_moments ? Parameter{ParameterUnit::newton_metre, units.moment}
@@ -72,14 +73,16 @@ Parameter read_driven(const Cursor& field, Drivables& drivables, Scene& scene, B
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
         if (!parameter) parameter = Parameter{quantity.kind, quantity.unit};
         const double rate =
-            weight_of(term, "rate zero drives nothing; a constant value belongs in hold");
+            nonzero_rate(term, "rate zero drives nothing; a constant value belongs in hold");
         if (term.name == "hand_wheel" && (rate != 1 || !branch.drivers.empty()))
             term.at.fail("the parameter of the branch is its angle; allowed: first, with rate 1");
-        // In SI units of the quantity per SI unit of a; without rounding for equal units.
-        const double si = quantity.unit.name == parameter->unit.name
-                              ? rate
-                              : quantity.unit.si(rate) / parameter->unit.si(1);
-        branch.drivers.push_back({.what = quantity.what, .start = 0, .rate = si * quantity.factor});
+        // SI unit of the quantity per SI unit of a. Equal units need no conversion, so that the rate
+        // stays exact.
+        const double si_rate = quantity.unit.name == parameter->unit.name
+                                   ? rate
+                                   : quantity.unit.si(rate) / parameter->unit.si(1);
+        branch.drivers.push_back(
+            {.what = quantity.what, .start = 0, .rate = si_rate * quantity.factor});
     }
     return *parameter;
 }
@@ -171,7 +174,7 @@ std::string reason(const Model& model, const std::string& what) {
 }
 
 // "load 'push' acts on body 'arm', which is left out: no output is connected to it"
-std::string why_removed(const Driver& driver, const Scene& scene, const Model& model) {
+std::string why_driver_is_omitted(const Driver& driver, const Scene& scene, const Model& model) {
     const auto part = [&](const std::string& what) {
         return fmt::format("{} is left out: {}", what, reason(model, what));
     };
@@ -193,26 +196,26 @@ void require_lengths(const Cursor& branch, const Model& model, std::size_t b) {
     for (const Branch& side : branch_sides(model.branches[b])) {
         const auto vanishing = vanishing_length(model, side);
         if (!vanishing) continue;
-        const Cursor place = vanishing->at == 0
+        const Cursor place = vanishing->parameter == 0
                                  ? branch.require("hold")
                                  : branch.require(side.to == model.branches[b].to ? "to" : "from");
         const std::string& name = model.joints[static_cast<std::size_t>(vanishing->joint)].name;
         try {
             place.fail(
-                vanishing->at == 0
+                vanishing->parameter == 0
                     ? fmt::format("leaves joint {} no length", quote(name))
                     : fmt::format("{} would leave joint {} a length of {:.6g} mm; allowed: short "
                                   "of {:.6g}, where its length is zero",
-                                  place.found(), quote(name), 1e3 * vanishing->to,
-                                  place.number("") * vanishing->at / side.to));
+                                  place.found(), quote(name), 1e3 * vanishing->length,
+                                  place.number("") * vanishing->parameter / side.to));
         } catch (const SceneError& error) {
             throw LengthVanishes(error.what());
         }
     }
 }
 
-// Compiles the scene and requires that every branch moves something.
-Model compile_moving(const Cursor& section, const Scene& scene) {
+// Compiles the scene and requires that every branch keeps a driver that moves something.
+Model compile_and_require_motion(const Cursor& section, const Scene& scene) {
     Model model = compile(scene);
     const auto moves = [](const Driver& driver) { return driver.rate != 0; };
     for (std::size_t b = 0; b < scene.branches.size(); ++b) {
@@ -220,7 +223,8 @@ Model compile_moving(const Cursor& section, const Scene& scene) {
         if (std::ranges::any_of(model.branches[b].drivers, moves)) continue;
         std::string why;
         for (const Driver& driver : scene.branches[b].drivers)
-            if (moves(driver)) why += (why.empty() ? "" : "; ") + why_removed(driver, scene, model);
+            if (moves(driver))
+                why += (why.empty() ? "" : "; ") + why_driver_is_omitted(driver, scene, model);
         section.require(scene.branches[b].name)
             .fail("changes nothing that an output depends on: " + why);
     }
@@ -249,7 +253,7 @@ Model read_branches(const Cursor& file, const Units& units,
     for (const auto& [name, field] : section.entries())
         scene.branches.push_back(read_branch(name, field, units, loads, drivables, scene));
     if (scene.branches.empty()) section.fail("empty; at least one branch is needed");
-    Model model = compile_moving(section, scene);
+    Model model = compile_and_require_motion(section, scene);
     if (const auto load_section = file.optional("loads"); load_section)
         note_unused_loads(file, *load_section, loads, scene);
     return model;

@@ -17,7 +17,7 @@ namespace {
 
 namespace reference::equilibrium {
 EquilibriumPath solve(const Model&, const Branch&, std::span<const double>, const Options&,
-                      const Visit&) {
+                      const PointVisitor&) {
     absent("the equilibrium leg");
 }
 Residuals residuals(const Model&, const Branch&, const Equilibrium&) {
@@ -31,7 +31,7 @@ Response linear_response(const Model&, const Branch&, const Equilibrium&,
 
 namespace reference::energy {
 EquilibriumPath solve(const Model&, const Branch&, std::span<const double>, const Options&,
-                      const Visit&) {
+                      const PointVisitor&) {
     absent("the energy leg");
 }
 Residuals residuals(const Model&, const Branch&, const Equilibrium&) { absent("the energy leg"); }
