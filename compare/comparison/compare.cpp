@@ -187,7 +187,7 @@ double bound_of_characteristic(const Channel& channel, const std::vector<double>
     constexpr double share = 1e-6;
     double largest = 1e-3;
     for (const double value : values) largest = std::max(largest, std::abs(value));
-    return std::max(share * largest, is_place(channel) ? bounds.length : 0);
+    return std::max(share * largest, is_position(channel) ? bounds.length : 0);
 }
 
 int count(const Reading& reading, const std::vector<bool>& determined) {

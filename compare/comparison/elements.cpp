@@ -57,7 +57,8 @@ ElementState state_of(const Model& model, const Branch& branch, const Equilibriu
     ElementState result{&elastic, is_active(elastic, k, branch)};
     if (!result.active) return result;
     result.e = deformation(elastic.kind, static_cast<std::size_t>(k), branch, state);
-    result.s = stress(elastic.kind, static_cast<std::size_t>(k), branch, state, result.e);
+    result.s =
+        force_with_preload(elastic.kind, static_cast<std::size_t>(k), branch, state, result.e);
     return result;
 }
 

@@ -43,7 +43,7 @@ class NamedOutputs {
     Channel operator()(const std::string& name) {
         for (const Entry& entry : catalogue())
             if (!entry.on_request && name.ends_with(entry.name))
-                for (const Named& owner : owners(model_, entry.owner))
+                for (const NamedOwner& owner : owners(model_, entry.owner))
                     if (Channel channel = channel_of(model_, entry, owner); channel.name == name)
                         return channel;
         for (const bool with_sums : {false, true}) {
@@ -60,15 +60,16 @@ class NamedOutputs {
 };
 
 // The sides of the branch of these states, with the steps at which they are solved.
-std::vector<BranchSide> read_sides(const Model& model, const ReadStates& states) {
+std::vector<BranchSide> read_sides(const Model& model, const StatesOfFigures& states) {
     const Branch& branch = model.branches[states.branch];
-    return sides_of(model, branch, states.whole ? std::min(branch.steps, interpolated_points) : 1);
+    return sides_of(model, branch,
+                    states.whole_branch ? std::min(branch.steps, interpolated_points) : 1);
 }
 
 // Reads the figures of one branch: those at values of the parameter, or those over another output.
 struct BranchReader {
     const Model& model;
-    const ReadStates& states;
+    const StatesOfFigures& states;
     Leg leg;
     std::span<const Figure> figures;
     FigureValues& result;
@@ -77,7 +78,7 @@ struct BranchReader {
 
     const Branch& branch() const { return model.branches[states.branch]; }
     bool has(const Figure& figure) const {
-        return figure.branch == branch().name && figure.over.empty() != states.whole;
+        return figure.branch == branch().name && figure.abscissa.empty() != states.whole_branch;
     }
     void add(const std::string& name, NamedOutputs& outputs) {
         if (!name.empty() && find_channel(read, name) < 0) read.push_back(outputs(name));
@@ -86,7 +87,7 @@ struct BranchReader {
         for (std::size_t k = 0; k < figures.size(); ++k)
             if (has(figures[k])) {
                 add(figures[k].name, outputs);
-                add(figures[k].over, outputs);
+                add(figures[k].abscissa, outputs);
                 chosen.push_back(k);
             }
     }
@@ -116,10 +117,10 @@ struct BranchReader {
             append(curve, state.load,
                    row_of(model, read, states.sides.front(), {.leg = leg}, state, analyses).values);
         for (const std::size_t k : chosen)
-            if (states.whole)
+            if (states.whole_branch)
                 set_over_output(k, curve);
             else if (const auto at =
-                         std::ranges::find(states.states, figures[k].at, &Equilibrium::load);
+                         std::ranges::find(states.states, figures[k].station, &Equilibrium::load);
                      at != states.states.end())
                 set(k, curve.values[static_cast<std::size_t>(at - states.states.begin())]
                                    [column(figures[k].name)]);
@@ -130,20 +131,21 @@ struct BranchReader {
     // At a value of another output, interpolated on the curve of the branch.
     void set_over_output(std::size_t k, const Curve& curve) const {
         const Figure& figure = figures[k];
-        const auto x = abscissa_values(curve, column(figure.over));
-        if (reaches(x, figure.at))
-            set(k, interpolate(x, curve.channel(column(figure.name)), figure.at, 6));
+        const auto x = abscissa_values(curve, column(figure.abscissa));
+        if (reaches(x, figure.station))
+            set(k, interpolate(x, curve.channel(column(figure.name)), figure.station, 6));
         else
-            set_reason(
-                x.empty()
-                    ? fmt::format("branch '{}': {} is not monotonic", branch().name, figure.over)
-                    : fmt::format("branch '{}' does not reach {} = {:g} {}", branch().name,
-                                  figure.over, figure.at, symbol(read[column(figure.over)].unit)));
+            set_reason(x.empty() ? fmt::format("branch '{}': {} is not monotonic", branch().name,
+                                               figure.abscissa)
+                                 : fmt::format("branch '{}' does not reach {} = {:g} {}",
+                                               branch().name, figure.abscissa, figure.station,
+                                               symbol(read[column(figure.abscissa)].unit)));
     }
 };
 
 // Adds the states of one branch side at those of the points that lie on it.
-void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, ReadStates& into) {
+void solve_side(const BranchSide& side, Leg leg, std::vector<double> points,
+                StatesOfFigures& into) {
     std::erase_if(points, [&](double a) { return a * side.branch.to < 0; });
     std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
     const auto again = std::ranges::unique(points);
@@ -159,9 +161,9 @@ void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, Rea
 }
 
 // Whether a model differs from the model of the states only in its numbers.
-bool same_structure(const Model& model, std::span<const ReadStates> states) {
+bool same_structure(const Model& model, std::span<const StatesOfFigures> states) {
     std::vector<int> here, there;
-    for (const ReadStates& of : states) {
+    for (const StatesOfFigures& of : states) {
         if (of.branch >= model.branches.size()) return false;
         here.clear();
         there.clear();
@@ -207,15 +209,16 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
     return all;
 }
 
-std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg) {
-    std::vector<ReadStates> all_states;
+std::vector<StatesOfFigures> states_of(const Model& model, std::span<const Figure> figures,
+                                       Leg leg) {
+    std::vector<StatesOfFigures> all_states;
     for (std::size_t b = 0; b < model.branches.size(); ++b)
         for (const bool whole : {false, true}) {
-            ReadStates states{b, whole, {}};
+            StatesOfFigures states{b, whole, {}};
             std::vector<double> points;
             for (const Figure& figure : figures)
-                if (figure.branch == model.branches[b].name && figure.over.empty() != whole)
-                    points.push_back(figure.at);
+                if (figure.branch == model.branches[b].name && figure.abscissa.empty() != whole)
+                    points.push_back(figure.station);
             if (points.empty()) continue;
             states.sides = read_sides(model, states);
             if (whole) {
@@ -235,11 +238,11 @@ std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> fi
     return all_states;
 }
 
-FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
+FigureValues read_figures(const Model& model, std::span<const StatesOfFigures> states,
                           std::span<const Figure> figures, Leg leg) {
     FigureValues result{VectorXd::Constant(std::ssize(figures), nan)};
     NamedOutputs outputs(model);
-    for (const ReadStates& of_branch : states) {
+    for (const StatesOfFigures& of_branch : states) {
         BranchReader reader{model, of_branch, leg, figures, result};
         reader.add_figures(outputs);
         reader.read_all();
@@ -251,18 +254,17 @@ FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg l
     return read_figures(model, states_of(model, figures, leg), figures, leg);
 }
 
-std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
-                                                         std::span<const Model* const> models,
-                                                         int threads) {
-    std::vector<std::vector<ReadStates>> states_of_models(models.size());
-    if (std::ranges::any_of(states, [](const ReadStates& of) { return !of.complete(); }))
+std::vector<std::vector<StatesOfFigures>> neighbouring_states(
+    std::span<const StatesOfFigures> states, std::span<const Model* const> models, int threads) {
+    std::vector<std::vector<StatesOfFigures>> states_of_models(models.size());
+    if (std::ranges::any_of(states, [](const StatesOfFigures& of) { return !of.complete(); }))
         return states_of_models;
     std::vector<std::atomic<bool>> near(models.size());
     std::vector<Job> jobs;
     for (std::size_t m = 0; m < models.size(); ++m) {
         near[m] = models[m] != nullptr && same_structure(*models[m], states);
         for (std::size_t k = 0; near[m] && k < states.size(); ++k) {
-            ReadStates& of = states_of_models[m].emplace_back(states[k]);
+            StatesOfFigures& of = states_of_models[m].emplace_back(states[k]);
             of.sides = read_sides(*models[m], of);
         }
     }
@@ -297,7 +299,7 @@ std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadSta
     return states_of_models;
 }
 
-VectorXd SearchRange::at(const VectorXd& shares) const {
+VectorXd SearchRange::point(const VectorXd& shares) const {
     return (start + (high - low).cwiseProduct(shares)).cwiseMax(low).cwiseMin(high);
 }
 VectorXd SearchRange::shares(const VectorXd& p) const {

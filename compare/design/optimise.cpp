@@ -94,7 +94,7 @@ struct Problem {
             return;
         }
         current = x;
-        p = range.at(x);
+        p = range.point(x);
         f = figures.value(p);
         f_x = {};
         repeats = 0;
