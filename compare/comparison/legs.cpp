@@ -49,7 +49,8 @@ EquilibriumPath recursion(const BranchSide& side, recursive::Options options, in
                : recursive::solve(side.model, side.branch, options, requested);
 }
 
-// Solves by a leg (one of the solvers), which extrapolates tabulated curves beyond their ends; solve_branch() checks those.
+// Solves by a leg (one of the solvers), which extrapolates tabulated curves beyond their ends;
+// solve_branch() checks those.
 EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solver,
                              const Visit& visit) {
     const auto& [model, branch] = std::tie(side.model, side.branch);

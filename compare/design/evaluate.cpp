@@ -32,8 +32,10 @@ using Eigen::VectorXd;
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
 
-constexpr int max_shorter_steps = 3;  // divisions of h by eight
-constexpr double max_kink = 1e-3;     // share of the largest change by 2h: beyond, there is no rate
+// Divisions of h by eight where the slopes to both sides differ.
+constexpr int max_shorter_steps = 3;
+// Largest kink() with which a figure has a rate, as a share of its largest change by 2h.
+constexpr double max_kink = 1e-3;
 
 // Outputs of a model by their names: from the catalogue, else from the list of all outputs, and only if
 // that lacks the name from the list with the sums, which need an analysis of the model.
@@ -59,7 +61,7 @@ class NamedOutputs {
     std::vector<Channel> all_;
 };
 
-// The sides of the branch of these states, with the steps at which they are solved.
+// Sides of the branch on which the states lie, with the steps at which they are solved.
 std::vector<BranchSide> read_sides(const Model& model, const StatesOfFigures& states) {
     const Branch& branch = model.branches[states.branch];
     return sides_of(model, branch,
@@ -128,7 +130,7 @@ struct BranchReader {
                 set_reason(fmt::format("branch '{}': {}: {}", branch().name,
                                        elastocheck::name(states.outcome), states.detail));
     }
-    // At a value of another output, interpolated on the curve of the branch.
+    // Sets a figure at a value of another output, interpolated on the curve of the branch.
     void set_over_output(std::size_t k, const Curve& curve) const {
         const Figure& figure = figures[k];
         const auto x = abscissa_values(curve, column(figure.abscissa));
@@ -143,13 +145,13 @@ struct BranchReader {
     }
 };
 
-// Adds the states of one branch side at those of the points that lie on it.
+// Solves for the states of one branch side at those of `points` that lie on it, and adds them to `into`.
 void solve_side(const BranchSide& side, Leg leg, std::vector<double> points,
                 StatesOfFigures& into) {
     std::erase_if(points, [&](double a) { return a * side.branch.to < 0; });
     std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
-    const auto again = std::ranges::unique(points);
-    points.erase(again.begin(), again.end());
+    const auto duplicates = std::ranges::unique(points);
+    points.erase(duplicates.begin(), duplicates.end());
     if (points.empty()) return;
     const auto path = solve_at(side, leg, points, [&](const Equilibrium& state) {
         if (std::ranges::find(points, state.load) != points.end()) into.states.push_back(state);
@@ -162,14 +164,14 @@ void solve_side(const BranchSide& side, Leg leg, std::vector<double> points,
 
 // Whether a model differs from the model of the states only in its numbers.
 bool same_structure(const Model& model, std::span<const StatesOfFigures> states) {
-    std::vector<int> here, there;
+    std::vector<int> of_states, of_model;
     for (const StatesOfFigures& of : states) {
         if (of.branch >= model.branches.size()) return false;
-        here.clear();
-        there.clear();
-        structure(of.sides.front().model, here);
-        structure(read_sides(model, of).front().model, there);
-        if (here != there) return false;
+        of_states.clear();
+        of_model.clear();
+        structure(of.sides.front().model, of_states);
+        structure(read_sides(model, of).front().model, of_model);
+        if (of_states != of_model) return false;
     }
     return true;
 }
@@ -188,6 +190,7 @@ struct Changes {
         const double above = (4 * up[k] - far_up[k]) / (2 * h);
         return std::isfinite(above) ? above : finite_or_nan((far_down[k] - 4 * down[k]) / (2 * h));
     }
+    // Largest |Δy| of figure k by ±2h; zero if it is not finite.
     double size(Index k) const {
         const double largest = std::max(std::abs(far_up[k]), std::abs(far_down[k]));
         return std::isfinite(largest) ? largest : 0;
@@ -271,7 +274,7 @@ std::vector<std::vector<StatesOfFigures>> neighbouring_states(
     const auto move_state = [&](std::size_t k, std::size_t s) {
         const Equilibrium& state = states[k].states[s];
         std::vector<Neighbours> stencils;
-        std::vector<std::size_t> model_of;  // their models
+        std::vector<std::size_t> model_of;  // model of each stencil
         for (std::size_t m = 0; m < models.size(); ++m)
             if (near[m]) {
                 stencils.push_back(

@@ -27,8 +27,8 @@ struct PointTable {
 // number is an error. Throws SheetError "file:line: ...".
 PointTable read_points(std::string_view csv, const std::string& file, const Names& names,
                        const std::vector<compare::Channel>* also_known);
-// Removes the points for which `why_left_out` returns a reason (not ""), and adds a line for each reason to left_out: "3
-// rows beyond the range of branch 'travel' (lines 5, 6, 9)".
+// Removes the points for which `why_left_out` returns a reason (not ""), and adds a line for each reason to
+// left_out: "3 rows beyond the range of branch 'travel' (lines 5, 6, 9)".
 void drop_points(PointTable& table,
                  const std::function<std::string(std::size_t point)>& why_left_out);
 
