@@ -186,7 +186,7 @@ const Entry of_wheel[] = {
                       "or the axle's total",
            .is_main = true,
            .at_rest = true,
-           .live =
+           .live_rank =
                {.heave = 1, .roll = 3, .steering = 3, .lateral = 1, .longitudinal = 1, .moment = 1},
            .rig_headings = "toe, toe angle, wheel toe",
            .block = {"toe"},
@@ -203,7 +203,7 @@ const Entry of_wheel[] = {
           {.sources = "-asin(e_z). ISO 8855, SAE J670",
            .is_main = true,
            .at_rest = true,
-           .live =
+           .live_rank =
                {.heave = 2, .roll = 4, .steering = 4, .lateral = 2, .longitudinal = 2, .moment = 2},
            .rig_headings = "camber, camber angle, wheel camber",
            .block = {"camber"},
@@ -259,16 +259,16 @@ const Entry of_patch[] = {
            .block = {"caster"},
            .drawings = {{DrawnAbscissa::travel, 5, "Caster angle", "top backwards positive"},
                         {DrawnAbscissa::steering, 5, "Caster angle", "top backwards positive"}}}),
-    Entry(Owner::wheel_with_steering_axis, "kingpin_inclination", Unit::deg,
-          "angle of the steering axis to the vertical seen from behind, positive where its top "
-          "leans inwards; undefined where it lies flatter than 0.1 rad",
-          "", unless_flat<[](const Subject& x) { return x.kingpin(); }>,
-          {.elsewhere =
-               "atan(-side u_y/u_z). Steering-axis inclination of ISO 8855, SAI; Reimpell's σ",
-           .may_be_undefined = true,
-           .at_rest = true,
-           .rig_headings = "kingpin inclination, kpi",
-           .block = {"kingpin_inclination"}}),
+    Entry(
+        Owner::wheel_with_steering_axis, "kingpin_inclination", Unit::deg,
+        "angle of the steering axis to the vertical seen from behind, positive where its top "
+        "leans inwards; undefined where it lies flatter than 0.1 rad",
+        "", unless_flat<[](const Subject& x) { return x.kingpin(); }>,
+        {.sources = "atan(-side u_y/u_z). Steering-axis inclination of ISO 8855, SAI; Reimpell's σ",
+         .may_be_undefined = true,
+         .at_rest = true,
+         .rig_headings = "kingpin inclination, kpi",
+         .block = {"kingpin_inclination"}}),
     Entry(Owner::wheel_with_steering_axis, "scrub_radius", Unit::mm,
           "distance across the wheel from the contact patch to the intersection of the steering "
           "axis with the road (the horizontal plane through the patch), positive inboard; "
@@ -310,7 +310,7 @@ const Entry of_patch[] = {
           "turns more, 100 % where the perpendiculars to the two wheels meet on the line of the "
           "rear axle; undefined unless both are turned in the same direction by 2 deg or more",
           "", ackermann,
-          {.elsewhere =
+          {.sources =
                "for the two front wheels of a `vehicle`; angles -side·toe, to the left; pivots: "
                "the points p at the design position, or c for a wheel without axis. 100 % is "
                "Ackermann's condition cot δ_outer - cot δ_inner = j/l (Reimpell, Milliken). Other "
