@@ -344,7 +344,7 @@ void note_shared(const Comparison& comparison, CandidateJudgement& result) {
 void explain_columns(const std::vector<ComparedReading>& readings, const Comparison& comparison,
                      const Candidate& candidate, CandidateJudgement& result) {
     // One reading for each branch: at equal parameter where available, else at equal abscissa.
-    std::vector<ReadBranch> branches;
+    std::vector<BranchReading> branches;
     for (const auto& branch : result.branches)
         branches.push_back({&comparison.branch(branch.branch),
                             branch.equal_parameter.columns.empty() ? &branch.equal_abscissa
@@ -388,7 +388,7 @@ void explain_columns(const std::vector<ComparedReading>& readings, const Compari
 ColumnWithReference column_with_reference(const Comparison& comparison,
                                           std::span<const PointColumn> columns,
                                           std::span<const Channel> defined,
-                                          std::span<const ReadBranch> branches, std::size_t c) {
+                                          std::span<const BranchReading> branches, std::size_t c) {
     ColumnWithReference b;
     b.column = c;
     b.channel = columns[c].channel;

@@ -206,7 +206,7 @@ std::vector<std::string> causes_of(const MeasuredInput& input, std::vector<Place
     std::vector<CandidateReading> readings;
     for (std::size_t b = 0; b < comparison.branches.size(); ++b)
         readings.push_back(values_beside_leg(input, places, b, Leg::equilibrium));
-    std::vector<ReadBranch> branches;
+    std::vector<BranchReading> branches;
     for (std::size_t b = 0; b < readings.size(); ++b)
         branches.push_back({&comparison.branches[b], &readings[b]});
     for (std::size_t c = 0; c < points.columns.size(); ++c) {

@@ -20,15 +20,13 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 // A combination of numbers is not determined below this singular value, as a share of the largest; a number with
 // a smaller part than min_part in each such combination is determined.
 constexpr double min_singular_ratio = 1e-6, min_part = 1e-3;
-constexpr double min_noise =
-    1e-9;                         // least s_c, for exact data, as a share of the range of a column
+// Least s_c as a share of the range of the column, for exact data.
+constexpr double min_noise = 1e-9;
 constexpr int noise_updates = 2;  // estimates of s_c after the first fit
 constexpr int max_robust_passes = 60;
-constexpr double robust_tolerance =
-    1e-6;  // change of a number by a robust pass at which it ends [steps]
-constexpr double cauchy_width = 2.385;  // c
-constexpr double normal_median =
-    1.4826;  // standard deviation over median |.| of a normal distribution
+constexpr double robust_tolerance = 1e-6;  // change of a number at which robust passes end [steps]
+constexpr double cauchy_width = 2.385;     // c
+constexpr double normal_median = 1.4826;   // standard deviation over median |.| if normal
 
 double root_mean_square(const VectorXd& values) {
     return values.norm() / std::sqrt(static_cast<double>(values.size()));
