@@ -564,8 +564,8 @@ void add_angles(std::vector<Entry>& entries) {
     Properties x = moves("wheel centre x, wheel center x",
                          {DrawnAbscissa::travel, 4, "Wheel centre, longitudinal",
                           "since the start of the branch, forward positive", Presentation::change});
-    x.drawn.push_back({DrawnAbscissa::load, 4, "Wheel centre, longitudinal change",
-                       "forward positive", Presentation::change});
+    x.drawings.push_back({DrawnAbscissa::load, 4, "Wheel centre, longitudinal change",
+                          "forward positive", Presentation::change});
     add_position(entries, Owner::wheel, "wheel_centre", "the wheel centre", centre_of,
                  {x,
                   moves("wheel centre y, wheel center y",

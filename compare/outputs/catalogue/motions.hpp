@@ -40,8 +40,8 @@ Motions heave_motions(const Subject& wheel);
 Motions roll_motions(const Subject& wheel);
 
 // Instant centre of the carrier of `wheel` while all wheels rise alike, ground axes [m]: seen from the
-// front, in the transverse plane of the wheel centre; seen from the side, in its longitudinal plane. A
-// coordinate at infinity is `undefined`.
+// front, in the transverse plane of the wheel centre; seen from the side, in its longitudinal plane. At
+// infinity every coordinate is `undefined`.
 Vector3d front_instant_centre(const Subject& wheel);
 Vector3d side_instant_centre(const Subject& wheel);
 

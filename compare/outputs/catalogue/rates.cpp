@@ -35,12 +35,13 @@ constexpr auto instant_axis = "virtual steering axis of multi-link suspensions";
 // velocity of that centre and ω the angular velocity of the carrier:
 //   from the side   (x, z): (v_z, -v_x) / ω_y      from the front   (y, z): (-v_z, v_y) / ω_x
 double front_view_arm(const Subject& x) {
-    const Motions by = heave_motions(x);
-    return ratio(x.side() * x.moved_by(by, x.centre()).z(), x.turned_by(by).x(), max_distance);
+    const Motions heave = heave_motions(x);
+    return ratio(x.side() * x.moved_by(heave, x.centre()).z(), x.turned_by(heave).x(),
+                 max_distance);
 }
 double side_view_arm(const Subject& x) {
-    const Motions by = heave_motions(x);
-    return ratio(x.moved_by(by, x.centre()).z(), x.turned_by(by).y(), max_distance);
+    const Motions heave = heave_motions(x);
+    return ratio(x.moved_by(heave, x.centre()).z(), x.turned_by(heave).y(), max_distance);
 }
 
 // Virtual steering axis: screw axis of the carrier when the rack moves at constant wheel-centre height.
@@ -66,25 +67,26 @@ double kingpin_steered(const Subject& x) {
     const auto axis = steering_axis(x);
     return axis ? std::atan2(-x.side() * axis->n.y(), axis->n.z()) : undefined;
 }
-// Vector from the patch to the intersection of the axis with the road.
-Vector3d on_the_road(const Subject& x, const Axis& axis) {
+// Vector from the patch to the intersection of the axis with the road [m].
+Vector3d patch_to_axis_on_road(const Subject& x, const Axis& axis) {
     const Vector3d patch = x.patch().at;
     return axis.through + axis.n * ((patch.z() - axis.through.z()) / axis.n.z()) - patch;
 }
 double scrub_steered(const Subject& x) {
     const auto axis = steering_axis(x);
-    return axis ? -x.across().dot(on_the_road(x, *axis)) : undefined;
+    return axis ? -x.across().dot(patch_to_axis_on_road(x, *axis)) : undefined;
 }
 double trail_steered(const Subject& x) {
     const auto axis = steering_axis(x);
-    return axis ? x.along().dot(on_the_road(x, *axis)) : undefined;
+    return axis ? x.along().dot(patch_to_axis_on_road(x, *axis)) : undefined;
 }
 double steer_gradient(const Subject& x) {
     return x.response->steering.empty() ? undefined : x.toe(x.response->steering);
 }
 double overall_steering_ratio(const Subject& x) {
     if (x.response->steering.empty()) return undefined;
-    double to_the_left = 0;  // mean of the wheels, per displacement of the rack
+    double to_the_left =
+        0;  // sum of the steer angles of the wheels per displacement of the rack [rad/m]
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
         to_the_left -= x.of(w).side() * x.of(w).toe(x.response->steering);
     const auto n = static_cast<double>(x.model.wheels.size());
@@ -103,12 +105,12 @@ double ride_rate(const Subject& x) {
 // height of the centre of gravity (Milliken & Milliken, Race Car Vehicle Dynamics, 1995, ch. 17): by
 // virtual work the links carry the vertical force tan φ = dx / dz per unit of longitudinal force at a
 // point that all wheels, raised together, move by (dx, dz).
-double anti(const Subject& x, const Placed& at, double share, double sign) {
-    const Vector3d d = x.moved_by(heave_motions(x.of(0)), at);
+double anti(const Subject& x, const Placed& point, double share, double sign) {
+    const Vector3d d = x.moved_by(heave_motions(x.of(0)), point);
     const Vehicle& vehicle = *x.model.vehicle;
     return sign * share * ratio(d.x(), d.z(), max_distance) * vehicle.wheelbase / vehicle.cg_height;
 }
-// The same with the instant centre of the side view as drawn by hand: the planes of the two wishbones
+// The same share with the instant centre of the side view as drawn by hand: the planes of the two wishbones
 // meet the longitudinal plane through the wheel centre in two lines, and these in (x, z).
 double anti_by_planes(const Subject& x, const Vector3d& patch, double share, double sign) {
     const auto planes = wishbone_planes(x);
@@ -132,7 +134,7 @@ double brake_share(const Subject& x) { return x.model.vehicle->brake_share; }
 double drive_share(const Subject& x) { return x.model.vehicle->drive_share; }
 // Point at which a driving force acts on the links: the patch where an axle housing carries the drive
 // torque, the wheel centre where the car body carries it through a shaft.
-Placed driven_at(const Subject& x) {
+Placed driving_force_point(const Subject& x) {
     const bool housing = is_axle(x.model) &&
                          FixedBodies(x.model).are_one(x.of(0).wheel().body, x.of(1).wheel().body);
     return housing ? x.braked() : x.centre();
@@ -334,7 +336,8 @@ const Entry of_response[] = {
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist lift of the front "
           "when the axle drives",
-          no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), 1); },
+          no_vertical,
+          [](const Subject& x) { return anti(x, driving_force_point(x), drive_share(x), 1); },
           {.sources = milliken,
            .drawings = {{DrawnAbscissa::travel, 13, "Anti-lift",
                          "positive where the links resist"}}}),
@@ -350,7 +353,8 @@ const Entry of_response[] = {
           "drive_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist squat when the axle "
           "drives",
-          no_vertical, [](const Subject& x) { return anti(x, driven_at(x), drive_share(x), -1); },
+          no_vertical,
+          [](const Subject& x) { return anti(x, driving_force_point(x), drive_share(x), -1); },
           {.sources = milliken,
            .is_key_figure = true,
            .live_rank = {.heave = 5},
@@ -512,7 +516,7 @@ const Entry further_rate_definitions[] = {
     Entry(Owner::rear_wheel, "anti_squat@whole", Unit::percent,
           "wheelbase / cg_height · rearward over vertical displacement of the wheel centre (of a "
           "rigid axle the patch): per cent of the load transfer if this axle drove alone",
-          no_vertical, [](const Subject& x) { return anti(x, driven_at(x), 1, -1); },
+          no_vertical, [](const Subject& x) { return anti(x, driving_force_point(x), 1, -1); },
           {.sources = "rear wheel drive: the same figure"}),
     Entry(Owner::wheel, "lateral_force_steer@centre", Unit::deg_per_kN,
           "change of toe over a force at the wheel centre of this wheel alone towards the middle "
@@ -573,17 +577,17 @@ const Entry further_rate_definitions[] = {
 }  // namespace
 
 Vector3d front_instant_centre(const Subject& x) {
-    const Motions by = heave_motions(x);
+    const Motions heave = heave_motions(x);
     const double arm = front_view_arm(x);
     if (!std::isfinite(arm)) return Vector3d::Constant(undefined);
-    const double up = x.moved_by(by, x.centre()).y() / x.turned_by(by).x();
+    const double up = x.moved_by(heave, x.centre()).y() / x.turned_by(heave).x();
     return x.centre().at + Vector3d(0, -x.side() * arm, up);
 }
 Vector3d side_instant_centre(const Subject& x) {
-    const Motions by = heave_motions(x);
+    const Motions heave = heave_motions(x);
     const double arm = side_view_arm(x);
     if (!std::isfinite(arm)) return Vector3d::Constant(undefined);
-    const double up = -x.moved_by(by, x.centre()).x() / x.turned_by(by).y();
+    const double up = -x.moved_by(heave, x.centre()).x() / x.turned_by(heave).y();
     return x.centre().at + Vector3d(arm, 0, up);
 }
 

@@ -268,7 +268,7 @@ std::optional<compare::Between> add_points_outside(const compare::OptimisedScene
                 worst = {excess, goal.output() + " at " + between[k].station_text +
                                      (std::isnan(excess) ? " (no value there)" : "")};
         }
-        std::ranges::stable_sort(goal.points, {}, &Figure::at);
+        std::ranges::stable_sort(goal.points, {}, &Figure::station);
     }
     return worst;
 }
