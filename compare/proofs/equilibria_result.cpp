@@ -81,12 +81,12 @@ Result result_of(const Model& model, const AllEquilibria& equilibria) {
     result.tables = {std::move(list), pose_table(model, equilibria)};
     result.notes.push_back(
         fmt::format("{} starts with deflation; completeness is not proved", equilibria.starts));
-    if (equilibria.reversed > 0)
+    if (equilibria.with_reversed_joint > 0)
+        result.notes.push_back(fmt::format("left out: {} with a joint assembled in reverse",
+                                           equilibria.with_reversed_joint));
+    if (equilibria.with_overturned_body > 0)
         result.notes.push_back(
-            fmt::format("left out: {} with a joint assembled in reverse", equilibria.reversed));
-    if (equilibria.turned_over > 0)
-        result.notes.push_back(
-            fmt::format("left out: {} with a body turned over", equilibria.turned_over));
+            fmt::format("left out: {} with a body turned over", equilibria.with_overturned_body));
     const bool reached = equilibria.outcome == Outcome::converged;
     result.verdict = {.grade = reached && equilibria.proved ? Grade::pass : Grade::not_judged,
                       .compared = static_cast<int>(equilibria.list.size())};

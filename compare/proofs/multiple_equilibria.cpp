@@ -121,7 +121,7 @@ std::string meaning_of(const AllEquilibria& equilibria, const FoundEquilibrium& 
         fmt::format("{:.4g} mm away ('{}')", 1e3 * equilibrium.length, equilibrium.body);
     if (equilibrium.on_branch)
         return equilibrium.stable ? "on the branch" : "on the branch, and unstable";
-    if (!equilibria.begins)
+    if (!equilibria.has_start)
         return fmt::format("{}, {} from the design position, from which no branch begins",
                            equilibrium.stable ? "stable" : "unstable", away);
     if (!equilibrium.stable)
@@ -178,15 +178,15 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         if (attempt.outcome != Outcome::converged || is_known(attempt.state)) return;
         known.push_back(attempt.state);
         if (has_reversed_joint(side.model, attempt.state)) {
-            ++equilibria.reversed;
+            ++equilibria.with_reversed_joint;
             return;
         }
         bool is_turned_over = false;
         for (std::size_t b = 0; b < reached.size(); ++b)
-            is_turned_over = is_turned_over ||
-                             attempt.state.poses[b].p.angularDistance(reached[b].p) > options.turn;
+            is_turned_over = is_turned_over || attempt.state.poses[b].p.angularDistance(
+                                                   reached[b].p) > options.max_rotation;
         if (is_turned_over && !on_branch) {
-            ++equilibria.turned_over;
+            ++equilibria.with_overturned_body;
             return;
         }
         FoundEquilibrium entry{attempt.state, {}, attempt.stable, attempt.stiffness, on_branch};
@@ -204,7 +204,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     starts.push_back(drawn);
     const double size = scale_of(side.model, side.branch, path.points).length;
     std::minstd_rand random(seed);
-    for (int k = 0; k < options.at_random; ++k)
+    for (int k = 0; k < options.random_starts; ++k)
         starts.push_back(random_poses(reached, size, random));
     for (; !starts.empty(); starts.pop_front()) {
         const auto start = starts.front();
@@ -219,7 +219,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         }
     }
 
-    equilibria.begins = !path.points.empty();
+    equilibria.has_start = !path.points.empty();
     equilibria.proved = !equilibria.list.empty();
     for (auto& entry : equilibria.list) {
         report("proof");
