@@ -77,9 +77,9 @@ struct Optimum : Search {
 // at less cost, or nearer to them than at the start.
 using BestSoFar = std::function<void(const Eigen::VectorXd& p, bool met)>;
 
-// Searches from each start. Only `start` is set if the figures or their rates are missing there. Figures of still goals are left out of
-// the search; the caller refuses those that are outside of their bands, and a minimised figure
-// that is still.
+// Searches from each start. Only `start` of the result is set if figures or rates are missing there. The
+// figures of still goals are left out of the search; the caller refuses those that are outside of their bands,
+// and a minimised figure that is still.
 Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& range,
                  const std::vector<Eigen::VectorXd>& starts, const Progress& progress = {},
                  const BestSoFar& best_so_far = {});
