@@ -29,7 +29,7 @@ bool is_balanced(const Elastic& element) {
 double largest_displacement(const SettledTrim& settled) {
     double largest = 0;
     for (std::size_t b = 0; b < settled.state.poses.size(); ++b) {
-        const Pose &drawn = settled.held.model.bodies[b].design,
+        const Pose &drawn = settled.side.model.bodies[b].design,
                    &settled_pose = settled.state.poses[b];
         largest = std::max(
             {largest, (settled_pose.r - drawn.r).norm(), settled_pose.p.angularDistance(drawn.p)});
@@ -41,13 +41,13 @@ double largest_displacement(const SettledTrim& settled) {
 // u'(e(x)) - u'(e(drawn)) [N, N·m], by name, in the axes in which the scene states the bushing.
 std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
     std::map<std::string, Vector6> loads;
-    const Model& model = settled.held.model;
+    const Model& model = settled.side.model;
     const Equilibrium drawn = design_state(model);
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& element = model.elastics[k];
         if (!is_balanced(element)) continue;
         const auto force_in = [&](const Equilibrium& state) {
-            return force(element.kind, deformation(element.kind, k, settled.held.branch, state));
+            return force(element.kind, deformation(element.kind, k, settled.side.branch, state));
         };
         loads[element.name] =
             (element.markers_swapped ? -1 : 1) * (force_in(settled.state) - force_in(drawn));
