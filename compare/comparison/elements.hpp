@@ -45,8 +45,9 @@ inline constexpr double zero_value = 1e-6;
 std::vector<double> evaluate(const Model& model, const Branch& branch,
                              std::span<const Channel> channels, const Equilibrium& state);
 struct Analyses;  // compliance.hpp
-// The same values on a branch side; `undefined` for reactions that the loads do not determine, since redundant joints share
-// them: those that are not zero in a self-stress of the joints (recursive/diagnosis/self_stress.hpp).
+// The same values on a branch side; `undefined` for reactions that the loads do not determine, since redundant
+// joints share them: those that are not zero in a self-stress of the joints
+// (recursive/diagnosis/self_stress.hpp).
 std::vector<double> evaluate(const Model& model, const BranchSide& side,
                              std::span<const Channel> channels, const Equilibrium& state,
                              Analyses& analyses);
