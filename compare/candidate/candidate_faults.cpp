@@ -334,9 +334,9 @@ std::optional<Explanation> explain(const ColumnWithReference& b) {
                 b,
                 accepted ? much_better * accepted->left
                          // the figure may not move at all where another definition of it does
-                         : std::max(allowed,
-                                    std::min(share_of_deviation * deviation,
-                                             std::max(share_of_reference * span(v), rounding_of(v)))),
+                         : std::max(allowed, std::min(share_of_deviation * deviation,
+                                                      std::max(share_of_reference * span(v),
+                                                               rounding_of(v)))),
                 tests))
             accepted = other;
     if (!accepted) accepted = wrong_from(b);
