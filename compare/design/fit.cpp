@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 // A combination of numbers is not determined below this singular value, as a share of the largest; a number with
 // a smaller part than min_part in each such combination is determined.
-constexpr double min_singular_ratio = 1e-6, min_part = 1e-3;
+constexpr double min_singular_share = 1e-6, min_part = 1e-3;
 // Least s_c as a share of the range of the column, for exact data.
 constexpr double min_noise = 1e-9;
 constexpr int noise_updates = 2;  // estimates of s_c after the first fit
@@ -69,7 +69,7 @@ void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measure
     const Svd svd = svd_of(J, Eigen::ComputeFullV);
     VectorXd& S = fitted.singular_values = VectorXd::Zero(n);
     S.head(svd.values.size()) = svd.values;
-    const Index determined = (S.array() > min_singular_ratio * S[0]).count();
+    const Index determined = (S.array() > min_singular_share * S[0]).count();
     fitted.undetermined = svd.V.rightCols(n - determined);
     const VectorXd variance =
         (svd.V.leftCols(determined) * S.head(determined).cwiseInverse().asDiagonal())
