@@ -17,7 +17,7 @@
 namespace elastocheck::compare {
 namespace {
 
-// Share of a branch's length: a larger missing part counts as not given.
+// Largest missing part of a branch that still counts as given, as a share of its length.
 constexpr double min_missing_part = 1e-6;
 
 // Limit of an output on any branch; infinite where the limit is a share of the output's extent
@@ -31,7 +31,7 @@ double bound_of(const Channel& channel, const Tolerance& tolerance) {
 // Parts of an interval that points leave out: the ends, and gaps wider than a quarter of the
 // interval. " from 0 to 1500 N", "" if none.
 std::string omitted(std::vector<double> places, double low, double high, std::string_view unit) {
-    constexpr double widest = 0.25;
+    constexpr double max_gap = 0.25;
     const double length = high - low;
     std::ranges::sort(places);
     std::string parts;
@@ -42,7 +42,7 @@ std::string omitted(std::vector<double> places, double low, double high, std::st
     };
     add(low, places.empty() ? high : places.front(), min_missing_part);
     for (std::size_t k = 1; k < places.size(); ++k)
-        add(places[k - 1], places[k], widest * (1 + min_missing_part));
+        add(places[k - 1], places[k], max_gap * (1 + min_missing_part));
     if (!places.empty()) add(places.back(), high, min_missing_part);
     return parts;
 }
@@ -77,21 +77,22 @@ void add_missing_parts(const Branch& branch, const BranchComparison& compared_br
         }
         return shortest;
     };
-    std::vector<std::pair<std::string, std::string>> of_columns;  // name, missing part
+    std::vector<std::pair<std::string, std::string>> missing_parts;  // name, missing part
     for (std::size_t c = 0; c < judgement.columns.size(); ++c) {
         const std::size_t channel = judgement.columns[c].channel;
         if (!judgement.judged[c] || !compared_branch.determined[channel]) continue;
         if (auto parts = missing(c))
-            of_columns.emplace_back(channels[channel].name, std::move(*parts));
+            missing_parts.emplace_back(channels[channel].name, std::move(*parts));
     }
-    if (of_columns.empty()) return;  // the reason for no comparison is already reported
-    const bool alike = std::ranges::all_of(
-        of_columns, [&](const auto& column) { return column.second == of_columns.front().second; });
-    if (alike && !of_columns.front().second.empty())
+    if (missing_parts.empty()) return;  // the reason for no comparison is already reported
+    const bool all_equal = std::ranges::all_of(missing_parts, [&](const auto& column) {
+        return column.second == missing_parts.front().second;
+    });
+    if (all_equal && !missing_parts.front().second.empty())
         list.push_back(
-            fmt::format("branch '{}'{}", compared_branch.branch, of_columns.front().second));
-    for (const auto& [name, parts] : of_columns)
-        if (!alike && !parts.empty())
+            fmt::format("branch '{}'{}", compared_branch.branch, missing_parts.front().second));
+    for (const auto& [name, parts] : missing_parts)
+        if (!all_equal && !parts.empty())
             list.push_back(fmt::format("{} on branch '{}'{}", name, compared_branch.branch, parts));
 }
 
@@ -110,17 +111,17 @@ void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) 
 
 // ---- The judgement.
 
-// A reading in which something is compared.
-struct Compared {
+// A reading (a comparison at equal parameter or at equal abscissa) in which something is compared.
+struct ComparedReading {
     const CandidateBranch& branch;
     const BranchComparison& comparison;
     ReadingKind kind;
     const CandidateReading& reading;
 };
 
-std::vector<Compared> readings_of(const CandidateJudgement& judgement,
-                                  const Comparison& comparison) {
-    std::vector<Compared> list;
+std::vector<ComparedReading> readings_of(const CandidateJudgement& judgement,
+                                         const Comparison& comparison) {
+    std::vector<ComparedReading> list;
     for (const auto& branch : judgement.branches)
         for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa})
             if (const auto& reading = branch.reading(kind); !reading.columns.empty())
@@ -128,26 +129,27 @@ std::vector<Compared> readings_of(const CandidateJudgement& judgement,
     return list;
 }
 
-// [unit of the output]: larger changes of the reference or the candidate are movements
-constexpr double reference_moves_by = 1e-6, candidate_moves = 1e-9;
+// Smallest changes of the reference and of the candidate that are movements [unit of the output].
+constexpr double min_reference_movement = 1e-6, min_candidate_movement = 1e-9;
 
 // Whether every point of the candidate is at the start of its branch although the reference moves:
 // then only the design position was compared.
-bool none_has_moved(const std::vector<Compared>& readings, const CandidateJudgement& judgement) {
+bool only_start_is_given(const std::vector<ComparedReading>& readings,
+                         const CandidateJudgement& judgement) {
     bool reference_moves = false;
     for (const auto& [branch, of_branch, kind, reading] : readings)
         for (std::size_t c = 0; c < reading.columns.size(); ++c) {
             const Curve& truth = truth_of(of_branch);
             const double begin = truth.values[truth.start][judgement.columns[c].channel];
             for (const double v : reading.truth[c])
-                if (std::abs(v - begin) > candidate_moves) return false;
-            reference_moves = reference_moves || reading.columns[c].range > reference_moves_by;
+                if (std::abs(v - begin) > min_candidate_movement) return false;
+            reference_moves = reference_moves || reading.columns[c].range > min_reference_movement;
         }
     return reference_moves;
 }
 
 // Whether the candidate is constant on every branch and in every column where the reference moves.
-bool nothing_moves(const std::vector<Compared>& readings) {
+bool is_constant(const std::vector<ComparedReading>& readings) {
     const auto extent = [](std::vector<double> values) {
         std::erase_if(values, [](double v) { return !std::isfinite(v); });
         if (values.empty()) return 0.;
@@ -158,14 +160,14 @@ bool nothing_moves(const std::vector<Compared>& readings) {
     for (const auto& [branch, of_branch, kind, reading] : readings)
         for (std::size_t c = 0; c < reading.columns.size(); ++c) {
             if (reading.columns[c].compared < 2) continue;
-            if (extent(reading.candidate[c]) > candidate_moves) return false;
-            reference_moves = reference_moves || extent(reading.truth[c]) > reference_moves_by;
+            if (extent(reading.candidate[c]) > min_candidate_movement) return false;
+            reference_moves = reference_moves || extent(reading.truth[c]) > min_reference_movement;
         }
     return reference_moves;
 }
 
 // Names of the candidate's outputs if no branch compares any of them, "its 'ackermann'"; else empty.
-std::string nowhere_compared(const CandidateJudgement& judgement, const Comparison& comparison) {
+std::string uncompared_names(const CandidateJudgement& judgement, const Comparison& comparison) {
     std::vector<std::string> names;
     for (const auto& column : judgement.columns) {
         for (const auto& branch : judgement.branches)
@@ -251,9 +253,9 @@ void read_branches(const Model& model, const Comparison& comparison, const Candi
     const auto branches =
         branches_of(model, comparison, places.branch, by_parameter ? places.a : places.at,
                     by_parameter ? std::nullopt : places.abscissa);
-    if (const auto nowhere = std::ranges::count_if(branches, [](int b) { return b < 0; });
-        nowhere > 0)
-        result.notes.push_back(fmt::format("{} of its points lie on no branch", nowhere));
+    if (const auto outside = std::ranges::count_if(branches, [](int b) { return b < 0; });
+        outside > 0)
+        result.notes.push_back(fmt::format("{} of its points lie on no branch", outside));
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         std::vector<std::size_t> points;
         for (std::size_t k = 0; k < branches.size(); ++k)
@@ -267,8 +269,8 @@ void read_branches(const Model& model, const Comparison& comparison, const Candi
 }
 
 // Whether every judged number of the columns is within its limit. Returns how many there are.
-int judge_columns(const std::vector<Compared>& readings, const std::vector<Channel>& channels,
-                  CandidateJudgement& result, bool& within) {
+int judge_columns(const std::vector<ComparedReading>& readings,
+                  const std::vector<Channel>& channels, CandidateJudgement& result, bool& within) {
     int judged = 0;
     for (const auto& [branch, of_branch, kind, reading] : readings) {
         const bool by_abscissa = kind == ReadingKind::equal_abscissa;
@@ -310,13 +312,13 @@ int judge_columns(const std::vector<Compared>& readings, const std::vector<Chann
 
 // Judges the states of the candidate by their constraint residuals in the equilibrium leg.
 void judge_states(CandidateJudgement& result, bool& within) {
-    for (const auto& left : result.state_residuals) {
-        double missed = 0;  // [mm]; NaN is largest
-        for (const auto& r : left.truth) missed = worse(1e3 * r.length, missed);
-        if (!left.why_not.empty() || missed <= result.tolerance.mm) continue;
+    for (const auto& side : result.state_residuals) {
+        double residual = 0;  // largest of the states [mm]; NaN counts as larger than all numbers
+        for (const auto& r : side.truth) residual = worse(1e3 * r.length, residual);
+        if (!side.why_not.empty() || residual <= result.tolerance.mm) continue;
         within = false;
         result.hints.push_back(fmt::format(
-            "its states miss the constraints of branch '{}' by {:.2g} mm", left.branch, missed));
+            "its states miss the constraints of branch '{}' by {:.2g} mm", side.branch, residual));
     }
 }
 
@@ -339,10 +341,10 @@ void note_shared(const Comparison& comparison, CandidateJudgement& result) {
 }
 
 // Explains the columns beyond their limits, by a wrong sign, unit or the like where one fits.
-void explain_columns(const std::vector<Compared>& readings, const Comparison& comparison,
+void explain_columns(const std::vector<ComparedReading>& readings, const Comparison& comparison,
                      const Candidate& candidate, CandidateJudgement& result) {
-    // Of every branch one reading: at equal parameter where available, else at equal abscissa.
-    std::vector<ReadBranch> branches;
+    // One reading for each branch: at equal parameter where available, else at equal abscissa.
+    std::vector<BranchReading> branches;
     for (const auto& branch : result.branches)
         branches.push_back({&comparison.branch(branch.branch),
                             branch.equal_parameter.columns.empty() ? &branch.equal_abscissa
@@ -350,8 +352,8 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
     for (std::size_t c = 0; c < result.columns.size(); ++c) {
         const double bound =
             bound_of(comparison.channels[result.columns[c].channel], result.tolerance);
-        const bool off = std::ranges::any_of(readings, [&](const Compared& of) {
-            const Deviation& d = of.reading.columns[c];
+        const bool off = std::ranges::any_of(readings, [&](const ComparedReading& compared) {
+            const Deviation& d = compared.reading.columns[c];
             return d.compared > 0 &&
                    !(d.max <= (std::isfinite(bound) ? bound : 1e-3 * std::max(d.range, 1e-9)));
         });
@@ -361,21 +363,23 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
         b.tolerance = bound;
         if (auto found = explain(b)) result.explanations.push_back(*found);
     }
-    const auto exchanged = [&](const Explanation& one, const Explanation& other) {
-        return one.kind == Explanation::Kind::other_output && one.kind == other.kind &&
-               one.other == result.columns[other.column].channel &&
-               other.other == result.columns[one.column].channel;
+    const auto exchanged = [&](const Explanation& explanation, const Explanation& other) {
+        return explanation.kind == Explanation::Kind::other_output &&
+               explanation.kind == other.kind &&
+               explanation.other == result.columns[other.column].channel &&
+               other.other == result.columns[explanation.column].channel;
     };
-    Points standing = candidate.points;
-    standing.columns = result.columns;
-    for (auto& one : result.explanations) {
+    Points with_absolute_values = candidate.points;
+    with_absolute_values.columns = result.columns;
+    for (auto& explanation : result.explanations) {
         bool included = false;  // in the hint on the column with which it is exchanged
         for (const auto& other : result.explanations)
-            if (exchanged(one, other)) {
-                one.mutual = true;
-                included = included || &other < &one;
+            if (exchanged(explanation, other)) {
+                explanation.mutual = true;
+                included = included || &other < &explanation;
             }
-        if (!included) result.hints.push_back(describe(one, comparison, standing));
+        if (!included)
+            result.hints.push_back(describe(explanation, comparison, with_absolute_values));
     }
 }
 
@@ -384,7 +388,7 @@ void explain_columns(const std::vector<Compared>& readings, const Comparison& co
 ColumnWithReference column_with_reference(const Comparison& comparison,
                                           std::span<const PointColumn> columns,
                                           std::span<const Channel> defined,
-                                          std::span<const ReadBranch> branches, std::size_t c) {
+                                          std::span<const BranchReading> branches, std::size_t c) {
     ColumnWithReference b;
     b.column = c;
     b.channel = columns[c].channel;
@@ -433,9 +437,9 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         result.reasons.emplace_back("the parameter of a point is not a number");
     judge_states(result, within);
     note_shared(comparison, result);
-    if (nothing_moves(readings)) result.reasons.emplace_back("nothing moves in it");
-    if (within && none_has_moved(readings, result)) {
-        const std::string names = nowhere_compared(result, comparison);
+    if (is_constant(readings)) result.reasons.emplace_back("nothing moves in it");
+    if (within && only_start_is_given(readings, result)) {
+        const std::string names = uncompared_names(result, comparison);
         result.reasons.push_back(
             names.empty()
                 ? "its points are all where the branches begin: nothing has moved there"

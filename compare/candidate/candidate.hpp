@@ -24,16 +24,17 @@ inline const Curve& truth_of(const BranchComparison& branch) {
 
 // ---- Readings of a branch (candidate_readings.cpp).
 
+// Points of a candidate on one branch.
 struct PointsOnBranch {
-    std::vector<std::size_t> on_branch;  // points of the candidate
+    std::vector<std::size_t> on_branch;  // positions of these points in `points`
     const Points& points;
     const std::vector<PointColumn>& columns;
-    const std::vector<Channel>&
-        defined;  // figures by other definitions, read from the reference too
+    // figures by other definitions, which are read from the reference too
+    const std::vector<Channel>& defined;
 };
-// Sets the readings at equal parameter and at equal abscissa: the candidate's points beside the
-// equilibrium leg at the same parameters and at the same abscissae.
-void add_readings(const Model& model, const Branch& branch, const BranchComparison& of,
+// Sets the two readings of a branch, which compare the candidate's points with the equilibrium leg: at equal
+// parameter, and at equal abscissa.
+void add_readings(const Model& model, const Branch& branch, const BranchComparison& compared,
                   const std::vector<Channel>& channels, const PointsOnBranch& points,
                   CandidateBranch& given);
 
@@ -59,16 +60,17 @@ struct ColumnWithReference {
     std::vector<std::vector<double>> definitions;
     std::vector<std::string> definition_names;
 };
-// A reading of a branch.
-struct ReadBranch {
+// One reading of a branch.
+struct BranchReading {
     const BranchComparison* branch = nullptr;
     const CandidateReading* reading = nullptr;
 };
-// Column `c` of these readings; `defined` are the figures by other definitions in the readings.
+// Joins column `c` of the readings of all branches; `defined` are the figures by other definitions in the readings.
 ColumnWithReference column_with_reference(const Comparison& comparison,
                                           std::span<const PointColumn> columns,
                                           std::span<const Channel> defined,
-                                          std::span<const ReadBranch> branches, std::size_t c);
+                                          std::span<const BranchReading> branches, std::size_t c);
+// First transformation that makes the column right (candidate_faults.cpp); empty if none does.
 std::optional<Explanation> explain(const ColumnWithReference& column);
 // Sentence on a sign, unit or offset that brings a column much nearer (measured.hpp); empty: none.
 std::string nearer_with(const ColumnWithReference& column, const Channel& channel);

@@ -46,8 +46,8 @@ namespace {
 using Kind = Explanation::Kind;
 using Values = std::vector<double>;
 
-// Largest remaining deviation, as a share of the deviation, of the column's own range (see above), of
-// the range of the reference.
+// Largest remaining deviation, as a share of three things: the deviation, the range of the column (see
+// above), the range of the reference.
 constexpr double share_of_deviation = 0.05, share_of_column = 0.05, share_of_reference = 1e-3;
 // wrong_from(): the first tenth of the points of a branch or more must be right, to a thousandth of the
 // largest deviation. A tenth of the branch further on the deviation must exceed 0.03 of the largest:
@@ -334,9 +334,9 @@ std::optional<Explanation> explain(const ColumnWithReference& b) {
                 b,
                 accepted ? much_better * accepted->left
                          // the figure may not move at all where another definition of it does
-                         : std::max(allowed,
-                                    std::min(share_of_deviation * deviation,
-                                             std::max(share_of_reference * span(v), rounding_of(v)))),
+                         : std::max(allowed, std::min(share_of_deviation * deviation,
+                                                      std::max(share_of_reference * span(v),
+                                                               rounding_of(v)))),
                 tests))
             accepted = other;
     if (!accepted) accepted = wrong_from(b);

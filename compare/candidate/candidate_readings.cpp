@@ -13,12 +13,12 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double same_load = 1e-14;  // of a branch's length: rounding of a unit conversion
-constexpr double end_met = 1e-9;     // of a branch's length: tolerance of a point at the end
+// Shares of the length of a branch: rounding of a unit conversion, and tolerance of a point at the end.
+constexpr double conversion_rounding = 1e-14, end_tolerance = 1e-9;
 
 // ---- The equilibrium leg at the points of the candidate.
 
-// Outputs of the equilibrium leg at any loads [SI] of a branch, which it solves on the way over the
+// Outputs of the equilibrium leg (one of the solvers) at any loads [SI] of a branch. It reaches a load over the
 // steps of the branch.
 class Reference {
   public:
@@ -38,16 +38,16 @@ class Reference {
     }
 
     // Load at which the reference is evaluated for a given one: the load of a step equal to it up to
-    // rounding, else itself within the branch, its end up to `end_met` beyond, NaN farther away.
-    double placed(double load) const {
+    // rounding, else itself within the branch, its end up to `end_tolerance` beyond, NaN farther away.
+    double reference_load(double load) const {
         const double length = sorted_.back() - sorted_.front();
-        const auto near = std::ranges::lower_bound(sorted_, load - same_load * length);
-        if (near != sorted_.end() && *near - load <= same_load * length) return *near;
+        const auto near = std::ranges::lower_bound(sorted_, load - conversion_rounding * length);
+        if (near != sorted_.end() && *near - load <= conversion_rounding * length) return *near;
         for (const auto& side : sides_) {
             const double to = side.branch.to;
             if (load * to < 0) continue;
             if (std::abs(load) <= std::abs(to)) return load;
-            if (std::abs(load) <= std::abs(to) * (1 + end_met)) return to;
+            if (std::abs(load) <= std::abs(to) * (1 + end_tolerance)) return to;
         }
         return nan;
     }
@@ -92,9 +92,9 @@ class Reference {
 // Compares candidate and reference column by column, at the places `x` that the candidate gives
 // (parameter [unit] or abscissa; NaN: none) and at the loads [SI] where the reference is there; NaN
 // beyond its range.
-CandidateReading compared(const PointsOnBranch& given, const std::vector<double>& x,
-                          const std::vector<double>& loads, const Reference& reference,
-                          const BranchComparison& branch) {
+CandidateReading compare_columns(const PointsOnBranch& given, const std::vector<double>& x,
+                                 const std::vector<double>& loads, const Reference& reference,
+                                 const BranchComparison& branch) {
     CandidateReading reading;
     std::vector<const std::vector<double>*> rows;
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -145,10 +145,10 @@ CandidateReading at_equal_parameter(const PointsOnBranch& given, Reference& refe
     std::vector<double> x, loads;
     for (const std::size_t k : given.on_branch) {
         x.push_back(given.points.a[k]);
-        loads.push_back(reference.placed(given.points.a[k] / in_unit(branch.unit)));
+        loads.push_back(reference.reference_load(given.points.a[k] / in_unit(branch.unit)));
     }
     reference.visit(loads);
-    return compared(given, x, loads, reference, branch);
+    return compare_columns(given, x, loads, reference, branch);
 }
 
 // Loads [SI] at which the reference is at the places `x` of the abscissa, which is its last output,
@@ -157,7 +157,7 @@ std::vector<double> loads_at(const std::vector<double>& x, Reference& reference,
                              const BranchComparison& branch) {
     const Curve& truth = truth_of(branch);
     const auto t = truth.channel(static_cast<std::size_t>(branch.abscissa));
-    const double length = std::abs(t.back() - t.front()), rounding = end_met * length;
+    const double length = std::abs(t.back() - t.front()), rounding = end_tolerance * length;
     const double per_unit = 1 / in_unit(branch.unit);
     const auto travel = [&](double load) {
         const auto* row = reference.at(load);
@@ -171,28 +171,29 @@ std::vector<double> loads_at(const std::vector<double>& x, Reference& reference,
         std::size_t i = 1;
         while (i + 1 < t.size() && (t[i] - x[k]) * (t.back() - t.front()) < 0) ++i;
         slope[k] = (truth.a[i] - truth.a[i - 1]) / (t[i] - t[i - 1]) * per_unit;
-        loads[k] = reference.placed(per_unit * truth.a[i - 1] + (x[k] - t[i - 1]) * slope[k]);
+        loads[k] =
+            reference.reference_load(per_unit * truth.a[i - 1] + (x[k] - t[i - 1]) * slope[k]);
     }
-    constexpr int passes = 12;
+    constexpr int max_passes = 12;
     reference.visit(loads);
-    bool better = true;
-    for (int pass = 0; pass < passes && better; ++pass) {
+    bool improves = true;
+    for (int pass = 0; pass < max_passes && improves; ++pass) {
         std::vector<double> next(x.size(), nan);
         for (std::size_t k = 0; k < x.size(); ++k) {
-            const double miss = x[k] - travel(loads[k]);
-            if (!(std::abs(miss) > 1e-13 * std::max(length, std::abs(x[k]))))
+            const double difference = x[k] - travel(loads[k]);
+            if (!(std::abs(difference) > 1e-13 * std::max(length, std::abs(x[k]))))
                 continue;  // converged, or no load
-            const double load = reference.placed(loads[k] + miss * slope[k]);
+            const double load = reference.reference_load(loads[k] + difference * slope[k]);
             if (load != loads[k]) next[k] = load;
         }
         reference.visit(next);
-        better = false;
+        improves = false;
         for (std::size_t k = 0; k < x.size(); ++k) {
             const double travel_before = travel(loads[k]), travel_next = travel(next[k]);
             if (!(std::abs(x[k] - travel_next) < std::abs(x[k] - travel_before))) continue;
             slope[k] = (next[k] - loads[k]) / (travel_next - travel_before);
             loads[k] = next[k];
-            better = true;
+            improves = true;
         }
     }
     // not solved: at a knot of a curve, or on a branch that ends early
@@ -215,21 +216,22 @@ CandidateReading at_equal_abscissa(const PointsOnBranch& given,
         return not_compared(std::move(by.why_not));
     std::vector<double> x;
     for (const std::size_t k : given.on_branch) x.push_back(places[k]);
-    return compared(given, x, loads_at(x, reference, branch), reference, branch);
+    return compare_columns(given, x, loads_at(x, reference, branch), reference, branch);
 }
 
 }  // namespace
 
-void add_readings(const Model& model, const Branch& branch, const BranchComparison& of,
+void add_readings(const Model& model, const Branch& branch, const BranchComparison& compared,
                   const std::vector<Channel>& channels, const PointsOnBranch& points,
                   CandidateBranch& given) {
     std::vector<Channel> outputs;
     for (const auto& column : points.columns) outputs.push_back(channels[column.channel]);
     outputs.insert(outputs.end(), points.defined.begin(), points.defined.end());
-    if (of.abscissa >= 0) outputs.push_back(channels[static_cast<std::size_t>(of.abscissa)]);
-    Reference reference(model, branch, of.steps, std::move(outputs));
-    given.equal_parameter = at_equal_parameter(points, reference, of);
-    given.equal_abscissa = at_equal_abscissa(points, channels, reference, of);
+    if (compared.abscissa >= 0)
+        outputs.push_back(channels[static_cast<std::size_t>(compared.abscissa)]);
+    Reference reference(model, branch, compared.steps, std::move(outputs));
+    given.equal_parameter = at_equal_parameter(points, reference, compared);
+    given.equal_abscissa = at_equal_abscissa(points, channels, reference, compared);
 }
 
 }  // namespace elastocheck::compare

@@ -23,7 +23,8 @@ bool is_broken(const Pose& pose) {
     const auto infinite = [](double x) { return std::isinf(x); };
     return std::ranges::any_of(pose.r, infinite) || std::ranges::any_of(pose.p.coeffs(), infinite);
 }
-Pose broken_where_not_finite(Pose pose) {
+// The pose, marked as broken by an infinite position if it is not finite.
+Pose marked_if_not_finite(Pose pose) {
     if (!is_finite(pose)) pose.r.setConstant(INFINITY);
     return pose;
 }
@@ -61,13 +62,13 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
         const Branch& branch = model.branches[b];
         const auto sides = sides_of(model, branch);
-        StateResiduals left;
-        left.branch = branch.name;
-        left.unit = unit_of(branch.unit);
-        left.second = comparison.branches[b].second;
+        StateResiduals residuals;
+        residuals.branch = branch.name;
+        residuals.unit = unit_of(branch.unit);
+        residuals.second = comparison.branches[b].second;
         for (const auto& state : states) {
             if (state.branch != branch.name) continue;
-            const double a = parameter_in(left.unit, state.load);
+            const double a = parameter_in(residuals.unit, state.load);
             result.points.branch.push_back(branch.name);
             result.points.a.push_back(a);
             Equilibrium equilibrium;
@@ -75,17 +76,17 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
             equilibrium.poses = state.poses;
             equilibrium.reactions.assign(model.joints.size(), {Eigen::Vector3d::Constant(nan),
                                                                Eigen::Vector3d::Constant(nan)});
-            const bool whole = std::ranges::all_of(equilibrium.poses, is_finite);
-            if (whole && std::isfinite(state.load)) {
+            const bool is_complete = std::ranges::all_of(equilibrium.poses, is_finite);
+            if (is_complete && std::isfinite(state.load)) {
                 const BranchSide& side = side_at(sides, state.load);
                 equilibrium.reactions = reference::equilibrium::reactions_at(
                     side.model, side.branch, state.load, equilibrium.poses);
-                const Leg second = left.second == Leg::energy ? Leg::energy : Leg::recursive;
-                left.a.push_back(a);
-                left.truth.push_back(judge(Leg::equilibrium, side, equilibrium));
-                left.by_second.push_back(judge(second, side, equilibrium));
+                const Leg second = residuals.second == Leg::energy ? Leg::energy : Leg::recursive;
+                residuals.a.push_back(a);
+                residuals.truth.push_back(judge(Leg::equilibrium, side, equilibrium));
+                residuals.by_second.push_back(judge(second, side, equilibrium));
             } else {
-                left.why_not = "it does not give the position of every body";
+                residuals.why_not = "it does not give the position of every body";
             }
             const bool broken =
                 !std::isfinite(state.load) || std::ranges::any_of(equilibrium.poses, is_broken);
@@ -94,8 +95,8 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
             for (std::size_t c = 0; c < values.size(); ++c)
                 result.points.columns[c].values.push_back(values[c]);
         }
-        if (!left.a.empty() || !left.why_not.empty())
-            result.state_residuals.push_back(std::move(left));
+        if (!residuals.a.empty() || !residuals.why_not.empty())
+            result.state_residuals.push_back(std::move(residuals));
     }
     // Columns without any value are those of bodies whose poses are not given.
     std::erase_if(result.points.columns, [](const PointColumn& column) {
@@ -119,7 +120,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
                 if (!first && point.load == 0) continue;
                 CandidateState& state =
                     states.emplace_back(CandidateState{branch.name, point.load, point.poses});
-                std::ranges::transform(state.poses, state.poses.begin(), broken_where_not_finite);
+                std::ranges::transform(state.poses, state.poses.begin(), marked_if_not_finite);
             }
             if (path.outcome != Outcome::converged)
                 notes.push_back(fmt::format("{}: {}: {}", side.name,

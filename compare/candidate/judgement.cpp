@@ -7,7 +7,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// Smaller deviations are rounding: of a position or angle [mm, deg], of others a share of the extent.
+// Smaller deviations are rounding: of a position or angle in mm or deg, of other outputs as a share of the
+// extent.
 constexpr double rounding = 1e-9, rounding_share = 1e-6;
 
 // Deviation relative to its limit; without a finite limit, relative to its extent.
@@ -17,9 +18,10 @@ double share_of_limit(const Worst& worst) {
                                                    : 1);
 }
 
-bool is_worse(const Worst& one, const std::optional<Worst>& other) {
-    return !other || (!std::isnan(share_of_limit(*other)) &&
-                      !(share_of_limit(one) <= share_of_limit(*other)));
+// Whether `candidate` is a larger share of its limit than `worst`, or not a number; NaN in `worst` stays.
+bool is_worse(const Worst& candidate, const std::optional<Worst>& worst) {
+    return !worst || (!std::isnan(share_of_limit(*worst)) &&
+                      !(share_of_limit(candidate) <= share_of_limit(*worst)));
 }
 
 bool is_within(const Worst& worst) { return std::isfinite(worst.max) && worst.max <= worst.limit; }
@@ -29,19 +31,19 @@ bool is_within(const Worst& worst) { return std::isfinite(worst.max) && worst.ma
 template <class Sink>
 void for_each_output(const Comparison& comparison, const BranchComparison& branch, ReadingKind kind,
                      const Tolerance& tolerance, Sink&& sink) {
-    const bool across = kind == ReadingKind::equal_abscissa;
-    if (across && !is_readable(comparison, branch)) return;
+    const bool by_abscissa = kind == ReadingKind::equal_abscissa;
+    if (by_abscissa && !is_readable(comparison, branch)) return;
     const Reading& reading = reading_of(branch.deviation, kind);
     for (std::size_t c = 0; c < reading.channels.size(); ++c) {
         const Channel& channel = comparison.channels[c];
         const Deviation& d = reading.channels[c];
         if (!branch.determined[c] || d.compared == 0) continue;
         const bool motion = is_motion(channel);
-        const double uncertain = across && !motion ? d.interpolation : 0;
+        const double uncertainty = by_abscissa && !motion ? d.interpolation : 0;
         sink(c, Worst{.branch = branch.branch,
                       .channel = channel.name,
                       .unit = channel.unit,
-                      .max = d.max <= uncertain ? 0 : d.max - uncertain,
+                      .max = d.max <= uncertainty ? 0 : d.max - uncertainty,
                       .end = d.end,
                       .range = d.range,
                       .limit = limit_of(channel, branch.extents[c], tolerance),
@@ -82,12 +84,12 @@ Assessment assess(const Model& model, const Comparison& comparison, const Tolera
     result.exact = true;
     std::vector<bool> judged(comparison.channels.size());
     for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
-        const bool across = kind == ReadingKind::equal_abscissa;
-        std::optional<Worst>&position = across ? result.position_across : result.position,
-        &angle = across ? result.angle_across : result.angle,
-        &other = across ? result.other_across : result.other;
-        // of outputs that are not main, and of rates that may be undefined: near a zero of their
-        // denominator a small error is a large share
+        const bool by_abscissa = kind == ReadingKind::equal_abscissa;
+        std::optional<Worst>&position = by_abscissa ? result.position_across : result.position,
+        &angle = by_abscissa ? result.angle_across : result.angle,
+        &other = by_abscissa ? result.other_across : result.other;
+        // Worst deviations of outputs that are not main, and of rates that may be undefined: near a zero of the
+        // denominator of a rate a small error is a large share.
         std::optional<Worst> other_position, other_angle, quotient;
         for (const auto& branch : comparison.branches)
             for_each_output(

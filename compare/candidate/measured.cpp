@@ -18,8 +18,8 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double min_relative_deviation =
-    1e-2;  // of a column's range: below, a measurement does not resolve it
+// Smallest deviation that a measurement resolves, as a share of the range of its column.
+constexpr double min_relative_deviation = 1e-2;
 
 // ---- Loops: points of a branch that go out and back.
 
@@ -30,13 +30,13 @@ std::vector<int> directions(const std::vector<double>& x) {
     const auto [low, high] = std::ranges::minmax(x);
     const double noise = 1e-3 * (high - low);
     std::vector<int> direction(x.size(), 0);
-    double turned_at = x.front();
+    double last_x = x.front();
     int current = 0;
     for (std::size_t k = 1; k < x.size(); ++k) {
-        const double step = x[k] - turned_at;
+        const double step = x[k] - last_x;
         if (std::abs(step) > noise) {
             current = step > 0 ? 1 : -1;
-            turned_at = x[k];
+            last_x = x[k];
         }
         direction[k] = current;
     }
@@ -85,13 +85,13 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
                             .by_parameter = by_parameter};
             std::vector<double> mean = column.values;
             for (std::size_t k = 0; k < points.size(); ++k) {
-                const double here = column.values[points[k]],
+                const double value = column.values[points[k]],
                              other = polygon(sweeps[direction[k] > 0 ? 0 : 1], x[k]);
                 if (!std::isfinite(other)) continue;
                 ++loop.points;
-                mean[points[k]] = (here + other) / 2;
-                if (std::abs(here - other) > loop.width) {
-                    loop.width = std::abs(here - other);
+                mean[points[k]] = (value + other) / 2;
+                if (std::abs(value - other) > loop.width) {
+                    loop.width = std::abs(value - other);
                     loop.at = x[k];
                 }
             }
@@ -103,17 +103,18 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
 
 // ---- Causes of a deviation: wrong signs, units, offsets and definitions.
 
-struct Given {
+// Input of the search for causes.
+struct MeasuredInput {
     const Comparison& comparison;
     const Points& points;  // the mean of both sweeps where the points go out and back
     const DefinedCurves& defined;
 };
 
-// The points of branch b, and the values of a leg at their places by interpolation of degree 5, for the
-// equilibrium leg also of the figures by other definitions; NaN beyond the curve of the leg.
-CandidateReading beside_leg(const Given& given, const std::vector<Place>& places, std::size_t b,
-                            Leg leg) {
-    const auto& [comparison, points, defined] = given;
+// Points of branch b with the values of a leg (one of the solvers) at their places, interpolated with degree 5;
+// NaN beyond the curve of the leg. The equilibrium leg also gives the figures by other definitions.
+CandidateReading values_beside_leg(const MeasuredInput& input, const std::vector<Place>& places,
+                                   std::size_t b, Leg leg) {
+    const auto& [comparison, points, defined] = input;
     const Curve& curve = comparison.branches[b].run(leg).curve;
     const std::array x_of_leg{
         points.abscissa ? abscissa_values(curve, points.abscissa) : std::vector<double>{},
@@ -152,21 +153,22 @@ CandidateReading beside_leg(const Given& given, const std::vector<Place>& places
 //   B = Σ |v - r|² / s²     C = Σ min(|v - r|², |v + r|²) / s²     P = Σ |v - t|² / s²
 //
 // that is where √(B / columns) > 0.3,  √(P / B) < 0.25  and  P < C.
-void turn_places(const Given& given, std::vector<Place>& places, std::vector<std::string>& causes) {
+void reverse_places(const MeasuredInput& input, std::vector<Place>& places,
+                    std::vector<std::string>& causes) {
     constexpr double min_deviation = 0.3, max_remainder = 0.25;
-    std::vector<Place> turned = places;
-    for (Place& place : turned) place.x = -place.x;
-    for (std::size_t b = 0; b < given.comparison.branches.size(); ++b) {
+    std::vector<Place> reversed = places;
+    for (Place& place : reversed) place.x = -place.x;
+    for (std::size_t b = 0; b < input.comparison.branches.size(); ++b) {
         // squares in units of the columns' scatter
         double before = 0, by_columns = 0, by_places = 0;
         int count = 0;
-        const auto as_given = beside_leg(given, places, b, Leg::equilibrium),
-                   as_turned = beside_leg(given, turned, b, Leg::equilibrium);
-        for (std::size_t c = 0; c < given.points.columns.size(); ++c) {
+        const auto as_given = values_beside_leg(input, places, b, Leg::equilibrium),
+                   as_reversed = values_beside_leg(input, reversed, b, Leg::equilibrium);
+        for (std::size_t c = 0; c < input.points.columns.size(); ++c) {
             double n = 0, sum = 0, squares = 0, as_is = 0, sign = 0, place = 0;
-            for (std::size_t k = 0; k < as_given.points.size(); ++k) {
+            for (std::size_t k = 0; k < as_input.points.size(); ++k) {
                 const double v = as_given.candidate[c][k], r = as_given.truth[c][k],
-                             t = as_turned.truth[c][k];
+                             t = as_reversed.truth[c][k];
                 if (!std::isfinite(v + r + t)) continue;
                 n += 1;
                 sum += v;
@@ -185,25 +187,26 @@ void turn_places(const Given& given, std::vector<Place>& places, std::vector<std
         if (!(before > min_deviation * min_deviation * count) ||
             !(by_places < max_remainder * max_remainder * before) || !(by_places < by_columns))
             continue;
-        const bool by_parameter = places[as_given.points.front()].by_parameter;
+        const bool by_parameter = places[as_input.points.front()].by_parameter;
         causes.push_back(fmt::format(
             "the columns of branch '{}' are nearer with the sign of {} turned: {:.2g} % of their "
             "scatter off instead of {:.2g} %",
-            given.comparison.branches[b].branch,
-            by_parameter ? "the parameter" : given.comparison.channels[*given.points.abscissa].name,
+            input.comparison.branches[b].branch,
+            by_parameter ? "the parameter" : input.comparison.channels[*input.points.abscissa].name,
             100 * std::sqrt(by_places / count), 100 * std::sqrt(before / count)));
-        for (const std::size_t k : as_given.points) places[k].x = turned[k].x;
+        for (const std::size_t k : as_input.points) places[k].x = reversed[k].x;
     }
 }
 
-std::vector<std::string> causes_of(const Given& given, std::vector<Place> places) {
-    const auto& [comparison, points, defined] = given;
+// Causes that explain deviations of the columns, one sentence each.
+std::vector<std::string> causes_of(const MeasuredInput& input, std::vector<Place> places) {
+    const auto& [comparison, points, defined] = input;
     std::vector<std::string> causes;
-    turn_places(given, places, causes);
+    reverse_places(input, places, causes);
     std::vector<CandidateReading> readings;
     for (std::size_t b = 0; b < comparison.branches.size(); ++b)
-        readings.push_back(beside_leg(given, places, b, Leg::equilibrium));
-    std::vector<ReadBranch> branches;
+        readings.push_back(values_beside_leg(input, places, b, Leg::equilibrium));
+    std::vector<BranchReading> branches;
     for (std::size_t b = 0; b < readings.size(); ++b)
         branches.push_back({&comparison.branches[b], &readings[b]});
     for (std::size_t c = 0; c < points.columns.size(); ++c) {
@@ -223,7 +226,8 @@ std::vector<std::string> causes_of(const Given& given, std::vector<Place> places
     return causes;
 }
 
-// The row of a column and a branch, beside each leg.
+// Deviations of column c from each leg on one branch, over the points that have values of all legs; marks
+// these points in `used`.
 MeasuredRow measured_row(const std::array<CandidateReading, legs.size()>& beside, std::size_t c,
                          std::vector<bool>& used) {
     MeasuredRow row;
@@ -271,8 +275,8 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
     for (auto& column : means.columns)
         for (auto& loop : take_means(column, result.places, comparison))
             result.loops.push_back(std::move(loop));
-    const Given given{comparison, means, defined};
-    result.explanations = causes_of(given, result.places);
+    const MeasuredInput input{comparison, means, defined};
+    result.explanations = causes_of(input, result.places);
     for (const bool by_parameter : {true, false}) {
         const auto& x = by_parameter ? measured.a : measured.at;
         if (std::ranges::none_of(x, [](double v) { return std::isfinite(v); })) continue;
@@ -285,7 +289,8 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
         std::vector<std::array<CandidateReading, legs.size()>> branches(comparison.branches.size());
         for (std::size_t b = 0; b < branches.size(); ++b)
             for (const Leg leg : legs)
-                branches[b][static_cast<std::size_t>(leg)] = beside_leg(given, places, b, leg);
+                branches[b][static_cast<std::size_t>(leg)] =
+                    values_beside_leg(input, places, b, leg);
         for (std::size_t c = 0; c < means.columns.size(); ++c)
             for (std::size_t b = 0; b < branches.size(); ++b) {
                 auto row = measured_row(branches[b], c, result.used);

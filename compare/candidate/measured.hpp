@@ -9,15 +9,15 @@
 
 namespace elastocheck::compare {
 
-// An output of one test: the points of one branch that every leg reaches.
+// Comparison of one output on one branch, over the points that every leg (solver) reaches.
 struct MeasuredRow {
     std::string branch;
     std::size_t channel = 0;
-    // slopes of the straight lines through the measured values and through those of the equilibrium
+    // Slopes of the straight lines through the measured values and through those of the equilibrium
     // leg, by least squares, in the channel's unit per unit of the parameter or abscissa; NaN where
     // all points are at one place
     double measured_gradient = 0, gradient = 0;
-    // of each leg from the measurement, in the order of `legs`
+    // deviation of each leg from the measurement, in the order of `legs`
     std::array<Deviation, legs.size()> off;
     int compared() const { return off.front().compared; }
 };
@@ -38,7 +38,7 @@ struct Hysteresis {
 };
 
 struct MeasuredComparison {
-    std::vector<Place> places;         // of the points
+    std::vector<Place> places;         // place of each point on its branch
     std::vector<bool> used;            // per point: a value of it is compared
     std::vector<PointColumn> columns;  // as absolute positions and angles, no longer as changes
     std::vector<MeasuredReading> readings;

@@ -16,8 +16,9 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double drawn_tolerance = 1e-12;  // [m, rad]: distance of a body from its drawn position
-constexpr int max_corrections = 30;        // of the preloads
+// Largest displacement of a body from its drawn position in a balanced scene [m, rad].
+constexpr double drawn_tolerance = 1e-12;
+constexpr int max_corrections = 30;  // corrections of the preloads
 
 bool is_balanced(const Elastic& element) {
     return preload(element.kind) != nullptr && element.written_as == WrittenAs::itself &&
@@ -28,8 +29,10 @@ bool is_balanced(const Elastic& element) {
 double largest_displacement(const SettledTrim& settled) {
     double largest = 0;
     for (std::size_t b = 0; b < settled.state.poses.size(); ++b) {
-        const Pose &drawn = settled.held.model.bodies[b].design, &now = settled.state.poses[b];
-        largest = std::max({largest, (now.r - drawn.r).norm(), now.p.angularDistance(drawn.p)});
+        const Pose &drawn = settled.side.model.bodies[b].design,
+                   &settled_pose = settled.state.poses[b];
+        largest = std::max(
+            {largest, (settled_pose.r - drawn.r).norm(), settled_pose.p.angularDistance(drawn.p)});
     }
     return largest;
 }
@@ -38,13 +41,13 @@ double largest_displacement(const SettledTrim& settled) {
 // u'(e(x)) - u'(e(drawn)) [N, N·m], by name, in the axes in which the scene states the bushing.
 std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
     std::map<std::string, Vector6> loads;
-    const Model& model = settled.held.model;
+    const Model& model = settled.side.model;
     const Equilibrium drawn = design_state(model);
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& element = model.elastics[k];
         if (!is_balanced(element)) continue;
         const auto force_in = [&](const Equilibrium& state) {
-            return force(element.kind, deformation(element.kind, k, settled.held.branch, state));
+            return force(element.kind, deformation(element.kind, k, settled.side.branch, state));
         };
         loads[element.name] =
             (element.markers_swapped ? -1 : 1) * (force_in(settled.state) - force_in(drawn));
@@ -65,7 +68,9 @@ struct Corrections {
     Eigen::MatrixXd dP, dr;  // a column per correction but the first
 };
 
-void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Corrections& history) {
+// Adds the next correction of Anderson's method to the preloads of the scene.
+void correct_preloads(Scene& scene, const std::map<std::string, Vector6>& loads,
+                      Corrections& history) {
     std::vector<Vector6*> preloads;
     for (Elastic& element : scene.elastics)
         if (loads.contains(element.name))
@@ -93,10 +98,11 @@ void correct(Scene& scene, const std::map<std::string, Vector6>& loads, Correcti
         *preloads[k] = next.segment<6>(6 * static_cast<Eigen::Index>(k));
 }
 
+// Throws std::invalid_argument if a condition requests another value than that of the drawn position.
 void require_drawn_values(const Scene& scene) {
-    const Eigen::VectorXd differs = requested_from_drawn(scene);
-    for (Eigen::Index k = 0; k < differs.size(); ++k)
-        if (!(std::abs(differs[k]) <= accepted_residual))
+    const Eigen::VectorXd differences = requested_from_drawn(scene);
+    for (Eigen::Index k = 0; k < differences.size(); ++k)
+        if (!(std::abs(differences[k]) <= accepted_residual))
             throw std::invalid_argument(
                 fmt::format("'{}' differs from its value as drawn, and with balanced bushings the "
                             "drawn position "
@@ -144,7 +150,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
             record_preloads(scene, trimmed.scene, *trimmed.record);
             return trimmed;
         }
-        correct(loaded, loads_of_bushings(settled), corrections);
+        correct_preloads(loaded, loads_of_bushings(settled), corrections);
     }
     TrimRecord record;
     record.outcome = Outcome::iteration_limit;

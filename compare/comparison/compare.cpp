@@ -21,6 +21,7 @@
 namespace elastocheck::compare {
 namespace {
 
+// The larger residual of each kind; NaN counts as larger than all numbers.
 Residuals worse(const Residuals& a, const Residuals& b) {
     return {compare::worse(a.length, b.length), compare::worse(a.direction, b.direction),
             compare::worse(a.force, b.force), compare::worse(a.moment, b.moment)};
@@ -34,11 +35,13 @@ double seconds_alone(const std::vector<BranchSide>& sides, const SolverSettings&
     return processor_time() - start;
 }
 
-// Responses of the wheels at the landmarks, where outputs have already been read from them.
+// Responses of the wheels at the landmarks of a run (its ends and start), kept if outputs have been read from
+// them.
 struct Responses {
     std::optional<WheelResponse> front, start, back;
 };
 
+// Compliance matrices at the ends and the start of a run, one for each value of the parameter.
 std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side,
                                       const SolverSettings& solver, const LegRun& run,
                                       const Responses& responses) {
@@ -65,9 +68,10 @@ std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side
     return list;
 }
 
-// Proofs at the landmarks, also of a path that ended early: all of them, or the ends only.
-Tally proved(const BranchSide& side, const LegRun& run, bool ends_only,
-             std::vector<reference::certificate::ProvedBox>& known) {
+// Proofs of the states at the landmarks (ends, start and middle), or only at the ends, also of a path that
+// ended early.
+Tally proofs_at_landmarks(const BranchSide& side, const LegRun& run, bool ends_only,
+                          std::vector<reference::certificate::ProvedBox>& known) {
     Tally tally;
     std::vector<double> certified;
     const auto& [front, start, middle, back] = run.landmarks;
@@ -122,9 +126,9 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
                          }
                          run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
                          // The farthest point on either side comes last.
-                         const auto mark = [&](std::optional<Equilibrium>& here,
+                         const auto mark = [&](std::optional<Equilibrium>& landmark,
                                                std::optional<WheelResponse>& known_response) {
-                             here = state;
+                             landmark = state;
                              known_response.reset();
                              if (response != nullptr) known_response = *response;
                          };
@@ -161,8 +165,8 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
 
 namespace {
 
-// Ratio to the bound; above 1 is a violation, and so is a value that is not finite.
-double share(double value, double bound) {
+// Ratio of a value to its bound: above 1 it is a violation. Infinite if either is not finite.
+double share_of_bound(double value, double bound) {
     const double part = bound > 0 ? value / bound : value > 0 ? INFINITY : 0;
     return std::isfinite(value) && std::isfinite(bound) ? part : INFINITY;
 }
@@ -187,7 +191,7 @@ double bound_of_characteristic(const Channel& channel, const std::vector<double>
     constexpr double share = 1e-6;
     double largest = 1e-3;
     for (const double value : values) largest = std::max(largest, std::abs(value));
-    return std::max(share * largest, is_place(channel) ? bounds.length : 0);
+    return std::max(share * largest, is_position(channel) ? bounds.length : 0);
 }
 
 int count(const Reading& reading, const std::vector<bool>& determined) {
@@ -240,19 +244,19 @@ std::string at_two_equilibria(const Model& model, const Branch& requested, const
     return {};
 }
 
-// Message on the proofs of the leg beside a disproved one; empty if they do not decide.
-std::string which_is_right(const LegRun& other) {
-    const Tally& t = other.proved;
-    if (t.excluded > 0 || t.points == 0) return {};
-    if (t.proved == t.points)
+// Message on the proofs of the other leg if a state of one leg is disproved; empty if they do not decide.
+std::string proofs_of_other_leg(const LegRun& other) {
+    const Tally& tally = other.proved;
+    if (tally.excluded > 0 || tally.points == 0) return {};
+    if (tally.proved == tally.points)
         return fmt::format("; the {} leg is right, by proof", name(other.leg));
     return fmt::format("; of the points of the {} leg {} of {} are proved and none is excluded",
-                       name(other.leg), t.proved, t.points);
+                       name(other.leg), tally.proved, tally.points);
 }
 
 // Message on the first point at which only one of two runs has a value of an output; empty if none.
-std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& one,
-                           const LegRun& other) {
+std::string defined_by_one_run(const Channel& channel, std::size_t c, const LegRun& one,
+                               const LegRun& other) {
     for (std::size_t k = 0; k < std::min(one.curve.values.size(), other.curve.values.size()); ++k) {
         const bool by_one = one.curve.values[k][c] != undefined,
                    by_other = other.curve.values[k][c] != undefined;
@@ -367,7 +371,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                                  ? bound_of_characteristic(
                                        channels[c], equilibrium.curve.channel(c), branch.bounds)
                                  : bound_of(channels[c].unit, branch.bounds);
-        if (const double part = share(difference, bound); !(part <= 1))
+        if (const double part = share_of_bound(difference, bound); !(part <= 1))
             disagreements.add(
                 fmt::format(
                     "the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
@@ -388,10 +392,11 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
         if (run->proved.excluded > 0)
             objections.add(fmt::format("the {} leg's point is provably no equilibrium: {}{}",
                                        name(run->leg), run->proved.not_proved,
-                                       which_is_right(*other)));
+                                       proofs_of_other_leg(*other)));
     // The references must also agree on where an output is undefined.
     for (std::size_t c = 0; c < channels.size(); ++c)
-        if (const auto where = defined_by_one(channels[c], c, equilibrium, second); !where.empty())
+        if (const auto where = defined_by_one_run(channels[c], c, equilibrium, second);
+            !where.empty())
             objections.add(where);
     // Where the series is the second reference, its equations are those of the recursive leg.
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
@@ -401,9 +406,9 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     for (const auto& [run, other] : judgements) {
         const Residuals& r = run->judged[static_cast<std::size_t>(other)];
         const Bounds& b = branch.bounds;
-        const double part =
-            std::max({share(r.force, b.residual_force), share(r.moment, b.residual_moment),
-                      share(1e3 * r.length, b.residual_length)});
+        const double part = std::max({share_of_bound(r.force, b.residual_force),
+                                      share_of_bound(r.moment, b.residual_moment),
+                                      share_of_bound(1e3 * r.length, b.residual_length)});
         if (!(part <= 1))
             objections.add(
                 fmt::format(
@@ -513,8 +518,8 @@ Comparison compare(const Model& model, const Options& options, const std::vector
         for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive})
             for (LegRun& leg_run : runs)
                 if (leg_run.leg == leg && (!options.prove_ends_only || leg == Leg::equilibrium))
-                    leg_run.proved =
-                        proved(sides[k].front(), leg_run, options.prove_ends_only, known);
+                    leg_run.proved = proofs_at_landmarks(sides[k].front(), leg_run,
+                                                         options.prove_ends_only, known);
     };
     std::vector<std::vector<LegRun>> runs(model.branches.size(), std::vector<LegRun>(legs.size()));
     std::vector<std::optional<LegRun>> series(model.branches.size());

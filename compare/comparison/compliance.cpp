@@ -27,9 +27,9 @@ struct ResponseCase {
     Equilibrium state;
 };
 
-// The free model of compliance.hpp: without jacks and tyres; their forces at this state act as static
+// The free model of compliance.hpp: jacks and tyres are removed, and their forces at this state act as static
 // loads.
-ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
+ResponseCase free_case(const BranchSide& side, const Equilibrium& state) {
     ResponseCase free{side.model, side.branch, state};
     const auto add_force = [&](const Point& at, double force) {
         free.model.static_loads.push_back({"held", DeadForce{at, force * Vector3d::UnitZ()}});
@@ -47,7 +47,8 @@ ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
         if (const Elastic& tyre = side.model.elastics[k]; tyre.written_as == WrittenAs::tyre) {
             const Marker& at = std::get<Bushing>(tyre.kind).j;
             const Vector6 e = deformation(tyre.kind, k, side.branch, state);
-            add_force({at.body, at.s_local}, -stress(tyre.kind, k, side.branch, state, e).z());
+            add_force({at.body, at.s_local},
+                      -force_with_preload(tyre.kind, k, side.branch, state, e).z());
             std::erase_if(free.branch.drivers, [&](const Driver& driver) {
                 return driven_element(driver.what) == static_cast<int>(k);
             });
@@ -57,22 +58,22 @@ ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
 }
 
 // Adds jacks under the first wheels, each at the height of its wheel's centre.
-ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
-    for (const Wheel& wheel : std::span(freed_case.model.wheels).first(wheels)) {
+ResponseCase jacked_case(ResponseCase response_case, std::size_t wheels) {
+    for (const Wheel& wheel : std::span(response_case.model.wheels).first(wheels)) {
         const Point centre{wheel.body, wheel.centre_local};
-        const Vector3d at_state = position(freed_case.state.poses, centre);
-        const int joint = static_cast<int>(freed_case.model.joints.size());
-        freed_case.model.joints.push_back(
+        const Vector3d at_state = position(response_case.state.poses, centre);
+        const int joint = static_cast<int>(response_case.model.joints.size());
+        response_case.model.joints.push_back(
             {.name = wheel.name + " jack",
              .i = wheel.body,
              .j = ground,
              .at = centre,
-             .driven = static_cast<int>(freed_case.model.constraints.size())});
-        freed_case.model.constraints.push_back(
+             .driven = static_cast<int>(response_case.model.constraints.size())});
+        response_case.model.constraints.push_back(
             {joint, PointInPlane{centre, {ground, at_state}, {ground, Vector3d::UnitZ()}, 0}});
-        freed_case.state.reactions.emplace_back();
+        response_case.state.reactions.emplace_back();
     }
-    return freed_case;
+    return response_case;
 }
 
 // Unit disturbances, per wheel: forces [1 N] along x, y, z and moments [1 N·m] about them at the
@@ -98,39 +99,42 @@ std::vector<Disturbance> unit_disturbances(const Model& model, const Equilibrium
 }
 
 // A force f at the patch is f at the centre and the moment d x f, d from centre to patch.
-Motions at_patch_of(const std::array<Motions, causes>& solved, const Vector3d& d, int axis) {
+Motions motions_under_patch_force(const std::array<Motions, wrench_count>& solved,
+                                  const Vector3d& d, int axis) {
     const Vector3d moment = d.cross(Vector3d::Unit(axis));
-    Motions sum = solved[static_cast<std::size_t>(at_centre + axis)];
+    Motions sum = solved[static_cast<std::size_t>(first_centre_force + axis)];
     for (int k = 0; k < 3; ++k) {
-        const Motions& turn = solved[static_cast<std::size_t>(moment_on + k)];
+        const Motions& by_moment = solved[static_cast<std::size_t>(first_moment + k)];
         for (std::size_t b = 0; b < sum.size(); ++b) {
-            sum[b].dr += moment[k] * turn[b].dr;
-            sum[b].dpi += moment[k] * turn[b].dpi;
+            sum[b].dr += moment[k] * by_moment[b].dr;
+            sum[b].dpi += moment[k] * by_moment[b].dpi;
         }
     }
     return sum;
 }
 
 // The motions of all bodies, sorted by wheel and cause (order of unit_disturbances()). Where they were
-// solved without forces at the patches, those motions are the sums of at_patch_of().
-std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& solved,
-                                                  const Model& model, const Equilibrium& state,
-                                                  bool with_patches) {
-    const std::size_t per_wheel = with_patches ? causes : at_patch;
-    std::vector<std::array<Motions, causes>> list(model.wheels.size());
+// solved without forces at the patches, those motions are the sums of motions_under_patch_force().
+std::vector<std::array<Motions, wrench_count>> by_wheel(const std::vector<Motions>& solved,
+                                                        const Model& model,
+                                                        const Equilibrium& state,
+                                                        bool with_patches) {
+    const std::size_t per_wheel = with_patches ? wrench_count : first_patch_force;
+    std::vector<std::array<Motions, wrench_count>> list(model.wheels.size());
     for (std::size_t w = 0; w < list.size(); ++w) {
         const Wheel& wheel = model.wheels[w];
         for (std::size_t k = 0; k < per_wheel; ++k) list[w][k] = solved[per_wheel * w + k];
         const Vector3d d = position(state.poses, wheel.contact) -
                            position(state.poses, wheel.body, wheel.centre_local);
         for (int axis = 0; !with_patches && axis < 3; ++axis)
-            list[w][static_cast<std::size_t>(at_patch + axis)] = at_patch_of(list[w], d, axis);
+            list[w][static_cast<std::size_t>(first_patch_force + axis)] =
+                motions_under_patch_force(list[w], d, axis);
     }
     return list;
 }
 
 // Whether 1 N or 1 N·m moves a body by a million kilometres or 10⁹ rad: its stiffness is rounding.
-bool is_unresisted(const std::vector<std::array<Motions, causes>>& free) {
+bool is_unresisted(const std::vector<std::array<Motions, wrench_count>>& free) {
     constexpr double unresisted = 1e9;  // [m, rad]
     for (const auto& wheel : free)
         for (const Motions& motions : wheel)
@@ -157,7 +161,7 @@ std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& fr
             z(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(k)) =
                 Subject::moved_by(free[k], centre).z();
     }
-    const auto lifted_at = [&](std::size_t w) { return per_wheel * w + at_centre + 2; };
+    const auto lifted_at = [&](std::size_t w) { return per_wheel * w + first_centre_force + 2; };
     for (std::size_t w = 0; w < wheels; ++w)
         C.col(static_cast<Eigen::Index>(w)) = z.col(static_cast<Eigen::Index>(lifted_at(w)));
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(C);
@@ -232,7 +236,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
                              const Equilibrium& state, Analyses& analyses, bool with_free) {
     WheelResponse response;
     const std::size_t wheels = side.model.wheels.size();
-    const ResponseCase freed_case = freed(side, state);
+    const ResponseCase response_case = free_case(side, state);
     // The references refine their solutions, so that the response to a force at the patch of a
     // wheel that does not roll may be a sum. The recursion does not: such sums differ from its
     // solutions by 1e-10.
@@ -240,21 +244,21 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         analyses.one_factorisation || solver.leg == Leg::equilibrium || solver.leg == Leg::energy;
     const bool with_patches = !refines || std::ranges::any_of(side.model.wheels, &Wheel::rolls);
     const auto wrenches = unit_disturbances(side.model, state, with_patches);
-    const std::size_t first = freed_case.model.joints.size();
+    const std::size_t first = response_case.model.joints.size();
     const bool steers =
-        steering >= 0 && freed_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
+        steering >= 0 && response_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
     std::optional<std::vector<Motions>> held;  // by the same factorisation
     if (with_free) {
         const auto response_to = [&](std::span<const Disturbance> list) {
-            return linear_response(solver, freed_case.model, freed_case.branch, freed_case.state,
-                                   list, analyses.free);
+            return linear_response(solver, response_case.model, response_case.branch,
+                                   response_case.state, list, analyses.free);
         };
         std::vector<Disturbance> with_steering = wrenches;
         if (steers && refines) with_steering.push_back(Motion{steering});
         Response free = response_to(with_steering);
         if (free.outcome == Outcome::converged && refines)
-            held =
-                held_by_jacks(free.increments, side.model, state, with_patches ? causes : at_patch);
+            held = held_by_jacks(free.increments, side.model, state,
+                                 with_patches ? wrench_count : first_patch_force);
         else if (with_steering.size() > wrenches.size())
             free = response_to(wrenches);
         if (free.outcome == Outcome::converged) {
@@ -273,7 +277,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     }
 
     const auto jacked_response = [&](std::size_t count, ResponseCache& cache) {
-        const ResponseCase up = jacked_up(freed_case, count);
+        const ResponseCase up = jacked_case(response_case, count);
         std::vector<Disturbance> changes = wrenches;
         for (std::size_t w = 0; w < count; ++w)
             changes.push_back(Motion{static_cast<int>(first + w)});
@@ -296,7 +300,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         response.steering = std::move(jacked.increments.back());
         jacked.increments.pop_back();
     }
-    response.held = by_wheel(jacked.increments, side.model, state, with_patches);
+    response.jacked = by_wheel(jacked.increments, side.model, state, with_patches);
     response.travel.assign(
         jacked.increments.end() - static_cast<std::ptrdiff_t>(response.tied ? 1 : wheels),
         jacked.increments.end());
@@ -307,7 +311,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
 Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
                            const WheelResponse& response) {
     const auto n = static_cast<Eigen::Index>(response.free.size());
-    const int force = point == WheelPoint::centre ? at_centre : at_patch;
+    const int force = point == WheelPoint::centre ? first_centre_force : first_patch_force;
     Eigen::MatrixXd C(6 * n, 6 * n);
     for (Eigen::Index j = 0; j < n; ++j)
         for (int k = 0; k < 6; ++k) {

@@ -35,14 +35,14 @@ bool is_active(const Elastic& elastic, int k, const Branch& branch) {
            });
 }
 
-// Deformation e [m, rad] and force s [N, N·m] of an element in a state; without them where it is
-// not active.
+// Deformation e [m, rad] and force s [N, N·m] of an element in a state; both are zero where it is not active.
 struct ElementState {
     const Elastic* elastic;
     bool active;
     Vector6 e = Vector6::Zero(), s = Vector6::Zero();
 
-    // Components 0 to 5 are those of e, 6 to 11 those of s, each along x, y, z and about x, y, z.
+    // Components 0 to 5 are those of e, 6 to 11 those of s, each along x, y, z and about x, y, z, with the sign of
+    // the output; NaN for an element that is not active.
     double component(int k) const {
         if (!active) return nan;
         const bool is_force = k >= 6;
@@ -57,14 +57,15 @@ ElementState state_of(const Model& model, const Branch& branch, const Equilibriu
     ElementState result{&elastic, is_active(elastic, k, branch)};
     if (!result.active) return result;
     result.e = deformation(elastic.kind, static_cast<std::size_t>(k), branch, state);
-    result.s = stress(elastic.kind, static_cast<std::size_t>(k), branch, state, result.e);
+    result.s =
+        force_with_preload(elastic.kind, static_cast<std::size_t>(k), branch, state, result.e);
     return result;
 }
 
 // ---- Names
 
-// The components of ElementState that are outputs of the element.
-std::vector<int> components(const Elastic& elastic) {
+// Components of ElementState that are outputs of the element.
+std::vector<int> output_components(const Elastic& elastic) {
     if (is_spring(elastic)) return {0, 6};
     if (elastic.written_as == WrittenAs::tyre) return {2, 8};
     if (elastic.written_as == WrittenAs::torsion_spring) return {5, 11};
@@ -77,6 +78,7 @@ Unit unit_of_component(int component) {
     return turns ? Unit::newton_metre : Unit::newton;
 }
 
+// Name of an output of an element, without the name of the element, and its definition.
 struct Naming {
     std::string name, definition;
 };
@@ -120,7 +122,7 @@ Naming naming(const Elastic& elastic, int component) {
                         turns ? "right-handed" : "positive along the axis")};
 }
 
-// "NAME", or "NAME#2" where NAME.output is taken.
+// Name of an element for its output: "NAME", or "NAME#2" where NAME.output is taken.
 std::string free_name(const std::string& name, const std::string& output,
                       std::set<std::string>& taken) {
     std::string who = name;
@@ -140,7 +142,7 @@ std::vector<Channel> element_channels(const Model& model) {
     std::set<std::string> taken;
     for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k) {
         const Elastic& elastic = elastic_of(model, k);
-        for (const int component : components(elastic)) {
+        for (const int component : output_components(elastic)) {
             const auto [name, definition] = naming(elastic, component);
             list.push_back({.name = free_name(elastic.name, name, taken) + "." + name,
                             .unit = unit_of_component(component),
@@ -188,8 +190,9 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
 std::vector<double> evaluate(const Model& model, const BranchSide& side,
                              std::span<const Channel> channels, const Equilibrium& state,
                              Analyses& analyses) {
-    // [N, N·m] of a self-stress of 1 N; above its imbalance, due to the constraint error of the state
-    constexpr double rounding = 1e-6, per_remainder = 10;
+    // A reaction takes part in a self-stress of 1 N if it exceeds `rounding` [N, N·m] plus this multiple of the
+    // imbalance of the self-stress, which is due to the constraint error of the state.
+    constexpr double rounding = 1e-6, imbalance_factor = 10;
     std::vector<double> values = evaluate(model, side.branch, channels, state);
     auto& dependent = analyses.dependent_rows;
     if (!dependent) dependent = recursive::dependent_rows(side.model);
@@ -198,9 +201,10 @@ std::vector<double> evaluate(const Model& model, const BranchSide& side,
     for (auto& stress : recursive::self_stresses(side.model, side.branch, *dependent, state)) {
         stressed.reactions = std::move(stress.wrenches);
         const auto shared = evaluate(model, channels, stressed);
-        const double zero = rounding + per_remainder * stress.remainder;
+        const double smallest_share = rounding + imbalance_factor * stress.remainder;
         for (std::size_t c = 0; c < channels.size(); ++c)
-            if (!channels[c].joints().empty() && std::abs(shared[c]) > zero) values[c] = undefined;
+            if (!channels[c].joints().empty() && std::abs(shared[c]) > smallest_share)
+                values[c] = undefined;
     }
     return values;
 }
@@ -222,9 +226,9 @@ std::string why_undefined(const Channel& channel) {
     return channel.undefined;
 }
 
-std::vector<bool> active_channels(std::span<const Channel> channels, const Model& standing) {
-    std::vector<bool> active(standing.joints.size(), false), list;
-    for (const auto& constraint : standing.constraints)
+std::vector<bool> active_channels(std::span<const Channel> channels, const Model& side_model) {
+    std::vector<bool> active(side_model.joints.size(), false), list;
+    for (const auto& constraint : side_model.constraints)
         active[static_cast<std::size_t>(constraint.joint)] = true;
     for (const auto& channel : channels)
         list.push_back(std::ranges::all_of(
@@ -235,8 +239,8 @@ std::vector<bool> active_channels(std::span<const Channel> channels, const Model
 std::vector<Channel> sums(const Model& model) {
     std::vector<std::vector<int>> groups;
     for (const Branch& branch : model.branches) {
-        const Model standing = sides_of(model, branch).front().model;
-        for (const auto& group : recursive::diagnose(standing).redundant_sets)
+        const Model side_model = sides_of(model, branch).front().model;
+        for (const auto& group : recursive::diagnose(side_model).redundant_sets)
             if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
     }
     return totals(model, groups);

@@ -30,13 +30,14 @@
 
 namespace elastocheck::compare {
 
-// In the order of the elements, then the links. Where two elements share a name and an
+// Outputs of the elements in their order, then of the links. Where two elements share a name and an
 // output, the second is named "NAME#2". No name equals one of channels(model): bushings and
 // joints may share theirs.
 std::vector<Channel> element_channels(const Model& model);
-std::string element_of(const Channel& channel);  // its element or link: "lower_front"
+// Name of the element or link of such a channel: "lower_front".
+std::string element_of(const Channel& channel);
 
-// Smaller values [mm, deg, N, N·m] are rounding.
+// Largest |value| that is rounding [mm, deg, N, N·m].
 inline constexpr double zero_value = 1e-6;
 
 // Values of element channels and any others, in their units; NaN for an element that is inactive on
@@ -44,22 +45,24 @@ inline constexpr double zero_value = 1e-6;
 std::vector<double> evaluate(const Model& model, const Branch& branch,
                              std::span<const Channel> channels, const Equilibrium& state);
 struct Analyses;  // compliance.hpp
-// Likewise; `undefined` for reactions that the loads do not determine, since redundant joints share
-// them: those that are not zero in a self-stress of the joints (recursive/diagnosis/self_stress.hpp).
+// The same values on a branch side; `undefined` for reactions that the loads do not determine, since redundant
+// joints share them: those that are not zero in a self-stress of the joints
+// (recursive/diagnosis/self_stress.hpp).
 std::vector<double> evaluate(const Model& model, const BranchSide& side,
                              std::span<const Channel> channels, const Equilibrium& state,
                              Analyses& analyses);
 
-// Whether a channel is `undefined` at a point of the curve; the reason for that value.
+// Whether a channel is `undefined` at a point of the curve.
 bool is_undefined_somewhere(std::size_t channel, const Curve& curve);
+// Reason why a channel can be `undefined`.
 std::string why_undefined(const Channel& channel);
 
 // Sums of the reactions of redundant joints (totals()), on any branch of the model.
 std::vector<Channel> sums(const Model& model);
 
-// Per channel, whether the joints that it reads have constraints in `standing`, the model
-// of a branch.
-std::vector<bool> active_channels(std::span<const Channel> channels, const Model& standing);
+// For each channel, whether the joints that it reads have constraints in `side_model`, the model of a branch
+// side.
+std::vector<bool> active_channels(std::span<const Channel> channels, const Model& side_model);
 
 // ---- Largest values over the points of a branch.
 
@@ -68,13 +71,13 @@ std::vector<bool> active_channels(std::span<const Channel> channels, const Model
 struct LargestForces {
     LargestForces(const Model& of_model, const BranchSide& on_side);
     void add(const Equilibrium& state);
-    std::vector<LargestForce> list() const;  // without those that are always zero
+    std::vector<LargestForce> list() const;  // those that are not always zero
 
     const Model* model;
     const BranchSide* side;
     std::shared_ptr<Analyses> analyses;
     std::vector<Channel> channels = {};   // forces and moments
-    std::vector<std::size_t> entry = {};  // of each channel, in `largest`
+    std::vector<std::size_t> entry = {};  // position in `largest` of each channel
     std::vector<LargestForce> largest = {};
 };
 

@@ -49,7 +49,8 @@ EquilibriumPath recursion(const BranchSide& side, recursive::Options options, in
                : recursive::solve(side.model, side.branch, options, requested);
 }
 
-// Runs the leg, which extrapolates tabulated curves beyond their ends; solve_branch() checks those.
+// Solves by a leg (one of the solvers), which extrapolates tabulated curves beyond their ends;
+// solve_branch() checks those.
 EquilibriumPath solve_by_leg(const BranchSide& side, const SolverSettings& solver,
                              const PointVisitor& visit) {
     const auto& [model, branch] = std::tie(side.model, side.branch);
@@ -86,7 +87,7 @@ EquilibriumPath solve_within_tables(const BranchSide& side, const PointVisitor& 
     return path;
 }
 
-// Gives `first` the outcome and the counts of both sides. Path: EquilibriumPath or PathCurve.
+// Adds the outcome and the counts of `second` to those of `first`. Path: EquilibriumPath or PathCurve.
 template <class Path>
 void add_outcome(const std::vector<BranchSide>& sides, Path& first, const Path& second) {
     const auto labelled = [](const BranchSide& side, const std::string& detail) {
@@ -157,10 +158,10 @@ const char* name(Leg leg) {
 std::vector<BranchSide> sides_of(const Model& model, Branch branch, int points) {
     if (points > 0) branch.steps = points;
     std::vector<BranchSide> result;
-    const auto all = branch_sides(branch);
-    for (const auto& side : all)
+    const auto branches = branch_sides(branch);
+    for (const auto& side : branches)
         result.push_back(
-            {all.size() > 1 ? label(side) : branch.name, on_branch(model, side), side});
+            {branches.size() > 1 ? label(side) : branch.name, on_branch(model, side), side});
     return result;
 }
 
@@ -168,8 +169,8 @@ std::vector<double> requested_parameters(const std::vector<BranchSide>& sides, i
     std::vector<double> a;
     for (std::size_t w = 0; w < sides.size(); ++w) {
         auto side = grid(sides[w].branch, every);
-        const bool comes_reversed = w + 1 < sides.size();
-        if (comes_reversed) {
+        const bool is_reversed = w + 1 < sides.size();
+        if (is_reversed) {
             std::ranges::reverse(side);
             side.pop_back();
         }
@@ -225,7 +226,7 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
             }
         }
         if (!response) {
-            const bool with_free = std::ranges::any_of(channels, needs_free);
+            const bool with_free = std::ranges::any_of(channels, needs_free_response);
             response =
                 wheel_response(side, solver, steering_joint(model), state, analyses, with_free);
         }
@@ -259,10 +260,10 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
     const EquilibriumPath path = solve_branch(
         sides, solver,
         [&](const Equilibrium& state) {
-            const double found = processor_time();
+            const double state_found = processor_time();
             Row row = row_of(model, channels, sides.front(), solver, state, analyses);
             if (also) also(state, analyses.response ? &*analyses.response : nullptr);
-            reading += processor_time() - found;
+            reading += processor_time() - state_found;
             return row;
         },
         [&](Row row) {
@@ -353,12 +354,12 @@ PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCur
     add_outcome(sides, whole, second);
     // As in join(), the start is taken from the second side unless that has no point.
     const std::size_t from = second.curve.a.empty() ? 0 : 1, size = first.curve.a.size();
-    const auto before = [&](auto& list, const auto& more) {
+    const auto prepend = [&](auto& list, const auto& more) {
         for (std::size_t k = from; k < size; ++k) list.insert(list.begin(), more[k]);
     };
-    before(whole.curve.a, first.curve.a);
-    before(whole.curve.values, first.curve.values);
-    before(whole.constraint_error, first.constraint_error);
+    prepend(whole.curve.a, first.curve.a);
+    prepend(whole.curve.values, first.curve.values);
+    prepend(whole.constraint_error, first.constraint_error);
     whole.curve.start = size > 0 ? size - 1 : 0;
     return whole;
 }
@@ -375,12 +376,12 @@ PathCurve second_reference(const Model& model, const std::vector<Channel>& chann
 References run_references(const Model& model, const std::vector<Channel>& channels,
                           const Branch& branch, const std::vector<BranchSide>& sides) {
     References runs;
-    const Model& standing = sides.front().model;
-    runs.scale = scale_of(standing, branch, {});
+    const Model& side_model = sides.front().model;
+    runs.scale = scale_of(side_model, branch, {});
     runs.truth =
         solve_branch(model, channels, branch, sides, {.leg = Leg::equilibrium},
                      [&](const Equilibrium& state, const WheelResponse*) {
-                         runs.scale = larger(runs.scale, scale_of(standing, branch, {&state, 1}));
+                         runs.scale = larger(runs.scale, scale_of(side_model, branch, {&state, 1}));
                      });
     runs.other = second_reference(model, channels, branch, sides, runs.second_leg);
     return runs;
@@ -421,9 +422,10 @@ Settled settled(const Model& model, const std::vector<Channel>& channels, const 
     Settled result{branch.name, path.outcome, path.detail,
                    std::vector<double>(channels.size(), nan)};
     if (path.outcome != Outcome::converged || path.points.empty()) return result;
-    const auto drawn = evaluate(model, channels, design_state(model)),
-               rest = evaluate(model, channels, path.points.front());
-    for (std::size_t c = 0; c < channels.size(); ++c) result.displacement[c] = rest[c] - drawn[c];
+    const auto at_design = evaluate(model, channels, design_state(model)),
+               at_start = evaluate(model, channels, path.points.front());
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        result.displacement[c] = at_start[c] - at_design[c];
     return result;
 }
 

@@ -26,8 +26,8 @@ bool is_not_applicable(Outcome outcome);
 
 // Outputs of a point, kept in place of its poses and wrenches.
 struct Row {
-    double load = 0;              // as in Equilibrium
-    double constraint_error = 0;  // likewise
+    double load = 0;              // Equilibrium::load
+    double constraint_error = 0;  // Equilibrium::constraint_error
     std::vector<double> values;   // per channel, in its unit
 };
 struct Analyses;       // compliance.hpp
@@ -54,11 +54,11 @@ PathCurve solve_branch(const Model& model, std::span<const Channel> channels, co
                        const std::vector<BranchSide>& sides, const SolverSettings& solver,
                        const VisitResponse& also = {});
 
-// The runs of the sides of a branch as one, as solve_branch() joins them.
+// Joins the runs of the sides of a branch to one, as solve_branch() does.
 PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves);
 
-// The settled state at a = 0, where a branch side begins, as a path of one point; of none where the
-// leg does not settle.
+// Equilibrium at a = 0, where a branch side begins, as a path of one point; without a point where the leg finds
+// none.
 EquilibriumPath settle_start(const BranchSide& side, Leg leg);
 
 // States of a leg at these values of the parameter [SI], of the sign of the side and in ascending

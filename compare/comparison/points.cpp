@@ -40,12 +40,12 @@ std::vector<double> abscissa_values(const Curve& curve, std::optional<std::size_
     return over;
 }
 
-bool reaches(const std::vector<double>& over, double x) {
-    if (over.empty()) return false;
+bool reaches(const std::vector<double>& values, double x) {
+    if (values.empty()) return false;
     // A driven end, and the start of a branch, have this value in every leg up to rounding.
-    const double rounding = 1e-9 * std::abs(over.back() - over.front());
-    return x >= std::min(over.front(), over.back()) - rounding &&
-           x <= std::max(over.front(), over.back()) + rounding;
+    const double rounding = 1e-9 * std::abs(values.back() - values.front());
+    return x >= std::min(values.front(), values.back()) - rounding &&
+           x <= std::max(values.front(), values.back()) + rounding;
 }
 
 std::vector<int> branches_of(const Model& model, const Comparison& comparison,

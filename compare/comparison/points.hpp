@@ -39,6 +39,6 @@ std::vector<Place> places_of(const Model& model, const Comparison& comparison,
 // placed. Empty where the channel is not strictly monotonic.
 std::vector<double> abscissa_values(const Curve& curve, std::optional<std::size_t> channel);
 // Whether x lies within the range of a monotonic sequence, up to 1e-9 of that range.
-bool reaches(const std::vector<double>& over, double x);
+bool reaches(const std::vector<double>& values, double x);
 
 }  // namespace elastocheck::compare

@@ -31,18 +31,23 @@ using Eigen::VectorXd;
 
 constexpr int max_iterations = 30;
 constexpr int max_halvings = 10;
-constexpr double accuracy = 1e-12;     // [m, rad] |c| at convergence: accuracy of a settled state
-constexpr double min_effect = 1e-10;   // [m, rad]: a smaller effect of a step h counts as none
-constexpr double contraction = 0.5;    // required of |c| per iteration with the J of another scene
-constexpr double min_singular = 1e-6;  // of the largest singular value: accuracy of the differences
+// |c| at which the conditions are met [m, rad]: the accuracy of the states x(p).
+constexpr double condition_tolerance = 1e-12;
+// A step h that changes the conditions by less has no effect on them [m, rad].
+constexpr double min_effect = 1e-10;
+// Largest ratio of |c| after and before an iteration with the J of another scene.
+constexpr double contraction = 0.5;
+// Smallest ratio of two singular values that is not zero: the accuracy of the differences.
+constexpr double min_singular_ratio = 1e-6;
 
-// The trim equations c(x(p)) = 0 (elastocheck/trim.hpp).
+// The trim equations c(x(p)) = 0 (elastocheck/trim.hpp): p the adjustments, x(p) the equilibrium with
+// them, c the values of the conditions less their targets.
 struct TrimProblem {
     const Trim* trim = nullptr;
-    BranchSide side;                                // branch on which the adjustments are held
+    BranchSide side;                                // branch on which the adjustments are constant
     std::vector<Channel> channels;                  // read by the conditions
-    VectorXd drawn, target;                         // [m, rad]
-    Leg solver = Leg::equilibrium;                  // that settles the states x(p)
+    VectorXd at_design_position, target;            // values of the conditions [m, rad]
+    Leg solver = Leg::equilibrium;                  // computes the equilibria x(p)
     std::shared_ptr<recursive::Analysis> analysis;  // of the series, with its last settled state
 };
 
@@ -50,12 +55,12 @@ struct TrimAttempt {
     Outcome outcome = Outcome::converged;
     std::string detail;
     Equilibrium state;
-    VectorXd missed;  // c(x(p)) [m, rad]
+    VectorXd residual;  // c(x(p)) [m, rad]
 };
 
 Channel channel_of(const Model& model, const ConditionKind& kind) {
     const Equilibrium drawn = design_state(model);
-    const auto counted = [&](const Point& at, int axis) {
+    const auto coordinate_from_design = [&](const Point& at, int axis) {
         Channel channel{.name = "", .reads = Coordinate{at, axis}};
         const double from = evaluate(model, {&channel, 1}, drawn).front() / in_unit(Unit::mm);
         std::get<Coordinate>(channel.reads).counted_from = from;
@@ -64,7 +69,7 @@ Channel channel_of(const Model& model, const ConditionKind& kind) {
     return std::visit(
         overloaded{[&](const WheelTravel& c) {
                        const Wheel& wheel = model.wheels[static_cast<std::size_t>(c.wheel)];
-                       return counted({wheel.body, wheel.centre_local}, 2);
+                       return coordinate_from_design({wheel.body, wheel.centre_local}, 2);
                    },
                    [&](const WheelToe& c) {
                        return figure_channel(model, figure::toe, static_cast<std::size_t>(c.wheel));
@@ -74,17 +79,19 @@ Channel channel_of(const Model& model, const ConditionKind& kind) {
                                              static_cast<std::size_t>(c.wheel));
                    },
                    [&](const ProbeCoordinate& c) {
-                       return counted(model.probes[static_cast<std::size_t>(c.probe)].at, c.axis);
+                       return coordinate_from_design(
+                           model.probes[static_cast<std::size_t>(c.probe)].at, c.axis);
                    }},
         kind);
 }
 
-VectorXd values(const TrimProblem& problem, const Equilibrium& state) {
+// Values of the conditions at a state [m, rad]: c plus the targets.
+VectorXd condition_values(const TrimProblem& problem, const Equilibrium& state) {
     const auto shown = evaluate(problem.side.model, problem.channels, state);
-    VectorXd c(static_cast<Index>(shown.size()));
+    VectorXd value(static_cast<Index>(shown.size()));
     for (std::size_t k = 0; k < shown.size(); ++k)
-        c[static_cast<Index>(k)] = shown[k] / in_unit(problem.channels[k].unit);
-    return c;
+        value[static_cast<Index>(k)] = shown[k] / in_unit(problem.channels[k].unit);
+    return value;
 }
 
 }  // namespace
@@ -120,15 +127,16 @@ TrimProblem trim_problem(const Scene& scene) {
     for (auto& driver : model.branches.front().drivers) driver.rate = 0;
     problem.side = {"trim", on_branch(model, model.branches.front()), model.branches.front()};
     problem.channels = condition_channels(problem.side.model, *problem.trim);
-    const VectorXd drawn = values(problem, design_state(problem.side.model));
-    problem.drawn = problem.target = drawn;
+    const VectorXd at_design_position = condition_values(problem, design_state(problem.side.model));
+    problem.at_design_position = problem.target = at_design_position;
     for (std::size_t k = 0; k < problem.trim->until.size(); ++k)
         if (const auto& value = problem.trim->until[k].value)
             problem.target[static_cast<Index>(k)] = *value;
     return problem;
 }
 
-BranchSide held_at(const TrimProblem& problem, const VectorXd& p) {
+// The branch with the adjustments p, constant.
+BranchSide side_with_adjustments(const TrimProblem& problem, const VectorXd& p) {
     BranchSide side = problem.side;
     for (std::size_t k = 0; k < side.branch.drivers.size(); ++k)
         side.branch.drivers[k].start = problem.trim->adjust[k].per_unit * p[static_cast<Index>(k)];
@@ -136,8 +144,9 @@ BranchSide held_at(const TrimProblem& problem, const VectorXd& p) {
     return side;
 }
 
+// Equilibrium x(p) by a solver, and the residual c(x(p)); only the outcome if there is no equilibrium.
 TrimAttempt settle(const TrimProblem& problem, const VectorXd& p, Leg leg) {
-    BranchSide held = held_at(problem, p);
+    BranchSide held = side_with_adjustments(problem, p);
     if (problem.analysis && leg == Leg::series) {
         recursive::series::keep_start(held.model, held.branch, {}, *problem.analysis);
         held.analysis = problem.analysis;
@@ -145,7 +154,7 @@ TrimAttempt settle(const TrimProblem& problem, const VectorXd& p, Leg leg) {
     const EquilibriumPath path = settle_start(held, leg);
     if (path.points.empty()) return {path.outcome, path.detail, {}, {}};
     return {Outcome::converged, "", path.points.front(),
-            values(problem, path.points.front()) - problem.target};
+            condition_values(problem, path.points.front()) - problem.target};
 }
 
 // Step h of the differences (elastocheck/trim.hpp), in the unit of the adjustment.
@@ -160,41 +169,43 @@ double step(const Trim::Adjustment& adjustment) {
     return h / std::abs(adjustment.per_unit);
 }
 
-// Changes of the conditions from p - h to p + h, h the step of adjustment k. A reference solves both
-// along a branch that moves the adjustment, so that it settles once. Empty where the leg failed.
-std::optional<VectorXd> change_beside(const TrimProblem& problem, const VectorXd& p, Index k,
-                                      TrimAttempt& failed) {
+// c(x(p + h e_k)) - c(x(p - h e_k)), h the step of adjustment k. The series computes each of the two states
+// anew; a reference reaches both along a branch that moves the adjustment, from one start. Empty if the
+// solver failed, which `failed` describes.
+std::optional<VectorXd> central_difference(const TrimProblem& problem, const VectorXd& p, Index k,
+                                           TrimAttempt& failed) {
     const auto& adjustment = problem.trim->adjust[static_cast<std::size_t>(k)];
     const double h = step(adjustment);
-    std::array<VectorXd, 2> missed;  // at p + h, p - h
+    std::array<VectorXd, 2> residual;  // at p + h, p - h
     if (problem.solver == Leg::series) {
         for (const int side : {0, 1}) {
             const double change = side == 0 ? h : -h;
             failed = settle(problem, p + change * VectorXd::Unit(p.size(), k), problem.solver);
             if (failed.outcome != Outcome::converged) return std::nullopt;
-            missed[static_cast<std::size_t>(side)] = failed.missed;
+            residual[static_cast<std::size_t>(side)] = failed.residual;
         }
-        return missed[0] - missed[1];
+        return residual[0] - residual[1];
     }
-    BranchSide along = held_at(problem, p);
+    BranchSide along = side_with_adjustments(problem, p);
     along.branch.drivers[static_cast<std::size_t>(k)].rate = adjustment.per_unit * h;
     along.model.branches = {along.branch};
     constexpr std::array both{1.0, -1.0};
     const EquilibriumPath path =
         solve_at(along, problem.solver, both, [&](const Equilibrium& state) {
-            missed[state.load > 0 ? 0 : 1] = values(problem, state) - problem.target;
+            residual[state.load > 0 ? 0 : 1] = condition_values(problem, state) - problem.target;
         });
     failed = {path.outcome, path.detail, {}, {}};
     if (path.outcome != Outcome::converged) return std::nullopt;
-    return missed[0] - missed[1];
+    return residual[0] - residual[1];
 }
 
-// J, one column per step h: change of the conditions with an adjustment. Empty where a leg failed.
-std::optional<MatrixXd> responses(const TrimProblem& problem, const VectorXd& p,
-                                  TrimAttempt& failed) {
+// J [conditions × adjustments]: change of each condition with one step h of each adjustment [m, rad]. Empty
+// if the solver failed, which `failed` describes.
+std::optional<MatrixXd> condition_jacobian(const TrimProblem& problem, const VectorXd& p,
+                                           TrimAttempt& failed) {
     MatrixXd J(static_cast<Index>(problem.channels.size()), p.size());
     for (Index k = 0; k < p.size(); ++k) {
-        const auto change = change_beside(problem, p, k, failed);
+        const auto change = central_difference(problem, p, k, failed);
         if (!change) return std::nullopt;
         J.col(k) = 0.5 * *change;
     }
@@ -209,8 +220,9 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 // Names whose share in a combination exceeds a twentieth of the largest.
-template <class Named>
-std::vector<std::string> taking_part(const std::vector<Named>& all, const VectorXd& share) {
+template <class Entry>
+std::vector<std::string> names_of_contributors(const std::vector<Entry>& all,
+                                               const VectorXd& share) {
     std::vector<std::string> names;
     for (std::size_t k = 0; k < all.size(); ++k)
         if (std::abs(share[static_cast<Index>(k)]) > 0.05 * share.cwiseAbs().maxCoeff())
@@ -228,24 +240,25 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
                 "'{}' has no influence on {}: adjust another quantity, or choose a condition that "
                 "it changes",
                 trim.adjust[static_cast<std::size_t>(k)].name,
-                listed(taking_part(trim.until, VectorXd::Ones(J.rows()))));
+                listed(names_of_contributors(trim.until, VectorXd::Ones(J.rows()))));
         scaled.col(k) /= size;
     }
     for (Index k = 0; k < J.rows(); ++k) {
         if (!(J.row(k).norm() > min_effect))
-            return fmt::format("no adjustment changes '{}': {} does not",
-                               trim.until[static_cast<std::size_t>(k)].name,
-                               listed(taking_part(trim.adjust, VectorXd::Ones(J.cols()))));
+            return fmt::format(
+                "no adjustment changes '{}': {} does not",
+                trim.until[static_cast<std::size_t>(k)].name,
+                listed(names_of_contributors(trim.adjust, VectorXd::Ones(J.cols()))));
         scaled.row(k).normalize();
     }
     const Svd svd = svd_of(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const VectorXd& s = svd.values;
-    if (s[s.size() - 1] > min_singular * s[0]) return {};
+    if (s[s.size() - 1] > min_singular_ratio * s[0]) return {};
     return fmt::format(
         "ambiguous: {} change only together, whatever {} do; a condition that separates these is "
         "missing",
-        listed(taking_part(trim.until, svd.U.rightCols<1>())),
-        listed(taking_part(trim.adjust, svd.V.rightCols<1>())));
+        listed(names_of_contributors(trim.until, svd.U.rightCols<1>())),
+        listed(names_of_contributors(trim.adjust, svd.V.rightCols<1>())));
 }
 
 // ---- Result as plain data and as text.
@@ -302,9 +315,9 @@ std::string resulting_value(const Scene& scene, const Driven& adjusted, const Tr
                 const auto& spring =
                     std::get<AxialSpring>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind);
                 const auto element = static_cast<std::size_t>(std::get<FreeLength>(driven).elastic);
-                const ElasticKind& standing = problem.side.model.elastics[element].kind;
+                const ElasticKind& elastic = problem.side.model.elastics[element].kind;
                 const double f =
-                    force(standing, deformation(standing, element, held.branch, state))[0];
+                    force(elastic, deformation(elastic, element, held.branch, state))[0];
                 return fmt::format("force {:.6g} N in {}, free length {:.6g} mm", std::abs(f),
                                    f < 0 ? "compression" : "tension", 1e3 * spring.free_length);
             },
@@ -322,15 +335,16 @@ std::string resulting_value(const Scene& scene, const Driven& adjusted, const Tr
 struct TrimIteration {
     VectorXd p, h;  // adjustments, and the steps of their differences
     MatrixXd J;     // the last one
-    TrimAttempt here = {};
+    TrimAttempt current = {};
     int iterations = 0;
-    std::string stuck = {};  // why it stopped, "; at the next iterate: ..."
+    std::string stop_reason = {};  // why the iteration ended early: "; at the next iterate: ..."
 
-    bool has_met() const {
-        return here.outcome == Outcome::converged && here.missed.norm() <= accuracy;
+    bool meets_conditions() const {
+        return current.outcome == Outcome::converged &&
+               current.residual.norm() <= condition_tolerance;
     }
-    // p after a step s in units of h.
-    VectorXd moved(const VectorXd& s) const { return p + h.cwiseProduct(s); }
+    // Adjustments p + h s, s the steps in units of h.
+    VectorXd after_step(const VectorXd& s) const { return p + h.cwiseProduct(s); }
 };
 
 // Broyden's method (1965) from p and J of another scene: with J s = -c and Δc the change of c by the
@@ -338,37 +352,39 @@ struct TrimIteration {
 void iterate_from(const TrimStart& start, const TrimProblem& problem, TrimIteration& it) {
     it.p = start.p;
     it.J = start.J;
-    it.here = settle(problem, it.p, problem.solver);
-    for (; it.here.outcome == Outcome::converged && it.here.missed.norm() > accuracy;
+    it.current = settle(problem, it.p, problem.solver);
+    for (; it.current.outcome == Outcome::converged &&
+           it.current.residual.norm() > condition_tolerance;
          ++it.iterations) {
-        const VectorXd s = solve_by_qr(it.J, -it.here.missed);
-        TrimAttempt next = settle(problem, it.moved(s), problem.solver);
+        const VectorXd s = solve_by_qr(it.J, -it.current.residual);
+        TrimAttempt next = settle(problem, it.after_step(s), problem.solver);
         if (next.outcome != Outcome::converged ||
-            !(next.missed.norm() < contraction * it.here.missed.norm()))
+            !(next.residual.norm() < contraction * it.current.residual.norm()))
             break;
-        it.p = it.moved(s);
-        it.J += next.missed * s.transpose() / s.squaredNorm();
-        it.here = std::move(next);
+        it.p = it.after_step(s);
+        it.J += next.residual * s.transpose() / s.squaredNorm();
+        it.current = std::move(next);
     }
 }
 
-// One step along dp, halved until it comes nearer to the conditions; false if none does.
+// Adds the first of dp, dp/2, dp/4, ... to p that decreases |c|; returns false if none does.
 // Unreachable conditions lead to a singular state, beyond which rounding decides which are met.
-bool step_nearer(const TrimProblem& problem, const VectorXd& dp, TrimIteration& it) {
+bool step_with_halving(const TrimProblem& problem, const VectorXd& dp, TrimIteration& it) {
     TrimAttempt next;
     double share = 1;
-    for (int halved = 0; halved <= max_halvings; ++halved, share /= 2) {
+    for (int halvings = 0; halvings <= max_halvings; ++halvings, share /= 2) {
         next = settle(problem, it.p + share * dp, problem.solver);
-        if (next.outcome == Outcome::converged && next.missed.norm() < it.here.missed.norm()) {
+        if (next.outcome == Outcome::converged &&
+            next.residual.norm() < it.current.residual.norm()) {
             it.p += share * dp;
-            it.here = std::move(next);
+            it.current = std::move(next);
             ++it.iterations;
             return true;
         }
     }
     if (next.outcome != Outcome::converged)
-        it.stuck = fmt::format("; at the next iterate: {}: {}", elastocheck::name(next.outcome),
-                               next.detail);
+        it.stop_reason = fmt::format("; at the next iterate: {}: {}",
+                                     elastocheck::name(next.outcome), next.detail);
     return false;
 }
 
@@ -376,32 +392,36 @@ bool step_nearer(const TrimProblem& problem, const VectorXd& dp, TrimIteration& 
 // conditions are met at once, since they may be met by chance with p undetermined. Returns the failed
 // attempt if a neighbour of the first iterate does not settle.
 std::optional<TrimAttempt> iterate(const TrimProblem& problem, bool check_J, TrimIteration& it) {
-    for (bool first = check_J; first || it.here.missed.norm() > accuracy; first = false) {
+    for (bool check_conditioning = check_J;
+         check_conditioning || it.current.residual.norm() > condition_tolerance;
+         check_conditioning = false) {
         TrimAttempt failed;
-        const auto J = responses(problem, it.p, failed);
+        const auto J = condition_jacobian(problem, it.p, failed);
         if (!J && it.iterations == 0) return failed;
         if (!J) {
-            it.stuck = fmt::format("; at a neighbouring state: {}: {}",
-                                   elastocheck::name(failed.outcome), failed.detail);
+            it.stop_reason = fmt::format("; at a neighbouring state: {}: {}",
+                                         elastocheck::name(failed.outcome), failed.detail);
             break;
         }
         it.J = *J;
         if (const std::string why = ill_posed(*problem.trim, *J); !why.empty()) {
             // Well-posed at an earlier iterate: the iteration has reached the limit of what
             // can be trimmed.
-            if (it.iterations == 0 || it.here.missed.norm() <= accepted_residual)
+            if (it.iterations == 0 || it.current.residual.norm() <= accepted_residual)
                 throw std::invalid_argument(why);
-            it.stuck = "; at that state " + why;
+            it.stop_reason = "; at that state " + why;
             break;
         }
-        if (!(it.here.missed.norm() > accuracy) || it.iterations == max_iterations) break;
-        const VectorXd dp = it.h.cwiseProduct(solve_by_qr(*J, -it.here.missed));
-        if (!step_nearer(problem, dp, it)) break;
+        if (!(it.current.residual.norm() > condition_tolerance) || it.iterations == max_iterations)
+            break;
+        const VectorXd dp = it.h.cwiseProduct(solve_by_qr(*J, -it.current.residual));
+        if (!step_with_halving(problem, dp, it)) break;
     }
     return std::nullopt;
 }
 
-// Settles the trimmed scene by another leg. Fills `record`; returns an attempt that did not settle.
+// Computes the equilibrium of the trimmed scene by the energy leg, or by the series if that is not
+// applicable, and records the residuals of the conditions. Returns the attempt if it did not converge.
 std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIteration& it,
                                         const BranchSide& held, TrimRecord& record) {
     record.confirmed_by = Leg::energy;
@@ -411,10 +431,10 @@ std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIt
         second = settle(problem, it.p, Leg::series);
     }
     if (second.outcome != Outcome::converged) return second;
-    const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&it.here.state, 1}));
+    const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&it.current.state, 1}));
     for (std::size_t k = 0; k < record.conditions.size(); ++k) {
         auto& c = record.conditions[k];
-        c.confirmed = in_unit(c.unit) * second.missed[static_cast<Index>(k)];
+        c.confirmed = in_unit(c.unit) * second.residual[static_cast<Index>(k)];
         const double bound = c.unit == Unit::deg ? bounds.angle : bounds.length;
         if (!(std::isfinite(c.confirmed) && std::abs(c.confirmed) <= bound))
             record.detail = fmt::format(
@@ -431,15 +451,15 @@ bool record_conditions(const TrimProblem& problem, const TrimIteration& it, Trim
         const auto i = static_cast<Index>(k);
         record.conditions.push_back({problem.trim->until[k].name, unit,
                                      in_unit(unit) * problem.target[i],
-                                     in_unit(unit) * it.here.missed[i], std::nan("")});
+                                     in_unit(unit) * it.current.residual[i], std::nan("")});
     }
-    if (it.here.missed.norm() <= accepted_residual) return true;
+    if (it.current.residual.norm() <= accepted_residual) return true;
     const auto worst = std::ranges::max_element(
         record.conditions, {}, [](const auto& c) { return std::abs(c.missed) / in_unit(c.unit); });
     record.outcome = Outcome::iteration_limit;
     record.detail =
         fmt::format("the conditions cannot be met: the closest iterate misses '{}' by {:.3g} {}{}",
-                    worst->name, worst->missed, symbol(worst->unit), it.stuck);
+                    worst->name, worst->missed, symbol(worst->unit), it.stop_reason);
     return false;
 }
 
@@ -453,7 +473,7 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
 
 VectorXd requested_from_drawn(const Scene& scene) {
     const TrimProblem problem = trim_problem(scene);
-    return problem.target - problem.drawn;
+    return problem.target - problem.at_design_position;
 }
 
 Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
@@ -490,21 +510,22 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     const Index n = it.p.size();
     if (is_similar && start->J.rows() == n && start->J.cols() == n)
         iterate_from(*start, problem, it);
-    const bool starts_met = it.J.size() > 0 && it.has_met();
-    if (!starts_met) {
+    const bool start_meets_conditions = it.J.size() > 0 && it.meets_conditions();
+    if (!start_meets_conditions) {
         it.p.setZero();
         it.iterations = 0;
-        it.here = settle(problem, it.p, problem.solver);
+        it.current = settle(problem, it.p, problem.solver);
     }
-    if (it.here.outcome != Outcome::converged)
-        return give_up(it.here, "the scene has no settled equilibrium before the trim");
-    if (const auto failed = iterate(problem, !starts_met, it))
+    if (it.current.outcome != Outcome::converged)
+        return give_up(it.current, "the scene has no settled equilibrium before the trim");
+    if (const auto failed = iterate(problem, !start_meets_conditions, it))
         return give_up(*failed, "at a neighbouring state");
     record.iterations = it.iterations;
     if (!record_conditions(problem, it, record)) return result;
 
-    const BranchSide held = held_at(problem, it.p);
-    record.confirmed_by = Leg::series;
+    const BranchSide held = side_with_adjustments(problem, it.p);
+    record.confirmed_by =
+        Leg::series;  // stays where no second reference confirms the trim (trim.hpp)
     if (confirm) {
         if (const auto failed = confirm_trim(problem, it, held, record))
             return give_up(*failed,
@@ -515,7 +536,7 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
     if (start != nullptr)
         *start = {it.p, it.J, std::move(parts),
                   problem.analysis ? problem.analysis->settled : start->settled};
-    if (settled != nullptr) *settled = {held, it.here.state};
+    if (settled != nullptr) *settled = {held, it.current.state};
     apply(trim, it.p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
         const auto& adjusted = trim.adjust[k];
@@ -523,7 +544,7 @@ Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start
         record.adjusted.push_back(
             {adjusted.name, unit, in_unit(unit) * it.p[static_cast<Index>(k)],
              resulting_value(result.scene, adjusted.what, problem,
-                             problem.side.branch.drivers[k].what, held, it.here.state)});
+                             problem.side.branch.drivers[k].what, held, it.current.state)});
     }
     return result;
 }

@@ -13,7 +13,7 @@ constexpr double accepted_residual = 1e-9;
 
 // The equilibrium of a trimmed scene at a = 0.
 struct SettledTrim {
-    BranchSide held;  // a branch without motion, whose drivers hold the adjustments
+    BranchSide side;  // a branch without motion, whose drivers have the values of the adjustments
     Equilibrium state;
 };
 
@@ -23,7 +23,7 @@ struct SettledTrim {
 Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
                   SettledTrim* settled);
 
-// Requested value less the value of the scene as drawn, per condition [m, rad].
+// Requested value less the value in the design position, for each condition [m, rad].
 Eigen::VectorXd requested_from_drawn(const Scene& scene);
 
 }  // namespace elastocheck::compare

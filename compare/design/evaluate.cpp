@@ -32,8 +32,10 @@ using Eigen::VectorXd;
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
 
-constexpr int max_shorter_steps = 3;  // divisions of h by eight
-constexpr double max_kink = 1e-3;     // share of the largest change by 2h: beyond, there is no rate
+// Divisions of h by eight where the slopes to both sides differ.
+constexpr int max_shorter_steps = 3;
+// Largest kink() with which a figure has a rate, as a share of its largest change by 2h.
+constexpr double max_kink = 1e-3;
 
 // Outputs of a model by their names: from the catalogue, else from the list of all outputs, and only if
 // that lacks the name from the list with the sums, which need an analysis of the model.
@@ -43,7 +45,7 @@ class NamedOutputs {
     Channel operator()(const std::string& name) {
         for (const Entry& entry : catalogue())
             if (!entry.on_request && name.ends_with(entry.name))
-                for (const Named& owner : owners(model_, entry.owner))
+                for (const NamedOwner& owner : owners(model_, entry.owner))
                     if (Channel channel = channel_of(model_, entry, owner); channel.name == name)
                         return channel;
         for (const bool with_sums : {false, true}) {
@@ -59,16 +61,17 @@ class NamedOutputs {
     std::vector<Channel> all_;
 };
 
-// The sides of the branch of these states, with the steps at which they are solved.
-std::vector<BranchSide> read_sides(const Model& model, const ReadStates& states) {
+// Sides of the branch on which the states lie, with the steps at which they are solved.
+std::vector<BranchSide> read_sides(const Model& model, const StatesOfFigures& states) {
     const Branch& branch = model.branches[states.branch];
-    return sides_of(model, branch, states.whole ? std::min(branch.steps, interpolated_points) : 1);
+    return sides_of(model, branch,
+                    states.whole_branch ? std::min(branch.steps, interpolated_points) : 1);
 }
 
 // Reads the figures of one branch: those at values of the parameter, or those over another output.
 struct BranchReader {
     const Model& model;
-    const ReadStates& states;
+    const StatesOfFigures& states;
     Leg leg;
     std::span<const Figure> figures;
     FigureValues& result;
@@ -77,7 +80,7 @@ struct BranchReader {
 
     const Branch& branch() const { return model.branches[states.branch]; }
     bool has(const Figure& figure) const {
-        return figure.branch == branch().name && figure.over.empty() != states.whole;
+        return figure.branch == branch().name && figure.abscissa.empty() != states.whole_branch;
     }
     void add(const std::string& name, NamedOutputs& outputs) {
         if (!name.empty() && find_channel(read, name) < 0) read.push_back(outputs(name));
@@ -86,7 +89,7 @@ struct BranchReader {
         for (std::size_t k = 0; k < figures.size(); ++k)
             if (has(figures[k])) {
                 add(figures[k].name, outputs);
-                add(figures[k].over, outputs);
+                add(figures[k].abscissa, outputs);
                 chosen.push_back(k);
             }
     }
@@ -116,10 +119,10 @@ struct BranchReader {
             append(curve, state.load,
                    row_of(model, read, states.sides.front(), {.leg = leg}, state, analyses).values);
         for (const std::size_t k : chosen)
-            if (states.whole)
+            if (states.whole_branch)
                 set_over_output(k, curve);
             else if (const auto at =
-                         std::ranges::find(states.states, figures[k].at, &Equilibrium::load);
+                         std::ranges::find(states.states, figures[k].station, &Equilibrium::load);
                      at != states.states.end())
                 set(k, curve.values[static_cast<std::size_t>(at - states.states.begin())]
                                    [column(figures[k].name)]);
@@ -127,27 +130,28 @@ struct BranchReader {
                 set_reason(fmt::format("branch '{}': {}: {}", branch().name,
                                        elastocheck::name(states.outcome), states.detail));
     }
-    // At a value of another output, interpolated on the curve of the branch.
+    // Sets a figure at a value of another output, interpolated on the curve of the branch.
     void set_over_output(std::size_t k, const Curve& curve) const {
         const Figure& figure = figures[k];
-        const auto x = abscissa_values(curve, column(figure.over));
-        if (reaches(x, figure.at))
-            set(k, interpolate(x, curve.channel(column(figure.name)), figure.at, 6));
+        const auto x = abscissa_values(curve, column(figure.abscissa));
+        if (reaches(x, figure.station))
+            set(k, interpolate(x, curve.channel(column(figure.name)), figure.station, 6));
         else
-            set_reason(
-                x.empty()
-                    ? fmt::format("branch '{}': {} is not monotonic", branch().name, figure.over)
-                    : fmt::format("branch '{}' does not reach {} = {:g} {}", branch().name,
-                                  figure.over, figure.at, symbol(read[column(figure.over)].unit)));
+            set_reason(x.empty() ? fmt::format("branch '{}': {} is not monotonic", branch().name,
+                                               figure.abscissa)
+                                 : fmt::format("branch '{}' does not reach {} = {:g} {}",
+                                               branch().name, figure.abscissa, figure.station,
+                                               symbol(read[column(figure.abscissa)].unit)));
     }
 };
 
-// Adds the states of one branch side at those of the points that lie on it.
-void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, ReadStates& into) {
+// Solves for the states of one branch side at those of `points` that lie on it, and adds them to `into`.
+void solve_side(const BranchSide& side, Leg leg, std::vector<double> points,
+                StatesOfFigures& into) {
     std::erase_if(points, [&](double a) { return a * side.branch.to < 0; });
     std::ranges::sort(points, {}, [](double a) { return std::abs(a); });
-    const auto again = std::ranges::unique(points);
-    points.erase(again.begin(), again.end());
+    const auto duplicates = std::ranges::unique(points);
+    points.erase(duplicates.begin(), duplicates.end());
     if (points.empty()) return;
     const auto path = solve_at(side, leg, points, [&](const Equilibrium& state) {
         if (std::ranges::find(points, state.load) != points.end()) into.states.push_back(state);
@@ -159,15 +163,15 @@ void solve_side(const BranchSide& side, Leg leg, std::vector<double> points, Rea
 }
 
 // Whether a model differs from the model of the states only in its numbers.
-bool same_structure(const Model& model, std::span<const ReadStates> states) {
-    std::vector<int> here, there;
-    for (const ReadStates& of : states) {
+bool same_structure(const Model& model, std::span<const StatesOfFigures> states) {
+    std::vector<int> of_states, of_model;
+    for (const StatesOfFigures& of : states) {
         if (of.branch >= model.branches.size()) return false;
-        here.clear();
-        there.clear();
-        structure(of.sides.front().model, here);
-        structure(read_sides(model, of).front().model, there);
-        if (here != there) return false;
+        of_states.clear();
+        of_model.clear();
+        structure(of.sides.front().model, of_states);
+        structure(read_sides(model, of).front().model, of_model);
+        if (of_states != of_model) return false;
     }
     return true;
 }
@@ -186,6 +190,7 @@ struct Changes {
         const double above = (4 * up[k] - far_up[k]) / (2 * h);
         return std::isfinite(above) ? above : finite_or_nan((far_down[k] - 4 * down[k]) / (2 * h));
     }
+    // Largest |Δy| of figure k by ±2h; zero if it is not finite.
     double size(Index k) const {
         const double largest = std::max(std::abs(far_up[k]), std::abs(far_down[k]));
         return std::isfinite(largest) ? largest : 0;
@@ -207,15 +212,16 @@ std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
     return all;
 }
 
-std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg) {
-    std::vector<ReadStates> all_states;
+std::vector<StatesOfFigures> states_of(const Model& model, std::span<const Figure> figures,
+                                       Leg leg) {
+    std::vector<StatesOfFigures> all_states;
     for (std::size_t b = 0; b < model.branches.size(); ++b)
         for (const bool whole : {false, true}) {
-            ReadStates states{b, whole, {}};
+            StatesOfFigures states{b, whole, {}};
             std::vector<double> points;
             for (const Figure& figure : figures)
-                if (figure.branch == model.branches[b].name && figure.over.empty() != whole)
-                    points.push_back(figure.at);
+                if (figure.branch == model.branches[b].name && figure.abscissa.empty() != whole)
+                    points.push_back(figure.station);
             if (points.empty()) continue;
             states.sides = read_sides(model, states);
             if (whole) {
@@ -235,11 +241,11 @@ std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> fi
     return all_states;
 }
 
-FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
+FigureValues read_figures(const Model& model, std::span<const StatesOfFigures> states,
                           std::span<const Figure> figures, Leg leg) {
     FigureValues result{VectorXd::Constant(std::ssize(figures), nan)};
     NamedOutputs outputs(model);
-    for (const ReadStates& of_branch : states) {
+    for (const StatesOfFigures& of_branch : states) {
         BranchReader reader{model, of_branch, leg, figures, result};
         reader.add_figures(outputs);
         reader.read_all();
@@ -251,25 +257,24 @@ FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg l
     return read_figures(model, states_of(model, figures, leg), figures, leg);
 }
 
-std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
-                                                         std::span<const Model* const> models,
-                                                         int threads) {
-    std::vector<std::vector<ReadStates>> states_of_models(models.size());
-    if (std::ranges::any_of(states, [](const ReadStates& of) { return !of.complete(); }))
+std::vector<std::vector<StatesOfFigures>> neighbouring_states(
+    std::span<const StatesOfFigures> states, std::span<const Model* const> models, int threads) {
+    std::vector<std::vector<StatesOfFigures>> states_of_models(models.size());
+    if (std::ranges::any_of(states, [](const StatesOfFigures& of) { return !of.complete(); }))
         return states_of_models;
     std::vector<std::atomic<bool>> near(models.size());
     std::vector<Job> jobs;
     for (std::size_t m = 0; m < models.size(); ++m) {
         near[m] = models[m] != nullptr && same_structure(*models[m], states);
         for (std::size_t k = 0; near[m] && k < states.size(); ++k) {
-            ReadStates& of = states_of_models[m].emplace_back(states[k]);
+            StatesOfFigures& of = states_of_models[m].emplace_back(states[k]);
             of.sides = read_sides(*models[m], of);
         }
     }
     const auto move_state = [&](std::size_t k, std::size_t s) {
         const Equilibrium& state = states[k].states[s];
         std::vector<Neighbours> stencils;
-        std::vector<std::size_t> model_of;  // their models
+        std::vector<std::size_t> model_of;  // model of each stencil
         for (std::size_t m = 0; m < models.size(); ++m)
             if (near[m]) {
                 stencils.push_back(
@@ -297,7 +302,7 @@ std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadSta
     return states_of_models;
 }
 
-VectorXd SearchRange::at(const VectorXd& shares) const {
+VectorXd SearchRange::point(const VectorXd& shares) const {
     return (start + (high - low).cwiseProduct(shares)).cwiseMax(low).cwiseMin(high);
 }
 VectorXd SearchRange::shares(const VectorXd& p) const {

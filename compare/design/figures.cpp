@@ -22,9 +22,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double legs_agree = 1e-6;  // of a figure's movement
+// Largest difference between two solvers, as a share of the movement of the figure.
+constexpr double solver_tolerance = 1e-6;
 
-FigureValues of_trimmed(const Trimmed& trimmed, std::span<const Figure> figures, Leg leg) {
+FigureValues values_after_trim(const Trimmed& trimmed, std::span<const Figure> figures, Leg leg) {
     if (trimmed.record && !trimmed.record->reached())
         return {VectorXd::Constant(std::ssize(figures), nan), "trim: " + trimmed.record->detail};
     return evaluate(compile(trimmed.scene), figures, leg);
@@ -41,7 +42,7 @@ struct SimilarTrim : TrimStart {
 struct SolvedPoint {
     SimilarTrim trim = {};
     std::optional<Model> model = {};
-    std::vector<ReadStates> states = {};
+    std::vector<StatesOfFigures> states = {};
     FigureValues figures = {};
 };
 
@@ -144,7 +145,7 @@ struct SolvedFigures {
 }  // namespace
 
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg) {
-    return of_trimmed(trim(scene), figures, leg);
+    return values_after_trim(trim(scene), figures, leg);
 }
 
 Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads) {
@@ -211,7 +212,7 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures, const 
     bool judged = false;
     const Trimmed trimmed = trim(scene);
     for (const auto leg : {Leg::equilibrium, Leg::energy, Leg::series}) {
-        const FigureValues computed = of_trimmed(trimmed, figures, leg);
+        const FigureValues computed = values_after_trim(trimmed, figures, leg);
         if (leg != Leg::equilibrium)
             (leg == Leg::energy ? result.energy : result.series) = computed.value;
         if (computed.not_applicable) continue;
@@ -220,7 +221,7 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures, const 
             const auto i = static_cast<Index>(k);
             const double difference = std::abs(computed.value[i] - values[i]);
             if (why.empty() && std::isfinite(difference) &&
-                !(difference <= legs_agree * movement[i]))
+                !(difference <= solver_tolerance * movement[i]))
                 why =
                     fmt::format("{}: the {} differs by {:.2g} {}", figures[k].name,
                                 leg == Leg::equilibrium ? "equilibrium leg from the design position"

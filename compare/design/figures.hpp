@@ -3,8 +3,8 @@
 //
 //   dy/dp = (8 (y(h) - y(-h)) - (y(2h) - y(-2h))) / 12h
 //
-// Settled start and trim are part of the function. Where the slopes to both sides differ, h is
-// shortened; where they still do, there is no rate.
+// Each evaluation of y trims the scene, and computes the equilibria anew. Where the slopes to both sides
+// differ, h is shortened; where they still differ, there is no rate.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,29 +25,30 @@ namespace elastocheck::compare {
 struct Figure {
     std::string name;    // name of the output: "bump_steer", "toe"
     std::string branch;  // name of the branch
-    double at = 0;       // the station: parameter of the branch [SI], or value of the output `over`
-    std::string over = {};              // "travel"; empty: the station is a parameter
-    bool change = false;                // the change from the design position, not the value
-    std::string unit = {}, place = {};  // for readers: "deg", "jounce = 3000 N"
+    double station = 0;  // parameter of the branch [SI], or value of `abscissa` in its unit
+    std::string abscissa =
+        {};               // output over which the station is given, "travel"; empty: the parameter
+    bool change = false;  // the figure is the change from the design position, not the value
+    std::string unit = {}, station_text = {};  // shown to the user: "deg", "jounce = 3000 N"
 };
 
-// All outputs of a model that a figure can be: channels, characteristics, forces of elements, sums
-// of what redundant joints share.
+// Outputs of a model that figures can name: channels, characteristics, forces of elements, and with
+// `with_sums` the total reactions of groups of redundant joints.
 std::vector<Channel> figure_outputs(const Model& model, bool with_sums = true);
 
-// Values of figures by one leg, in their units; NaN where there is none, with the reason for the first.
+// Values of figures by one leg (one of the solvers), in their units; NaN for a figure without a value.
 struct FigureValues {
     Eigen::VectorXd value;
-    std::string why_not = {};
+    std::string why_not = {};     // reason for the first figure without a value
     bool not_applicable = false;  // the reason is that the leg does not apply to the scene
 };
 FigureValues evaluate(const Model& model, std::span<const Figure> figures, Leg leg);
 
 // States of a leg at which figures of one branch are read: at values of its parameter, or along the
 // whole branch for figures over another output.
-struct ReadStates {
-    std::size_t branch = 0;  // position in Model::branches
-    bool whole = false;
+struct StatesOfFigures {
+    std::size_t branch = 0;     // position in Model::branches
+    bool whole_branch = false;  // the states are those of the whole branch
     std::vector<BranchSide> sides;
     std::vector<Equilibrium> states = {};
     Outcome outcome = Outcome::converged;  // why states are missing
@@ -55,26 +56,29 @@ struct ReadStates {
 
     bool complete() const { return outcome == Outcome::converged; }
 };
-// evaluate() in its two parts.
-std::vector<ReadStates> states_of(const Model& model, std::span<const Figure> figures, Leg leg);
-FigureValues read_figures(const Model& model, std::span<const ReadStates> states,
+// The two parts of evaluate(): solve for the states, and read the figures at them.
+std::vector<StatesOfFigures> states_of(const Model& model, std::span<const Figure> figures,
+                                       Leg leg);
+FigureValues read_figures(const Model& model, std::span<const StatesOfFigures> states,
                           std::span<const Figure> figures, Leg leg);
-// States of each model (null: none) by the equilibrium leg at the places of `states`, those of a similar
-// model, solved from these by the chord method (models/neighbours.hpp) with one factorisation per state
-// for all models. Empty for a model of another structure, and where the method does not converge.
-std::vector<std::vector<ReadStates>> neighbouring_states(std::span<const ReadStates> states,
-                                                         std::span<const Model* const> models,
-                                                         int threads);
+// For each model, solves for the states at the stations of `states`, which belong to a similar model: by the
+// equilibrium leg with the chord method (models/neighbours.hpp), one factorisation per state for all models.
+// The entry of a model is empty if the model is null or of another structure, and where the method does not
+// converge.
+std::vector<std::vector<StatesOfFigures>> neighbouring_states(
+    std::span<const StatesOfFigures> states, std::span<const Model* const> models, int threads);
 
-// Values of figures of the trimmed scene.
+// Values of the figures after the trim of the scene.
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures,
                            Leg leg = Leg::equilibrium);
 
-// Limits of the numbers of a search, in their units; infinite where there are none.
+// Start and limits of the numbers of a search, in their units. The limits are infinite where there are none;
+// point() and shares() need finite limits.
 struct SearchRange {
     Eigen::VectorXd start, low, high;
-    // p = start + shares · (high - low), kept within the limits; and its inverse.
-    Eigen::VectorXd at(const Eigen::VectorXd& shares) const;
+    // p = start + shares · (high - low), clamped to the limits.
+    Eigen::VectorXd point(const Eigen::VectorXd& shares) const;
+    // Inverse of point() within the limits.
     Eigen::VectorXd shares(const Eigen::VectorXd& p) const;
 };
 
@@ -85,28 +89,29 @@ struct Varied : SearchRange {
     std::function<Scene(const Eigen::VectorXd& p)> scene = {};
 };
 
-// Figures as functions of the numbers p: all that the algorithms of this folder use of a scene.
+// Figures as functions of the numbers p. The algorithms of this folder see a scene only as these functions.
 struct Figures {
-    // at points near the first one, in the units of the outputs; NaN where there is none
+    // Values at points that are near the first one, in the units of the outputs; NaN where there is none.
     std::function<std::vector<Eigen::VectorXd>(const std::vector<Eigen::VectorXd>& p)> values;
-    Eigen::VectorXd step;  // h, per number
+    Eigen::VectorXd step;  // step h of the differences, per number
 
     Eigen::VectorXd value(const Eigen::VectorXd& p) const { return values({p}).front(); }
-    // [figures × numbers], NaN where there is no rate
+    // dy/dp [figures × numbers]; NaN where there is no rate.
     Eigen::MatrixXd gradient(const Eigen::VectorXd& p) const;
 };
-// By the equilibrium leg, points on several threads. Trim and states start from those at p[0] of
+// Functions that solve by the equilibrium leg, points on several threads. Trim and states start from those at p[0] of
 // the last call where that is near, else from the design position.
 Figures solved_figures(const Varied& varied, std::vector<Figure> figures, int threads = 1);
 
-// Reason why one of the figures has no value, or else no rate, at p: "no rate at the start: ...".
+// Reason why one of the figures has no value, or else no rate, at p: "no rate at the start: ..."; empty if
+// all have both. `where` is the name of p in the text.
 std::string why_not_solved(const Varied& varied, std::span<const Figure> figures,
                            const Eigen::VectorXd& p, const char* where = "the start");
 // Reasons why none of the numbers moves a figure at the start, a line for each number:
 // "springs.coil.rate: no output moves with it".
 std::string why_still(const Varied& varied, const Figure& figure);
 
-// Figures that the equilibrium leg found, by the energy leg and by the series.
+// Figures of the equilibrium leg, computed again by the energy leg and by the series.
 struct Confirmation {
     Eigen::VectorXd energy, series;  // figures in their units; NaN where a leg does not apply
     // A leg other than the equilibrium leg applies, and each that applies agrees on every figure, to
@@ -122,7 +127,7 @@ Confirmation confirm(const Scene& scene, std::span<const Figure> figures,
 // unit where that is zero.
 inline double step_of(const Number& number) { return varied_number(number).step; }
 
-// Smaller changes of a figure of this value are rounding.
+// Smallest change of a figure of this value that is not rounding.
 inline double min_movement(double value) { return 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace elastocheck::compare

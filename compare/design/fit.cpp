@@ -17,19 +17,21 @@ using Eigen::VectorXd;
 
 // Formulas and symbols: fit.hpp.
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr double min_singular = 1e-6;  // of the largest: below, a combination is not determined
-constexpr double min_part = 1e-3;      // a number with a smaller part in it is determined
-constexpr double min_noise = 1e-9;     // of the range of a column, for exact data
-constexpr int noise_updates = 2;       // estimates of s_c after the first fit
+// A combination of numbers is not determined below this singular value, as a share of the largest; a number with
+// a smaller part than min_part in each such combination is determined.
+constexpr double min_singular_share = 1e-6, min_part = 1e-3;
+// Least s_c as a share of the range of the column, for exact data.
+constexpr double min_noise = 1e-9;
+constexpr int noise_updates = 2;  // estimates of s_c after the first fit
 constexpr int max_robust_passes = 60;
-constexpr double numbers_stay = 1e-6;     // in steps, from one robust pass to the next
-constexpr double cauchy_width = 2.385;    // c
-constexpr double normal_median = 1.4826;  // standard deviation over median |.|
+constexpr double robust_tolerance = 1e-6;  // change of a number at which robust passes end [steps]
+constexpr double cauchy_width = 2.385;     // c
+constexpr double normal_median = 1.4826;   // standard deviation over median |.| if normal
 
 double root_mean_square(const VectorXd& values) {
     return values.norm() / std::sqrt(static_cast<double>(values.size()));
 }
-double median_size(VectorXd values) {
+double median_magnitude(VectorXd values) {
     values = values.cwiseAbs();
     const auto middle = values.begin() + values.size() / 2;
     std::nth_element(values.begin(), middle, values.end());
@@ -67,7 +69,7 @@ void set_intervals(const MatrixXd& J, const VectorXd& u, const Measured& measure
     const Svd svd = svd_of(J, Eigen::ComputeFullV);
     VectorXd& S = fitted.singular_values = VectorXd::Zero(n);
     S.head(svd.values.size()) = svd.values;
-    const Index determined = (S.array() > min_singular * S[0]).count();
+    const Index determined = (S.array() > min_singular_share * S[0]).count();
     fitted.undetermined = svd.V.rightCols(n - determined);
     const VectorXd variance =
         (svd.V.leftCols(determined) * S.head(determined).cwiseInverse().asDiagonal())
@@ -97,16 +99,16 @@ double student_95(int freedom) {
 
 Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& range) {
     const Index n = range.start.size(), N = measured.value.size();
-    std::vector<std::vector<Index>> places;  // of the values of each column
+    std::vector<std::vector<Index>> rows_of_column;
     for (std::size_t k = 0; k < measured.column.size(); ++k) {
         const auto c = static_cast<std::size_t>(measured.column[k]);
-        places.resize(std::max(places.size(), c + 1));
-        places[c].push_back(static_cast<Index>(k));
+        rows_of_column.resize(std::max(rows_of_column.size(), c + 1));
+        rows_of_column[c].push_back(static_cast<Index>(k));
     }
     const auto number_at = [&](const VectorXd& x) -> VectorXd {
         return within({range.low, range.high}, measured.step.cwiseProduct(x));
     };
-    // per value: s_c, √(ψ(u) / u), f - y and u
+    // For each value: s_c, √(ψ(u) / u), f - y and u.
     VectorXd noise(N), loss_weight = VectorXd::Ones(N), residual(N), u = VectorXd::Zero(N);
     LeastSquares problem{
         [&](const VectorXd& x) -> VectorXd {
@@ -126,10 +128,10 @@ Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& 
         fitted.why_not = "the start";
         return fitted;
     }
-    // of the degrees of freedom: N_c - n N_c / N = share N_c
+    // Degrees of freedom of a column: N_c - n N_c / N = share N_c.
     const double share = 1 - static_cast<double>(n) / static_cast<double>(N);
     fitted.freedom = std::numeric_limits<int>::max();
-    for (const auto& rows : places) {
+    for (const auto& rows : rows_of_column) {
         const VectorXd values = measured.value(rows);
         noise(rows).setConstant(range_of(values));
         fitted.columns.push_back(
@@ -139,34 +141,35 @@ Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& 
     }
 
     Minimum nearest{.x = problem.centre};
-    // Robust: until the numbers stay. Else: fits with s_c from the range, and two with estimates.
-    bool stays = !measured.robust || N <= n;
+    // A robust fit repeats until the numbers change no more. Else there is a fit with s_c from the range, and two
+    // with estimates of s_c.
+    bool is_settled = !measured.robust || N <= n;
     for (int pass = 0; pass <= (measured.robust ? max_robust_passes : noise_updates); ++pass) {
         const VectorXd last = nearest.x;
         nearest = minimise(problem, last);
         residual = nearest.residual.cwiseProduct(noise).cwiseQuotient(loss_weight);
         if (N <= n) break;
-        stays = stays ||
-                (pass > noise_updates && (nearest.x - last).cwiseAbs().maxCoeff() <= numbers_stay);
-        if (measured.robust && stays) break;
-        for (const auto& rows : places) {
+        is_settled = is_settled || (pass > noise_updates &&
+                                    (nearest.x - last).cwiseAbs().maxCoeff() <= robust_tolerance);
+        if (measured.robust && is_settled) break;
+        for (const auto& rows : rows_of_column) {
             const VectorXd deviation = residual(rows);
             noise(rows).setConstant(
                 std::max(min_noise * range_of(measured.value(rows)),
-                         (measured.robust ? normal_median * median_size(deviation)
+                         (measured.robust ? normal_median * median_magnitude(deviation)
                                           : root_mean_square(deviation)) /
                              std::sqrt(share)));
         }
         if (measured.robust) loss_weight = loss_weights(residual.cwiseQuotient(noise));
     }
     if (N > n) u = residual.cwiseQuotient(noise);
-    for (std::size_t c = 0; c < places.size(); ++c) {
-        fitted.columns[c].noise = noise[places[c].front()];
+    for (std::size_t c = 0; c < rows_of_column.size(); ++c) {
+        fitted.columns[c].noise = noise[rows_of_column[c].front()];
         fitted.columns[c].outliers =
-            static_cast<int>((u(places[c]).array().abs() > outlying).count());
+            static_cast<int>((u(rows_of_column[c]).array().abs() > outlying).count());
     }
     fitted.p = number_at(nearest.x);
-    fitted.converged = nearest.converged && stays;
+    fitted.converged = nearest.converged && is_settled;
     for (Index i = 0; i < n; ++i)
         fitted.at_limit.push_back(nearest.x[i] <= problem.box.low[i] ||
                                   nearest.x[i] >= problem.box.high[i]);

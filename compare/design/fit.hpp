@@ -33,45 +33,47 @@
 
 namespace elastocheck::compare {
 
+// Measured values of the figures, and options of the fit.
 struct Measured {
-    Eigen::VectorXd value;    // per figure, in its unit
-    std::vector<int> column;  // per figure: its column, 0, 1, ...
-    Eigen::VectorXd step;     // per number (step_of)
-    bool robust = false;
+    Eigen::VectorXd value;    // value y of each figure, in its unit
+    std::vector<int> column;  // column 0, 1, ... of each figure
+    Eigen::VectorXd step;     // step of each number (step_of)
+    bool robust = false;      // minimise Cauchy's loss
 };
 
 struct FittedColumn {
     double noise = 0;              // s_c
-    double rms_before = 0;         // of f - y, at the start
-    int values = 0, outliers = 0;  // those with |f - y| > outlying s_c
+    double rms_before = 0;         // root mean square of f - y at the start
+    int values = 0, outliers = 0;  // number of values, and of those with |f - y| > outlying s_c
 };
 inline constexpr double outlying = 4;
 
 struct Fitted {
     Eigen::VectorXd p = {};
-    // half of the 95 % interval; infinite: not determined
+    // Half width of the 95 % interval of each number; infinite: not determined.
     Eigen::VectorXd interval = {};
     std::vector<FittedColumn> columns = {};
-    std::vector<bool> at_limit = {};       // per number: its interval is not valid
+    std::vector<bool> at_limit = {};       // for each number; its interval is then not valid
     Eigen::VectorXd singular_values = {};  // S, in falling order
-    // columns: the undetermined combinations, as changes of the numbers in steps
+    // Undetermined combinations as columns: changes of the numbers in steps.
     Eigen::MatrixXd undetermined = {};
-    int freedom = 0;  // of the column with the fewest; below 1 there are no intervals
+    int freedom = 0;  // least degrees of freedom of a column; below 1 there are no intervals
     bool converged = false;
-    std::string why_not = {};  // where there is no value or rate: "the start", "the result"
+    std::string why_not = {};  // point without a value or rate: "the start", "the result"
 };
 
 // t with P(|T| ≤ t) = 0.95, of Student's distribution with this many degrees of freedom.
 double student_95(int freedom);
 
+// Fits the numbers from range.start.
 Fitted fit(const Figures& figures, const Measured& measured, const SearchRange& range);
 
 // The figure whose measurement would best determine an undetermined combination: the one that moves
 // most with it, as a share of its extent.
 struct Proposal {
     Eigen::Index figure = -1;  // -1: none moves with the combination
-    double movement = 0;       // with the combination whose largest change is one step; in its unit
-    double share = 0;          // |movement| / extent
+    double movement = 0;  // change by the combination whose largest part is one step, in its unit
+    double share = 0;     // |movement| / extent
 };
 Proposal proposal(const Eigen::MatrixXd& gradient, const Eigen::VectorXd& extent,
                   const Eigen::VectorXd& combination);

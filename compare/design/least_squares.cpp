@@ -13,16 +13,16 @@ using Eigen::VectorXd;
 // The search has converged below these relative changes of |r|² and of the scaled x.
 constexpr double min_decrease = 1e-14, min_change = 1e-10;
 // It has not converged within this |Δx| of a point at which the residuals are not finite.
-constexpr double undefined_within = 1e-6;
+constexpr double undefined_distance = 1e-6;
 
-// The bound at which x_i is held, -1 the lower or 1 the upper, beyond which the sum of squares
+// Bound that stops x_i, -1 the lower or 1 the upper, beyond which the sum of squares
 // would decrease; else 0. `descent` is -∂(½ |r|²)/∂x_i.
-int held(const Box& box, const VectorXd& x, Index i, double descent) {
+int active_bound(const Box& box, const VectorXd& x, Index i, double descent) {
     return descent < 0 && x[i] <= box.low[i] ? -1 : descent > 0 && x[i] >= box.high[i] ? 1 : 0;
 }
 
-// [r; w (x - c)] at P(x), and its Jacobian `df` without the columns of held numbers, with the names and
-// return values that Eigen's method requires; a negative one ends the search.
+// [r; w (x - c)] at P(x), and its Jacobian `df` without the columns of numbers at an active bound, with the
+// names and return values that Eigen's method requires; a negative one ends the search.
 struct Stacked {
     const LeastSquares& problem;
     MatrixXd first;                // ∂r/∂x at the start, for the first step
@@ -33,10 +33,10 @@ struct Stacked {
 
     int values() const { return static_cast<int>(rows); }
     int operator()(const VectorXd& x, VectorXd& stacked) {
-        const VectorXd at = within(problem.box, x);
-        stacked << problem.residual(at), weight * (at - problem.centre);
+        const VectorXd inside = within(problem.box, x);
+        stacked << problem.residual(inside), weight * (inside - problem.centre);
         last = stacked;
-        if (!stacked.allFinite()) last_undefined = at;
+        if (!stacked.allFinite()) last_undefined = inside;
         return 0;
     }
     int df(const VectorXd& x, MatrixXd& J) {
@@ -44,7 +44,7 @@ struct Stacked {
             weight * MatrixXd::Identity(x.size(), x.size());
         const VectorXd descent = -J.transpose() * last;
         for (Index i = 0; i < x.size(); ++i)
-            if (held(problem.box, x, i, descent[i]) != 0) J.col(i).setZero();
+            if (active_bound(problem.box, x, i, descent[i]) != 0) J.col(i).setZero();
         return J.allFinite() ? 0 : -1;
     }
 };
@@ -74,7 +74,7 @@ Minimum minimise(const LeastSquares& problem, VectorXd start) {
         status = method.minimizeOneStep(minimum.x);
         minimum.x = within(problem.box, minimum.x);
         meets_undefined = stacked.last_undefined.size() > 0 &&
-                          (minimum.x - stacked.last_undefined).norm() <= undefined_within;
+                          (minimum.x - stacked.last_undefined).norm() <= undefined_distance;
     } while (!meets_undefined && status == Status::Running &&
              !method.fvec.head(minimum.residual.size()).isZero(0));
     minimum.residual = method.fvec.head(minimum.residual.size());
@@ -88,7 +88,7 @@ std::vector<int> limits_reached(const LeastSquares& problem, const Minimum& at) 
     std::vector<int> limits;
     for (Index i = 0; i < descent.size(); ++i)
         limits.push_back(std::abs(descent[i]) > 1e-6 * at.residual.norm()
-                             ? held(problem.box, at.x, i, descent[i])
+                             ? active_bound(problem.box, at.x, i, descent[i])
                              : 0);
     return limits;
 }

@@ -32,10 +32,10 @@ struct Minimum {
     bool converged = false;
 };
 
-// `start` is within the box.
+// Minimises the sum from `start`, which must be within the box.
 Minimum minimise(const LeastSquares& problem, Eigen::VectorXd start);
 
-// Per number: -1 or 1 at the lower or upper limit if |r| would decrease beyond it, else 0.
+// For each number: -1 or 1 at the lower or upper limit if |r| would decrease beyond it, else 0.
 std::vector<int> limits_reached(const LeastSquares& problem, const Minimum& at);
 
 }  // namespace elastocheck::compare

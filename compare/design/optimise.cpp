@@ -22,15 +22,15 @@ using Eigen::VectorXd;
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-constexpr int max_evaluations = 200;      // of one run of SLSQP
-constexpr int max_runs = 4;               // each from the best point before
-constexpr int max_repeats = 20;           // calls at one point, after which SLSQP would not end
-constexpr double min_step = 1e-12;        // of x
-constexpr double active_within = 1e-6;    // of c
-constexpr double optimal_within = 1e-4;   // residual of the conditions as a share of |∇F|
-constexpr double ends_within = 1e-6;      // likewise, at which a run of SLSQP ends
-constexpr double min_residual = 1e-7;     // of the conditions, where ∇F vanishes
-constexpr double multiplier_pull = 1e-7;  // makes the multipliers of parallel ∇c unique
+constexpr int max_evaluations = 200;       // in one run of SLSQP
+constexpr int max_runs = 4;                // runs of SLSQP, each from the best point before
+constexpr int max_repeats = 20;            // calls at one point, after which SLSQP would not end
+constexpr double min_step = 1e-12;         // change of x at which a run of SLSQP ends
+constexpr double active_tolerance = 1e-6;  // a bound is active where c ≥ -active_tolerance
+// Residual |∇F + Σ λ ∇c| of the optimality conditions as a share of |∇F|: largest of an optimum, and largest
+// at which a run of SLSQP ends. Where ∇F vanishes, the residual itself must be below min_residual.
+constexpr double optimality_tolerance = 1e-4, run_tolerance = 1e-6, min_residual = 1e-7;
+constexpr double multiplier_regularisation = 1e-7;  // makes the multipliers of parallel ∇c unique
 
 // The problem in x, with the last evaluated point, and the best point within the bands.
 struct Problem {
@@ -38,22 +38,24 @@ struct Problem {
     const SearchRange& range;
     const VectorXd& scale;
     int minimised = -1;
-    std::vector<Bound> bands = {}, limits = {};  // bounds of the figures that move, of the numbers
+    // Bounds of the figures that change with the numbers; bounds of the numbers.
+    std::vector<Bound> bands = {}, limits = {};
 
     VectorXd current = {}, p = {},
              f = {};    // the last point x, its numbers p, and the figures there
     MatrixXd f_x = {};  // ∂f/∂x; empty until it is needed
 
-    VectorXd best = {};  // x
+    VectorXd best = {};  // x of least cost within the bands; empty: none yet
     double min_cost = unbounded;
 
-    // of a run of SLSQP
+    // State of a run of SLSQP: the optimiser, calls at the current point, exception of an evaluation.
     nlopt_opt run = nullptr;
     int repeats = 0;
     std::exception_ptr failed = {};
 
-    double unit_of(const Bound& one) const {
-        return one.of_number ? range.high[one.index] - range.low[one.index] : scale[one.index];
+    double unit_of(const Bound& bound) const {
+        return bound.of_number ? range.high[bound.index] - range.low[bound.index]
+                               : scale[bound.index];
     }
     double cost() const {
         return minimised < 0 ? current.squaredNorm() / 2 : f[minimised] / scale[minimised];
@@ -65,20 +67,20 @@ struct Problem {
     // c of optimise.hpp, one entry per bound, and ∂c/∂x.
     VectorXd excess(const std::vector<Bound>& bounds) const {
         return VectorXd::NullaryExpr(std::ssize(bounds), [&](Index k) {
-            const Bound& one = bounds[static_cast<std::size_t>(k)];
-            const double over = (one.of_number ? p : f)[one.index] - one.bound;
-            return (one.upper ? over : -over) / unit_of(one);
+            const Bound& bound = bounds[static_cast<std::size_t>(k)];
+            const double difference = (bound.of_number ? p : f)[bound.index] - bound.bound;
+            return (bound.upper ? difference : -difference) / unit_of(bound);
         });
     }
     MatrixXd excess_gradient(const std::vector<Bound>& bounds) const {
         MatrixXd gradient = MatrixXd::Zero(std::ssize(bounds), current.size());
         for (Index k = 0; k < gradient.rows(); ++k) {
-            const Bound& one = bounds[static_cast<std::size_t>(k)];
-            if (one.of_number)
-                gradient(k, one.index) = 1;
+            const Bound& bound = bounds[static_cast<std::size_t>(k)];
+            if (bound.of_number)
+                gradient(k, bound.index) = 1;
             else
-                gradient.row(k) = f_x.row(one.index) / scale[one.index];
-            if (!one.upper) gradient.row(k) *= -1;
+                gradient.row(k) = f_x.row(bound.index) / scale[bound.index];
+            if (!bound.upper) gradient.row(k) *= -1;
         }
         return gradient;
     }
@@ -94,7 +96,7 @@ struct Problem {
             return;
         }
         current = x;
-        p = range.at(x);
+        p = range.point(x);
         f = figures.value(p);
         f_x = {};
         repeats = 0;
@@ -120,9 +122,9 @@ struct Problem {
     }
 };
 
-// The bounds that hold at the evaluated point, c ≥ -1e-6, with their prices, and the remainder of
-// the conditions, |∇F + Σ λ ∇c| with the λ ≥ 0 that make it least.
-void set_conditions(Problem& problem, Search& search) {
+// Sets the bounds that are active at the evaluated point, with their prices λ, and the optimality: the residual
+// |∇F + Σ λ ∇c| with the λ ≥ 0 that minimise it.
+void set_optimality(Problem& problem, Search& search) {
     problem.differentiate();
     const VectorXd F_x = problem.cost_gradient();
     MatrixXd A(F_x.size(), 0);  // ∇c
@@ -131,7 +133,7 @@ void set_conditions(Problem& problem, Search& search) {
         const VectorXd c = problem.excess(*bounds);
         const MatrixXd c_x = problem.excess_gradient(*bounds);
         for (Index k = 0; k < c.size(); ++k) {
-            if (!(c[k] >= -active_within)) continue;
+            if (!(c[k] >= -active_tolerance)) continue;
             search.active.push_back((*bounds)[static_cast<std::size_t>(k)]);
             A.conservativeResize(Eigen::NoChange, A.cols() + 1);
             A.rightCols(1) = c_x.row(k).transpose();
@@ -143,19 +145,20 @@ void set_conditions(Problem& problem, Search& search) {
                   [&](const VectorXd&) { return A; },
                   {zero, VectorXd::Constant(A.cols(), unbounded)},
                   zero,
-                  multiplier_pull},
+                  multiplier_regularisation},
                  zero);
-    const double remainder = multipliers.residual.norm(), size = F_x.norm();
-    search.converged = remainder <= optimal_within * size + min_residual;
-    search.optimality = size > 0 ? remainder / size : 0;
+    const double residual = multipliers.residual.norm(), size = F_x.norm();
+    search.converged = residual <= optimality_tolerance * size + min_residual;
+    search.optimality = size > 0 ? residual / size : 0;
     // dF per unit of the shown cost
     const double unit =
         problem.minimised < 0 ? problem.current.norm() : 1 / problem.scale[problem.minimised];
     for (std::size_t k = 0; k < search.active.size(); ++k)
-        if (Bound& one = search.active[k]; unit > 0)
-            one.price = multipliers.x[static_cast<Index>(k)] / problem.unit_of(one) / unit;
-    std::ranges::stable_sort(search.active, std::ranges::greater{},
-                             [&](const Bound& one) { return one.price * problem.unit_of(one); });
+        if (Bound& bound = search.active[k]; unit > 0)
+            bound.price = multipliers.x[static_cast<Index>(k)] / problem.unit_of(bound) / unit;
+    std::ranges::stable_sort(search.active, std::ranges::greater{}, [&](const Bound& bound) {
+        return bound.price * problem.unit_of(bound);
+    });
 }
 
 double slsqp_cost(unsigned n, const double* x, double* gradient, void* data) {
@@ -166,9 +169,9 @@ double slsqp_cost(unsigned n, const double* x, double* gradient, void* data) {
         if (!gradient) return;
         Eigen::Map<VectorXd>(gradient, n) = problem.cost_gradient();
         if (problem.best.size() == 0 || problem.current != problem.best) return;
-        Search here;
-        set_conditions(problem, here);
-        if (here.optimality <= ends_within) nlopt_force_stop(problem.run);
+        Search search;
+        set_optimality(problem, search);
+        if (search.optimality <= run_tolerance) nlopt_force_stop(problem.run);
     });
     return cost;
 }
@@ -209,32 +212,34 @@ void run_slsqp(Problem& problem, VectorXd x) {
     if (problem.failed) std::rethrow_exception(problem.failed);
 }
 
-// Whether `one` meets the bands at less cost, or is nearer to them, by more than rounding: of equal
-// searches the first counts.
-bool is_better(const Search& one, const Search& other) {
-    if (one.met != other.met) return one.met;
-    const auto size = [&](const Search& s) { return one.met ? s.cost : s.nearest.off.norm(); };
-    return size(one) < size(other) - 1e-6 * std::abs(size(other));
+// Whether `search` meets the bands at less cost than `other`, or is nearer to them, by more than rounding: of
+// equal searches the first counts.
+bool is_better(const Search& search, const Search& other) {
+    if (search.met != other.met) return search.met;
+    const auto size = [&](const Search& s) { return search.met ? s.cost : s.nearest.off.norm(); };
+    return size(search) < size(other) - 1e-6 * std::abs(size(other));
 }
 
-// The best of the points x so far: whether it is within the bands, and its cost or its distance.
+// Best of the points x so far: `met` if it is within the bands; `size` is its cost if it is, else its distance
+// from them.
 struct BestPoint {
     const Bands& bands;
     int minimised;
     bool met = false;
     double size = unbounded;
 
+    // Takes the point x with the figures f if it is better; returns whether it was.
     bool take(const VectorXd& x, const VectorXd& f) {
         const VectorXd off =
             (f - f.cwiseMax(bands.low).cwiseMin(bands.high)).cwiseQuotient(bands.scale);
         const bool is_within = off.cwiseAbs().maxCoeff() <= within_bands;
-        const double here = !is_within      ? off.norm()
-                            : minimised < 0 ? x.norm()
-                                            : f[minimised] / bands.scale[minimised];
-        if (!f.allFinite() || (met && !is_within) || (met == is_within && !(here < size)))
+        const double new_size = !is_within      ? off.norm()
+                                : minimised < 0 ? x.norm()
+                                                : f[minimised] / bands.scale[minimised];
+        if (!f.allFinite() || (met && !is_within) || (met == is_within && !(new_size < size)))
             return false;
         met = is_within;
-        size = here;
+        size = new_size;
         return true;
     }
 };
@@ -252,11 +257,11 @@ Search search_from(Problem& problem, const Bands& bands, const VectorXd& start) 
     search.met = problem.best.size() > 0;
     if (search.met) {
         problem.move_to(problem.best);
-        set_conditions(problem, search);
+        set_optimality(problem, search);
         for (int run = 0; run < max_runs && !search.converged; ++run) {
             run_slsqp(problem, problem.best);
             problem.move_to(problem.best);
-            set_conditions(problem, search);
+            set_optimality(problem, search);
         }
     } else {
         search.converged = search.nearest.converged;
@@ -267,7 +272,8 @@ Search search_from(Problem& problem, const Bands& bands, const VectorXd& start) 
     return search;
 }
 
-// The goals that do not move, the scales, and the bounds of those that move.
+// The problem in x. Sets the goals that no number changes (optimum.still) and the scales; only the other goals
+// have bounds.
 Problem problem_of(const Figures& figures, const Goals& goals, const SearchRange& range,
                    Optimum& optimum) {
     const auto goal_of = [&](Index j) {
@@ -277,8 +283,8 @@ Problem problem_of(const Figures& figures, const Goals& goals, const SearchRange
     VectorXd largest = VectorXd::Zero(1 + *std::ranges::max_element(goals.goal));
     optimum.still.assign(static_cast<std::size_t>(largest.size()), true);
     for (Index j = 0; j < m; ++j) {
-        double& most = largest[static_cast<Index>(goal_of(j))];
-        most = std::max(most, optimum.start.movement[j]);
+        double& goal_movement = largest[static_cast<Index>(goal_of(j))];
+        goal_movement = std::max(goal_movement, optimum.start.movement[j]);
         if (!optimum.start.still[static_cast<std::size_t>(j)]) optimum.still[goal_of(j)] = false;
     }
     optimum.scale = largest(goals.goal);
@@ -331,8 +337,8 @@ Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& 
     Problem problem = problem_of(counted, goals, range, optimum);
     Bands bands{VectorXd::Constant(goals.low.size(), -unbounded),
                 VectorXd::Constant(goals.low.size(), unbounded), optimum.scale};
-    for (const Bound& one : problem.bands)
-        (one.upper ? bands.high : bands.low)[one.index] = one.bound;
+    for (const Bound& bound : problem.bands)
+        (bound.upper ? bands.high : bands.low)[bound.index] = bound.bound;
     if (goals.minimised >= 0 &&
         optimum
             .still[static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(goals.minimised)])])

@@ -25,9 +25,10 @@
 namespace elastocheck::compare {
 
 struct Goals {
-    Eigen::VectorXd low, high;  // band per figure, in its unit; infinite: no bound
-    std::vector<int> goal;      // per figure: 0, 1, ...; those of one curve have one goal
-    int minimised = -1;         // figure, alone in its goal; -1: the change of the numbers
+    Eigen::VectorXd low, high;  // band of each figure, in its unit; infinite: no bound
+    std::vector<int> goal;      // goal 0, 1, ... of each figure; figures of one curve have one goal
+    // Position of the minimised figure, alone in its goal; -1: the change of the numbers is minimised.
+    int minimised = -1;
 };
 
 // Points to search from: the start, and `count - 1` within the limits, the same on every run.
@@ -35,48 +36,50 @@ std::vector<Eigen::VectorXd> starts_of(const SearchRange& range, int count);
 
 // One side of a band of a figure, or of the range of a number.
 struct Bound {
-    bool of_number = false;  // else of a figure
-    Eigen::Index index = 0;  // of the number or figure
+    bool of_number = false;  // true: bound of a number; false: bound of a figure
+    Eigen::Index index = 0;  // position of the number or figure
     bool upper = false;
-    double bound = 0;  // in the unit of the number or figure
+    double bound = 0;  // value, in the unit of the number or figure
     // λ_i / g: decrease of the cost per unit by which the bound is relaxed, to first order; the
     // ranges that scale the change x stay the same
     double price = 0;
 };
 
-// Search from one start.
+// Result of the search from one start.
 struct Search {
-    Solution nearest = {};   // to the bands
-    Eigen::VectorXd p = {};  // where it ended
-    bool has_value = false;  // the figures have values at its start
-    // no figure is outside of its band by more than `within_bands` g
+    Solution nearest = {};   // numbers at the least distance from the bands
+    Eigen::VectorXd p = {};  // numbers at the end
+    bool has_value = false;  // the figures have values at the start of the search
+    // No figure is outside of its band by more than `within_bands` g.
     bool met = false;
-    bool converged = false;          // conditions of the optimum, or of the nearest numbers
-    double excess = 0;               // largest over a band, as a share of g; below zero within
-    double cost = 0;                 // |x|, or the minimised figure in its unit
-    double optimality = 0;           // |∇F + Σ λ ∇c| / |∇F|
+    bool converged = false;  // the conditions of the optimum, or of the nearest numbers, hold
+    double excess = 0;       // largest excess over a band, as a share of g; negative within all
+    double cost = 0;         // |x|, or the minimised figure in its unit
+    double optimality = 0;   // |∇F + Σ λ ∇c| / |∇F|
     std::vector<Bound> active = {};  // bounds that hold at the end
-    int evaluations = 0;             // of the scene
+    int evaluations = 0;             // number of solutions of the scene
 };
 inline constexpr double within_bands = 1e-9;
 
-struct Optimum : Search {  // the best search
+// The best of the searches, and what they have in common.
+struct Optimum : Search {
     SearchStart start = {};
-    std::vector<bool> still = {};   // per goal: no number moves a figure of it at the start
-    Eigen::VectorXd scale = {};     // g per figure, in its unit
+    std::vector<bool> still = {};   // for each goal: no number changes its figures at the start
+    Eigen::VectorXd scale = {};     // g of each figure, in its unit
     Eigen::VectorXd after = {};     // figures at p
     Eigen::VectorXd conflict = {};  // share of each figure; zero if the bands are met
     std::vector<Search> searches = {};
-    int best = -1;  // of the searches; -1: none, because a goal that counts does not move
+    int best =
+        -1;  // position of the best search; -1: none, as no number changes a goal that counts
 };
 
 // Called with all numbers at which figures are found that are better than all before: within the bands
 // at less cost, or nearer to them than at the start.
 using BestSoFar = std::function<void(const Eigen::VectorXd& p, bool met)>;
 
-// Nothing but `start` is set where that is not complete. Figures of still goals are left out of
-// the search; the caller refuses those that are outside of their bands, and a minimised figure
-// that is still.
+// Searches from each start. Only `start` of the result is set if figures or rates are missing there. The
+// figures of still goals are left out of the search; the caller refuses those that are outside of their bands,
+// and a minimised figure that is still.
 Optimum optimise(const Figures& figures, const Goals& goals, const SearchRange& range,
                  const std::vector<Eigen::VectorXd>& starts, const Progress& progress = {},
                  const BestSoFar& best_so_far = {});

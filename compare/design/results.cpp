@@ -161,7 +161,7 @@ std::string bound_text(const OptimisedScene& scene, const Bound& bound) {
     }
     const Figure& figure = item(scene.figures, bound.index);
     return fmt::format("{}{} {} {:g} {} at {}", figure.name, figure.change ? " (change)" : "", sign,
-                       bound.bound, figure.unit, figure.place);
+                       bound.bound, figure.unit, figure.station_text);
 }
 
 // Amount by which a bound is relaxed when its price is stated: a power of ten, up to a tenth of the
@@ -192,7 +192,8 @@ Table prices_table(const OptimisedScene& scene) {
         active.empty() ? "No bound holds the result back."
         : scene.minimised
             ? fmt::format("Bounds that hold the result back. Relaxing one lowers {} at {} [{}] by:",
-                          scene.minimised->name, scene.minimised->place, scene.minimised->unit)
+                          scene.minimised->name, scene.minimised->station_text,
+                          scene.minimised->unit)
             : "Bounds that hold the result back. Relaxing one reduces the change [% of the ranges] "
               "by:";
     return prices;
@@ -256,7 +257,7 @@ Table combinations_table(const FittedScene& fit) {
                                                    : proposed_for(k).figure.name;
           },
           "output that was not measured and moves most with the change"},
-         {"at", words, [&](Index k) { return proposed_for(k).figure.place; }},
+         {"at", words, [&](Index k) { return proposed_for(k).figure.station_text; }},
          {"movement", three, [&](Index k) { return proposed_for(k).by.movement; }, "by the change"},
          {"unit", words, [&](Index k) { return proposed_for(k).figure.unit; }},
          {"share", percent, [&](Index k) { return proposed_for(k).by.share; },
@@ -280,7 +281,7 @@ Result result_of(const SolvedFor& solved) {
         "wishes", solved.target.size(),
         {{"output", words, [&](Index k) { return figure(k).name; }},
          {"unit", words, [&](Index k) { return figure(k).unit; }},
-         {"at", words, [&](Index k) { return figure(k).place; }},
+         {"at", words, [&](Index k) { return figure(k).station_text; }},
          {"wanted", given, [&](Index k) { return solved.target[k]; }},
          {"before", given, [&](Index k) { return solved.start.value[k]; }},
          {"after", given, [&](Index k) { return solved.after[k]; }, "by the equilibrium leg"},
@@ -294,7 +295,7 @@ Result result_of(const SolvedFor& solved) {
         std::vector<std::string> wishes;
         for (std::size_t k = 0; k < solved.wanted.size(); ++k)
             if (solution.conflict()[static_cast<Index>(k)] > min_share)
-                wishes.push_back(solved.wanted[k].name + " at " + solved.wanted[k].place);
+                wishes.push_back(solved.wanted[k].name + " at " + solved.wanted[k].station_text);
         add_conflict(result, wishes, " Within the limits the numbers move them only together.",
                      solved.varied, solution.at_limit, "wishes");
         if (!solution.converged)
@@ -341,7 +342,7 @@ Result result_of(const OptimisedScene& scene) {
         if (const auto& least = scene.minimised)
             sentence =
                 fmt::format("The bands are met; {} at {}: {:g} {} from {:g}, the least found.",
-                            least->name, least->place, optimum.cost, least->unit,
+                            least->name, least->station_text, optimum.cost, least->unit,
                             optimum.start.value[std::ssize(scene.figures) - 1]);
     } else {
         std::vector<std::string> bands;
@@ -411,7 +412,7 @@ Result result_of(const ToleratedScene& scene, int max_shares) {
         "figures", std::ssize(scene.figures),
         {{"output", words, [&](Index k) { return figure_of(k).name; }},
          {"unit", words, [&](Index k) { return figure_of(k).unit; }},
-         {"at", words, [&](Index k) { return figure_of(k).place; }},
+         {"at", words, [&](Index k) { return figure_of(k).station_text; }},
          {"nominal", given, [&](Index k) { return item(scene.nominal, k); }},
          {"sd", three, [&](Index k) { return item(scene.scatter, k).sd; }, "standard deviation"},
          {"worst case", three, [&](Index k) { return item(scene.scatter, k).worst_case; }}}));
@@ -435,7 +436,7 @@ Result result_of(const ToleratedScene& scene, int max_shares) {
         table({.id = "shares"},
               std::vector<ColumnOf<Share>>{
                   {"output", words, [](const Share& s) { return s.figure->name; }},
-                  {"at", words, [](const Share& s) { return s.figure->place; }},
+                  {"at", words, [](const Share& s) { return s.figure->station_text; }},
                   {"tolerance", words, &Share::number},
                   {"share", percent, &Share::share, "of the variance"}},
               shares));

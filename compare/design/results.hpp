@@ -16,26 +16,26 @@ namespace elastocheck::compare {
 struct SolvedFor {
     const Varied& varied;
     std::vector<Figure> wanted = {};
-    Eigen::VectorXd target = {};  // per figure, in its unit
+    Eigen::VectorXd target = {};  // wanted value of each figure, in its unit
     SearchStart start = {};
     Solution solution = {};
     Eigen::VectorXd after = {};  // figures at the numbers of the solution, in their units
-    Confirmation by = {};        // of `after` by the other legs
+    Confirmation by = {};        // confirmation of `after` by the other legs
     bool met() const { return after.allFinite() && solution.excess() <= met_within; }
 };
 Result result_of(const SolvedFor& solved);
 
 // A band of an output at one point, or at the points of a curve.
 struct Goal {
-    std::vector<Figure> points = {};  // in the order of their places
+    std::vector<Figure> points = {};  // figures in the order of their stations
     double low = -INFINITY, high = INFINITY;
-    std::string where = {};  // the place of its point, or "travel from -80 to 80 mm"
-    // of a curve: the output or the branch whose parameter places its points ("travel"),
-    // and its unit
+    std::string where =
+        {};  // station of its point, or range of its curve, "travel from -80 to 80 mm"
+    // Only for a curve: the output, or the branch whose parameter is the abscissa, and its unit.
     std::string along = {}, along_unit = {};
-    double along_factor = 1;     // from Figure::at to that unit
+    double along_factor = 1;     // factor from Figure::station to that unit
     bool any_branch = false;     // each point lies on the branch that reaches its place
-    int line = 0;                // of the file
+    int line = 0;                // line of the file
     std::string not_moved = {};  // reason why no number moves it; the search leaves it out
 
     std::string output() const;  // "toe (change)"
@@ -49,11 +49,11 @@ struct OptimisedScene {
     const Varied& varied;
     std::vector<Goal> goals = {};
     std::optional<Figure> minimised = {};  // if none, the change of the numbers is minimised
-    // of the figures: the points of the goals in order, then the minimised one
+    // The points of the goals in order, then the minimised figure.
     std::vector<Figure> figures = {};
     Optimum optimum = {};
     std::vector<Search> searches = {};  // those before points were added between the goals' points
-    Confirmation by = {};               // of the figures by the other legs
+    Confirmation by = {};               // confirmation of the figures by the other legs
     std::optional<Between> between = {};
     std::optional<CertifyStudy> certificate = {};  // if the bands are met
 };
@@ -71,7 +71,7 @@ struct FittedScene {
     std::vector<Channel> columns;       // outputs that are fitted
     std::vector<std::string> left_out;  // columns and rows that are not, and why
     Fitted fitted = {};
-    std::vector<ProposedOutput> proposed = {};  // per undetermined combination
+    std::vector<ProposedOutput> proposed = {};  // one for each undetermined combination
 };
 Result result_of(const FittedScene& fit);
 

@@ -25,14 +25,14 @@ Solution solve_for(const Figures& figures, const Bands& bands, const SearchRange
     MatrixXd rate;
     const auto value_at = [&](const VectorXd& x) -> const VectorXd& {
         if (x.size() != valued.size() || x != valued) {
-            f = figures.value(range.at(x));
+            f = figures.value(range.point(x));
             valued = x;
         }
         return f;
     };
     const auto rate_at = [&](const VectorXd& x) -> const MatrixXd& {
         if (x.size() != rated.size() || x != rated) {
-            rate = figures.gradient(range.at(x));
+            rate = figures.gradient(range.point(x));
             rated = x;
         }
         return rate;
@@ -57,7 +57,7 @@ Solution solve_for(const Figures& figures, const Bands& bands, const SearchRange
         problem.pull = mu;
         nearest = minimise(problem, nearest.x);
     }
-    return {range.at(nearest.x), nearest.converged, nearest.residual,
+    return {range.point(nearest.x), nearest.converged, nearest.residual,
             limits_reached(problem, nearest)};
 }
 

@@ -18,15 +18,16 @@
 namespace elastocheck::compare {
 
 struct Bands {
-    Eigen::VectorXd low, high;  // per figure, in its unit; infinite: no bound
+    Eigen::VectorXd low, high;  // band of each figure, in its unit; infinite: no bound
     Eigen::VectorXd scale;      // g_j, in its unit
 };
 
 // Figures and their gradient at the start of all searches.
 struct SearchStart {
-    Eigen::VectorXd value;     // of the figures; NaN where there is none
-    Eigen::MatrixXd gradient;  // likewise; empty without values
-    // change of the figures over the ranges of the numbers, to first order, and whether that is none
+    Eigen::VectorXd value;  // values of the figures; NaN where there is none
+    Eigen::MatrixXd
+        gradient;  // rates [figures × numbers], NaN where there is none; empty without values
+    // Change of each figure over the ranges of the numbers, to first order; whether it is only rounding.
     Eigen::VectorXd movement = {};
     std::vector<bool> still = {};
 
@@ -36,18 +37,18 @@ SearchStart start_of(const Figures& figures, const SearchRange& range);
 
 struct Solution {
     Eigen::VectorXd p;
-    bool converged = false;  // to the smallest change, or the nearest numbers
+    bool converged = false;  // p has the smallest change, or is nearest to the bands
     Eigen::VectorXd off;     // r
-    // per number: at a limit beyond which the bands would come nearer: -1 the lower, 1 the upper
+    // For each number -1 or 1 if it is at its lower or upper limit and the bands would come nearer beyond; else 0.
     std::vector<int> at_limit = {};
 
     double excess() const { return off.size() > 0 ? off.cwiseAbs().maxCoeff() : 0; }
-    // share |r_j| / Σ |r| of each figure in what is not reached
+    // Share |r_j| / Σ |r| of each figure in the distance from the bands.
     Eigen::VectorXd conflict() const { return off.cwiseAbs() / off.cwiseAbs().sum(); }
 };
 inline constexpr double met_within = 1e-7;  // |r_j| with which a wanted value is met
 
-// From p, where the figures have values.
+// Solves from p, where the figures must have values.
 Solution solve_for(const Figures& figures, const Bands& bands, const SearchRange& range,
                    const Eigen::VectorXd& p);
 

@@ -36,7 +36,7 @@ double stiffness(const LinearStiffness& u, double L) {
 double stiffness(const PerAxis& u, double L) {
     double k = 0;
     for (std::size_t axis = 0; axis < 6; ++axis)
-        k = std::max(k, steepest(u.axis[axis]) / (axis < 3 ? 1 : L * L));
+        k = std::max(k, max_slope(u.axis[axis]) / (axis < 3 ? 1 : L * L));
     return k;
 }
 
@@ -50,7 +50,8 @@ double as_force(const Vector3d& f, const Vector3d& m, double L) {
 // Elastic force of an element, acting load: as a force [N].
 double stored(const ElasticKind& kind, std::size_t k, const Branch& branch,
               const Equilibrium& state, double L) {
-    const Vector6 F = stress(kind, k, branch, state, deformation(kind, k, branch, state));
+    const Vector6 F =
+        force_with_preload(kind, k, branch, state, deformation(kind, k, branch, state));
     return as_force(F.head<3>(), F.tail<3>(), L);
 }
 
@@ -90,7 +91,7 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
     for (const auto& elastic : model.elastics)
         each_member(
             elastic.kind,
-            overloaded{[&](const ScalarLaw& law) { k = worse(k, steepest(law)); },
+            overloaded{[&](const ScalarLaw& law) { k = worse(k, max_slope(law)); },
                        [&](const SpatialLaw& law) {
                            k = worse(
                                k, std::visit([&](const auto& u) { return stiffness(u, L); }, law));

@@ -11,8 +11,8 @@
 namespace elastocheck::compare {
 namespace {
 
-// A smaller movement is rounding of coordinates in metres.
-constexpr double still = 1e-9;  // [mm], [deg], [N], [N·m]
+// Smallest range that is not rounding of coordinates in metres [mm, deg, N, N·m].
+constexpr double min_range = 1e-9;
 
 }  // namespace
 
@@ -60,7 +60,7 @@ Trend trend(std::span<const double> x) {
         if (!std::isfinite(x[k])) return {Course::not_finite, k};
     if (x.size() < 2) return {};
     const auto [low, high] = std::ranges::minmax(x);
-    if (!(high - low > still)) return {Course::still, 0};
+    if (!(high - low > min_range)) return {Course::still, 0};
     const bool up = x[1] > x[0];
     for (std::size_t k = 1; k < x.size(); ++k)
         if (!(up ? x[k] > x[k - 1] : x[k] < x[k - 1])) return {Course::turning, k - 1};

@@ -19,7 +19,7 @@ void append(Curve& curve, double load, std::vector<double> values);
 Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,
             const std::vector<Equilibrium>& points);
 
-// Every `stride`-th point, counted from the start.
+// Curve with every `stride`-th point, counted from the start of the branch.
 Curve thinned(const Curve& curve, std::size_t stride);
 
 // Direction of a sequence. Only a rising or falling sequence can be inverted.
@@ -33,7 +33,7 @@ enum class Course {
 };
 struct Trend {
     Course course = Course::too_short;
-    std::size_t at = 0;  // index where it first reverses, or is not finite
+    std::size_t at = 0;  // index at which the sequence first reverses, or is not finite
     bool monotonic() const { return course == Course::rising || course == Course::falling; }
 };
 Trend trend(std::span<const double> x);

@@ -45,16 +45,16 @@ Vector3d angles(const Eigen::Quaterniond& B, Formulation::Angles kind) {
 // Piece of the curve that contains x, and x relative to its knot.
 std::pair<const std::array<double, 4>*, double> piece_at(const elastocheck::Curve& curve,
                                                          double x) {
-    const auto behind =
+    const auto piece =
         static_cast<std::size_t>(std::ranges::upper_bound(curve.knots, x) - curve.knots.begin());
-    return {&curve.pieces[behind], x - curve.knots[behind > 0 ? behind - 1 : 0]};
+    return {&curve.pieces[piece], x - curve.knots[piece > 0 ? piece - 1 : 0]};
 }
 
 double slope(const std::array<double, 4>& c, double h) {
     return c[1] + h * (2 * c[2] + h * 3 * c[3]);
 }
 
-// The end of the table that x exceeds, or NaN.
+// Deformation at the end of the table that x exceeds; NaN if x is inside or the curve is extrapolated.
 double end_passed(const elastocheck::Curve& curve, double x) {
     if (curve.known_outside) return std::nan("");
     if (x < curve.knots.front()) return curve.knots.front();
@@ -65,16 +65,17 @@ double end_passed(const elastocheck::Curve& curve, double x) {
 constexpr double knot_tolerance = 1e-9;  // [m, rad], larger than the error of a state
 constexpr double min_slope_jump = 1e-6;  // share of the steeper slope, larger than rounding
 
-// The knot near x where the slope jumps.
+// Index of the knot within knot_tolerance of x if the slope jumps there.
 std::optional<std::size_t> corner_at(const elastocheck::Curve& curve, double x) {
     const auto& knots = curve.knots;
     const auto near = static_cast<std::size_t>(std::ranges::lower_bound(knots, x - knot_tolerance) -
                                                knots.begin());
     if (near == knots.size() || knots[near] > x + knot_tolerance) return std::nullopt;
     const double h = near == 0 ? 0 : knots[near] - knots[near - 1];
-    const double before = slope(curve.pieces[near], h), behind = slope(curve.pieces[near + 1], 0);
-    if (!(std::abs(behind - before) >
-          min_slope_jump * std::max(std::abs(before), std::abs(behind))))
+    const double slope_before = slope(curve.pieces[near], h),
+                 slope_after = slope(curve.pieces[near + 1], 0);
+    if (!(std::abs(slope_after - slope_before) >
+          min_slope_jump * std::max(std::abs(slope_before), std::abs(slope_after))))
         return std::nullopt;
     return near;
 }
@@ -113,6 +114,8 @@ Vector6 deformation(const ElasticKind& kind, std::size_t element, const Branch& 
                free_length;
         return e;
     };
+    // A driver other than a preload moves the undeformed position of the bushing along z: the rise of the
+    // road under a tyre.
     const auto of_bushing = [&](const Bushing& bushing) {
         Vector6 e = deformation(bushing, state);
         for (const auto& driver : branch.drivers)
@@ -149,10 +152,10 @@ Vector6 force(const ElasticKind& kind, const Vector6& e) {
     return f;
 }
 
-Vector6 stress(const ElasticKind& kind, std::size_t element, const Branch& branch,
-               const Equilibrium& state, const Vector6& e) {
+Vector6 force_with_preload(const ElasticKind& kind, std::size_t element, const Branch& branch,
+                           const Equilibrium& state, const Vector6& e) {
     Vector6 s = force(kind, e);
-    if (const Vector6* drawn = preload(kind)) s += *drawn;
+    if (const Vector6* constant_preload = preload(kind)) s += *constant_preload;
     for (const auto& driver : branch.drivers)
         if (const Vector6* direction = preload(driver.what);
             direction != nullptr && driven_element(driver.what) == static_cast<int>(element))
@@ -160,7 +163,7 @@ Vector6 stress(const ElasticKind& kind, std::size_t element, const Branch& branc
     return s;
 }
 
-double steepest(const ScalarLaw& law) {
+double max_slope(const ScalarLaw& law) {
     return std::visit(
         overloaded{[](const LinearRate& u) { return u.k; },
                    [](const elastocheck::Curve& u) {
@@ -170,9 +173,11 @@ double steepest(const ScalarLaw& law) {
                            k = std::max(k,
                                         std::abs(c[1]));  // slope at the knot; constant if linear
                            if (n == 0 || n == u.knots.size()) continue;
-                           const double h = u.knots[n] - u.knots[n - 1], top = -c[2] / (3 * c[3]);
+                           const double h = u.knots[n] - u.knots[n - 1],
+                                        inflection = -c[2] / (3 * c[3]);  // f'' = 0
                            k = std::max(k, std::abs(slope(c, h)));
-                           if (top > 0 && top < h) k = std::max(k, std::abs(slope(c, top)));
+                           if (inflection > 0 && inflection < h)
+                               k = std::max(k, std::abs(slope(c, inflection)));
                        }
                        return k;
                    }},

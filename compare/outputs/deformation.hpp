@@ -10,23 +10,26 @@
 
 namespace elastocheck::compare {
 
-// Deformation of an element as its law takes it: ℓ - ℓ₀ first [m], with the branch's part of ℓ₀ at
-// state.load, or e - e₀ [m, rad]; `element` is the position in Model::elastics.
+// Deformation of an element: of a spring ℓ - ℓ₀ [m] in the first entry and zero in the others, of a bushing
+// e - e₀ [m, rad]. Drivers of the branch change ℓ₀ and e₀ with state.load. `element` is the position in
+// Model::elastics.
 Vector6 deformation(const ElasticKind& kind, std::size_t element, const Branch& branch,
                     const Equilibrium& state);
-// ∂u/∂e at a deformation, without a preload [N, N·m].
+// Generalised force ∂u/∂e at a deformation, u the energy, without a preload [N, N·m].
 Vector6 force(const ElasticKind& kind, const Vector6& deformation);
-// The same with the preload and the branch's part of it at state.load.
-Vector6 stress(const ElasticKind& kind, std::size_t element, const Branch& branch,
-               const Equilibrium& state, const Vector6& deformation);
+// The generalised force with the constant preload and the preload that the branch drives at state.load
+// [N, N·m].
+Vector6 force_with_preload(const ElasticKind& kind, std::size_t element, const Branch& branch,
+                           const Equilibrium& state, const Vector6& deformation);
 
 // e - e₀ = (d, θ) - e₀ [m, rad], in the frame and angles of the bushing's formulation, frame on i
 // or in the middle. Pre: frame not on j; compile() exchanges the markers of such a bushing.
 Vector6 deformation(const Bushing& bushing, const Equilibrium& state);
 
-// f(x) = u'(x), and the largest |f'| over the whole law.
+// Force f(x) = u'(x) of a law [N, N·m].
 double force(const ScalarLaw& law, double x);
-double steepest(const ScalarLaw& law);
+// Largest |f'| over all pieces of a curve; the rate k, with its sign, of a linear law.
+double max_slope(const ScalarLaw& law);
 
 // Elements whose deformation is, to 1e-9 m or rad, at a knot where the slope of its law jumps: the
 // tangent stiffness of the model then differs between the two sides.

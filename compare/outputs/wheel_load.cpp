@@ -98,7 +98,8 @@ double wheel_load(const Model& model, const Branch& branch, const Equilibrium& s
         if (wheel_on_tyre(model, k) == wheel) {
             const auto e = static_cast<std::size_t>(k);
             const ElasticKind& tyre = model.elastics[e].kind;
-            road -= stress(tyre, e, branch, state, deformation(tyre, e, branch, state)).z();
+            road -=
+                force_with_preload(tyre, e, branch, state, deformation(tyre, e, branch, state)).z();
         }
     return road;
 }

@@ -59,6 +59,7 @@ void certify_at(double a, std::span<SolvedSide> solvers, const certificate::Tole
                                                         state, tolerance, known);
 }
 
+// Certifies the curve between the points of the equilibrium leg, and a limit point at the end of a path.
 void certify_path(SolvedSide& solved, const CertifyOptions& options) {
     const auto& [side, solver, path, points, _] = solved;
     CertifiedSide& result = solved.result;
@@ -66,19 +67,20 @@ void certify_path(SolvedSide& solved, const CertifyOptions& options) {
         result.curve = certificate::certify_branch(side.model, side.branch, path.points,
                                                    in_si(options.tolerance));
     // The last point starts the search for the limit point; it claims no accuracy.
-    constexpr certificate::Tolerance anywhere{.length = 1, .angle = 1, .force = 1e9, .moment = 1e9};
+    constexpr certificate::Tolerance unlimited{
+        .length = 1, .angle = 1, .force = 1e9, .moment = 1e9};
     if (path.outcome == Outcome::limit_point && !path.points.empty())
-        result.limit =
-            certificate::certify_limit_point(side.model, side.branch, path.points.back(), anywhere);
+        result.limit = certificate::certify_limit_point(side.model, side.branch, path.points.back(),
+                                                        unlimited);
 }
 
 }  // namespace
 
 Tolerance claim(std::string_view text) {
     Tolerance requested = parse_tolerance(text);
-    const Tolerance usual = parse_tolerance(claimed_accuracy);
-    if (std::isinf(requested.mm)) requested.mm = usual.mm;
-    if (std::isinf(requested.deg)) requested.deg = usual.deg;
+    const Tolerance default_claim = parse_tolerance(claimed_accuracy);
+    if (std::isinf(requested.mm)) requested.mm = default_claim.mm;
+    if (std::isinf(requested.deg)) requested.deg = default_claim.deg;
     return requested;
 }
 
@@ -95,12 +97,12 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     std::vector<SolvedSide> solved_sides;  // the solvers of a side one after the other
     for (const BranchSide& side : sides)
         for (const SolverSettings& solver : solvers) solved_sides.push_back({side, solver});
-    constexpr double solving = 0.1;  // share of the work
+    constexpr double solving_share = 0.1;  // share of the solves in the progress
     std::vector<Job> jobs;
     for (SolvedSide& solved : solved_sides)
         jobs.push_back(
             {fmt::format("{}: solving", solved.side.name), [&] { solve(solved, options.points); }});
-    run_jobs(jobs, options.threads, part(options.progress, 0, solving));
+    run_jobs(jobs, options.threads, part(options.progress, 0, solving_share));
 
     certificate::Tolerance tolerance = in_si(options.tolerance);
     tolerance.max_unknowns = certificate::max_unknowns_of_points;
@@ -118,7 +120,7 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
             jobs.push_back({fmt::format("{}: proving points", of_side.front().side.name),
                             [&tolerance, a, of_side] { certify_at(a, of_side, tolerance); }});
     }
-    run_jobs(jobs, options.threads, part(options.progress, solving, 1));
+    run_jobs(jobs, options.threads, part(options.progress, solving_share, 1));
     for (SolvedSide& solved : solved_sides) {
         for (std::size_t k = 0; k < solved.points.size(); ++k)
             add(solved.result.tally, solved.path.points[k].load, solved.result.unit,

@@ -24,17 +24,17 @@ inline constexpr const char* claimed_accuracy = "1e-6mm,1e-6deg";
 // parse_tolerance does.
 Tolerance claim(std::string_view text);
 
-// One solver along one side of a branch.
+// Proofs of the points of one solver along one side of a branch.
 struct CertifiedSide {
-    std::string branch;        // of the branch side
-    Unit unit = Unit::newton;  // of its parameter
+    std::string branch;        // name of the branch side
+    Unit unit = Unit::newton;  // unit of its parameter
     double to = 0;             // end of the branch side, in that unit
     std::string solver;        // "equilibrium", "energy", or a method of the recursion
     Outcome outcome = Outcome::converged;
     std::string detail = {};
     Tally tally = {};
-    std::optional<Tube> curve = {};        // of the equilibrium leg
-    std::optional<LimitPoint> limit = {};  // where the path ends in a limit point
+    std::optional<Tube> curve = {};        // curve through the points of the equilibrium leg
+    std::optional<LimitPoint> limit = {};  // limit point at which the path ends
 };
 
 struct Result;
@@ -42,7 +42,7 @@ struct Result;
 struct CertifyOptions {
     std::vector<SolverSettings> solvers;  // empty: both references and the series
     Tolerance tolerance;
-    // least number of points per branch side besides the start, as far as it has as many steps
+    // Least number of points on a branch side besides the start, if it has as many steps.
     int points = 20;
     bool curves = true;  // prove that the equilibrium leg's points lie on one curve, too
     int threads = 1;
@@ -61,6 +61,7 @@ struct CertifyStudy {
     bool conclusive() const;
 };
 
+// Certifies every branch side of a model with every solver.
 CertifyStudy certify(const Model& model, const CertifyOptions& options);
 // Table "sides": a row for each side of a branch and solver. Fails where a point is excluded.
 Result result_of(const CertifyStudy& study);

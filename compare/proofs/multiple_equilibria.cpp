@@ -31,10 +31,10 @@ constexpr std::array shares_along{0.03, 0.3, 1.0};
 constexpr std::size_t max_bodies = 100;
 
 // Attempts from one start, each with the newly found states deflated.
-constexpr int tries = 4;
+constexpr int max_attempts = 4;
 
-constexpr int softest_motions = 3;  // along which starts are made beside every equilibrium
-constexpr unsigned seed = 1;        // of the random poses
+constexpr int softest_motions = 3;  // motions along which starts are made beside every equilibrium
+constexpr unsigned seed = 1;        // seed of the random poses
 
 // Uniform in [-1, 1], reproducible with any standard library.
 double draw(std::minstd_rand& random) { return 2 * static_cast<double>(random()) / 2147483647 - 1; }
@@ -50,7 +50,9 @@ std::vector<Pose> mirror_image(const Model& model, const std::vector<Pose>& pose
     return other;
 }
 
-std::vector<Pose> at_random(std::vector<Pose> poses, double size, std::minstd_rand& random) {
+// Poses displaced at random by up to a share of `size` [m], and rotated by up to that share of about 1 rad per
+// axis; the share is drawn once.
+std::vector<Pose> random_poses(std::vector<Pose> poses, double size, std::minstd_rand& random) {
     const double share = 0.5 * (1 + draw(random));  // of the size, and of a radian
     for (Pose& pose : poses) {
         const double x = draw(random), y = draw(random), z = draw(random);
@@ -61,7 +63,8 @@ std::vector<Pose> at_random(std::vector<Pose> poses, double size, std::minstd_ra
     return poses;
 }
 
-void measure(const Model& model, const std::vector<Pose>& from, FoundEquilibrium& found) {
+// Sets the largest displacement and rotation of a body of `found` from the poses `from`.
+void set_distance(const Model& model, const std::vector<Pose>& from, FoundEquilibrium& found) {
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         const double length = (found.state.poses[b].r - from[b].r).norm(),
                      angle = found.state.poses[b].p.angularDistance(from[b].p);
@@ -93,11 +96,11 @@ bool has_reversed_joint(const Model& model, const Equilibrium& state) {
         const auto b = static_cast<std::size_t>(body);
         return drawn ? model.bodies[b].design.p : state.poses[b].p;
     };
-    std::vector<std::vector<const PerpendicularDirections*>> held(model.joints.size());
+    std::vector<std::vector<const PerpendicularDirections*>> rows_of_joint(model.joints.size());
     for (const auto& constraint : model.constraints)
         if (const auto* row = std::get_if<PerpendicularDirections>(&constraint.kind))
-            held[static_cast<std::size_t>(constraint.joint)].push_back(row);
-    for (const auto& rows : held) {
+            rows_of_joint[static_cast<std::size_t>(constraint.joint)].push_back(row);
+    for (const auto& rows : rows_of_joint) {
         if (rows.size() < 2) continue;
         const BodyId i = rows[0]->i.body, j = rows[0]->j.body;
         const Quaterniond drawn = axes(j, true).conjugate() * axes(i, true),
@@ -112,12 +115,13 @@ bool has_reversed_joint(const Model& model, const Equilibrium& state) {
     return false;
 }
 
+// Sentence on what an equilibrium means for the suspension.
 std::string meaning_of(const AllEquilibria& equilibria, const FoundEquilibrium& equilibrium) {
     const std::string away =
         fmt::format("{:.4g} mm away ('{}')", 1e3 * equilibrium.length, equilibrium.body);
     if (equilibrium.on_branch)
         return equilibrium.stable ? "on the branch" : "on the branch, and unstable";
-    if (!equilibria.begins)
+    if (!equilibria.has_start)
         return fmt::format("{}, {} from the design position, from which no branch begins",
                            equilibrium.stable ? "stable" : "unstable", away);
     if (!equilibrium.stable)
@@ -154,12 +158,12 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     // The equilibria on the branch as it is traced.
     report("the branch");
     std::vector<double> parameters;
-    constexpr int pieces = 8;
-    for (int k = 0; k <= pieces; ++k) parameters.push_back(a * k / pieces);
+    constexpr int intervals = 8;
+    for (int k = 0; k <= intervals; ++k) parameters.push_back(a * k / intervals);
     EquilibriumPath path = leg::solve(side.model, side.branch, parameters);
     equilibria.outcome = path.outcome;
     equilibria.detail = path.detail;
-    const bool arrives = path.outcome == Outcome::converged;
+    const bool reaches_a = path.outcome == Outcome::converged;
     std::vector<Equilibrium> known;
 
     const auto is_known = [&](const Equilibrium& state) {
@@ -174,15 +178,15 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         if (attempt.outcome != Outcome::converged || is_known(attempt.state)) return;
         known.push_back(attempt.state);
         if (has_reversed_joint(side.model, attempt.state)) {
-            ++equilibria.reversed;
+            ++equilibria.with_reversed_joint;
             return;
         }
         bool is_turned_over = false;
         for (std::size_t b = 0; b < reached.size(); ++b)
-            is_turned_over = is_turned_over ||
-                             attempt.state.poses[b].p.angularDistance(reached[b].p) > options.turn;
+            is_turned_over = is_turned_over || attempt.state.poses[b].p.angularDistance(
+                                                   reached[b].p) > options.max_rotation;
         if (is_turned_over && !on_branch) {
-            ++equilibria.turned_over;
+            ++equilibria.with_overturned_body;
             return;
         }
         FoundEquilibrium entry{attempt.state, {}, attempt.stable, attempt.stiffness, on_branch};
@@ -192,7 +196,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
             starts.push_back(std::move(start));
         report(fmt::format("{} found", known.size()));
     };
-    if (arrives) add(leg::solve_from(side.model, side.branch, a, path.points.back().poses), true);
+    if (reaches_a) add(leg::solve_from(side.model, side.branch, a, path.points.back().poses), true);
     for (auto point = path.points.rbegin(); point != path.points.rend(); ++point) {
         starts.push_back(point->poses);
         starts.push_back(mirror_image(side.model, point->poses));
@@ -200,12 +204,13 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     starts.push_back(drawn);
     const double size = scale_of(side.model, side.branch, path.points).length;
     std::minstd_rand random(seed);
-    for (int k = 0; k < options.at_random; ++k) starts.push_back(at_random(reached, size, random));
+    for (int k = 0; k < options.random_starts; ++k)
+        starts.push_back(random_poses(reached, size, random));
     for (; !starts.empty(); starts.pop_front()) {
         const auto start = starts.front();
         // The first attempt is without deflation, whose longer steps may cross the knot of a stop and
         // diverge.
-        for (int k = 0; k < tries; ++k) {
+        for (int k = 0; k < max_attempts; ++k) {
             const std::size_t known_before = known.size();
             ++equilibria.starts;
             const std::span<const Equilibrium> away_from(known.data(), k == 0 ? 0 : known.size());
@@ -214,13 +219,13 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         }
     }
 
-    equilibria.begins = !path.points.empty();
+    equilibria.has_start = !path.points.empty();
     equilibria.proved = !equilibria.list.empty();
     for (auto& entry : equilibria.list) {
         report("proof");
         entry.proof = reference::certificate::certify(side.model, side.branch, entry.state);
         equilibria.proved &= entry.proof.state == ProofState::proved;
-        measure(side.model, reached, entry);
+        set_distance(side.model, reached, entry);
         entry.meaning = meaning_of(equilibria, entry);
     }
     for (std::size_t i = 0; i < equilibria.list.size(); ++i)

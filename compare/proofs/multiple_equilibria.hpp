@@ -26,25 +26,25 @@ namespace elastocheck::compare {
 struct Result;
 
 struct FindOptions {
-    // [rad] states with a body rotated further than this are left out
-    double turn = 1.5707963267948966;
-    int at_random = 24;  // number of random poses
+    // States with a body that is rotated further from the branch are left out [rad].
+    double max_rotation = 1.5707963267948966;
+    int random_starts = 24;  // number of random poses
     Progress progress = {};
 };
 
 struct FoundEquilibrium {
     Equilibrium state;
     reference::certificate::Certificate proof;
-    bool stable = false;  // by the sign of its smallest stiffness
-    // smallest stiffness of the motions that are free and resisted, scaled by the leg
+    bool stable = false;  // judged by the sign of the smallest stiffness
+    // Smallest stiffness of the motions that are free and resisted, scaled by the equilibrium leg.
     double stiffness = 0;
     bool on_branch = false;  // lies on the branch as it is continued from the design position
     // Largest displacement of any body from the branch's own equilibrium; from the last one before
     // the branch's end; or, if no branch starts, from the design position.
-    double length = 0;      // [m]
-    double angle = 0;       // [rad]
-    std::string body = {};  // body with that displacement
-    std::string meaning = {};
+    double length = 0;         // [m]
+    double angle = 0;          // [rad]
+    std::string body = {};     // body with the largest displacement
+    std::string meaning = {};  // what the equilibrium means for the suspension, in words
 };
 
 struct AllEquilibria {
@@ -53,18 +53,18 @@ struct AllEquilibria {
     double a = 0;                          // SI
     Outcome outcome = Outcome::converged;  // outcome of the equilibrium leg on the branch up to a
     std::string detail = {};
-    bool begins = true;  // the first point of the branch is a stable equilibrium
+    bool has_start = true;  // the branch has a first point, which is a stable equilibrium
     std::vector<FoundEquilibrium> list = {};  // the branch's own first, then by distance
-    int reversed = 0;                         // equilibria with a reversed joint: not in the list
-    // equilibria with a body rotated by more than FindOptions::turn: not in the list
-    int turned_over = 0;
+    // Numbers of equilibria that are not in the list: with a joint assembled in reverse, and with a body that is
+    // rotated by more than FindOptions::max_rotation.
+    int with_reversed_joint = 0, with_overturned_body = 0;
     int starts = 0;       // number of start poses
     bool proved = false;  // every equilibrium is proved, and every two are proved distinct
 
     int stable() const;
 };
 
-// Thread-safe.
+// Searches for the equilibria of a branch at its parameter a [SI]. Thread-safe.
 AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a,
                               const FindOptions& options = {});
 

@@ -33,7 +33,7 @@ struct RateError {
     double off = 0;
     double over = 0;        // travel of the reference from a = 0 to the end [mm]
     double travel = 0;      // travel at the end, recursion minus reference [mm]
-    double force = 0;       // jack force at the end, likewise [N]
+    double force = 0;       // jack force at the end, recursion minus reference [N]
     double wheel_rate = 0;  // k_w of the reference from a = 0 to the end: force over travel [N/mm]
     // Ride rate with the tyre rate k_t in series, 1 / (1/k_w + 1/k_t), of the reference [N/mm],
     // where the road moves: tyre force over road height; and the error of the recursion. NaN for a

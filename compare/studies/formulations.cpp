@@ -25,7 +25,7 @@ int axes_resisted(const SpatialLaw& law) {
                    },
                    [](const PerAxis& u) {
                        return static_cast<int>(std::ranges::count_if(
-                           u.axis, [](const ScalarLaw& axis) { return steepest(axis) > 0; }));
+                           u.axis, [](const ScalarLaw& axis) { return max_slope(axis) > 0; }));
                    }},
         law);
 }

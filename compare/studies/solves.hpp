@@ -23,7 +23,7 @@ struct Solves {
     const std::vector<Channel> channels;              // channels(model)
     std::vector<std::vector<BranchSide>> sides = {};  // per branch, at the base points
 
-    // By one solver along one side of a branch, at its points.
+    // Result of one solver along one side of a branch, at its points.
     struct Run {
         std::once_flag once = {};
         PathCurve curve = {};
@@ -34,14 +34,14 @@ struct Solves {
     std::atomic<int> requests = 0;
 };
 
-// The side at `multiple` points for each of the base.
+// The side with `multiple` points for each of the base.
 BranchSide at_points(BranchSide side, int multiple);
 
-// A solver along a side, at the points that `side` records. Threads that need the same run
+// Curve of a solver along a side, at the points that `side` records. Threads that need the same run
 // wait for it.
 const PathCurve& solved(Solves& solves, const BranchSide& side, const SolverSettings& solver);
 
-// A method along a side with `steps` for each of the base points. Pre: steps <= finest, or a
+// Curve of a method along a side with `steps` for each of the base points. Pre: steps <= finest, or a
 // multiple of it.
 const PathCurve& solved(Solves& solves, const BranchSide& side, const recursive::Method& method,
                         int steps);

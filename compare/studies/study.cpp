@@ -15,9 +15,9 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double round_off = 1e-9;  // [mm], [deg]: smaller differences are rounding
-constexpr int stations = 30;        // along a branch, where curves are compared
-constexpr int reference_points = 300;
+constexpr double round_off = 1e-9;     // smaller differences are rounding [mm, deg]
+constexpr int stations = 30;           // points of a branch at which curves are compared
+constexpr int reference_points = 300;  // points of a branch at which the references are solved
 
 // Abscissa x of a curve: its parameter, or the values of a channel (`x_channel`).
 constexpr int parameter = -1;
@@ -25,7 +25,7 @@ std::vector<double> x_values(const Curve& curve, int x_channel) {
     return x_channel == parameter ? curve.a : curve.channel(static_cast<std::size_t>(x_channel));
 }
 
-// Range that every curve reaches.
+// Range of x that every curve reaches, in the direction of the curves.
 struct Span {
     double from = nan, to = nan;
 };
@@ -41,9 +41,9 @@ Span common_span(int x_channel, const std::vector<const Curve*>& curves) {
     return span;
 }
 
-// One channel of a curve at equally spaced stations 1 ... S of the span.
-std::vector<double> at_stations(const Curve& curve, std::size_t channel, int x_channel,
-                                const Span& span) {
+// Values of a channel at the equally spaced stations 1 ... S of the span, interpolated with degree 5.
+std::vector<double> values_at_stations(const Curve& curve, std::size_t channel, int x_channel,
+                                       const Span& span) {
     const auto x = x_values(curve, x_channel), y = curve.channel(channel);
     std::vector<double> values;
     for (int s = 1; s <= stations; ++s)
@@ -59,9 +59,9 @@ Abscissa common_abscissa(const std::vector<Channel>& channels,
                          const std::vector<const Curve*>& curves) {
     const int x_channel = default_abscissa(channels, *curves.front());
     for (const Curve* curve : curves)
-        if (const Abscissa found = abscissa(channels, x_channel, *curves.front(), *curve);
-            !found.why_not.empty())
-            return found;
+        if (const Abscissa candidate = abscissa(channels, x_channel, *curves.front(), *curve);
+            !candidate.why_not.empty())
+            return candidate;
     return {x_channel, ""};
 }
 
@@ -70,6 +70,7 @@ double rms(const std::vector<double>& values) {
     for (const double v : values) sum += v * v;
     return values.empty() ? nan : std::sqrt(sum / static_cast<double>(values.size()));
 }
+// Largest |value|; NaN if any value is NaN.
 double largest(const std::vector<double>& values) {
     double worst = 0;
     for (const double v : values) {
@@ -84,17 +85,19 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
     return d;
 }
 
-// Station at which the last refinement moves the value most: there the leading term of the error
+// Station at which the last refinement changes the value most: there the leading term of the error
 // is largest, while at coarse levels the next one may be.
-std::size_t most_refined(const std::vector<std::vector<double>>& levels) {
-    const auto moves = difference(levels[levels.size() - 2], levels.back());
+std::size_t station_of_largest_change(const std::vector<std::vector<double>>& levels) {
+    const auto changes = difference(levels[levels.size() - 2], levels.back());
     return static_cast<std::size_t>(
-        std::ranges::max_element(moves, {}, [](double e) { return std::abs(e); }) - moves.begin());
+        std::ranges::max_element(changes, {}, [](double e) { return std::abs(e); }) -
+        changes.begin());
 }
 
-StepConvergence at_station(const std::vector<int>& steps,
-                           const std::vector<std::vector<double>>& levels, std::size_t station,
-                           double formal, double reference) {
+// Convergence of the value at one station. `formal`: formal order; `reference`: uncertainty of the reference.
+StepConvergence convergence_at(const std::vector<int>& steps,
+                               const std::vector<std::vector<double>>& levels, std::size_t station,
+                               double formal, double reference) {
     std::vector<Level> sequence;
     for (std::size_t l = 0; l < levels.size(); ++l)
         sequence.push_back({static_cast<double>(steps[l]), levels[l][station]});
@@ -108,20 +111,22 @@ StepConvergence at_station(const std::vector<int>& steps,
 // two finest levels v and w, h_v = r h_w, give the limit:  w + (w - v) / (r^p - 1).
 std::vector<double> own_limit(const std::vector<int>& steps,
                               const std::vector<std::vector<double>>& levels, double formal) {
-    const auto leading = at_station(steps, levels, most_refined(levels), formal, 0);
+    const auto leading =
+        convergence_at(steps, levels, station_of_largest_change(levels), formal, 0);
     const double p = leading.as_formal ? formal : leading.order;
     const auto& finest = levels.back();
-    const auto& before = levels[levels.size() - 2];
+    const auto& second_finest = levels[levels.size() - 2];
     const double r = static_cast<double>(steps.back()) / steps[steps.size() - 2];
     std::vector<double> limit;
     for (std::size_t s = 0; s < finest.size(); ++s) {
-        const auto c = at_station(steps, levels, s, formal, 0);
+        const auto c = convergence_at(steps, levels, s, formal, 0);
         const bool converges = c.behaviour == Behaviour::converging;
-        const bool leads = leading.behaviour != Behaviour::converging ||
-                           agrees_with_formal(c.order, c.order_error, p);
+        const bool has_order_p = leading.behaviour != Behaviour::converging ||
+                                 agrees_with_formal(c.order, c.order_error, p);
         limit.push_back(!converges ? finest[s]
-                        : leads    ? c.limit
-                                   : finest[s] + (finest[s] - before[s]) / (std::pow(r, p) - 1));
+                        : has_order_p
+                            ? c.limit
+                            : finest[s] + (finest[s] - second_finest[s]) / (std::pow(r, p) - 1));
     }
     return limit;
 }
@@ -130,19 +135,22 @@ std::vector<double> own_limit(const std::vector<int>& steps,
 // the coefficient of the leading error term crosses zero there, the next term sets its order.
 void add_order(ChannelStudy& study, const std::vector<int>& steps,
                const std::vector<std::vector<double>>& levels, double formal) {
-    constexpr double small_share = 0.1, above_rounding = 10;
+    // The error at the end counts as zero below this share of the largest error, if that exceeds this multiple of
+    // rounding.
+    constexpr double small_share = 0.1, rounding_factor = 10;
     std::vector<Level> errors;
     for (std::size_t l = 0; l < levels.size(); ++l) {
         const auto N = static_cast<double>(steps[l]);
         errors.push_back({N, study.step_error_max[l]});
         study.zero_at_end = study.zero_at_end ||
-                            (errors.back().value > above_rounding * round_off &&
+                            (errors.back().value > rounding_factor * round_off &&
                              std::abs(study.step_error_end[l]) < small_share * errors.back().value);
     }
     study.behaviour =
-        at_station(steps, levels, most_refined(levels), formal, study.uncertainty).behaviour;
+        convergence_at(steps, levels, station_of_largest_change(levels), formal, study.uncertainty)
+            .behaviour;
     if (study.behaviour != Behaviour::converging) return;
-    study.order = asymptotic_order_of(errors, above_rounding * round_off);
+    study.order = asymptotic_order_of(errors, rounding_factor * round_off);
     study.as_formal = agrees_with_formal(study.order.order, study.order.order_error, formal);
 }
 
@@ -150,16 +158,17 @@ ChannelStudy study_channel(const StudiedLevels& levels, std::size_t channel, int
                            const Span& span) {
     const auto& [steps, curves, references, formal] = levels;
     ChannelStudy result;
-    const auto truth = at_stations(references.truth.curve, channel, x_channel, span);
-    result.uncertainty =
-        largest(difference(at_stations(references.other.curve, channel, x_channel, span), truth));
+    const auto truth = values_at_stations(references.truth.curve, channel, x_channel, span);
+    result.uncertainty = largest(
+        difference(values_at_stations(references.other.curve, channel, x_channel, span), truth));
     const auto [low, high] = std::ranges::minmax(truth);
     const double start = references.truth.curve.values.front()[channel];
     result.range = std::max(high, start) - std::min(low, start);
 
     std::vector<std::vector<double>> values;
-    for (const auto& curve : curves) values.push_back(at_stations(curve, channel, x_channel, span));
-    result.end = at_station(steps, values, stations - 1, formal, result.uncertainty);
+    for (const auto& curve : curves)
+        values.push_back(values_at_stations(curve, channel, x_channel, span));
+    result.end = convergence_at(steps, values, stations - 1, formal, result.uncertainty);
     const auto limit = own_limit(steps, values, formal);
     if (result.end.behaviour == Behaviour::converging && result.end.limit != limit.back()) {
         result.end.band = std::max(result.end.band, std::abs(result.end.limit - limit.back()));
@@ -176,7 +185,7 @@ ChannelStudy study_channel(const StudiedLevels& levels, std::size_t channel, int
     result.gap = gap.back();
     result.gap_max = largest(gap);
     result.gap_rms = rms(gap);
-    std::vector<Level> growth;  // on the far half of the branch, where it is largest
+    std::vector<Level> growth;  // gap over the far half of the branch, where it is largest
     for (int s = stations / 2; s < stations; ++s)
         growth.push_back({static_cast<double>(s + 1), gap[static_cast<std::size_t>(s)]});
     const double floor = std::max({10 * result.end.band, 10 * result.uncertainty, 10 * round_off});
@@ -213,8 +222,8 @@ std::vector<StudiedSide> studied_sides(Solves& solves, const std::vector<int>& s
     return sides;
 }
 
-// One level: with so many steps of the side. Where the studies share their points, it is recorded
-// at these, else at every step.
+// Curve of a method with `steps` steps of the side. It is recorded at the points that the studies share, else
+// at every step.
 PathCurve level_of(Solves& solves, const StudiedSide& side, const recursive::Method& method,
                    int steps) {
     if (solves.finest > 1) return solved(solves, side, method, steps / side.branch.steps);
@@ -224,32 +233,32 @@ PathCurve level_of(Solves& solves, const StudiedSide& side, const recursive::Met
                         {.recursion = {.method = method}});
 }
 
-// All levels of one method on one branch side.
+// Study of one method with all step counts on one branch side.
 MethodStudy study_method(Solves& solves, const StudiedSide& side, const recursive::Method& method) {
-    MethodStudy m;
-    m.method = method.name;
+    MethodStudy study;
+    study.method = method.name;
     std::vector<Curve> levels;
-    std::vector<Level> Phi;
+    std::vector<Level> constraint_errors;
     for (const int N : side.steps) {
         PathCurve path = level_of(solves, side, method, N);
-        m.outcomes.push_back(path.outcome);
+        study.outcomes.push_back(path.outcome);
         if (path.outcome != Outcome::converged) {
-            m.not_studied = fmt::format("with {} steps: {}: {}", N, elastocheck::name(path.outcome),
-                                        path.detail);
-            m.constraint_error.push_back(nan);
+            study.not_studied = fmt::format("with {} steps: {}: {}", N,
+                                            elastocheck::name(path.outcome), path.detail);
+            study.constraint_error.push_back(nan);
             continue;
         }
-        m.constraint_error.push_back(path.constraint_error.back());
-        Phi.push_back({static_cast<double>(N), m.constraint_error.back()});
+        study.constraint_error.push_back(path.constraint_error.back());
+        constraint_errors.push_back({static_cast<double>(N), study.constraint_error.back()});
         levels.push_back(std::move(path.curve));
     }
-    m.constraint_order = order_of(Phi, 1e-12);
-    if (!m.not_studied.empty()) return m;
+    study.constraint_order = order_of(constraint_errors, 1e-12);
+    if (!study.not_studied.empty()) return study;
 
-    const double to_own_limit = std::max(method.formal_order, 1.0);
-    study_levels(m, solves.channels, main_channels(solves.channels),
-                 {side.steps, levels, side.known, to_own_limit});
-    return m;
+    const double formal_order = std::max(method.formal_order, 1.0);
+    study_levels(study, solves.channels, main_channels(solves.channels),
+                 {side.steps, levels, side.known, formal_order});
+    return study;
 }
 
 }  // namespace
@@ -266,19 +275,19 @@ std::vector<StudiedSide> sides_with_steps(const Model& model, const Branch& bran
     for (auto& side : sides_of(model, branch, reference_points))
         result.push_back({std::move(side)});
     for (const int N : steps) {
-        Branch whole = branch;
-        whole.steps = N;
-        const auto shares = branch_sides(whole);
-        for (std::size_t w = 0; w < shares.size(); ++w) result[w].steps.push_back(shares[w].steps);
+        Branch with_steps = branch;
+        with_steps.steps = N;
+        const auto parts = branch_sides(with_steps);
+        for (std::size_t w = 0; w < parts.size(); ++w) result[w].steps.push_back(parts[w].steps);
     }
     return result;
 }
 
 StudiedBranch studied_branch(const BranchSide& side, const std::vector<Channel>& all,
                              const Curve& truth) {
-    const int by = truth.values.empty() ? -1 : default_abscissa(all, truth);
+    const int x_channel = truth.values.empty() ? -1 : default_abscissa(all, truth);
     return {side.name, side.branch.name, unit_of(side.branch.unit),
-            by < 0 ? "" : all[static_cast<std::size_t>(by)].name};
+            x_channel < 0 ? "" : all[static_cast<std::size_t>(x_channel)].name};
 }
 
 void study_levels(MethodStudy& study, const std::vector<Channel>& all,
@@ -286,14 +295,15 @@ void study_levels(MethodStudy& study, const std::vector<Channel>& all,
     std::vector<const Curve*> curves{&levels.references.truth.curve,
                                      &levels.references.other.curve};
     for (const auto& curve : levels.curves) curves.push_back(&curve);
-    const auto read = [&](int by, std::vector<ChannelStudy>& reading) {
-        const Span span = common_span(by, curves);
-        for (const std::size_t c : studied) reading.push_back(study_channel(levels, c, by, span));
+    const auto read = [&](int x_channel, std::vector<ChannelStudy>& reading) {
+        const Span span = common_span(x_channel, curves);
+        for (const std::size_t c : studied)
+            reading.push_back(study_channel(levels, c, x_channel, span));
     };
     read(parameter, study.equal_parameter);
-    const Abscissa by = common_abscissa(all, curves);
-    study.no_abscissa = by.why_not;
-    if (by.why_not.empty()) read(by.channel, study.equal_abscissa);
+    const Abscissa x = common_abscissa(all, curves);
+    study.no_abscissa = x.why_not;
+    if (x.why_not.empty()) read(x.channel, study.equal_abscissa);
 }
 
 std::vector<std::string> unfit(const References& known, const std::string& side) {
@@ -335,12 +345,12 @@ Study study(Solves& solves, const StudyOptions& options) {
     std::erase_if(sides, [&](const StudiedSide& side) {
         std::ranges::move(unfit(side.known, side.name), std::back_inserter(result.inconclusive));
         if (!side.known.failures.empty()) return true;
-        const bool few =
+        const bool has_equal_steps =
             std::ranges::adjacent_find(side.steps, std::greater_equal<>{}) != side.steps.end();
-        if (few)
+        if (has_equal_steps)
             result.inconclusive.push_back(
                 fmt::format("{}: its share of the steps is too small for levels", side.name));
-        return few;
+        return has_equal_steps;
     });
     std::vector<Job> jobs;
     for (const auto& side : sides)
@@ -363,7 +373,9 @@ Study study(const Model& model, const StudyOptions& options) {
 
 namespace {
 
-// Gaps of a branch side with every combination of following forces; bit 0 lever, 1 axis, 2 load.
+// The gap between the limit of a method and the references is attributed to three forces that do not follow the
+// motion. The gap is computed with every combination of forces that follow: bit 0 the lever, 1 the axis, 2 the
+// load.
 constexpr unsigned combinations = 8;
 
 BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
@@ -395,22 +407,26 @@ BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
     for (const auto& combination : levels)
         for (const auto& level : combination) curves.push_back(&level);
 
-    const auto read = [&](int by, std::vector<GapShare>& reading) {
-        const Span span = common_span(by, curves);
+    const auto read = [&](int x_channel, std::vector<GapShare>& reading) {
+        const Span span = common_span(x_channel, curves);
         for (const std::size_t c : main_channels(channels)) {
             GapShare share;
             for (unsigned bits = 0; bits < combinations; ++bits) {
-                const auto s = study_channel({steps, levels[bits], known, 1}, c, by, span);
-                share.combinations.push_back(s.gap);
+                const auto channel_study =
+                    study_channel({steps, levels[bits], known, 1}, c, x_channel, span);
+                share.combinations.push_back(channel_study.gap);
                 // At the round-off floor the limit is the finest value; without a convergence
                 // estimate the spread is the band.
-                const double spread = std::abs(s.step_error_end.front() - s.step_error_end.back());
+                const double spread = std::abs(channel_study.step_error_end.front() -
+                                               channel_study.step_error_end.back());
                 share.band = std::max(
-                    share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
+                    share.band,
+                    (std::isnan(channel_study.end.band) ? spread : channel_study.end.band) +
+                        channel_study.uncertainty);
             }
             const auto& g = share.combinations;
-            // Mean over the orders of adding: alone (1/3), after one other (1/6 each),
-            // after both (1/3).
+            // Shapley value, the mean decrease of the gap over the six orders in which the three are added: first
+            // (1/3), after one of the others (1/6 each), last (1/3).
             const auto effect = [&](unsigned term) {
                 const unsigned a = 1u << ((term + 1) % 3), b = 1u << ((term + 2) % 3),
                                t = 1u << term;
@@ -426,9 +442,9 @@ BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
         }
     };
     read(parameter, attribution.equal_parameter);
-    const Abscissa by = common_abscissa(channels, curves);
-    attribution.no_abscissa = by.why_not;
-    if (by.why_not.empty()) read(by.channel, attribution.equal_abscissa);
+    const Abscissa x = common_abscissa(channels, curves);
+    attribution.no_abscissa = x.why_not;
+    if (x.why_not.empty()) read(x.channel, attribution.equal_abscissa);
     return attribution;
 }
 

@@ -33,20 +33,20 @@ struct StudyOptions {
 
 // One channel of one method over one branch, in the channel's unit.
 struct ChannelStudy {
-    // of the value with the largest step error on the branch
+    // Behaviour of the value at the station with the largest change by the last refinement.
     Behaviour behaviour = Behaviour::too_few_levels;
-    OrderFit order;          // at which step_error_max falls; only where `behaviour` is converging
-    bool as_formal = false;  // it agrees with the formal order
+    OrderFit order;  // order at which step_error_max falls; only where `behaviour` is converging
+    bool as_formal = false;    // the order agrees with the formal order
     bool zero_at_end = false;  // the step error at the end is below a tenth of step_error_max
-    StepConvergence end;       // of the value at the end of the branch: own limit and its band
+    StepConvergence end;  // convergence of the value at the end of the branch: own limit and band
     std::vector<double> step_error_end;                  // per level: value - own limit, signed
     std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
     double gap = 0;                                      // own limit - reference at the end, signed
     double gap_max = 0, gap_rms = 0;                     // over the branch
-    double gap_exponent =
-        0;  // power of the parameter or abscissa with which |gap| grows; NaN at a floor
+    // Power of the parameter or abscissa with which |gap| grows; NaN at a floor.
+    double gap_exponent = 0;
     double uncertainty = 0;  // largest difference of the references over the branch
-    double range = 0;        // of the reference over the branch
+    double range = 0;        // range of the reference over the branch
 };
 
 struct MethodStudy {
@@ -84,14 +84,14 @@ struct Study {
 
 // Throws std::invalid_argument when the step counts are not at least five, positive and increasing.
 Study study(const Model& model, const StudyOptions& options = {});
-// The same from shared solves. Pre: where these share points (Solves::finest > 1), the step counts
+// The same study from shared solves. Pre: where these share points (Solves::finest > 1), the step counts
 // are their base times powers of two.
 Study study(Solves& solves, const StudyOptions& options);
 
 // Curves of one method, or of another solver, on one branch side with several step counts.
 struct StudiedLevels {
     const std::vector<int>& steps;
-    const std::vector<Curve>& curves;  // one a step count
+    const std::vector<Curve>& curves;  // one for each step count
     const References& references;
     double formal_order;  // NaN if unknown
 };

@@ -22,13 +22,15 @@ namespace {
 // Ratio of the tolerances of `adaptive` [rad/m]: 0.001 deg for 0.01 mm.
 constexpr double angle_per_length = 1.745;
 
-bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
+bool is_within(double value, double limit) { return std::isfinite(value) && value <= limit; }
 Accuracy plus(const Accuracy& a, const Accuracy& b) {
     return {a.mm + b.mm, a.deg + b.deg, a.share + b.share};
 }
 
-// ---- One configuration
+// ---- Configurations
 
+// All configurations of the study: the equilibrium leg, each method with its step counts or tolerances, the
+// energy leg, and the equilibrium leg again, whose time measures the noise.
 std::vector<TradePoint> configurations(const Model& model, const TradeOptions& options) {
     std::vector<TradePoint> list;
     list.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium)});
@@ -74,7 +76,7 @@ SolverSettings settings_of(const TradePoint& point, int points) {
     return solver;
 }
 
-// Along a branch by shared solves, at `multiple` points for each of their base.
+// Curve of a configuration on a branch, from shared solves, at `multiple` times their base number of points.
 PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int multiple) {
     std::vector<PathCurve> sides;
     for (const auto& side : solves.sides[branch]) {
@@ -93,6 +95,8 @@ PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int m
 
 // ---- Ranking
 
+// Sets the share of the tolerance of each point, whether it is ranked, and whether it is on the Pareto front of
+// error over solves, over factorisations with evaluations, and over time.
 void rank(Trade& trade) {
     const double min_share = share_of(trade.tolerance, trade.uncertainty);
     for (auto& point : trade.points) {
@@ -109,28 +113,31 @@ void rank(Trade& trade) {
             point.not_ranked = "below the reference uncertainty";
         point.ranked = point.not_ranked.empty();
     }
-    const auto price = [](const TradePoint& point, std::size_t kind) {
+    const auto work = [](const TradePoint& point, std::size_t kind) {
         return kind == 0   ? static_cast<double>(point.work.solves)
                : kind == 1 ? static_cast<double>(point.work.factorisations + point.work.evaluations)
                            : point.ratio;
     };
     for (std::size_t kind = 0; kind < 3; ++kind) {
-        std::vector<WorkError> flat;
+        std::vector<WorkError> work_errors;
         for (const auto& point : trade.points)
-            flat.push_back({price(point, kind), point.ranked ? point.share : nan});
-        const auto front = pareto_front(flat);
+            work_errors.push_back({work(point, kind), point.ranked ? point.share : nan});
+        const auto front = pareto_front(work_errors);
         for (std::size_t k = 0; k < front.size(); ++k) trade.points[k].on_front[kind] = front[k];
     }
 }
 
 // ---- Recommendation
 
-bool good_enough(const Trade& trade, const Accuracy& error) {
-    const Accuracy at_most = plus(error, trade.uncertainty);
-    return within(share_of(trade.tolerance, at_most), 1) &&
-           within(at_most.share, trade.tolerance.share);
+// Whether an error plus the uncertainty of the references is within the tolerance.
+bool is_accurate_enough(const Trade& trade, const Accuracy& error) {
+    const Accuracy upper_bound = plus(error, trade.uncertainty);
+    return is_within(share_of(trade.tolerance, upper_bound), 1) &&
+           is_within(upper_bound.share, trade.tolerance.share);
 }
 
+// Whether two configurations differ only in the step count or tolerance of one method: its ladder, with the
+// configurations as rungs.
 bool same_ladder(const TradePoint& a, const TradePoint& b) {
     return a.leg == b.leg && a.method == b.method && a.again == b.again;
 }
@@ -144,13 +151,14 @@ bool is_tight_enough(const Trade& trade, const TradePoint& point) {
 
 // Whether this and all finer configurations of the same method meet the tolerance: a coarse one alone
 // would meet it by chance, by errors that cancel or too few steps to show an instability.
-bool eligible(const Trade& trade, std::size_t k) {
+bool is_eligible(const Trade& trade, std::size_t k) {
     if (trade.points[k].again || !is_tight_enough(trade, trade.points[k])) return false;
     for (std::size_t finer = k;
          finer < trade.points.size() && same_ladder(trade.points[k], trade.points[finer]);
          ++finer) {
         const TradePoint& point = trade.points[finer];
-        if (point.outcome != Outcome::converged || !good_enough(trade, point.error)) return false;
+        if (point.outcome != Outcome::converged || !is_accurate_enough(trade, point.error))
+            return false;
     }
     return true;
 }
@@ -158,14 +166,15 @@ bool eligible(const Trade& trade, std::size_t k) {
 // Misfit factor of the law C·h^p on the ladder of a method, its step counts or tolerances: between the
 // rungs h/2 and 2h the law predicts the geometric mean of their errors, at an end of the ladder the
 // extrapolation of the two next rungs. The same factor is taken as the uncertainty of the error.
-double misfit(double error, double neighbour, double other, bool between) {
-    const double expected = between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
+double misfit(double error, double neighbour, double other, bool is_between) {
+    const double expected =
+        is_between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
     return std::max(error / expected, expected / error);
 }
 
 // Sets the band of the error: [e / factor - u, e factor + u], the factor by misfit() at two neighbouring
 // rungs, u the reference uncertainty. It also contains the error of the confirming run.
-void band(const Trade& trade, Recommendation& recommendation) {
+void set_error_band(const Trade& trade, Recommendation& recommendation) {
     const auto k = static_cast<std::ptrdiff_t>(recommendation.point);
     const Accuracy &e = trade.points[recommendation.point].error, &u = trade.uncertainty;
     recommendation.expected = e;
@@ -271,44 +280,46 @@ ConfirmingRun confirm(const Solves& solves, const std::vector<std::vector<double
     return worst;
 }
 
+// Recommends the cheapest eligible configuration that a confirming run confirms; lists the rejected ones.
 void recommend(const Solves& solves, const std::vector<std::vector<double>>& extents, Trade& trade,
                int threads, const Progress& progress) {
     std::vector<std::size_t> candidates;
     for (std::size_t k = 0; k < trade.points.size(); ++k)
-        if (eligible(trade, k)) candidates.push_back(k);
+        if (is_eligible(trade, k)) candidates.push_back(k);
     while (!candidates.empty()) {
         // of equal prices the first, which has the loosest tolerance or the fewest steps
         const std::size_t k = *std::ranges::min_element(
             candidates, {}, [&](std::size_t c) { return trade.points[c].work.price; });
         const TradePoint& point = trade.points[k];
-        const ConfirmingRun again = confirm(solves, extents, point, threads, progress);
-        if (!again.reference_failed.empty()) {
+        const ConfirmingRun confirming = confirm(solves, extents, point, threads, progress);
+        if (!confirming.reference_failed.empty()) {
             trade.inconclusive.push_back(
                 fmt::format("{} cannot be confirmed: no reference at the points of the "
                             "confirming run: {}",
-                            describe(point), again.reference_failed));
+                            describe(point), confirming.reference_failed));
             return;
         }
         Recommendation recommendation;
         recommendation.point = k;
-        recommendation.confirmed = again.error;
-        recommendation.confirmed_numbers = again.compared;
-        band(trade, recommendation);
-        const bool holds = again.configuration_failed.empty() &&
-                           recommendation.confirmed_numbers > 0 &&
-                           good_enough(trade, recommendation.confirmed);
-        if (holds && good_enough(trade, recommendation.high)) {
+        recommendation.confirmed = confirming.error;
+        recommendation.confirmed_numbers = confirming.compared;
+        set_error_band(trade, recommendation);
+        const bool is_confirmed = confirming.configuration_failed.empty() &&
+                                  recommendation.confirmed_numbers > 0 &&
+                                  is_accurate_enough(trade, recommendation.confirmed);
+        if (is_confirmed && is_accurate_enough(trade, recommendation.high)) {
             trade.recommendation = recommendation;
             return;
         }
-        const Accuracy& worst = holds ? recommendation.high : recommendation.confirmed;
+        const Accuracy& worst = is_confirmed ? recommendation.high : recommendation.confirmed;
         trade.rejected.push_back(
-            !again.configuration_failed.empty()
-                ? again.configuration_failed + ", when run again"
-                : fmt::format("{}: {}{:.3g} mm, {:.3g} deg and {:.3g} % of forces and moments{}",
-                              describe(point), holds ? "up to " : "", worst.mm, worst.deg,
-                              100 * worst.share,
-                              holds ? ", as far as its rungs obey their law" : " when run again"));
+            !confirming.configuration_failed.empty()
+                ? confirming.configuration_failed + ", when run again"
+                : fmt::format(
+                      "{}: {}{:.3g} mm, {:.3g} deg and {:.3g} % of forces and moments{}",
+                      describe(point), is_confirmed ? "up to " : "", worst.mm, worst.deg,
+                      100 * worst.share,
+                      is_confirmed ? ", as far as its rungs obey their law" : " when run again"));
         std::erase(candidates, k);
     }
 }
@@ -397,7 +408,7 @@ Trade trade(Solves& solves, const TradeOptions& options) {
     }
 
     result.points = configurations(model, options);
-    const auto price = [&](TradePoint& point) {
+    const auto set_error_and_work = [&](TradePoint& point) {
         for (std::size_t b = 0; b < model.branches.size(); ++b) {
             const PathCurve path = run(solves, b, point, 1);
             point.work.solves += path.counts.iterations;
@@ -417,10 +428,10 @@ Trade trade(Solves& solves, const TradeOptions& options) {
     };
     jobs.clear();
     for (TradePoint& point : result.points)
-        jobs.push_back({describe(point), [&] { price(point); }});
+        jobs.push_back({describe(point), [&] { set_error_and_work(point); }});
     run_jobs(jobs, options.threads, part(options.progress, 0.2, options.rounds > 0 ? 0.3 : 0.8));
 
-    std::vector<std::function<void()>> timings;  // alone
+    std::vector<std::function<void()>> timings;  // solves that run alone, one for each timed point
     std::vector<std::size_t> timed;
     for (std::size_t k = 0; k < result.points.size(); ++k) {
         if (result.points[k].outcome != Outcome::converged) continue;

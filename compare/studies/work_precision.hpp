@@ -41,27 +41,26 @@ double share_of(const Tolerance& tolerance, const Accuracy& error);
 struct Work {
     long solves = 0;  // back-substitutions
     long factorisations = 0;
-    // of the residuals, or of energy and gradient
-    long evaluations = 0;
-    double price = 0;                                           // in back-substitutions, as above
+    long evaluations = 0;  // evaluations of the residuals, or of energy and gradient
+    double price = 0;      // in back-substitutions, as above
     double seconds = std::numeric_limits<double>::quiet_NaN();  // median over the rounds
 };
 
 struct TradePoint {
     Leg leg = Leg::recursive;
-    std::string method = {};               // of the recursion, else the name of the leg
+    std::string method = {};               // method of the recursion; else the name of the leg
     int steps = 0;                         // per branch; 0 for an adaptive method
     double own_tolerance = 0;              // tolerance of an adaptive method [m]; else 0
     bool again = false;                    // the A/A row: the equilibrium leg timed a second time
     Outcome outcome = Outcome::converged;  // first outcome of any branch that is not converged
     std::string detail = {};
-    Work work = {};  // over all branches
-    // time relative to the equilibrium leg
+    Work work = {};  // sum over all branches
+    // Time relative to the equilibrium leg.
     double ratio = std::numeric_limits<double>::quiet_NaN();
     Accuracy error = {};  // NaN unless converged
     double share = 0;     // ratio of the error to the tolerance
     bool ranked = false;
-    std::string not_ranked = {};  // reason, empty when ranked
+    std::string not_ranked = {};  // reason why the point is not ranked; empty if it is
     // Pareto fronts: no other ranked point is as accurate for less work, in solves;
     // factorisations + evaluations; time.
     std::array<bool, 3> on_front{};
@@ -106,7 +105,7 @@ struct Trade {
 };
 
 Trade trade(const Model& model, const TradeOptions& options = {});
-// The same from shared solves, whose base is `points`.
+// The same comparison from shared solves, whose base is `points`.
 struct Solves;
 Trade trade(Solves& solves, const TradeOptions& options);
 

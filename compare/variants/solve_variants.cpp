@@ -38,7 +38,7 @@ bool is_extreme(const VariantFigure& figure) { return figure.over != Over::stati
 std::function<Point(const Model&)> point_read(const Channel& channel, const Model& design) {
     if (!std::holds_alternative<Coordinate>(channel.reads)) return {};
     for (const Entry& entry : catalogue())
-        for (const Named& owner : owners(design, entry.owner))
+        for (const NamedOwner& owner : owners(design, entry.owner))
             if (entry.point != nullptr && channel_of(design, entry, owner).name == channel.name)
                 return [read = entry.point, k = owner.k](const Model& model) {
                     return read(model.wheels[k]);

@@ -23,10 +23,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // ---- Plausible ranges for a car at rest beside those of the catalogue, in mm and N.
 
-constexpr Plausible movement{0, 50, "is a preload or a trim missing, or a rate in another unit?"};
-constexpr Plausible spring_force{
+constexpr PlausibleRange movement{0, 50,
+                                  "is a preload or a trim missing, or a rate in another unit?"};
+constexpr PlausibleRange spring_force{
     -20, infinity, "it is in tension: does a load point down, or is its preload missing?"};
-constexpr Plausible bushing_displacement{0, 20, "is its rate in another unit?"};
+constexpr PlausibleRange bushing_displacement{0, 20, "is its rate in another unit?"};
 // x points rearward where caster, mechanical trail and anti-dive or anti-lift are all below this.
 constexpr double clearly_negative = -0.5;  // [deg], [mm], [%]
 
@@ -91,7 +92,7 @@ std::vector<PrintedValue> movements(const AtRest& state) {
         const Wheel& wheel = state.model.wheels[w];
         Vector3d by;
         for (const Entry& entry : catalogue())
-            if (entry.point != nullptr && entry.properties.main)
+            if (entry.point != nullptr && entry.properties.is_main)
                 by[entry.axis] = state.moved(prefix(wheel.name) + entry.name);
         list.push_back({place_of(wheel), by.norm(), "mm"});
     }
@@ -116,7 +117,7 @@ std::vector<PrintedValue> of_elements(const AtRest& state, bool springs) {
     return list;
 }
 
-std::string words_of(const Plausible& range) {
+std::string words_of(const PlausibleRange& range) {
     return range.to == infinity      ? fmt::format("at least {:g}", range.from)
            : range.from == -infinity ? fmt::format("at most {:g}", range.to)
                                      : fmt::format("{:g} to {:g}", range.from, range.to);
@@ -124,12 +125,12 @@ std::string words_of(const Plausible& range) {
 
 // Adds the first value outside of the range to the list, with the number of the others.
 void judge(const std::vector<PrintedValue>& readings, const std::string& output,
-           const Plausible& range, std::vector<Implausible>& list) {
+           const PlausibleRange& range, std::vector<Implausible>& list) {
     int more = -1;
     for (const auto& [place, value, unit] : readings)
         if (!(value >= range.from && value <= range.to) && ++more == 0)
             list.push_back({place, fmt::format("{} {:.4g} {} at rest, plausible: {}; {}", output,
-                                               value, unit, words_of(range), range.asks)});
+                                               value, unit, words_of(range), range.question)});
     if (more > 0) list.back().what += fmt::format(" (and {} more)", more);
 }
 
@@ -286,10 +287,10 @@ std::vector<Implausible> implausible(const Model& model) {
     const auto state = at_rest(model);
     if (!state) return list;
     for (const Entry& entry : catalogue())
-        if (entry.properties.plausible.asks != nullptr) {
+        if (entry.properties.plausible_range.question != nullptr) {
             std::string output = entry.name;
             std::ranges::replace(output, '_', ' ');
-            judge(of_wheels(*state, entry), output, entry.properties.plausible, list);
+            judge(of_wheels(*state, entry), output, entry.properties.plausible_range, list);
         }
     judge(movements(*state), "shift", movement, list);
     judge(of_elements(*state, true), "force", spring_force, list);

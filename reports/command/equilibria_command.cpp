@@ -28,7 +28,7 @@ int equilibria(const EquilibriaRequest& request, const Delivery& delivery) {
     const double a = request.at / compare::in_unit(compare::unit_of(branch.unit));
     const auto found = compare::find_equilibria(
         loaded.model, branch, a,
-        {.turn = request.turned / 57.29577951308232, .progress = progress});
+        {.max_rotation = request.turned / 57.29577951308232, .progress = progress});
     progress("");
     return deliver_result(delivery, document_of(loaded, request.scene),
                           result_of(loaded.model, found));

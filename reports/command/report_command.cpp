@@ -197,7 +197,7 @@ KeyOutputs key_outputs(const Model& model) {
         if (model.wheels.empty() || !is_first(channel)) continue;
         const compare::Entry* entry = compare::find_entry(channel.name);
         if (entry != nullptr && entry->properties.explained) key.at_design.push_back(channel);
-        if (entry != nullptr && entry->properties.main && entry->unit == compare::Unit::deg)
+        if (entry != nullptr && entry->properties.is_main && entry->unit == compare::Unit::deg)
             key.at_ends.push_back(channel);
     }
     constexpr std::size_t without_wheel = 3;

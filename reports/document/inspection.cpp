@@ -254,8 +254,8 @@ void add_numbers(Result& result, const Scene& scene) {
                  .detail = true});
 }
 
-Result inspection(const Inspected& inspected) {
-    const auto& [scene, model, trim] = inspected;
+Result inspection(const InspectionInput& input) {
+    const auto& [scene, model, trim] = input;
     const recursive::Diagnosis d = recursive::diagnose(model);
     const auto channels = compare::channels(model);
     Result result{.analysis = "inspect",

@@ -9,15 +9,16 @@
 
 namespace elastocheck::reports {
 
-struct Inspected {
-    const Scene& scene;  // trimmed
-    const Model& model;  // as solved
+// Input of inspection(), which refers to it during the call only.
+struct InspectionInput {
+    const Scene& scene;  // after the trim
+    const Model& model;  // the compiled scene
     const std::optional<compare::TrimRecord>& trim;
 };
 
 // Tables of size, parts, trim, branches (with the displacements where they settle), outputs, redundant
 // constraints, idle modes and omitted parts; as details the matrix of a step and the numbers of the file.
-compare::Result inspection(const Inspected& inspected);
+compare::Result inspection(const InspectionInput& input);
 // Tables `trim` and `conditions`: adjusted numbers, and the conditions with what the legs miss them by.
 void add_trim(compare::Result& result, const compare::TrimRecord& trim);
 // Table `numbers` of the scene's file, as `--set` names them.
@@ -25,7 +26,7 @@ void add_numbers(compare::Result& result, const Scene& scene);
 
 // The first 40 rows of every table but the outputs: a generated scene has thousands of parts.
 compare::Result shortened(compare::Result result);
-// Shows the tables of details as well.
+// Shows the tables that are marked as details, too.
 compare::Result verbose(compare::Result result);
 
 }  // namespace elastocheck::reports

@@ -126,8 +126,8 @@ bool is_travel(const compare::Channel& channel) {
     return compare::is_figure(channel, compare::figure::travel);
 }
 
-void keep_rows(PointTable& table,
-               const std::function<std::string(std::size_t point)>& why_left_out) {
+void drop_points(PointTable& table,
+                 const std::function<std::string(std::size_t point)>& why_left_out) {
     std::map<std::string, std::vector<int>> left_out;  // lines by reason
     std::vector<std::size_t> kept;
     for (std::size_t k = 0; k < table.lines.size(); ++k)

@@ -22,17 +22,17 @@ struct PointTable {
     std::vector<int> lines;               // lines of the file, one per point
 };
 // Reads headings as in headings.hpp. For a candidate, `also_known` lists channels that its table
-// may have and that are not compared; an unknown column is an error unless there is a map. For a
+// may have and that are not compared; an unknown column is an error unless `names.map` is that of a file. For a
 // measurement (`also_known` null) unknown columns are left out, and a cell that is not a finite
 // number is an error. Throws SheetError "file:line: ...".
 PointTable read_points(std::string_view csv, const std::string& file, const Names& names,
                        const std::vector<compare::Channel>* also_known);
-// Removes the points with a reason to be left out, and adds a line for each reason to left_out: "3
-// rows beyond the range of branch 'travel' (lines 5, 6, 9)".
-void keep_rows(PointTable& table,
-               const std::function<std::string(std::size_t point)>& why_left_out);
+// Removes the points for which `why_left_out` returns a reason (not ""), and adds a line for each reason to
+// left_out: "3 rows beyond the range of branch 'travel' (lines 5, 6, 9)".
+void drop_points(PointTable& table,
+                 const std::function<std::string(std::size_t point)>& why_left_out);
 
-// Whether a channel is the travel of a wheel, which gives the place of a point.
+// Whether a channel is the travel of a wheel, by which a point is located on its branch.
 bool is_travel(const compare::Channel& channel);
 
 struct CandidateFile {

@@ -105,7 +105,7 @@ Measurement read_measurement(std::string_view csv, const std::string& file, cons
                             .channels = channels};
     PointTable& table = measurement.table;
     if (!only.empty() && !table.points.branch.empty())
-        keep_rows(table, [&](std::size_t k) {
+        drop_points(table, [&](std::size_t k) {
             const std::string& branch = table.points.branch[k];
             return std::ranges::find(only, branch) != only.end()
                        ? ""
@@ -133,8 +133,8 @@ Measured compare_measurement(const Model& model, const compare::Comparison& comp
     } catch (const std::invalid_argument& error) {
         fail_at(result.measurement.file, 1, error.what());
     }
-    const compare::Points measured = points.points;  // keep_rows changes them
-    keep_rows(points, [&](std::size_t k) {
+    const compare::Points measured = points.points;  // drop_points changes them
+    drop_points(points, [&](std::size_t k) {
         return result.found.used[k]
                    ? ""
                    : reason_left_out(result.found.places[k], measured, k, comparison);

@@ -215,15 +215,16 @@ json branch_json(const Solver& solver, Sharing& sharing, const Branch& branch,
 
 // Figures that are shown first over a branch, by its load case; of another load case those of heave.
 std::vector<std::string> usual_curves(const Model& model, const Branch& branch) {
-    using compare::Usual;
-    static const std::map<std::string_view, int Usual::*> moved{
-        {"roll", &Usual::roll},
-        {"steering", &Usual::steering},
-        {"lateral force", &Usual::lateral},
-        {"longitudinal force", &Usual::longitudinal},
-        {"moment", &Usual::moment}};
-    const auto known = moved.find(reports::load_case(model, branch));
-    return compare::usual_over(known == moved.end() ? &Usual::heave : known->second);
+    using compare::LiveRank;
+    static const std::map<std::string_view, int LiveRank::*> branch_kinds{
+        {"roll", &LiveRank::roll},
+        {"steering", &LiveRank::steering},
+        {"lateral force", &LiveRank::lateral},
+        {"longitudinal force", &LiveRank::longitudinal},
+        {"moment", &LiveRank::moment}};
+    const auto known = branch_kinds.find(reports::load_case(model, branch));
+    return compare::first_live_figures(known == branch_kinds.end() ? &LiveRank::heave
+                                                                   : known->second);
 }
 // Index of the wheel whose figure a channel is; null if it is not of one wheel.
 json wheel_of(const Model& model, const Channel& channel) {

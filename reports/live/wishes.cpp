@@ -77,7 +77,7 @@ Varied varied_of(const json& read, const Scene& scene, const Model& model) {
         if (branch == model.branches.end() || compare::find_channel(outputs, figure.name) < 0)
             throw std::invalid_argument(fmt::format("the scene has no output '{}' on branch '{}'",
                                                     figure.name, figure.branch));
-        figure.at = number_at(want[j], 2) / in_unit(compare::unit_of(branch->unit));
+        figure.station = number_at(want[j], 2) / in_unit(compare::unit_of(branch->unit));
         varied.target[static_cast<Index>(j)] = number_at(want[j], 3);
         varied.figures.push_back(std::move(figure));
     }
@@ -147,7 +147,7 @@ json wish(Session& session, std::string_view text) {
         answer["figures"].push_back(
             {{"name", figure.name},
              {"branch", figure.branch},
-             {"a", compare::parameter_in(compare::unit_of(branch->unit), figure.at)},
+             {"a", compare::parameter_in(compare::unit_of(branch->unit), figure.station)},
              {"unit", symbol(output.unit)},
              {"target", varied.target[j]},
              {"before", or_null(start.value[j])},
@@ -159,7 +159,7 @@ json wish(Session& session, std::string_view text) {
         if ((!has_value || no_rate) && !answer.contains("why_not"))
             answer["why_not"] = fmt::format(
                 "{} has no {} at {} {} of {}", figure.name, has_value ? "rate" : "value",
-                compare::parameter_in(compare::unit_of(branch->unit), figure.at),
+                compare::parameter_in(compare::unit_of(branch->unit), figure.station),
                 symbol(compare::unit_of(branch->unit)), figure.branch);
     }
     return answer;

@@ -631,7 +631,7 @@ std::string table_of_definitions() {
         if (const auto at = definition.find(" '{}'"); at != definition.npos)
             definition.erase(at, 5);
         return fmt::format("| `{}` | {} | {} | {} |\n", entry.name, symbol(entry.unit),
-                           cell(definition), cell(entry.properties.elsewhere));
+                           cell(definition), cell(entry.properties.sources));
     };
     std::string text =
         "| output | unit | definition | formula; sources, and what others call it |\n"

@@ -38,10 +38,10 @@ TEST(Laws, CurveForceEqualsItsPolynomialOnEveryPiece) {
 }
 
 TEST(Laws, SteepestSlopeOfACurveIsFoundAtTheEndsAndInside) {
-    EXPECT_NEAR(steepest(cubic()), 1000 + 6e5 * 9e-4, 1e-9);
-    EXPECT_EQ(steepest(LinearRate{42}), 42);
+    EXPECT_NEAR(max_slope(cubic()), 1000 + 6e5 * 9e-4, 1e-9);
+    EXPECT_EQ(max_slope(LinearRate{42}), 42);
     // f = 3 x² - 2 x³ is steepest halfway.
-    EXPECT_NEAR(steepest(Law{{0, 1}, {{0, 0, 0, 0}, {0, 0, 3, -2}, {1, 0, 0, 0}}}), 1.5, 1e-12);
+    EXPECT_NEAR(max_slope(Law{{0, 1}, {{0, 0, 0, 0}, {0, 0, 3, -2}, {1, 0, 0, 0}}}), 1.5, 1e-12);
 }
 
 struct Pair {

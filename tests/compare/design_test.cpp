@@ -227,12 +227,13 @@ TEST(Figures, EveryCallOfAGradientBeginsWithThePointOfTheGradient) {
 const std::vector<std::string> rates{"springs.first.rate", "springs.second.rate"};
 
 TEST(Figures, ValuesAndRatesOfTwoSpringsEqualTheirClosedForm) {
-    const Figures springs = solved_figures(varied_of("parallel_springs", rates),
-                                           {{.name = "centre_z", .branch = "up", .at = 3000},
-                                            {.name = "centre_z", .branch = "up", .at = 1500},
-                                            {.name = "centre_z", .branch = "down", .at = -2000},
-                                            {.name = "centre_z", .branch = "up", .at = 0}},
-                                           2);
+    const Figures springs =
+        solved_figures(varied_of("parallel_springs", rates),
+                       {{.name = "centre_z", .branch = "up", .station = 3000},
+                        {.name = "centre_z", .branch = "up", .station = 1500},
+                        {.name = "centre_z", .branch = "down", .station = -2000},
+                        {.name = "centre_z", .branch = "up", .station = 0}},
+                       2);
     const VectorXd p = list_of({30, 45}), expected = list_of({440, 420, 400 - 2000 / 75.0, 400});
     EXPECT_LE((springs.value(p) - expected).cwiseAbs().maxCoeff(), 1e-9);
     const MatrixXd rate = springs.gradient(p);
@@ -256,12 +257,12 @@ TEST(Figures, GradientsEqualThoseOfTheSensitivityAnalysis) {
     std::vector<Channel> outputs;
     for (const char* name : {"toe", "wheel_centre_y", "travel", "bump_steer", "wheel_rate",
                              "lateral_force_steer", "roll_centre_height", "K1_coil.force"}) {
-        figures.push_back({.name = name, .branch = "jounce", .at = 1200});
+        figures.push_back({.name = name, .branch = "jounce", .station = 1200});
         const auto all = figure_outputs(model);
         outputs.push_back(all.at(static_cast<std::size_t>(find_channel(all, name))));
     }
     const VectorXd at = figure_values(scene, figures).value;
-    figures.push_back({.name = "toe", .branch = "jounce", .at = at[2], .over = "travel"});
+    figures.push_back({.name = "toe", .branch = "jounce", .station = at[2], .abscissa = "travel"});
     const MatrixXd rate = solved_figures(varied, figures, 2).gradient(varied.start);
     const auto by = gradients(
         scene, {scene, {}}, model,
@@ -293,20 +294,24 @@ TEST(Figures, GradientsEqualThoseOfTheSensitivityAnalysis) {
 
 TEST(Figures, FiguresOfAllLegsAgreeAtAParameterAndAtATravel) {
     const Scene scene = support::scene("mcpherson");
-    const std::vector<Figure> figures{{.name = "toe", .branch = "jounce", .at = 2000},
-                                      {.name = "bump_steer", .branch = "jounce", .at = 2000},
-                                      {.name = "bump_steer", .branch = "rebound", .at = 0},
-                                      {.name = "toe", .branch = "rebound", .at = -1500},
-                                      {.name = "travel", .branch = "jounce", .at = 2000}};
+    const std::vector<Figure> figures{{.name = "toe", .branch = "jounce", .station = 2000},
+                                      {.name = "bump_steer", .branch = "jounce", .station = 2000},
+                                      {.name = "bump_steer", .branch = "rebound", .station = 0},
+                                      {.name = "toe", .branch = "rebound", .station = -1500},
+                                      {.name = "travel", .branch = "jounce", .station = 2000}};
     const VectorXd truth = figure_values(scene, figures).value;
     for (const Leg leg : {Leg::energy, Leg::series}) {
         const VectorXd other = figure_values(scene, figures, leg).value;
         EXPECT_LE((other - truth).cwiseAbs().maxCoeff(), 1e-6) << name(leg);
     }
     const std::vector<Figure> over{
-        {.name = "toe", .branch = "jounce", .at = truth[4], .over = "travel"},
-        {.name = "toe", .branch = "jounce", .at = truth[4], .over = "travel", .change = true},
-        {.name = "toe", .branch = "jounce", .at = 1e4, .over = "travel"}};
+        {.name = "toe", .branch = "jounce", .station = truth[4], .abscissa = "travel"},
+        {.name = "toe",
+         .branch = "jounce",
+         .station = truth[4],
+         .abscissa = "travel",
+         .change = true},
+        {.name = "toe", .branch = "jounce", .station = 1e4, .abscissa = "travel"}};
     const FigureValues placed = figure_values(scene, over);
     EXPECT_NEAR(placed.value[0], truth[0], 1e-7);
     EXPECT_NEAR(placed.value[1], truth[0], 1e-7);  // toe is zero as drawn
@@ -320,7 +325,7 @@ TEST(SolveFor, RatesOfTwoSpringsForADisplacementEqualTheirClosedForm) {
     const Varied varied =
         varied_of("parallel_springs", rates, list_of({10, 20}), list_of({60, 70}));
     const Solved found =
-        solved(solved_figures(varied, {{.name = "centre_z", .branch = "up", .at = 3000}}),
+        solved(solved_figures(varied, {{.name = "centre_z", .branch = "up", .station = 3000}}),
                list_of({437.5}), varied);
     EXPECT_TRUE(found.met);
     EXPECT_LE((found.solution.p - list_of({32.5, 47.5})).cwiseAbs().maxCoeff(), 1e-4);
@@ -348,7 +353,7 @@ TEST(SolveFor, TieRodWithoutBumpSteerIsFound) {
 TEST(SolveFor, ReasonWhyANumberMovesNoFigureIsGiven) {
     EXPECT_TRUE(
         why_still(varied_of("parallel_springs", {"points.foot_1.x", "springs.first.rate"}),
-                  {.name = "centre_x", .branch = "up", .at = 3000})
+                  {.name = "centre_x", .branch = "up", .station = 3000})
             .ends_with("\n  springs.first.rate: it moves centre_z, for example, and not centre_x"));
 }
 
@@ -523,8 +528,8 @@ TEST(Optimise, KeepsToeOfAMcPhersonWithinABandOverItsTravel) {
     for (int k = -8; k <= 8; ++k)
         figures.push_back({.name = "toe",
                            .branch = k < 0 ? "rebound" : "jounce",
-                           .at = 10.0 * k,
-                           .over = "travel"});
+                           .station = 10.0 * k,
+                           .abscissa = "travel"});
     const auto count = std::ssize(figures);
     Goals goals{.low = VectorXd::Constant(count, -0.1),
                 .high = VectorXd::Constant(count, 0.1),
@@ -582,7 +587,7 @@ TEST(Tolerances, LinearScatterOfAMcPhersonEqualsItsMonteCarlo) {
         list_of({15e-4, 1e-3, 3e-3, 1e3}),
         MatrixXd{{1, 0.6, 0, 0}, {0.6, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
     const std::vector<Figure> figures{{.name = "bump_steer", .branch = "jounce"},
-                                      {.name = "toe", .branch = "jounce", .at = 1500},
+                                      {.name = "toe", .branch = "jounce", .station = 1500},
                                       {.name = "lateral_force_steer", .branch = "jounce"}};
     const Figures of = solved_figures(varied, figures, 2);
     constexpr int samples = 400;

@@ -134,7 +134,7 @@ TEST(FindAll, DistancesAreFromTheDesignPositionIfNoBranchStarts) {
     for (std::size_t at; (at = flat.find("rate: 100}")) != flat.npos;)
         flat.replace(at, 10, "rate: 100, free_length: 310}");
     const auto all = all_of(compile(parse_scene(flat, "scene.yaml")), 0);
-    EXPECT_FALSE(all.begins);
+    EXPECT_FALSE(all.has_start);
     ASSERT_EQ(all.list.size(), 3u);
     EXPECT_EQ(all.stable(), 2);
     for (const auto& one : all.list) {
@@ -166,9 +166,9 @@ TEST(FindAll, BuckledColumnHasABentEquilibriumOnEitherSide) {
     EXPECT_NEAR(x[1], 0, 1e-8);
     EXPECT_NEAR(x[2], theta, 1e-8);
     // These are rotated by 59 deg; a smaller limit leaves only the straight one.
-    const auto upright = find_equilibria(model, model.branches.front(), f, {.turn = 0.9});
+    const auto upright = find_equilibria(model, model.branches.front(), f, {.max_rotation = 0.9});
     EXPECT_EQ(upright.list.size(), 1u);
-    EXPECT_EQ(upright.turned_over, 2);
+    EXPECT_EQ(upright.with_overturned_body, 2);
 }
 
 TEST(FindAll, LegsAtDifferentEquilibriaAreReportedAsSuch) {
@@ -201,13 +201,13 @@ TEST(FindAll, LegsAtDifferentEquilibriaAreReportedAsSuch) {
 TEST(FindAll, SlideInTheOppositeDirectionIsNotAnEquilibrium) {
     // The constraints of the slide hold in the reversed assembly too: these states are counted.
     const auto all = all_of(arch(-200), -120);
-    EXPECT_GT(all.reversed, 0);
+    EXPECT_GT(all.with_reversed_joint, 0);
     for (const auto& one : all.list) EXPECT_LT(one.angle, 1e-6);
 }
 
 TEST(FindAll, SuspensionHasOnlyTheEquilibriumOfItsBranch) {
     const Model model = compile(support::scene("mcpherson"));
-    const auto all = find_equilibria(model, model.branches.front(), 500, {.at_random = 4});
+    const auto all = find_equilibria(model, model.branches.front(), 500, {.random_starts = 4});
     ASSERT_FALSE(all.list.empty());
     EXPECT_TRUE(all.list[0].on_branch);
     EXPECT_TRUE(all.list[0].stable);

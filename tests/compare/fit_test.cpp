@@ -163,7 +163,8 @@ struct Curves {
                 const std::vector<std::string>& outputs) {
         for (std::size_t c = 0; c < outputs.size(); ++c)
             for (int k = 1; k <= points; ++k) {
-                figures.push_back({.name = outputs[c], .branch = branch, .at = to * k / points});
+                figures.push_back(
+                    {.name = outputs[c], .branch = branch, .station = to * k / points});
                 column.push_back(static_cast<int>(c));
             }
         return *this;

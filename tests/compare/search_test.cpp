@@ -27,10 +27,11 @@ TEST(Figures, FiguresSolvedFromANeighbourEqualThoseFromTheDesignPosition) {
         const Model model = compile(trim(varied.scene(list_of({from}))).scene);
         const std::string& branch = model.branches.front().name;
         const double end = model.branches.front().to;
-        const std::vector<Figure> figures{{.name = "toe", .branch = branch, .at = end},
-                                          {.name = "toe", .branch = branch, .at = 0},
-                                          {.name = "bump_steer", .branch = branch, .at = end / 2},
-                                          {"camber", branch, 20, "travel", true}};
+        const std::vector<Figure> figures{
+            {.name = "toe", .branch = branch, .station = end},
+            {.name = "toe", .branch = branch, .station = 0},
+            {.name = "bump_steer", .branch = branch, .station = end / 2},
+            {"camber", branch, 20, "travel", true}};
         const Figures near = solved_figures(varied, figures, 2);
         (void)near.value(list_of({from}));
         for (const double share : {0.1, 1.}) {
@@ -51,8 +52,8 @@ TEST(Figures, StatesAreReusedOnlyByModelsThatDifferLittle) {
                 near = model_at("points.tie_rod_inner.z", -0.0145),
                 far = model_at("points.strut_top.z", 0.3),
                 other = model_at("springs.K1_coil.rate", 0);
-    const std::vector<Figure> figures{{.name = "toe", .branch = "jounce", .at = 3000},
-                                      {.name = "toe", .branch = "rebound", .at = -3000}};
+    const std::vector<Figure> figures{{.name = "toe", .branch = "jounce", .station = 3000},
+                                      {.name = "toe", .branch = "rebound", .station = -3000}};
     const auto states = states_of(here, figures, Leg::equilibrium);
     const std::array<const Model*, 4> models{&near, nullptr, &far, &other};
     const auto moved = neighbouring_states(states, models, 2);

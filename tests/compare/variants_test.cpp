@@ -55,7 +55,7 @@ TEST(VariantSolver, FiguresEqualThoseOfEachVariantAloneAndOfTheReference) {
         }
         std::vector<Figure> plain;
         for (const auto& figure : figures)
-            plain.push_back({.name = figure.output, .branch = figure.branch, .at = figure.at});
+            plain.push_back({.name = figure.output, .branch = figure.branch, .station = figure.at});
         const auto found = solver.solve(models);
         ASSERT_EQ(found.size(), models.size());
         for (std::size_t v = 0; v < models.size(); ++v) {

@@ -173,52 +173,55 @@ Point patch_of(const Wheel& wheel) { return wheel.contact; }
 
 // ---- The entries.
 
-const Drawing compressed{Over::springs, 1, "Travel of springs and dampers",
+const Drawing compressed{DrawnAbscissa::springs, 1, "Travel of springs and dampers",
                          "shortening from the drawn length"};
 
 const Entry of_wheel[] = {
-    Entry(
-        Owner::wheel, std::string(figure::toe), Unit::deg,
-        "angle of the wheel plane to the x axis seen from above, positive toe-in (front of the "
-        "wheel turned to the vehicle's middle), of this wheel alone",
-        "", [](const Subject& x) { return x.toe(); },
-        {.elsewhere = "atan2(e_x, side·e_y). Toe angle of ISO 8855; steer angles count positive to "
+    Entry(Owner::wheel, std::string(figure::toe), Unit::deg,
+          "angle of the wheel plane to the x axis seen from above, positive toe-in (front of the "
+          "wheel turned to the vehicle's middle), of this wheel alone",
+          "", [](const Subject& x) { return x.toe(); },
+          {.sources = "atan2(e_x, side·e_y). Toe angle of ISO 8855; steer angles count positive to "
                       "the left, for which a left wheel has −toe. Elsewhere also toe-out positive, "
                       "or the axle's total",
-         .main = true,
-         .at_rest = true,
-         .live =
-             {.heave = 1, .roll = 3, .steering = 3, .lateral = 1, .longitudinal = 1, .moment = 1},
-         .rig = "toe, toe angle, wheel toe",
-         .block = {"toe"},
-         .plausible = {-10, 10, "is a tie rod missing, or a rate in another unit?"},
-         .drawn = {{Over::travel, 1, "Toe angle", "toe-in positive"},
-                   {Over::steering, 1, "Steer angle", "to the left positive", Shown::to_the_left},
-                   {Over::roll, 1, "Toe angle in roll", "toe-in positive"},
-                   {Over::load, 1, "Toe change", "toe-in positive", Shown::change}}}),
+           .is_main = true,
+           .at_rest = true,
+           .live_rank =
+               {.heave = 1, .roll = 3, .steering = 3, .lateral = 1, .longitudinal = 1, .moment = 1},
+           .rig_headings = "toe, toe angle, wheel toe",
+           .block = {"toe"},
+           .plausible_range = {-10, 10, "is a tie rod missing, or a rate in another unit?"},
+           .drawings = {{DrawnAbscissa::travel, 1, "Toe angle", "toe-in positive"},
+                        {DrawnAbscissa::steering, 1, "Steer angle", "to the left positive",
+                         Presentation::to_the_left},
+                        {DrawnAbscissa::roll, 1, "Toe angle in roll", "toe-in positive"},
+                        {DrawnAbscissa::load, 1, "Toe change", "toe-in positive",
+                         Presentation::change}}}),
     Entry(Owner::wheel, std::string(figure::camber), Unit::deg,
           "angle of the wheel plane to the vertical, positive where the top leans outwards", "",
           [](const Subject& x) { return x.camber(); },
-          {.elsewhere = "-asin(e_z). ISO 8855, SAE J670",
-           .main = true,
+          {.sources = "-asin(e_z). ISO 8855, SAE J670",
+           .is_main = true,
            .at_rest = true,
-           .live =
+           .live_rank =
                {.heave = 2, .roll = 4, .steering = 4, .lateral = 2, .longitudinal = 2, .moment = 2},
-           .rig = "camber, camber angle, wheel camber",
+           .rig_headings = "camber, camber angle, wheel camber",
            .block = {"camber"},
-           .plausible = {-15, 15, "is a link missing, or a rate in another unit?"},
-           .drawn = {{Over::travel, 2, "Camber angle", "top outwards positive"},
-                     {Over::steering, 2, "Camber angle", "top outwards positive"},
-                     {Over::roll, 2, "Camber angle in roll",
-                      "against the body, top outwards positive"},
-                     {Over::load, 2, "Camber change", "top outwards positive", Shown::change}}}),
-    Entry(Owner::wheel, std::string(figure::travel), Unit::mm,
-          "vertical displacement of the wheel centre from its design position, positive in jounce "
-          "(up)",
-          "", wheel_travel,
-          {.elsewhere = "wheel travel, bump",
-           .rig = "travel, wheel travel, bump travel, jounce, wheel vertical displacement, "
-                  "wheel centre z displacement, wheel center z displacement"}),
+           .plausible_range = {-15, 15, "is a link missing, or a rate in another unit?"},
+           .drawings = {{DrawnAbscissa::travel, 2, "Camber angle", "top outwards positive"},
+                        {DrawnAbscissa::steering, 2, "Camber angle", "top outwards positive"},
+                        {DrawnAbscissa::roll, 2, "Camber angle in roll",
+                         "against the body, top outwards positive"},
+                        {DrawnAbscissa::load, 2, "Camber change", "top outwards positive",
+                         Presentation::change}}}),
+    Entry(
+        Owner::wheel, std::string(figure::travel), Unit::mm,
+        "vertical displacement of the wheel centre from its design position, positive in jounce "
+        "(up)",
+        "", wheel_travel,
+        {.sources = "wheel travel, bump",
+         .rig_headings = "travel, wheel travel, bump travel, jounce, wheel vertical displacement, "
+                         "wheel centre z displacement, wheel center z displacement"}),
 };
 
 const Entry of_patch[] = {
@@ -227,13 +230,13 @@ const Entry of_patch[] = {
           "outwards",
           "",
           [](const Subject& x) { return x.side() * (x.patch().at.y() - x.drawn().patch().at.y()); },
-          {.elsewhere = "half-track change",
-           .live = {.heave = 6, .roll = 6},
-           .rig = "track change, half track change",
-           .drawn = {{Over::travel, 3, "Contact patch, lateral",
-                      "from its drawn position, outwards positive"},
-                     {Over::load, 3, "Contact patch, lateral change", "outwards positive",
-                      Shown::change}}}),
+          {.sources = "half-track change",
+           .live_rank = {.heave = 6, .roll = 6},
+           .rig_headings = "track change, half track change",
+           .drawings = {{DrawnAbscissa::travel, 3, "Contact patch, lateral",
+                         "from its drawn position, outwards positive"},
+                        {DrawnAbscissa::load, 3, "Contact patch, lateral change",
+                         "outwards positive", Presentation::change}}}),
     Entry(Owner::wheel_of_vehicle, "wheelbase_change", Unit::mm,
           "longitudinal displacement of this wheel's contact patch from its design position, "
           "positive where the wheelbase grows (forward in front, rearward at the rear)",
@@ -242,53 +245,52 @@ const Entry of_patch[] = {
               const int forward = x.model.vehicle->axle == Axle::front ? +1 : -1;
               return forward * (x.patch().at.x() - x.drawn().patch().at.x());
           },
-          {.elsewhere = "only with a `vehicle` in the scene, which has the axle",
-           .rig = "wheelbase change"}),
+          {.sources = "only with a `vehicle` in the scene, which has the axle",
+           .rig_headings = "wheelbase change"}),
     Entry(Owner::wheel_with_steering_axis, std::string(figure::caster), Unit::deg,
           "angle of the steering axis to the vertical seen from the side, positive where its top "
           "leans backwards; undefined where it lies flatter than 0.1 rad",
           "", unless_flat<[](const Subject& x) { return x.caster(); }>,
-          {.elsewhere = "atan(-u_x/u_z). Castor angle of ISO 8855; Reimpell's τ",
-           .quotient = true,
+          {.sources = "atan(-u_x/u_z). Castor angle of ISO 8855; Reimpell's τ",
+           .may_be_undefined = true,
            .at_rest = true,
-           .live = {.heave = 7, .steering = 6},
-           .rig = "caster, castor, caster angle, castor angle",
+           .live_rank = {.heave = 7, .steering = 6},
+           .rig_headings = "caster, castor, caster angle, castor angle",
            .block = {"caster"},
-           .drawn = {{Over::travel, 5, "Caster angle", "top backwards positive"},
-                     {Over::steering, 5, "Caster angle", "top backwards positive"}}}),
-    Entry(Owner::wheel_with_steering_axis, "kingpin_inclination", Unit::deg,
-          "angle of the steering axis to the vertical seen from behind, positive where its top "
-          "leans inwards; undefined where it lies flatter than 0.1 rad",
-          "", unless_flat<[](const Subject& x) { return x.kingpin(); }>,
-          {.elsewhere =
-               "atan(-side u_y/u_z). Steering-axis inclination of ISO 8855, SAI; Reimpell's σ",
-           .quotient = true,
-           .at_rest = true,
-           .rig = "kingpin inclination, kpi",
-           .block = {"kingpin_inclination"}}),
+           .drawings = {{DrawnAbscissa::travel, 5, "Caster angle", "top backwards positive"},
+                        {DrawnAbscissa::steering, 5, "Caster angle", "top backwards positive"}}}),
     Entry(
-        Owner::wheel_with_steering_axis, "scrub_radius", Unit::mm,
-        "distance across the wheel from the contact patch to the intersection of the steering "
-        "axis with the road (the horizontal plane through the patch), positive inboard; "
-        "undefined where the axis lies flatter than 0.1 rad",
-        "",
-        unless_flat<[](const Subject& x) { return -x.across().dot(x.axis_from(x.patch().at)); }>,
-        {.elsewhere = "-n·(p - c). Steering-axis offset at ground, kingpin offset; Reimpell's r_σ",
-         .quotient = true,
+        Owner::wheel_with_steering_axis, "kingpin_inclination", Unit::deg,
+        "angle of the steering axis to the vertical seen from behind, positive where its top "
+        "leans inwards; undefined where it lies flatter than 0.1 rad",
+        "", unless_flat<[](const Subject& x) { return x.kingpin(); }>,
+        {.sources = "atan(-side u_y/u_z). Steering-axis inclination of ISO 8855, SAI; Reimpell's σ",
+         .may_be_undefined = true,
          .at_rest = true,
-         .drawn = {{Over::if_given, 3, "Scrub radius",
-                    "steering axis inboard of the patch positive"}}}),
+         .rig_headings = "kingpin inclination, kpi",
+         .block = {"kingpin_inclination"}}),
+    Entry(Owner::wheel_with_steering_axis, "scrub_radius", Unit::mm,
+          "distance across the wheel from the contact patch to the intersection of the steering "
+          "axis with the road (the horizontal plane through the patch), positive inboard; "
+          "undefined where the axis lies flatter than 0.1 rad",
+          "",
+          unless_flat<[](const Subject& x) { return -x.across().dot(x.axis_from(x.patch().at)); }>,
+          {.sources = "-n·(p - c). Steering-axis offset at ground, kingpin offset; Reimpell's r_σ",
+           .may_be_undefined = true,
+           .at_rest = true,
+           .drawings = {{DrawnAbscissa::if_given, 3, "Scrub radius",
+                         "steering axis inboard of the patch positive"}}}),
     Entry(Owner::wheel_with_steering_axis, std::string(figure::mechanical_trail), Unit::mm,
           "distance along the wheel from the contact patch to the intersection of the steering "
           "axis with the road (the horizontal plane through the patch), positive in front; "
           "undefined where the axis lies flatter than 0.1 rad",
           "",
           unless_flat<[](const Subject& x) { return x.along().dot(x.axis_from(x.patch().at)); }>,
-          {.elsewhere = "h·(p - c). Castor offset at ground, caster trail",
-           .quotient = true,
+          {.sources = "h·(p - c). Castor offset at ground, caster trail",
+           .may_be_undefined = true,
            .at_rest = true,
-           .drawn = {{Over::steering, 6, "Mechanical trail",
-                      "steering axis ahead of the patch positive"}}}),
+           .drawings = {{DrawnAbscissa::steering, 6, "Mechanical trail",
+                         "steering axis ahead of the patch positive"}}}),
     Entry(Owner::axle, std::string(figure::track), Unit::mm,
           "lateral distance between the contact patches of the two wheels, positive where the left "
           "one is to the left",
@@ -297,52 +299,52 @@ const Entry of_patch[] = {
               const std::size_t left = left_wheel(x.model);
               return x.of(left).patch().at.y() - x.of(1 - left).patch().at.y();
           },
-          {.elsewhere = "in scenes with one left and one right wheel", .at_rest = true}),
+          {.sources = "in scenes with one left and one right wheel", .at_rest = true}),
     Entry(Owner::axle, std::string(figure::roll_angle), Unit::deg,
           "roll of the car body against the line through the wheel centres, positive to the right "
           "(the right wheel in jounce)",
-          "", roll_angle, {.elsewhere = "suspension roll angle of ISO 8855"}),
+          "", roll_angle, {.sources = "suspension roll angle of ISO 8855"}),
     Entry(Owner::front_axle, "ackermann", Unit::percent,
           "(cot of the right wheel's angle less cot of the left one's) times the wheelbase over "
           "the lateral distance between the pivots on the road: positive where the inner wheel "
           "turns more, 100 % where the perpendiculars to the two wheels meet on the line of the "
           "rear axle; undefined unless both are turned in the same direction by 2 deg or more",
           "", ackermann,
-          {.elsewhere =
+          {.sources =
                "for the two front wheels of a `vehicle`; angles -side·toe, to the left; pivots: "
                "the points p at the design position, or c for a wheel without axis. 100 % is "
                "Ackermann's condition cot δ_outer - cot δ_inner = j/l (Reimpell, Milliken). Other "
                "tools give a ratio of the angles, which is a different number",
-           .quotient = true,
-           .live = {.steering = 1},
-           .drawn = {{Over::steering, 4, "Ackermann",
-                      "100 %: no tyre slips at low speed; without the middle, where it is a "
-                      "quotient of two small angles",
-                      Shown::off_centre}}}),
+           .may_be_undefined = true,
+           .live_rank = {.steering = 1},
+           .drawings = {{DrawnAbscissa::steering, 4, "Ackermann",
+                         "100 %: no tyre slips at low speed; without the middle, where it is a "
+                         "quotient of two small angles",
+                         Presentation::off_centre}}}),
     Entry(
         Owner::front_axle, "turning_circle", Unit::mm,
         "diameter of the circle on which the patch of the wheel with the smaller steer angle runs "
         "about a point on the line of the other axle: twice the wheelbase over the sine of that "
         "angle; undefined unless both are turned in the same direction by 2 deg or more",
         "", turning_circle,
-        {.elsewhere = "turning circle (track circle); between kerbs half a tyre's width more on "
-                      "each side",
-         .quotient = true,
-         .live = {.steering = 5}}),
+        {.sources = "turning circle (track circle); between kerbs half a tyre's width more on "
+                    "each side",
+         .may_be_undefined = true,
+         .live_rank = {.steering = 5}}),
     Entry(Owner::spring, "compression", Unit::mm,
           "design length less length of spring '{}', positive in compression", "",
           [](const Subject& x) {
               const auto& spring = std::get<AxialSpring>(x.model.elastics[x.k].kind);
               return compression(x, spring.i, spring.j);
           },
-          {.elsewhere = "spring travel", .drawn = {compressed}}),
+          {.sources = "spring travel", .drawings = {compressed}}),
     Entry(Owner::damper, "compression", Unit::mm,
           "design length less length of damper '{}', positive in compression", "",
           [](const Subject& x) {
               const Damper& damper = x.model.dampers[x.k];
               return compression(x, damper.i, damper.j);
           },
-          {.elsewhere = "damper travel", .drawn = {compressed}}),
+          {.sources = "damper travel", .drawings = {compressed}}),
 };
 
 // An entry of its own function since it needs the branch, whose drivers move the rack.
@@ -361,8 +363,8 @@ Entry hand_wheel_entry() {
                     const auto joint = static_cast<std::size_t>(rack);
                     return x.model.joints[joint].active_only_where_driven ? undefined : 0;
                 },
-                {.elsewhere = "ISO 8855: steering-wheel angle",
-                 .rig = "steering wheel angle, hand wheel angle, handwheel angle"});
+                {.sources = "ISO 8855: steering-wheel angle",
+                 .rig_headings = "steering wheel angle, hand wheel angle, handwheel angle"});
     entry.kind = ChannelKind::element;
     return entry;
 }
@@ -378,11 +380,11 @@ Entry wheel_load_entry() {
         [](const Subject& x) {
             return x.branch == nullptr ? nan : wheel_load(x.model, *x.branch, *x.state, x.k);
         },
-        {.elsewhere = "wheel vertical force",
+        {.sources = "wheel vertical force",
          .at_rest = true,
-         .rig = "wheel load, vertical load, tyre load, tire load, wheel vertical force",
-         .drawn = {{Over::travel, 6, "Wheel load",
-                    "the force of the road; negative: the wheel would lift off"}}});
+         .rig_headings = "wheel load, vertical load, tyre load, tire load, wheel vertical force",
+         .drawings = {{DrawnAbscissa::travel, 6, "Wheel load",
+                       "the force of the road; negative: the wheel would lift off"}}});
     entry.kind = ChannelKind::element;
     return entry;
 }
@@ -393,8 +395,8 @@ Entry roll_moment_entry() {
         "half the difference of the wheel loads times the distance of the patches, positive "
         "where it rolls the car body to the right",
         "", roll_moment,
-        {.elsewhere = "load transfer times the track; over the roll angle: roll stiffness",
-         .drawn = {{Over::roll, 3, "Roll moment", "to the right positive"}}});
+        {.sources = "load transfer times the track; over the roll angle: roll stiffness",
+         .drawings = {{DrawnAbscissa::roll, 3, "Roll moment", "to the right positive"}}});
     entry.kind = ChannelKind::element;
     return entry;
 }
@@ -410,92 +412,94 @@ const Entry angle_definitions[] = {
           [](const Subject& x) {
               return x.drawn().toe() + std::atan2(x.lateral().x(), x.side() * x.lateral().y());
           },
-          {.elsewhere = manufacturer}),
+          {.sources = manufacturer}),
     Entry(Owner::wheel, "toe@steer", Unit::deg,
           "steer angle: of the wheel plane to the x axis about z, of either wheel positive to the "
           "left",
           "", [](const Subject& x) { return -x.side() * x.toe(); },
-          {.elsewhere = "ISO 8855 7.1.1: steer angle",
-           .set = "iso8855",
+          {.sources = "ISO 8855 7.1.1: steer angle",
+           .definition_set = "iso8855",
            .block = {"steer", Block::Component::yaw, false,
                      "angle of the wheel plane to the x axis about z, right-handed about the z "
                      "axis of this file"}}),
     Entry(Owner::two_wheels, "toe@axle", Unit::deg, "sum of the toe of both wheels", "",
           [](const Subject& x) { return x.of(0).toe() + x.of(1).toe(); },
-          {.elsewhere = "ISO 8855 7.1.7: total toe angle", .set = "iso8855"}),
+          {.sources = "ISO 8855 7.1.7: total toe angle", .definition_set = "iso8855"}),
     Entry(Owner::wheel, "camber@lateral", Unit::deg,
           "inclination of an axis that is lateral in the design position, plus the drawn camber",
           "", [](const Subject& x) { return x.drawn().camber() - std::asin(x.lateral().z()); },
-          {.elsewhere = "programs whose wheel carrier is drawn without camber"}),
+          {.sources = "programs whose wheel carrier is drawn without camber"}),
     Entry(Owner::wheel, "camber@front_view", Unit::deg,
           "inclination of the spin axis in the transverse plane, -atan(e_z / |e_y|)", "",
           [](const Subject& x) { return -std::atan2(x.spin().z(), std::abs(x.spin().y())); },
-          {.elsewhere = "front view; Altair MotionView; a closed form by Rill and Castro"}),
+          {.sources = "front view; Altair MotionView; a closed form by Rill and Castro"}),
     Entry(Owner::wheel_with_steering_axis, "camber@kingpin", Unit::deg,
           "drawn camber less the change of the kingpin inclination", "",
           [](const Subject& x) { return x.drawn().camber() - (x.kingpin() - x.drawn().kingpin()); },
-          {.elsewhere = manufacturer}),
+          {.sources = manufacturer}),
     Entry(Owner::wheel, "camber@inclination", Unit::deg,
           "camber about x, of either wheel positive where the top leans to the right", "",
           [](const Subject& x) { return -x.side() * x.camber(); },
-          {.elsewhere = "ISO 8855: inclination angle",
-           .set = "iso8855",
+          {.sources = "ISO 8855: inclination angle",
+           .definition_set = "iso8855",
            .block = {"inclination", Block::Component::none, false,
                      "camber about the x axis, right-handed, of either wheel positive where the "
                      "top leans to the right"}}),
     Entry(Owner::wheel_with_steering_axis, "caster@wheel_plane", Unit::deg,
           "angle of the steering axis to the vertical seen across the wheel, which steers", "",
           [](const Subject& x) { return std::atan(-x.axis().dot(x.along()) / x.axis().z()); },
-          {.elsewhere = "alignment benches"}),
+          {.sources = "alignment benches"}),
     Entry(Owner::wheel_with_steering_axis, "kingpin_inclination@wheel_plane", Unit::deg,
           "angle of the steering axis to the vertical seen along the wheel, which steers", "",
           [](const Subject& x) { return std::atan(-x.axis().dot(x.across()) / x.axis().z()); },
-          {.elsewhere = "alignment benches"}),
+          {.sources = "alignment benches"}),
     Entry(Owner::wheel_with_steering_axis, "mechanical_trail@across_axis", Unit::mm,
           "trail on the road times the cosine of the caster: perpendicular to the steering axis",
           "",
           [](const Subject& x) {
               return x.axis_from(x.patch().at).dot(x.along()) * std::cos(x.caster());
           },
-          {.elsewhere = "mechanical trail of a kinematics program (tests/outside/README.md)"}),
+          {.sources = "mechanical trail of a kinematics program (tests/outside/README.md)"}),
     Entry(Owner::wheel_with_steering_axis, "mechanical_trail@centre", Unit::mm,
           "distance along the wheel from the wheel centre to the steering axis at its height", "",
           [](const Subject& x) { return x.axis_from(x.centre().at).dot(x.along()); },
-          {.elsewhere = "ISO 8855: castor offset at wheel centre; hub trail", .set = "iso8855"}),
+          {.sources = "ISO 8855: castor offset at wheel centre; hub trail",
+           .definition_set = "iso8855"}),
     Entry(Owner::wheel_with_steering_axis, "mechanical_trail@ground_axes", Unit::mm,
           "distance along x from the contact patch to the steering axis on the road", "",
           [](const Subject& x) { return x.axis_from(x.patch().at).x(); },
-          {.elsewhere = "SAE J670e: caster offset, in side elevation", .set = "sae"}),
-    Entry(Owner::wheel_with_steering_axis, "scrub_radius@centre", Unit::mm,
-          "distance across the wheel from the wheel centre to the steering axis at its height", "",
-          [](const Subject& x) { return -x.axis_from(x.centre().at).dot(x.across()); },
-          {.elsewhere = "ISO 8855: steering-axis offset at wheel centre", .set = "iso8855"}),
+          {.sources = "SAE J670e: caster offset, in side elevation", .definition_set = "sae"}),
     Entry(
-        Owner::wheel_with_steering_axis, "scrub_radius@ground_axes", Unit::mm,
-        "distance along y from the contact patch to the steering axis on the road, positive "
-        "inboard",
-        "", [](const Subject& x) { return -x.side() * x.axis_from(x.patch().at).y(); },
-        {.elsewhere = "SAE J670e: kingpin offset at the ground, in front elevation", .set = "sae"}),
+        Owner::wheel_with_steering_axis, "scrub_radius@centre", Unit::mm,
+        "distance across the wheel from the wheel centre to the steering axis at its height", "",
+        [](const Subject& x) { return -x.axis_from(x.centre().at).dot(x.across()); },
+        {.sources = "ISO 8855: steering-axis offset at wheel centre", .definition_set = "iso8855"}),
+    Entry(Owner::wheel_with_steering_axis, "scrub_radius@ground_axes", Unit::mm,
+          "distance along y from the contact patch to the steering axis on the road, positive "
+          "inboard",
+          "", [](const Subject& x) { return -x.side() * x.axis_from(x.patch().at).y(); },
+          {.sources = "SAE J670e: kingpin offset at the ground, in front elevation",
+           .definition_set = "sae"}),
     Entry(Owner::wheel_with_steering_axis, "scrub_radius@distance", Unit::mm,
           "distance on the road from the contact patch to the steering axis, in any direction", "",
           [](const Subject& x) {
               const Vector3d p = x.axis_from(x.patch().at);
               return std::hypot(p.x(), p.y());
           },
-          {.elsewhere = "ISO 8855: scrub radius", .set = "iso8855"}),
+          {.sources = "ISO 8855: scrub radius", .definition_set = "iso8855"}),
     Entry(Owner::wheel, "travel@patch", Unit::mm, "vertical displacement of the contact patch", "",
           [](const Subject& x) { return x.patch().at.z() - x.drawn().patch().at.z(); },
-          {.elsewhere = "deflection at the tyre"}),
+          {.sources = "deflection at the tyre"}),
     Entry(Owner::wheel, "travel@lowest", Unit::mm,
           "vertical displacement of the lowest point of a circle of the drawn radius in the "
           "wheel's plane",
           "", [](const Subject& x) { return x.lowest().z() - x.drawn().lowest().z(); },
-          {.elsewhere = "deflection at the tyre"}),
+          {.sources = "deflection at the tyre"}),
     Entry(
         Owner::wheel, "track_change@centre", Unit::mm,
         "lateral displacement of the wheel centre, outwards", "",
         [](const Subject& x) { return x.side() * (x.centre().at.y() - x.drawn().centre().at.y()); },
-        {.elsewhere = "half track at the wheel centre",
+        {.sources = "half track at the wheel centre",
          .block = {"lateral", Block::Component::lateral, true,
                    "displacement of the wheel centre along the y axis of this file from the design "
                    "position"}}),
@@ -503,12 +507,12 @@ const Entry angle_definitions[] = {
           "lateral displacement, outwards, of the lowest point of a circle of the drawn radius in "
           "the wheel's plane",
           "", [](const Subject& x) { return x.side() * (x.lowest().y() - x.drawn().lowest().y()); },
-          {.elsewhere = "half track at the contact of a rolling wheel"}),
+          {.sources = "half track at the contact of a rolling wheel"}),
     Entry(
         Owner::wheel_of_vehicle, "wheelbase_change@centre", Unit::mm,
         "longitudinal displacement of the wheel centre, forward", "",
         [](const Subject& x) { return x.centre().at.x() - x.drawn().centre().at.x(); },
-        {.elsewhere = "wheelbase at the wheel centres",
+        {.sources = "wheelbase at the wheel centres",
          .block = {"longitudinal", Block::Component::none, false,
                    "displacement of the wheel centre along x from the design position, forward"}}),
     Entry(Owner::front_axle, "ackermann@error", Unit::deg,
@@ -518,7 +522,7 @@ const Entry angle_definitions[] = {
           [](const Subject& x) {
               return evaluate_steered(x, [](const Steered& s) { return s.outer - s.outer_ideal; });
           },
-          {.elsewhere = "ISO 8855: Ackermann error", .set = "iso8855"}),
+          {.sources = "ISO 8855: Ackermann error", .definition_set = "iso8855"}),
     Entry(Owner::front_axle, "ackermann@outer", Unit::percent,
           "difference of the steer angles over that with this outer angle for the inner one",
           nearly_straight,
@@ -527,7 +531,7 @@ const Entry angle_definitions[] = {
                   return (s.inner - s.outer) / (s.inner - s.outer_ideal);
               });
           },
-          {.elsewhere = "per cent Ackermann, of the outer wheel"}),
+          {.sources = "per cent Ackermann, of the outer wheel"}),
     Entry(Owner::front_axle, "ackermann@inner", Unit::percent,
           "difference of the steer angles over that with this inner angle for the outer one",
           nearly_straight,
@@ -536,13 +540,13 @@ const Entry angle_definitions[] = {
                   return (s.inner - s.outer) / (s.inner_ideal - s.outer);
               });
           },
-          {.elsewhere = "per cent Ackermann, of the inner wheel"}),
+          {.sources = "per cent Ackermann, of the inner wheel"}),
     Entry(
         Owner::wheels, "roll_centre_height@planes", Unit::mm,
         "intersection of the lines from the patches to the instant centres, where the planes of "
         "both wishbones meet in the transverse plane of the drawn wheel centre; above the patches",
         "", roll_centre_by_planes,
-        {.elsewhere = "drawings in front view; tables of manufacturers", .set = "planes"}),
+        {.sources = "drawings in front view; tables of manufacturers", .definition_set = "planes"}),
 };
 
 }  // namespace
@@ -555,21 +559,21 @@ std::string axis_words(int axis) {
 
 void add_angles(std::vector<Entry>& entries) {
     const auto moves = [](const char* rig, const Drawing& drawn) {
-        return Properties{.main = true, .rig = rig, .drawn = {drawn}};
+        return Properties{.is_main = true, .rig_headings = rig, .drawings = {drawn}};
     };
     Properties x = moves("wheel centre x, wheel center x",
-                         {Over::travel, 4, "Wheel centre, longitudinal",
-                          "since the start of the branch, forward positive", Shown::change});
-    x.drawn.push_back(
-        {Over::load, 4, "Wheel centre, longitudinal change", "forward positive", Shown::change});
+                         {DrawnAbscissa::travel, 4, "Wheel centre, longitudinal",
+                          "since the start of the branch, forward positive", Presentation::change});
+    x.drawings.push_back({DrawnAbscissa::load, 4, "Wheel centre, longitudinal change",
+                          "forward positive", Presentation::change});
     add_position(entries, Owner::wheel, "wheel_centre", "the wheel centre", centre_of,
                  {x,
                   moves("wheel centre y, wheel center y",
-                        {Over::if_given, 1, "Lateral movement of the wheel centre",
-                         "outwards positive", Shown::outward_change}),
+                        {DrawnAbscissa::if_given, 1, "Lateral movement of the wheel centre",
+                         "outwards positive", Presentation::outward_change}),
                   moves("wheel centre z, wheel center z",
-                        {Over::if_given, 2, "Vertical movement of the wheel centre", "up positive",
-                         Shown::change})});
+                        {DrawnAbscissa::if_given, 2, "Vertical movement of the wheel centre",
+                         "up positive", Presentation::change})});
     std::ranges::copy(of_wheel, std::back_inserter(entries));
     add_position(entries, Owner::rolling_wheel, "contact_patch",
                  "the contact patch, the lowest point of the rolling wheel", patch_of);
@@ -585,7 +589,7 @@ void add_angles(std::vector<Entry>& entries) {
 void add_angle_definitions(std::vector<Entry>& all) {
     for (const Entry& entry : angle_definitions) {
         all.push_back(entry);
-        all.back().properties.quotient = true;
+        all.back().properties.may_be_undefined = true;
     }
 }
 

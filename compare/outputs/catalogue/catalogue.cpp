@@ -67,7 +67,7 @@ std::vector<Channel> rates(const Model& model, bool on_request) {
     if (model.wheels.empty()) return list;
     for (const Entry& entry : catalogue())
         if (entry.kind == ChannelKind::characteristic && entry.on_request == on_request)
-            for (const Named& owner : owners(model, entry.owner))
+            for (const NamedOwner& owner : owners(model, entry.owner))
                 list.push_back(channel_of(model, entry, owner));
     return list;
 }
@@ -84,8 +84,8 @@ const std::vector<Entry>& catalogue() {
     return entries;
 }
 
-std::vector<Named> owners(const Model& model, Owner owner) {
-    std::vector<Named> list;
+std::vector<NamedOwner> owners(const Model& model, Owner owner) {
+    std::vector<NamedOwner> list;
     if (!has_owners(model, owner)) return list;
     switch (owner) {
         case Owner::wheels:
@@ -111,12 +111,12 @@ std::vector<Named> owners(const Model& model, Owner owner) {
     return list;
 }
 
-Channel channel_of(const Model& model, const Entry& entry, const Named& owner) {
+Channel channel_of(const Model& model, const Entry& entry, const NamedOwner& owner) {
     Reads reads = Catalogued{&entry, owner.k};
     if (entry.point != nullptr) reads = Coordinate{entry.point(model.wheels[owner.k]), entry.axis};
     return {.name = owner.name + (owner.name.empty() ? "" : ".") + entry.name,
             .unit = entry.unit,
-            .main = entry.properties.main,
+            .main = entry.properties.is_main,
             .reads = std::move(reads),
             .definition = fmt::format(fmt::runtime(entry.definition), owner.name),
             .undefined = entry.undefined};
@@ -134,35 +134,35 @@ std::vector<const Entry*> definitions() {
 
 namespace {
 template <class T>
-std::vector<T> sorted_by_place(std::vector<std::pair<int, T>> placed) {
-    std::ranges::sort(placed, {}, &std::pair<int, T>::first);
+std::vector<T> sorted_by_rank(std::vector<std::pair<int, T>> ranked) {
+    std::ranges::sort(ranked, {}, &std::pair<int, T>::first);
     std::vector<T> list;
-    for (auto& [place, entry] : placed) list.push_back(std::move(entry));
+    for (auto& [rank, entry] : ranked) list.push_back(std::move(entry));
     return list;
 }
 }  // namespace
 
-std::vector<DrawnFigure> drawn_over(Over over) {
-    std::vector<std::pair<int, DrawnFigure>> placed;
+std::vector<CurveOfFigure> figures_over(DrawnAbscissa abscissa) {
+    std::vector<std::pair<int, CurveOfFigure>> ranked;
     for (const Entry& entry : catalogue())
-        for (const Drawing& drawing : entry.properties.drawn)
-            if (drawing.over == over)
-                placed.push_back({drawing.place,
-                                  {entry.name, drawing.title, drawing.sign, drawing.shown,
+        for (const Drawing& drawing : entry.properties.drawings)
+            if (drawing.abscissa == abscissa)
+                ranked.push_back({drawing.rank,
+                                  {entry.name, drawing.title, drawing.sign, drawing.presentation,
                                    entry.kind != ChannelKind::characteristic}});
-    auto list = sorted_by_place(std::move(placed));
+    auto list = sorted_by_rank(std::move(ranked));
     // a name may have entries of several owners
-    const auto again = std::ranges::unique(list, {}, &DrawnFigure::name);
-    list.erase(again.begin(), again.end());
+    const auto duplicates = std::ranges::unique(list, {}, &CurveOfFigure::name);
+    list.erase(duplicates.begin(), duplicates.end());
     return list;
 }
 
-std::vector<std::string> usual_over(int Usual::*moved) {
-    std::vector<std::pair<int, std::string>> placed;
+std::vector<std::string> first_live_figures(int LiveRank::*branch_kind) {
+    std::vector<std::pair<int, std::string>> ranked;
     for (const Entry& entry : catalogue())
-        if (const int place = entry.properties.live.*moved; place > 0)
-            placed.push_back({place, entry.name});
-    return sorted_by_place(std::move(placed));
+        if (const int rank = entry.properties.live_rank.*branch_kind; rank > 0)
+            ranked.push_back({rank, entry.name});
+    return sorted_by_rank(std::move(ranked));
 }
 
 std::string_view without_owner(std::string_view output) {
@@ -179,12 +179,12 @@ const Entry* find_entry(std::string_view output) {
     return found == catalogue().end() ? nullptr : &*found;
 }
 
-const Entry* find_by_heading(std::string_view words) {
+const Entry* find_by_heading(std::string_view heading) {
     for (const Entry& entry : catalogue())
-        for (std::string_view rest = entry.properties.rig; !rest.empty();) {
-            const std::string_view heading = rest.substr(0, rest.find(", "));
-            if (heading == words) return &entry;
-            rest.remove_prefix(std::min(heading.size() + 2, rest.size()));
+        for (std::string_view rest = entry.properties.rig_headings; !rest.empty();) {
+            const std::string_view candidate = rest.substr(0, rest.find(", "));
+            if (candidate == heading) return &entry;
+            rest.remove_prefix(std::min(candidate.size() + 2, rest.size()));
         }
     return nullptr;
 }
@@ -193,19 +193,19 @@ bool is_figure(const Channel& channel, std::string_view figure) {
     const Entry* entry = entry_of(channel);
     return entry != nullptr && entry->name == figure;
 }
-bool needs_free(const Channel& channel) {
+bool needs_free_response(const Channel& channel) {
     const Entry* entry = entry_of(channel);
     return entry != nullptr && entry->kind == ChannelKind::characteristic &&
            (entry->owner == Owner::wheel_on_tyre || entry->unit == Unit::newton_per_mm ||
-            entry->properties.reads_free);
+            entry->properties.needs_free_response);
 }
 bool is_swing_arm(const Channel& channel) {
     const Entry* entry = entry_of(channel);
     return entry != nullptr && entry->properties.swing_arm;
 }
-bool is_place(const Channel& channel) {
+bool is_position(const Channel& channel) {
     const Entry* entry = entry_of(channel);
-    return entry != nullptr && entry->properties.place;
+    return entry != nullptr && entry->properties.is_position;
 }
 
 bool reads_steering_axis(const Channel& channel) {
@@ -224,7 +224,7 @@ std::vector<Channel> definition_channels(const Model& model) {
     std::vector<Channel> list;
     for (const Entry& entry : catalogue()) {
         if (!entry.on_request || entry.kind == ChannelKind::characteristic) continue;
-        for (const Named& owner : owners(model, entry.owner)) {
+        for (const NamedOwner& owner : owners(model, entry.owner)) {
             // straight ahead, where a scene begins, Ackermann's figures are undefined
             const double drawn = entry.formula({model, nullptr, owner.k});
             if (!std::isnan(drawn) && (drawn != undefined || !entry.undefined.empty()))
@@ -265,15 +265,15 @@ std::vector<DefinitionSet> definition_sets() {
          {}}};
     for (DefinitionSet& set : sets)
         for (const Entry* entry : definitions())
-            if (entry->properties.set == set.name) set.members.push_back(entry->name);
+            if (entry->properties.definition_set == set.name) set.members.push_back(entry->name);
     return sets;
 }
 
-double value_of(const Model& model, const Catalogued& what, const Equilibrium& state,
+double value_of(const Model& model, const Catalogued& catalogued, const Equilibrium& state,
                 const WheelResponse& response) {
     if (response.blocked) return undefined;
     return response.why_not.empty()
-               ? what.entry->formula({model, &state, what.of, nullptr, &response})
+               ? catalogued.entry->formula({model, &state, catalogued.of, nullptr, &response})
                : nan;
 }
 

@@ -204,7 +204,7 @@ ChannelKind Channel::kind() const {
 
 bool Channel::may_be_undefined() const {
     const auto* of = std::get_if<Catalogued>(&reads);
-    return !undefined.empty() || (of != nullptr && of->entry->properties.quotient);
+    return !undefined.empty() || (of != nullptr && of->entry->properties.may_be_undefined);
 }
 
 std::vector<int> Channel::joints() const {
@@ -227,7 +227,7 @@ std::vector<Channel> channels(const Model& model) {
     const auto add = [&](Part part, int wheel = -1) {
         for (const Entry& entry : catalogue())
             if (!entry.on_request && part_of(entry) == part)
-                for (const Named& owner : owners(model, entry.owner))
+                for (const NamedOwner& owner : owners(model, entry.owner))
                     if (wheel < 0 || owner.k == static_cast<std::size_t>(wheel))
                         list.push_back(channel_of(model, entry, owner));
     };

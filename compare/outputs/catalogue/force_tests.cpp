@@ -9,37 +9,38 @@
 namespace elastocheck::compare {
 namespace {
 
-// What a test measures.
-enum class Seen { toe, camber, along_the_force };
+// Quantity that a test measures per unit of the load: change of toe, change of camber, or displacement of
+// the loaded point along the force.
+enum class MeasuredChange { toe, camber, displacement };
 struct ForceFigure {
     const char* name;
     Unit unit;
-    Seen seen;
-    const char* stiffness = "";  // of Seen::along_the_force: force over displacement
+    MeasuredChange measured;
+    const char* stiffness = "";  // definition of a figure of MeasuredChange::displacement
     bool key = false, explained = false;
-    int live = 0;  // place on a live page, of its first loading
+    int live_rank = 0;  // rank on a live page under the first loading (LiveRank); 0: none
 };
 struct Loading {
-    const char* name;  // after "@"
-    double other;      // cause on the other wheel per unit on this one, ground axes
-    const char* cause;
-    const char* rig;  // what rigs call it
+    const char* name;     // suffix of the name of the figure, after "@"
+    double other;         // load on the other wheel per unit load on this one, ground axes
+    const char* cause;    // the load in words
+    const char* sources;  // name of the loading at test rigs or in programs
 };
 struct ForceTest {
-    int cause;         // position among the causes of WheelResponse
-    double sign;       // of the cause, ground axes; 0: towards the middle of the vehicle, or toe-in
-    const char* what;  // "braking force at the contact patch"
+    int cause;    // wrench index of WheelResponse::jacked
+    double sign;  // sign of the load along its ground axis; 0: -side, towards the vehicle's middle
+    const char* load;  // "braking force at the contact patch"
     Loading alone;
     std::vector<Loading> on_a_rig;
     std::vector<ForceFigure> figures;
-    int Usual::*moved;  // kind of a branch with this load
+    int LiveRank::*branch_kind;  // kind of a branch with this load
 };
 
 constexpr auto programs = "programs that load one wheel";
 
 const std::vector<ForceTest>& force_tests() {
     static const std::vector<ForceTest> tests{
-        {at_patch + 1,
+        {first_patch_force + 1,
          0,
          "lateral force at the contact patch",
          {"alone", 0,
@@ -52,32 +53,32 @@ const std::vector<ForceTest>& force_tests() {
            "rigs: lateral force, parallel"},
           {"opposed", -1, "a force at each contact patch, both towards the middle of the vehicle",
            "rigs: lateral force, opposed"}},
-         {{"lateral_force_steer", Unit::deg_per_kN, Seen::toe, "", true, true, 3},
-          {"lateral_force_camber", Unit::deg_per_kN, Seen::camber, "", false, false, 5},
-          {"lateral_stiffness", Unit::newton_per_mm, Seen::along_the_force,
+         {{"lateral_force_steer", Unit::deg_per_kN, MeasuredChange::toe, "", true, true, 3},
+          {"lateral_force_camber", Unit::deg_per_kN, MeasuredChange::camber, "", false, false, 5},
+          {"lateral_stiffness", Unit::newton_per_mm, MeasuredChange::displacement,
            "lateral force at the contact patch over its lateral displacement", false, false, 7}},
-         &Usual::lateral},
-        {at_patch,
+         &LiveRank::lateral},
+        {first_patch_force,
          -1,
          "braking force at the contact patch",
          {"alone", 0, "a force to the back at the contact patch", programs},
          {{"both", 1, "a force to the back at each contact patch", "rigs: both wheels braked"}},
-         {{"braking_force_steer", Unit::deg_per_kN, Seen::toe, "", true, false, 3},
-          {"braking_force_camber", Unit::deg_per_kN, Seen::camber, "", false, false, 4},
-          {"longitudinal_stiffness", Unit::newton_per_mm, Seen::along_the_force,
+         {{"braking_force_steer", Unit::deg_per_kN, MeasuredChange::toe, "", true, false, 3},
+          {"braking_force_camber", Unit::deg_per_kN, MeasuredChange::camber, "", false, false, 4},
+          {"longitudinal_stiffness", Unit::newton_per_mm, MeasuredChange::displacement,
            "longitudinal force at the contact patch over its longitudinal displacement", false,
            false, 6}},
-         &Usual::longitudinal},
-        {at_centre,
+         &LiveRank::longitudinal},
+        {first_centre_force,
          1,
          "traction force at the wheel centre",
          {"alone", 0, "a force forward at the wheel centre", programs},
          {{"both", 1, "a force forward at each wheel centre", "rigs: both wheels driven"}},
-         {{"traction_force_steer", Unit::deg_per_kN, Seen::toe, "", true, false, 5},
-          {"longitudinal_stiffness_at_centre", Unit::newton_per_mm, Seen::along_the_force,
+         {{"traction_force_steer", Unit::deg_per_kN, MeasuredChange::toe, "", true, false, 5},
+          {"longitudinal_stiffness_at_centre", Unit::newton_per_mm, MeasuredChange::displacement,
            "longitudinal force at the wheel centre over its longitudinal displacement"}},
-         &Usual::longitudinal},
-        {moment_on + 2,
+         &LiveRank::longitudinal},
+        {first_moment + 2,
          0,
          "aligning torque",
          {"alone", 0, "a moment about the vertical that turns the wheel towards toe-in", programs},
@@ -85,27 +86,28 @@ const std::vector<ForceTest>& force_tests() {
            "rigs: aligning torque, parallel"},
           {"opposed", -1, "a moment about z on each wheel towards toe-in",
            "rigs: aligning torque, opposed"}},
-         {{"aligning_torque_steer", Unit::deg_per_100Nm, Seen::toe, "", false, false, 3},
-          {"aligning_torque_camber", Unit::deg_per_100Nm, Seen::camber, "", false, false, 5}},
-         &Usual::moment}};
+         {{"aligning_torque_steer", Unit::deg_per_100Nm, MeasuredChange::toe, "", false, false, 3},
+          {"aligning_torque_camber", Unit::deg_per_100Nm, MeasuredChange::camber, "", false, false,
+           5}},
+         &LiveRank::moment}};
     return tests;
 }
 
-double value(const Subject& x, int cause, double sign, double other, Seen seen) {
-    const auto by_force_on = [&](std::size_t w) {
-        const auto& by = x.response->held[w][static_cast<std::size_t>(cause)];
-        const Placed at = cause < moment_on   ? x.centre()
-                          : cause == at_patch ? x.braked()
-                                              : x.patch();
-        return seen == Seen::toe      ? x.toe(by)
-               : seen == Seen::camber ? x.camber(by)
-                                      : x.moved_by(by, at)[cause % 3];
+double value(const Subject& x, int cause, double sign, double other, MeasuredChange measured) {
+    const auto change_under_load_on = [&](std::size_t w) {
+        const auto& motions = x.response->jacked[w][static_cast<std::size_t>(cause)];
+        const Placed loaded_point = cause < first_moment         ? x.centre()
+                                    : cause == first_patch_force ? x.braked()
+                                                                 : x.patch();
+        return measured == MeasuredChange::toe      ? x.toe(motions)
+               : measured == MeasuredChange::camber ? x.camber(motions)
+                                                    : x.moved_by(motions, loaded_point)[cause % 3];
     };
-    const double alone = by_force_on(x.k);
+    const double alone = change_under_load_on(x.k);
     double sum = alone;
     for (std::size_t w = 0; other != 0 && w < x.model.wheels.size(); ++w)
-        if (w != x.k) sum += other * by_force_on(w);
-    if (seen != Seen::along_the_force) return (sign != 0 ? sign : -x.side()) * sum;
+        if (w != x.k) sum += other * change_under_load_on(w);
+    if (measured != MeasuredChange::displacement) return (sign != 0 ? sign : -x.side()) * sum;
     // Where the displacements by both forces cancel, the axle is rigid, and their sum is rounding.
     constexpr double max_cancellation = 1e5;
     return ratio(1, sum, std::min(max_stiffness, max_cancellation / std::abs(alone)));
@@ -114,41 +116,43 @@ double value(const Subject& x, int cause, double sign, double other, Seen seen) 
 std::string definition(bool axle, const ForceTest& test, const Loading& loading,
                        const ForceFigure& figure) {
     constexpr auto at_height = ", wheel centres held at their height";
-    switch (figure.seen) {
-        case Seen::toe:
+    switch (figure.measured) {
+        case MeasuredChange::toe:
             return fmt::format("change of toe over {}{}{}; positive towards toe-in", loading.cause,
                                axle && loading.other == 0 ? ", this wheel alone loaded" : "",
                                at_height);
-        case Seen::camber:
+        case MeasuredChange::camber:
             return fmt::format("change of camber {}; positive where the top leans out",
                                axle ? "in the same test"
-                               : test.cause >= moment_on && test.cause < at_patch
+                               : test.cause >= first_moment && test.cause < first_patch_force
                                    ? "over the same moment, likewise"
                                    : "over the same force, likewise");
-        case Seen::along_the_force: break;
+        case MeasuredChange::displacement: break;
     }
     return std::string(figure.stiffness) + (axle ? " in the same test" : at_height);
 }
 
-// `place`: of the loading among those of its owner; -1 for one wheel of an axle loaded alone.
+// `position`: position of the loading among those of its owner; -1 for one wheel of an axle loaded alone.
 Entry entry(Owner owner, const ForceTest& test, const Loading& loading, const ForceFigure& figure,
-            int place) {
-    const bool axle = owner == Owner::wheel_of_axle, usual = place >= 0;
-    Usual live;
-    if (usual && figure.live != 0) live.*test.moved = figure.live + place;
-    return {owner,
-            axle ? fmt::format("{}@{}", figure.name, loading.name) : figure.name,
-            figure.unit,
-            definition(axle, test, loading, figure),
-            figure.seen == Seen::along_the_force ? "rigid: nothing gives" : "",
-            [cause = test.cause, sign = test.sign, other = loading.other,
-             seen = figure.seen](const Subject& x) { return value(x, cause, sign, other, seen); },
-            {.elsewhere = loading.rig,
-             .key = usual && figure.key,
-             .explained = usual && figure.explained && loading.other >= 0,
-             .compliance = usual,
-             .live = live,
-             .cause = test.what}};
+            int position) {
+    const bool axle = owner == Owner::wheel_of_axle, is_default = position >= 0;
+    LiveRank live_rank;
+    if (is_default && figure.live_rank != 0)
+        live_rank.*test.branch_kind = figure.live_rank + position;
+    return {
+        owner,
+        axle ? fmt::format("{}@{}", figure.name, loading.name) : figure.name,
+        figure.unit,
+        definition(axle, test, loading, figure),
+        figure.measured == MeasuredChange::displacement ? "rigid: nothing gives" : "",
+        [cause = test.cause, sign = test.sign, other = loading.other, measured = figure.measured](
+            const Subject& x) { return value(x, cause, sign, other, measured); },
+        {.sources = loading.sources,
+         .is_key_figure = is_default && figure.key,
+         .explained = is_default && figure.explained && loading.other >= 0,
+         .compliance = is_default,
+         .live_rank = live_rank,
+         .cause = test.load}};
 }
 
 }  // namespace
@@ -161,9 +165,9 @@ void add_force_tests(std::vector<Entry>& all, bool alone) {
                 continue;
             }
             all.push_back(entry(Owner::wheel_without_axle, test, test.alone, figure, 0));
-            int place = 0;
+            int position = 0;
             for (const Loading& loading : test.on_a_rig)
-                all.push_back(entry(Owner::wheel_of_axle, test, loading, figure, ++place));
+                all.push_back(entry(Owner::wheel_of_axle, test, loading, figure, ++position));
         }
 }
 

@@ -2,46 +2,54 @@
 
 namespace elastocheck::compare {
 
-Motions sum(const std::vector<std::pair<double, const Motions*>>& weighted) {
-    Motions total(weighted.front().second->size());
-    for (const auto& [weight, motions] : weighted)
+Motions weighted_sum(const std::vector<std::pair<double, const Motions*>>& terms) {
+    Motions total(terms.front().second->size());
+    for (const auto& [weight, motions] : terms)
         for (std::size_t b = 0; b < total.size(); ++b) {
             total[b].dr += weight * (*motions)[b].dr;
             total[b].dpi += weight * (*motions)[b].dpi;
         }
     return total;
 }
-Motions of_axle(const Causes& by, const Subject& x, int cause, double other) {
-    std::vector<std::pair<double, const Motions*>> weighted;
-    for (std::size_t w = 0; w < by.size(); ++w)
-        weighted.emplace_back(w == x.k ? 1 : other, &by[w][static_cast<std::size_t>(cause)]);
-    return sum(weighted);
+Motions axle_motions(const ResponsesByWheel& responses, const Subject& wheel, int cause,
+                     double other) {
+    std::vector<std::pair<double, const Motions*>> terms;
+    for (std::size_t w = 0; w < responses.size(); ++w)
+        terms.emplace_back(w == wheel.k ? 1 : other,
+                           &responses[w][static_cast<std::size_t>(cause)]);
+    return weighted_sum(terms);
 }
-const Motions& held(const Subject& x, int cause) {
-    return x.response->held[x.k][static_cast<std::size_t>(cause)];
+const Motions& motions_at_fixed_height(const Subject& wheel, int cause) {
+    return wheel.response->jacked[wheel.k][static_cast<std::size_t>(cause)];
 }
-const Motions* unheld(const Subject& x, int cause) {
-    return x.response->free.empty() ? nullptr
-                                    : &x.response->free[x.k][static_cast<std::size_t>(cause)];
+const Motions* motions_at_fixed_load(const Subject& wheel, int cause) {
+    return wheel.response->free.empty()
+               ? nullptr
+               : &wheel.response->free[wheel.k][static_cast<std::size_t>(cause)];
 }
-double without_free(const Subject& x) { return x.response->nothing_resists ? undefined : nan; }
+double value_without_free_response(const Subject& wheel) {
+    return wheel.response->nothing_resists ? undefined : nan;
+}
 
-Motions raised(const Subject& x) {
-    const auto& travel = x.response->travel;
-    const double scale = x.response->tied ? 1 / x.moved_by(travel.front(), x.centre()).z() : 1;
-    std::vector<std::pair<double, const Motions*>> weighted;
-    for (const Motions& motions : travel) weighted.emplace_back(scale, &motions);
-    return sum(weighted);
+Motions heave_motions(const Subject& wheel) {
+    const auto& travel = wheel.response->travel;
+    const double scale =
+        wheel.response->tied ? 1 / wheel.moved_by(travel.front(), wheel.centre()).z() : 1;
+    std::vector<std::pair<double, const Motions*>> terms;
+    for (const Motions& motions : travel) terms.emplace_back(scale, &motions);
+    return weighted_sum(terms);
 }
-Motions rolled(const Subject& x) {
-    std::vector<std::pair<double, const Motions*>> weighted;
-    for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
-        weighted.emplace_back(x.of(w).side(), &x.response->travel[w]);
-    return sum(weighted);
+Motions roll_motions(const Subject& wheel) {
+    std::vector<std::pair<double, const Motions*>> terms;
+    for (std::size_t w = 0; w < wheel.model.wheels.size(); ++w)
+        terms.emplace_back(wheel.of(w).side(), &wheel.response->travel[w]);
+    return weighted_sum(terms);
 }
-double vertical_rate(const Subject& x, int force, const Placed& at, double other) {
-    if (x.response->free.empty()) return without_free(x);
-    return ratio(1, x.moved_by(of_axle(x.response->free, x, force, other), at).z(), max_stiffness);
+double vertical_rate(const Subject& wheel, int force, const Placed& point, double other) {
+    if (wheel.response->free.empty()) return value_without_free_response(wheel);
+    return ratio(1,
+                 wheel.moved_by(axle_motions(wheel.response->free, wheel, force, other), point).z(),
+                 max_stiffness);
 }
 
 }  // namespace elastocheck::compare

@@ -16,7 +16,7 @@ constexpr auto no_roll_centre = "no finite roll centre";
 // Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by half
 // the track, the other one goes down by as much.
 Motions rolled_towards(const Subject& x) {
-    Motions roll = rolled(x);
+    Motions roll = roll_motions(x);
     const double half = std::abs(x.of(0).patch().at.y() - x.of(1).patch().at.y()) / 2 * x.side();
     for (auto& motion : roll) {
         motion.dr *= half;
@@ -51,7 +51,7 @@ std::optional<Vector2d> intersection(const Eigen::Matrix2d& A, const Vector2d& b
 std::optional<Vector2d> centre_of_axle(const Subject& x, Placed (Subject::*point)() const) {
     const auto front_view = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
     if (x.response->tied) return std::nullopt;
-    const Motions roll = rolled(x);
+    const Motions roll = roll_motions(x);
     Eigen::Matrix2d A;
     Vector2d c[2], b;
     double above = 0;  // mean height of the points above the road
@@ -84,29 +84,29 @@ double roll_centre(const Subject& x, Placed (Subject::*point)() const) {
 //
 //   f_z = -f_y C_y / C_z      h = -(t/2) f_z / f_y      t/2 = y of the patch of one wheel
 double roll_centre_by_forces(const Subject& x) {
-    const Causes& free = x.response->free;
-    if (free.empty()) return without_free(x);
+    const ResponsesByWheel& free = x.response->free;
+    if (free.empty()) return value_without_free_response(x);
     const auto rise = [](const Subject& wheel, const Motions& motions) {
         return wheel.moved_by(motions, wheel.centre()).z();
     };
     if (!is_axle(x.model))
-        return ratio(x.patch().at.y() * rise(x, free[0][at_patch + 1]),
-                     rise(x, free[0][at_patch + 2]), max_distance);
+        return ratio(x.patch().at.y() * rise(x, free[0][first_patch_force + 1]),
+                     rise(x, free[0][first_patch_force + 2]), max_distance);
     if (x.response->tied) return undefined;
     const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
     const auto roll = [&](const Motions& by) { return rise(left, by) - rise(right, by); };
     return ratio((left.patch().at.y() - right.patch().at.y()) / 2 *
-                     roll(of_axle(free, left, at_patch + 1, 1)),
-                 roll(of_axle(free, left, at_patch + 2, -1)), max_distance);
+                     roll(axle_motions(free, left, first_patch_force + 1, 1)),
+                 roll(axle_motions(free, left, first_patch_force + 2, -1)), max_distance);
 }
 
 // Unit forces on the patches, up on the left and down on the right one, are the moment t, the track, and
 // turn the line through the wheel centres by φ = (z_left - z_right) / t:  stiffness t / φ.
 double roll_stiffness(const Subject& x) {
-    if (x.response->free.empty()) return without_free(x);
+    if (x.response->free.empty()) return value_without_free_response(x);
     if (x.response->tied) return undefined;
     const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
-    const Motions by = of_axle(x.response->free, left, at_patch + 2, -1);
+    const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
     const double track = left.patch().at.y() - right.patch().at.y();
     const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
     return ratio(track * track, rise, max_stiffness);
@@ -126,7 +126,7 @@ double roll_stiffness_by(const Subject& x, Carries kind) {
     const double whole = roll_stiffness(x);
     if (!std::isfinite(whole)) return whole;
     const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
-    const Motions by = of_axle(x.response->free, left, at_patch + 2, -1);
+    const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
     const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
     constexpr double step = 1e-5;  // [m] of the rise, to either side
     const Equilibrium above = moved_by(*x.state, by, step / rise),
@@ -144,14 +144,15 @@ double roll_stiffness_by(const Subject& x, Carries kind) {
     return whole * work * rise / (4 * step * step);
 }
 Entry roll_stiffness_by(Carries kind, const std::string& name, const std::string& of) {
-    return {Owner::axle,
-            "roll_stiffness_of_" + name,
-            Unit::newton_metre_per_deg,
-            "part of the roll stiffness: work of the " + of +
-                " over that of the roll moment; what is left of the sum are turning preloads",
-            no_rate,
-            [kind](const Subject& x) { return roll_stiffness_by(x, kind); },
-            {.elsewhere = "split of the roll stiffness", .reads_free = true, .cause = "roll"}};
+    return {
+        Owner::axle,
+        "roll_stiffness_of_" + name,
+        Unit::newton_metre_per_deg,
+        "part of the roll stiffness: work of the " + of +
+            " over that of the roll moment; what is left of the sum are turning preloads",
+        no_rate,
+        [kind](const Subject& x) { return roll_stiffness_by(x, kind); },
+        {.sources = "split of the roll stiffness", .needs_free_response = true, .cause = "roll"}};
 }
 
 const Entry of_roll[] = {
@@ -161,14 +162,14 @@ const Entry of_roll[] = {
         "seen from the front, to the motion of the patches: of both wheels for an axle that rolls, "
         "with the middle plane of the vehicle for one wheel; positive above the road",
         no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::patch); },
-        {.elsewhere = "kinematic or geometric roll centre; force-based ones (SAE J670) are the "
-                      "same wherever virtual work holds, which a test shows",
-         .key = true,
+        {.sources = "kinematic or geometric roll centre; force-based ones (SAE J670) are the "
+                    "same wherever virtual work holds, which a test shows",
+         .is_key_figure = true,
          .explained = true,
-         .live = {.heave = 3, .roll = 1},
+         .live_rank = {.heave = 3, .roll = 1},
          .cause = "roll",
-         .drawn = {{Over::travel, 9, "Roll centre height", "above the road"},
-                   {Over::roll, 5, "Roll centre height in roll", "above the road"}}}),
+         .drawings = {{DrawnAbscissa::travel, 9, "Roll centre height", "above the road"},
+                      {DrawnAbscissa::roll, 5, "Roll centre height in roll", "above the road"}}}),
     Entry(Owner::axle, "roll_centre_lateral", Unit::mm,
           "lateral position of the same intersection, positive to the left of the middle plane",
           no_roll_centre,
@@ -176,22 +177,22 @@ const Entry of_roll[] = {
               const auto centre = centre_of_axle(x, &Subject::patch);
               return centre ? centre->x() : undefined;
           },
-          {.elsewhere = "migration of the roll centre in roll",
-           .place = true,
-           .live = {.roll = 5},
+          {.sources = "migration of the roll centre in roll",
+           .is_position = true,
+           .live_rank = {.roll = 5},
            .cause = "roll",
-           .drawn = {{Over::roll, 6, "Lateral position of the roll centre",
-                      "left of the middle plane positive"}}}),
+           .drawings = {{DrawnAbscissa::roll, 6, "Lateral position of the roll centre",
+                         "left of the middle plane positive"}}}),
     Entry(Owner::axle, "roll_stiffness", Unit::newton_metre_per_deg,
           "moment of opposite vertical forces at the patches over the roll of the wheel centres, "
           "without the tyres",
           no_rate, roll_stiffness,
-          {.elsewhere = "suspension roll rate with springs, bar and bushings",
-           .reads_free = true,
-           .key = true,
-           .live = {.roll = 2},
+          {.sources = "suspension roll rate with springs, bar and bushings",
+           .needs_free_response = true,
+           .is_key_figure = true,
+           .live_rank = {.roll = 2},
            .cause = "roll",
-           .drawn = {{Over::roll, 4, "Roll stiffness", "without the tyres"}}}),
+           .drawings = {{DrawnAbscissa::roll, 4, "Roll stiffness", "without the tyres"}}}),
     roll_stiffness_by(Carries::spring, "springs", "springs and stops"),
     roll_stiffness_by(Carries::bar, "bar",
                       "torsion springs and beams (anti-roll bars, twist beams)"),
@@ -200,17 +201,18 @@ const Entry of_roll[] = {
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "
           "positive towards toe-in",
           does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::toe); },
-          {.elsewhere = "roll steer coefficient", .key = true, .cause = "roll"}),
+          {.sources = "roll steer coefficient", .is_key_figure = true, .cause = "roll"}),
     Entry(Owner::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
           "change of camber against the car body over its roll towards this wheel; positive where "
           "the top leans out",
           does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber); },
-          {.elsewhere = "often given relative to the road, which adds 1", .cause = "roll"}),
+          {.sources = "often given relative to the road, which adds 1", .cause = "roll"}),
     Entry(Owner::wheel_of_axle, std::string(figure::wheel_rate_in_roll), Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, "
           "with the opposite force on the other wheel",
-          no_rate, [](const Subject& x) { return vertical_rate(x, at_patch + 2, x.centre(), -1); },
-          {.elsewhere = "with the anti-roll bar", .cause = "roll"}),
+          no_rate,
+          [](const Subject& x) { return vertical_rate(x, first_patch_force + 2, x.centre(), -1); },
+          {.sources = "with the anti-roll bar", .cause = "roll"}),
 };
 
 const Entry roll_definitions[] = {
@@ -219,20 +221,20 @@ const Entry roll_definitions[] = {
         "height above the contact patches of the intersection of the lines that are perpendicular, "
         "seen from the front, to the motion of the wheel centres and pass through them",
         no_roll_centre, [](const Subject& x) { return roll_centre(x, &Subject::centre); },
-        {.elsewhere = "tracks that are measured at the wheel centres"}),
+        {.sources = "tracks that are measured at the wheel centres"}),
     Entry(Owner::wheels, "roll_centre_height@forces", Unit::mm,
           "height above the contact patches of the point at which a lateral force on the body "
           "leaves the wheel centres at their height (of an axle: the body without roll), the same "
           "lateral force on each patch, elements included",
           no_roll_centre, roll_centre_by_forces,
-          {.elsewhere = "SAE J670e: roll center; force-based roll centre",
-           .set = "sae",
-           .reads_free = true}),
+          {.sources = "SAE J670e: roll center; force-based roll centre",
+           .definition_set = "sae",
+           .needs_free_response = true}),
     Entry(Owner::wheel_of_axle, "roll_camber@road", Unit::deg_per_deg,
           "change of camber against the road over the roll of the car body towards this wheel; "
           "positive where the top leans out",
           does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::camber) + 1; },
-          {.elsewhere = "inclination to the ground"}),
+          {.sources = "inclination to the ground"}),
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A wheel, spring or damper in a state, as the formulas of the catalogue read it: positions, angles, and
-// rates along the motions of a response.
+// Argument `x` of the formulas of the catalogue: a wheel, spring or damper in a state, with its positions and
+// angles, and their rates along the motions of a response.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace elastocheck::compare {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A point of a body: its position, and its vector from the origin of the body, ground axes [m].
+// Point of a body: its position `at`, and its vector `lever` from the origin of the body, ground axes [m].
 struct Placed {
     BodyId body;
     Vector3d at, lever;
@@ -23,15 +23,17 @@ struct Placed {
 
 struct Subject {
     const Model& model;
-    const Equilibrium* state = nullptr;       // null: as drawn
+    const Equilibrium* state = nullptr;       // null: the design position (as drawn)
     std::size_t k = 0;                        // position in Model::wheels, elastics or dampers
     const Branch* branch = nullptr;           // needed by wheel loads
     const WheelResponse* response = nullptr;  // needed by characteristics
 
+    // The same part in the design position.
     Subject drawn() const { return {model, nullptr, k}; }
+    // Another wheel in the same state.
     Subject of(std::size_t other) const { return {model, state, other, branch, response}; }
 
-    // ---- The state. Ground axes.
+    // ---- Positions and directions in the state, ground axes.
     const Wheel& wheel() const { return model.wheels[k]; }
     double side() const { return wheel().side; }
     const Pose& pose(BodyId body) const {
@@ -57,7 +59,8 @@ struct Subject {
         const Vector3d at = patch().at;
         return {wheel().body, at, at - pose(wheel().body).r};
     }
-    // Pointing outboard: the spin axis; the axis of the carrier that is lateral as drawn.
+    // Spin axis of the wheel, and the axis of the carrier that is lateral in the design position. Both point
+    // outboard.
     Vector3d spin() const { return pose(wheel().body).p * wheel().spin_axis_local; }
     Vector3d lateral() const {
         return pose(wheel().body).p *
@@ -69,14 +72,14 @@ struct Subject {
         return Vector3d(e.x(), e.y(), 0).normalized();
     }
     Vector3d along() const { return side() * across().cross(Vector3d::UnitZ()); }
-    // The lowest point of a circle of the drawn radius in the wheel's plane.
+    // Lowest point of a circle in the wheel's plane with the radius that the wheel has as drawn.
     Vector3d lowest() const {
         const Vector3d e = spin();
         const double radius = drawn_arm(model, wheel()).norm();
         return centre().at + radius * (e * e.z() - Vector3d::UnitZ()).normalized();
     }
 
-    // The steering axis, from its lower to its upper end; and the horizontal vector from a point to it.
+    // Vector of the steering axis from its lower to its upper end; horizontal vector from a point to the axis.
     Vector3d axis() const {
         const auto& [lower, upper] = *wheel().steering_axis;
         return placed(upper).at - placed(lower).at;
@@ -101,7 +104,7 @@ struct Subject {
         return std::atan(-side() * u.y() / u.z());
     }
 
-    // ---- Rates along a motion.
+    // ---- Rates along a motion: derivatives of toe and camber, rotation of the carrier, displacement of a point.
     double toe(const Motions& motions) const {
         const Vector3d e = spin(), de = turned(motions, wheel().body).cross(e);
         const double x = side() * e.y(), dx = side() * de.y();
@@ -119,7 +122,7 @@ struct Subject {
     }
 };
 
-// A longer arm is infinite and a stiffer joint rigid: the denominator is round-off.
+// Beyond these limits the denominator is round-off: an arm is infinite, a joint is rigid.
 inline constexpr double max_distance = 1e4;    // [m]
 inline constexpr double max_stiffness = 1e12;  // [N/m]
 
@@ -146,11 +149,11 @@ std::string axis_words(int axis);
 void add_angles(std::vector<Entry>& all);  // angles.cpp
 void add_rates(std::vector<Entry>& all);   // rates.cpp
 void add_roll(std::vector<Entry>& all);    // roll.cpp, among the rates
-// by other definitions than the project's own
+// Entries by other definitions than the project's own:
 void add_angle_definitions(std::vector<Entry>& all);  // angles.cpp
 void add_rate_definitions(std::vector<Entry>& all);   // rates.cpp
 void add_roll_definitions(std::vector<Entry>& all);   // roll.cpp, among the rates
-// force_tests.cpp, among the rates; `alone`: those of an axle under a force on one wheel only
+// force_tests.cpp, among the rates. `alone`: only the tests of an axle with a load on one wheel; else all others.
 void add_force_tests(std::vector<Entry>& all, bool alone);
 
 }  // namespace elastocheck::compare

@@ -10,8 +10,8 @@
 namespace elastocheck::compare {
 
 struct Plane {
-    Eigen::Vector3d normal;  // unit
-    double offset = 0;       // normal · p of its points [m]
+    Eigen::Vector3d normal;  // unit vector
+    double offset = 0;       // normal · p for the points p of the plane [m]
 };
 
 // One plane per wishbone of the wheel's body. The line to ground is that of two bushings or ball joints,

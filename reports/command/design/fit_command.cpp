@@ -82,7 +82,7 @@ MeasuredFigures read_measured(const FitRequest& request, const Model& model) {
     } catch (const std::invalid_argument& error) {
         fail_at(request.measured, 1, error.what());
     }
-    keep_rows(data.table, [&](std::size_t k) {
+    drop_points(data.table, [&](std::size_t k) {
         std::string why = why_no_figure(places[k], data, outline, k);
         if (why.empty()) kept.push_back(places[k]);
         return why;
@@ -100,8 +100,8 @@ MeasuredFigures read_measured(const FitRequest& request, const Model& model) {
             measured.figures.push_back(
                 {.name = channel.name,
                  .branch = branch.name,
-                 .at = by_parameter ? x / compare::in_unit(compare::unit_of(branch.unit)) : x,
-                 .over = by_parameter ? "" : data.channels[*points.abscissa].name,
+                 .station = by_parameter ? x / compare::in_unit(compare::unit_of(branch.unit)) : x,
+                 .abscissa = by_parameter ? "" : data.channels[*points.abscissa].name,
                  .change = column.change});
             measured.column.push_back(static_cast<int>(measured.columns.size()));
             measured.value.push_back(column.values[k]);
@@ -133,10 +133,10 @@ std::vector<Figure> unmeasured(const Model& model, const MeasuredFigures& data, 
                     figures.push_back(
                         {.name = output.name,
                          .branch = branch.name,
-                         .at = end,
+                         .station = end,
                          .unit = symbol(output.unit),
-                         .place = fmt::format("{} = {:g} {}", branch.name,
-                                              compare::in_unit(unit) * end, symbol(unit))});
+                         .station_text = fmt::format("{} = {:g} {}", branch.name,
+                                                     compare::in_unit(unit) * end, symbol(unit))});
         }
     return figures;
 }
@@ -145,7 +145,7 @@ std::vector<Figure> unmeasured(const Model& model, const MeasuredFigures& data, 
 // largest; NaN where that is rounding.
 VectorXd extents_of(const Scene& scene, const std::vector<Figure>& figures, const VectorXd& value) {
     std::vector<Figure> starts = figures;
-    for (auto& figure : starts) figure.at = 0;
+    for (auto& figure : starts) figure.station = 0;
     const VectorXd start = compare::figure_values(scene, starts).value;
     std::map<std::string, double> largest;
     for (std::size_t k = 0; k < figures.size(); ++k) {

@@ -77,8 +77,8 @@ void read_band(const Cursor& entry, Goal& goal) {
 
 // A point of a curve at another place.
 Figure moved_to(const Goal& goal, Figure point, double place) {
-    point.at = place;
-    point.place =
+    point.station = place;
+    point.station_text =
         fmt::format("{} = {:g} {}", goal.along, goal.along_factor * place, goal.along_unit);
     return point;
 }
@@ -116,7 +116,7 @@ void add_curve(const Cursor& entry, const LoadedScene& loaded, const std::string
     Figure point = figure_at(branch ? *branch : entry, name + "@" + on, model);
     if (over) {
         const Figure abscissa = figure_at(*over, over->text("an output of the scene"), model);
-        point.over = goal.along = abscissa.name;
+        point.abscissa = goal.along = abscissa.name;
         goal.along_unit = abscissa.unit;
         goal.any_branch = !branch;
     } else {
@@ -137,11 +137,11 @@ void add_curve(const Cursor& entry, const LoadedScene& loaded, const std::string
             goal, point, (from * (points - 1 - k) + to * k) / (points - 1) / goal.along_factor));
     if (!goal.any_branch) return;
     auto places = goal.points;
-    for (Figure& place : places) place.name = place.over;
+    for (Figure& place : places) place.name = place.abscissa;
     const VectorXd reached = put_on_branches(loaded.scene, model, places);
     for (std::size_t k = 0; k < places.size(); ++k) {
         if (std::isnan(reached[static_cast<Index>(k)]))
-            entry.fail(fmt::format("no branch reaches {} = {:g}", goal.along, places[k].at));
+            entry.fail(fmt::format("no branch reaches {} = {:g}", goal.along, places[k].station));
         goal.points[k].branch = places[k].branch;
     }
 }
@@ -154,7 +154,7 @@ Goal read_goal(const Cursor& entry, const LoadedScene& loaded) {
     Goal goal{.line = entry.value->line};
     read_band(entry, goal);
     goal.points = {figure_at(figure, name, loaded.model)};
-    goal.where = goal.points.front().place;
+    goal.where = goal.points.front().station_text;
     if (entry.optional("from") || entry.optional("to"))
         add_curve(entry, loaded, name, goal);
     else
@@ -252,7 +252,7 @@ std::optional<compare::Between> add_points_outside(const compare::OptimisedScene
         std::vector<Figure> between;
         for (std::size_t k = 0; k + 1 < goal.points.size(); ++k)
             for (int i = 1; i <= between_points; ++i) {
-                const double a = goal.points[k].at, b = goal.points[k + 1].at;
+                const double a = goal.points[k].station, b = goal.points[k + 1].station;
                 between.push_back(
                     moved_to(goal, goal.points[k], a + (b - a) * i / (between_points + 1)));
             }
@@ -265,10 +265,10 @@ std::optional<compare::Between> add_points_outside(const compare::OptimisedScene
             if (excess <= within) continue;
             if (std::isfinite(excess)) goal.points.push_back(between[k]);
             if (!worst || (!std::isnan(worst->excess) && !(excess <= worst->excess)))
-                worst = {excess, goal.output() + " at " + between[k].place +
+                worst = {excess, goal.output() + " at " + between[k].station_text +
                                      (std::isnan(excess) ? " (no value there)" : "")};
         }
-        std::ranges::stable_sort(goal.points, {}, &Figure::at);
+        std::ranges::stable_sort(goal.points, {}, &Figure::station);
     }
     return worst;
 }

@@ -126,10 +126,10 @@ compare::Figure parse_figure(const std::string& word, const Model& model) {
     const double at = station.at.value_or(0);
     return {.name = output->name,
             .branch = station.branch->name,
-            .at = at,
+            .station = at,
             .unit = symbol(output->unit),
-            .place = fmt::format("{} = {:g} {}", station.branch->name, at * compare::in_unit(unit),
-                                 symbol(unit))};
+            .station_text = fmt::format("{} = {:g} {}", station.branch->name,
+                                        at * compare::in_unit(unit), symbol(unit))};
 }
 
 void check_may_write_scene(const std::string& scene, const std::string& output,

@@ -79,11 +79,11 @@ void add_changes(Table& table, const SceneAnalyses& scene) {
     table.caption += fmt::format(
         ", and over the branch {}: changes since its start, track change from the drawn position",
         sweep->name);
-    for (const auto& quantity : compare::drawn_over(compare::Over::load))
+    for (const auto& quantity : compare::figures_over(compare::DrawnAbscissa::load))
         for (const std::size_t end : {std::size_t{0}, curve.a.size() - 1}) {
             const compare::Entry& entry = *compare::find_entry(quantity.name);
             if (end == curve.start || entry.point != nullptr) continue;  // a position
-            const bool from_drawn = !entry.properties.main;
+            const bool from_drawn = !entry.properties.is_main;
             std::vector<compare::Cell> row{fmt::format(
                 "{}{} at {}{}\u00a0{}", as_words(quantity.name), from_drawn ? "" : " change",
                 curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};

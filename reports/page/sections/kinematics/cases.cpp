@@ -35,18 +35,18 @@ std::string Family::abscissa(const Wheel& wheel) const {
 Scale scale_of(const Quantity& quantity, int side, const std::vector<double>& values,
                std::size_t start) {
     const double first = start < values.size() ? values[start] : 0;
-    switch (quantity.shown) {
-        case compare::Shown::as_is:
-        case compare::Shown::off_centre: return {};
-        case compare::Shown::change: return {1, first};
-        case compare::Shown::outward_change: return {1.0 * side, first};
-        case compare::Shown::to_the_left: return {-1.0 * side, 0};
+    switch (quantity.presentation) {
+        case compare::Presentation::as_is:
+        case compare::Presentation::off_centre: return {};
+        case compare::Presentation::change: return {1, first};
+        case compare::Presentation::outward_change: return {1.0 * side, first};
+        case compare::Presentation::to_the_left: return {-1.0 * side, 0};
     }
     return {};
 }
 
 std::string label_of(const Quantity& quantity) {
-    if (quantity.shown != compare::Shown::to_the_left) return as_words(quantity.name);
+    if (quantity.presentation != compare::Presentation::to_the_left) return as_words(quantity.name);
     std::string title = quantity.title;
     title[0] = static_cast<char>(std::tolower(title[0]));
     return title;

@@ -12,7 +12,7 @@
 
 namespace elastocheck::reports {
 
-using Quantity = compare::DrawnFigure;
+using Quantity = compare::CurveOfFigure;
 
 struct Case {
     Sweep sweep;

@@ -16,7 +16,7 @@ namespace elastocheck::reports {
 namespace {
 
 using Rows = std::vector<std::vector<double>>;
-using compare::Shown;
+using compare::Presentation;
 
 // Range of all curves of a figure, and the largest extent of one of them.
 struct CurveRange {
@@ -29,7 +29,7 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
     Rows rows;
     double low = INFINITY, high = -INFINITY, farthest = 0;
     for (const double at : x) farthest = std::max(farthest, std::abs(at));
-    const double middle = quantity.shown == Shown::off_centre ? 0.2 * farthest : -1;
+    const double middle = quantity.presentation == Presentation::off_centre ? 0.2 * farthest : -1;
     const compare::Entry* entry = compare::find_entry(quantity.name);
     const bool has_poles = entry != nullptr && entry->properties.swing_arm;
     for (const auto j : thinned(values.size(), 41)) {
@@ -131,7 +131,7 @@ void add_figures(Section& section, const SceneAnalyses& scene, const Family& fam
     if (family.cases.empty()) return;
     auto quantities = family.quantities;
     if (family.with_given_only)
-        std::ranges::copy(compare::drawn_over(compare::Over::if_given),
+        std::ranges::copy(compare::figures_over(compare::DrawnAbscissa::if_given),
                           std::back_inserter(quantities));
     std::vector<std::string> names, given_names{"measured"};
     for (const auto& c : family.cases) names.push_back(c.sweep.name);
@@ -147,8 +147,8 @@ void add_figures(Section& section, const SceneAnalyses& scene, const Family& fam
             continue;
         std::ranges::move(given, std::back_inserter(curves));
         const std::string unit = outputs_of(scene, quantity.name).front().unit;
-        const bool change =
-            quantity.shown == Shown::change || quantity.shown == Shown::outward_change;
+        const bool change = quantity.presentation == Presentation::change ||
+                            quantity.presentation == Presentation::outward_change;
         section.figures.push_back(figure_of_curves(
             {.id = fmt::format("{}-{}", slug(quantity.name), family.id),
              .title = quantity.title,

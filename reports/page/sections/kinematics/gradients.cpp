@@ -16,12 +16,12 @@ namespace {
 // Abscissa of a fit: half its range and its unit, and what gradients are per.
 struct Fitted {
     By by;
-    compare::Over over;
+    compare::DrawnAbscissa over;
     double range, per;
     const char *unit, *per_unit, *words;
 };
 Fitted fitted_over(const Sweep& sweep) {
-    using enum compare::Over;
+    using enum compare::DrawnAbscissa;
     if (sweep.kind == "roll") return {By::roll, roll, 1, 1, "deg", "deg", "roll towards the wheel"};
     if (sweep.lifts()) return {By::travel, travel, 20, 100, "mm", "100 mm", "wheel travel"};
     if (sweep.kind == "moment") return {By::push, load, 100, 100, "N·m", "100 N·m", "moment"};
@@ -63,8 +63,9 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
     const Family family{.id = "", .x = "", .by = over.by};
     std::vector<GradientRow> rows;
     FittedLine range;
-    for (const auto& quantity : compare::drawn_over(over.over)) {
-        if (!quantity.has_gradient || quantity.shown == compare::Shown::off_centre) continue;
+    for (const auto& quantity : compare::figures_over(over.over)) {
+        if (!quantity.has_gradient || quantity.presentation == compare::Presentation::off_centre)
+            continue;
         GradientRow row{label_of(quantity), "", std::vector(wheels.size(), compare::nan)};
         double sum = 0, count = 0;
         for (const auto& output : outputs_of(scene, quantity.name)) {

@@ -82,7 +82,7 @@ Table key_rates(const SceneAnalyses& scene) {
     const auto design = design_of(scene);
     if (design.empty()) return {};
     auto rates = rates_of(design, scene.model.wheels);
-    std::erase_if(rates, [](const Rate& rate) { return !rate.properties.key; });
+    std::erase_if(rates, [](const Rate& rate) { return !rate.properties.is_key_figure; });
     return rates_table(
         rates, scene.model.wheels,
         "Key figures at the design position (lateral forces towards the middle of the vehicle, "

@@ -108,7 +108,7 @@ std::optional<Section> springs_section(const SceneAnalyses& scene) {
                  .x = "wheel travel [mm]",
                  .by = By::travel,
                  .cases = {{*sweep, SweepCurve(scene, *sweep)}},
-                 .quantities = compare::drawn_over(compare::Over::springs),
+                 .quantities = compare::figures_over(compare::DrawnAbscissa::springs),
                  .with_given_only = false});
     if (section.figures.empty()) return std::nullopt;
     section.words["branch"] = sweep->name;

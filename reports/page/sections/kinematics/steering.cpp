@@ -12,8 +12,8 @@
 namespace elastocheck::reports {
 namespace {
 
-using compare::drawn_over;
-using compare::Over;
+using compare::DrawnAbscissa;
+using compare::figures_over;
 
 // Diameter of the circle that the outer front wheel's patch follows, the rear wheels rolling along
 // it: 2 l / sin δ of the smaller angle.
@@ -42,8 +42,9 @@ std::vector<Quantity> all_outputs(const SceneAnalyses& scene, const std::vector<
             return std::ranges::find(efforts, c.name) != efforts.end();
         });
         if (c.main || drives)
-            quantities.push_back({c.name, as_words(c.name), "",
-                                  drives ? compare::Shown::as_is : compare::Shown::change});
+            quantities.push_back(
+                {c.name, as_words(c.name), "",
+                 drives ? compare::Presentation::as_is : compare::Presentation::change});
     }
     return quantities;
 }
@@ -60,7 +61,7 @@ std::optional<Section> steering_section(const SceneAnalyses& scene) {
                      c.sweep.parameter,
                      By::parameter,
                      {c},
-                     drawn_over(Over::steering)});
+                     figures_over(DrawnAbscissa::steering)});
         if (const std::string circle = turning_circle(scene, c); !circle.empty())
             section.words["circle"] = circle;
     }
@@ -78,7 +79,7 @@ std::optional<Section> compliance_section(const SceneAnalyses& scene) {
         Family family{.id = id, .x = fmt::format("{} [{}]", id, unit), .by = By::push};
         for (const auto& c : cases)
             if (c.sweep.unit == unit) family.cases.push_back(c);
-        family.quantities = drawn_over(Over::load);
+        family.quantities = figures_over(DrawnAbscissa::load);
         if (moment) family.quantities.resize(2);
         add_figures(section, scene, family);
     }
@@ -100,7 +101,8 @@ std::optional<Section> curves_section(const SceneAnalyses& scene) {
         Family family{slug(c.sweep.name), x};
         for (const auto& other : cases)
             if (other.sweep.parameter == x) family.cases.push_back(other);
-        family.quantities = no_wheels ? all_outputs(scene, family.cases) : drawn_over(Over::load);
+        family.quantities =
+            no_wheels ? all_outputs(scene, family.cases) : figures_over(DrawnAbscissa::load);
         add_figures(section, scene, family);
     }
     if (section.figures.empty()) return std::nullopt;

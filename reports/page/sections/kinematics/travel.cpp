@@ -12,8 +12,11 @@ std::optional<Section> kinematics_section(const SceneAnalyses& scene) {
     Section section{.id = "kinematics", .title = "Kinematics over travel", .part = Part::behaviour};
     section.words["several"] = scene.model.wheels.size() > 1;
     std::vector<Case> by_parameter;
-    Family family{
-        "travel", "wheel travel [mm]", By::travel, {}, compare::drawn_over(compare::Over::travel)};
+    Family family{"travel",
+                  "wheel travel [mm]",
+                  By::travel,
+                  {},
+                  compare::figures_over(compare::DrawnAbscissa::travel)};
     for (const auto& c : cases)
         (measured_over_parameter(scene, c.sweep) ? by_parameter : family.cases).push_back(c);
     add_figures(section, scene, family);
@@ -28,7 +31,7 @@ std::optional<Section> roll_section(const SceneAnalyses& scene) {
                         "roll angle [deg]",
                         By::roll,
                         cases_of(scene, [](const Sweep& s) { return s.kind == "roll"; }),
-                        compare::drawn_over(compare::Over::roll),
+                        compare::figures_over(compare::DrawnAbscissa::roll),
                         false};
     Section section{.id = "roll", .title = "Roll of the axle", .part = Part::behaviour};
     add_figures(section, scene, family);

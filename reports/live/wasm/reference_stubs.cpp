@@ -1,5 +1,5 @@
-// Functions that the sources refer to and that are not part of the page: the two references, and the clock of the
-// processor. The page calls none of them; a call of a reference throws.
+// Stubs for the live page, which contains neither of the two references. A call of a reference throws;
+// processor_time() returns 0, since the page shows no computing times.
 #include <stdexcept>
 
 #include "compare/jobs/jobs.hpp"
@@ -10,34 +10,36 @@
 
 namespace elastocheck {
 namespace {
-[[noreturn]] void absent(const char* what) {
-    throw std::logic_error(std::string(what) + " is not part of a live page");
+[[noreturn]] void throw_absent(const char* leg) {
+    throw std::logic_error(std::string(leg) + " is not part of a live page");
 }
 }  // namespace
 
 namespace reference::equilibrium {
 EquilibriumPath solve(const Model&, const Branch&, std::span<const double>, const Options&,
                       const PointVisitor&) {
-    absent("the equilibrium leg");
+    throw_absent("the equilibrium leg");
 }
 Residuals residuals(const Model&, const Branch&, const Equilibrium&) {
-    absent("the equilibrium leg");
+    throw_absent("the equilibrium leg");
 }
 Response linear_response(const Model&, const Branch&, const Equilibrium&,
                          std::span<const Disturbance>, std::shared_ptr<const Orders>*) {
-    absent("the equilibrium leg");
+    throw_absent("the equilibrium leg");
 }
 }  // namespace reference::equilibrium
 
 namespace reference::energy {
 EquilibriumPath solve(const Model&, const Branch&, std::span<const double>, const Options&,
                       const PointVisitor&) {
-    absent("the energy leg");
+    throw_absent("the energy leg");
 }
-Residuals residuals(const Model&, const Branch&, const Equilibrium&) { absent("the energy leg"); }
+Residuals residuals(const Model&, const Branch&, const Equilibrium&) {
+    throw_absent("the energy leg");
+}
 Response linear_response(const Model&, const Branch&, const Equilibrium&,
                          std::span<const Disturbance>) {
-    absent("the energy leg");
+    throw_absent("the energy leg");
 }
 }  // namespace reference::energy
 
