@@ -46,7 +46,7 @@ std::string reason_of_end(const Model& model, const Diagnosis& diagnosis, const 
         case Outcome::inconsistent_constraints:
             if (const auto vanished = vanishing_length(model, branch);
                 vanished && !std::isnan(stop.at) &&
-                std::abs(stop.at) >= 0.99 * std::abs(vanished->at))
+                std::abs(stop.at) >= 0.99 * std::abs(vanished->parameter))
                 detail = no_length(model, branch, *vanished);
             else if (!std::isnan(stop.at))
                 detail += end_by_diagnosis(outcome, diagnosis);
@@ -88,7 +88,7 @@ EquilibriumPath solve_by_method(const Model& model, const Branch& branch, const 
                                 const Analysis& analysis, const PointVisitor& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
         return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
-    if (const auto vanished = vanishing_length(model, branch); vanished && vanished->at == 0)
+    if (const auto vanished = vanishing_length(model, branch); vanished && vanished->parameter == 0)
         return {Outcome::inconsistent_constraints,
                 fmt::format("branch '{}': {}", branch.name, no_length(model, branch, *vanished)),
                 {},
