@@ -190,10 +190,12 @@ struct Changes {
         const double above = (4 * up[k] - far_up[k]) / (2 * h);
         return std::isfinite(above) ? above : finite_or_nan((far_down[k] - 4 * down[k]) / (2 * h));
     }
-    // Largest |Δy| of figure k by ±2h; zero if it is not finite.
+    // Largest |Δy| of figure k by ±2h, of the sides that have a value; zero without one.
     double size(Index k) const {
-        const double largest = std::max(std::abs(far_up[k]), std::abs(far_down[k]));
-        return std::isfinite(largest) ? largest : 0;
+        const auto finite = [](double change) {
+            return std::isfinite(change) ? std::abs(change) : 0;
+        };
+        return std::max(finite(far_up[k]), finite(far_down[k]));
     }
     // |2 (Δy(h) + Δy(-h)) - ½ (Δy(2h) + Δy(-2h))|, by Taylor ½ h⁴ |d⁴y/dp⁴| for a smooth function, and
     // h |s| for slopes to both sides that differ by s
