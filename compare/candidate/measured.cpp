@@ -166,7 +166,7 @@ void reverse_places(const MeasuredInput& input, std::vector<Place>& places,
                    as_reversed = values_beside_leg(input, reversed, b, Leg::equilibrium);
         for (std::size_t c = 0; c < input.points.columns.size(); ++c) {
             double n = 0, sum = 0, squares = 0, as_is = 0, sign = 0, place = 0;
-            for (std::size_t k = 0; k < as_input.points.size(); ++k) {
+            for (std::size_t k = 0; k < as_given.points.size(); ++k) {
                 const double v = as_given.candidate[c][k], r = as_given.truth[c][k],
                              t = as_reversed.truth[c][k];
                 if (!std::isfinite(v + r + t)) continue;
@@ -187,14 +187,14 @@ void reverse_places(const MeasuredInput& input, std::vector<Place>& places,
         if (!(before > min_deviation * min_deviation * count) ||
             !(by_places < max_remainder * max_remainder * before) || !(by_places < by_columns))
             continue;
-        const bool by_parameter = places[as_input.points.front()].by_parameter;
+        const bool by_parameter = places[as_given.points.front()].by_parameter;
         causes.push_back(fmt::format(
             "the columns of branch '{}' are nearer with the sign of {} turned: {:.2g} % of their "
             "scatter off instead of {:.2g} %",
             input.comparison.branches[b].branch,
             by_parameter ? "the parameter" : input.comparison.channels[*input.points.abscissa].name,
             100 * std::sqrt(by_places / count), 100 * std::sqrt(before / count)));
-        for (const std::size_t k : as_input.points) places[k].x = reversed[k].x;
+        for (const std::size_t k : as_given.points) places[k].x = reversed[k].x;
     }
 }
 
