@@ -143,8 +143,8 @@ TEST(PointsTable, CellsAreSplitAtTheSeparatorThatTheFileDeclaresOrUses) {
     EXPECT_EQ(rows("a;1,5;2,5;3,5\n").separator, ';');
     EXPECT_EQ(rows("a,1.5,2.5,\"3;5;;\"\n").separator, ',');
     EXPECT_EQ(rows("a\t1,5\t2,5\t3,5\n").separator, '\t');
-    EXPECT_EQ(importer::letters_of(0) + importer::letters_of(25) + importer::letters_of(26) +
-                  importer::letters_of(701) + importer::letters_of(702),
+    EXPECT_EQ(reader::letters_of(0) + reader::letters_of(25) + reader::letters_of(26) +
+                  reader::letters_of(701) + reader::letters_of(702),
               "AZAAZZAAA");
 }
 
