@@ -79,7 +79,6 @@ TEST(OrderStudy, StudyWithoutAConvergedSeriesIsNotConclusive) {
     OrderOptions options;
     options.orders = {2};
     options.tolerances = {1e-12};
-    options.expansions = 3;
     const auto orders = order_study(model, options);
     EXPECT_EQ(orders.front().levels.front().outcome, Outcome::iteration_limit);
     EXPECT_FALSE(conclusive(orders));
