@@ -338,7 +338,8 @@ TEST(SimbodyCandidate, FitToItsCurvesFindsTheChangedNumbers) {
         for (std::size_t c = 0; c < outputs.size(); ++c) {
             const auto& channel =
                 channels[static_cast<std::size_t>(compare::find_channel(channels, outputs[c]))];
-            figures.push_back({.name = outputs[c], .branch = told.at("branch"), .at = state.load});
+            figures.push_back(
+                {.name = outputs[c], .branch = told.at("branch"), .station = state.load});
             measured.column.push_back(static_cast<int>(c));
             values.push_back(compare::evaluate(model, std::span(&channel, 1), state).front());
         }
