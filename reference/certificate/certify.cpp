@@ -116,14 +116,16 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
 // is a good start for it too. Below 1 the box contracts; below `enough` the search ends.
 double shrinks(const Contraction& rest, VectorXd& v, double enough = 0.9) {
     constexpr int iterations = 40, at_least = 5;
+    const VectorXd start = v;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; rest.finite && k < iterations; ++k) {
         const VectorXd w = rest(v);
         if (!w.allFinite()) break;
         const double last = least;
         least = std::min(least, (w.array() / v.array()).maxCoeff() * (1 + 1e-14));
-        if (least < enough || (k > at_least && least > 0.98 * last)) break;
-        v = w.cwiseMax(1e-9 * v);
+        if (least <= enough || (k > at_least && least > 0.98 * last)) break;
+        // of the size of the start: a ratio of 1e-8 would underflow
+        v = (w / (w.array() / start.array()).maxCoeff()).cwiseMax(1e-9 * start);
     }
     return least;
 }
