@@ -50,6 +50,15 @@ json channels_json(const std::vector<compare::Channel>& channels) {
     return list;
 }
 
+json numbers_json(const Scene& scene) {
+    json numbers = json::array();
+    for (const auto& n : scene.numbers) {
+        numbers.push_back({{"path", n.path}, {"value", n.value}, {"unit", n.unit}});
+        for (const auto& [side, value] : n.sides) numbers.back()["sides"][side] = value;
+    }
+    return numbers;
+}
+
 json legs_json(const std::vector<compare::LegRun>& runs,
                const std::vector<compare::Channel>& channels) {
     json legs = json::array();
@@ -98,6 +107,24 @@ json pair_json(const compare::Pair& pair, const compare::Comparison& all,
             {"at_equal_abscissa", reading_json(pair.equal_abscissa, all, determined)}};
 }
 
+json trim_json(const compare::TrimRecord& trim) {
+    json adjusted = json::array(), conditions = json::array();
+    for (const auto& a : trim.adjusted)
+        adjusted.push_back(
+            {{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
+    for (const auto& c : trim.conditions)
+        conditions.push_back({{"name", c.name},
+                              {"unit", symbol(c.unit)},
+                              {"requested", c.target},
+                              {"missed", c.missed},
+                              {"missed_by_confirming_leg", c.confirmed}});
+    return {{"adjusted", adjusted},
+            {"conditions", conditions},
+            {"iterations", trim.iterations},
+            {"bushings", compare::name(trim.bushings)},
+            {"confirmed_by", name(trim.confirmed_by)}};
+}
+
 json wheels_json(const Model& model) {
     json names = json::array(), vehicle = nullptr;
     for (const auto& wheel : model.wheels)
@@ -138,6 +165,7 @@ json document(const std::string& reproduce, const Provenance& provenance) {
 
 json scene_head(const SceneAnalyses& s) {
     json head = {{"name", s.scene.name}, {"source", s.scene.source}, {"input_hash", s.hash}};
+    if (s.trim) head["trim"] = trim_json(*s.trim);
     if (!s.warnings.empty()) head["warnings"] = s.warnings;
     return head;
 }
@@ -188,6 +216,7 @@ json described_channels(const Model& model, const compare::Comparison& compariso
 void add_compared(json& part, const SceneAnalyses& scene) {
     const Model& model = scene.model;
     const compare::Comparison& comparison = scene.comparison;
+    part["numbers"] = numbers_json(scene.scene);
     part["channels"] = described_channels(model, comparison);
     part["branches"] = branches_json(scene);
     if (!model.wheels.empty() && !comparison.branches.empty()) part["wheels"] = wheels_json(model);
@@ -249,10 +278,6 @@ json results_json(const SceneAnalyses& s) {
     if (s.judgement) compared.verdict.sentence = sentence(judgement);
     if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);
     add_tables(compared, s);
-    if (s.inspected.tables.empty()) {
-        if (s.trim) add_trim(compared, *s.trim);
-        add_numbers(compared, s.scene);
-    }
     json results = json::array({json_of(compared)});
     if (!s.inspected.tables.empty()) results.push_back(json_of(s.inspected));
     if (s.study)
