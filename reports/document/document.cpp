@@ -9,7 +9,6 @@
 #include "compare/tables/rows.hpp"
 #include "models/overloaded.hpp"
 #include "reports/document/drawing.hpp"
-#include "reports/document/inspection.hpp"
 #include "reports/given/wheels.hpp"
 #include "reports/render/render.hpp"
 #include "reports/tables/candidate_tables.hpp"
@@ -279,7 +278,6 @@ json results_json(const SceneAnalyses& s) {
     if (s.formulations) add_formulations(compared, *s.formulations, s.comparison);
     add_tables(compared, s);
     json results = json::array({json_of(compared)});
-    if (!s.inspected.tables.empty()) results.push_back(json_of(s.inspected));
     if (s.study)
         results.push_back(
             json_of(result_of(s.model, compare::ConvergenceStudies{.methods = s.study})));
@@ -294,6 +292,7 @@ json results_json(const SceneAnalyses& s) {
     for (const auto& [candidate, sentence] : s.candidates)
         results.push_back(json_of(result_of(candidate, s.comparison)));
     if (s.against) results.push_back(json_of(result_of(*s.against)));
+    if (!s.inspected.tables.empty()) results.push_back(json_of(s.inspected));
     return results;
 }
 

@@ -208,8 +208,6 @@ Table one_column(const char* id, const char* heading, const char* caption,
     return table;
 }
 
-}  // namespace
-
 void add_trim(Result& result, const compare::TrimRecord& trim) {
     Rows adjusted, conditions;
     for (const auto& a : trim.adjusted) adjusted.push_back({a.name, a.by, symbol(a.unit), a.makes});
@@ -253,6 +251,8 @@ void add_numbers(Result& result, const Scene& scene) {
                  .caption = "numbers, as --set and --vary name them",
                  .detail = true});
 }
+
+}  // namespace
 
 Result inspection(const InspectionInput& input) {
     const auto& [scene, model, trim] = input;

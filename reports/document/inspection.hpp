@@ -19,11 +19,6 @@ struct InspectionInput {
 // Tables of size, parts, trim, branches (with the displacements where they settle), outputs, redundant
 // constraints, idle modes and omitted parts; as details the matrix of a step and the numbers of the file.
 compare::Result inspection(const InspectionInput& input);
-// Tables `trim` and `conditions`: adjusted numbers, and the conditions with what the legs miss them by.
-void add_trim(compare::Result& result, const compare::TrimRecord& trim);
-// Table `numbers` of the scene's file, as `--set` names them.
-void add_numbers(compare::Result& result, const Scene& scene);
-
 // The first 40 rows of every table but the outputs: a generated scene has thousands of parts.
 compare::Result shortened(compare::Result result);
 // Shows the tables that are marked as details, too.
