@@ -41,10 +41,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
 // ---- Many variants of a model: the same parts between the same bodies, with other numbers.
 
 struct BatchOptions {
-    // Over the parameter of the branch, not arc length. Of the orders 16 to 32, 24 takes least time on the
-    // generic McPherson strut; the ends of a branch are mostly beyond one expansion, also of order 32.
-    Series series = {.order = 24};
-    int points = 20;  // equal increments between recorded points of a branch
+    Series series = {};  // over the parameter of the branch, not arc length
+    int points = 20;     // equal increments between recorded points of a branch
     // Record the joint wrenches of the points, and |Φ|; else the wrenches are zero, |Φ| is NaN.
     bool wrenches = true;
 };

@@ -259,7 +259,8 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
             // A lane that loses no digits keeps its x_k to the last bit beside one that does.
             [&] {
                 for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = only_where(corrected, x[k]);
-            }});
+            },
+            [](int) { return false; }});
 }
 
 // Shortens the range of a lane to where the first deformation leaves its piece. The variant leaves

@@ -13,12 +13,14 @@ template <class Real>
 Real joint_wrenches(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
                     const Vector<Real>& lambda, std::vector<Wrench>& wrenches) {
     for (auto& wrench : wrenches) wrench = {};
-    int k = 0;
+    int k = 0, last_joint = -1;
     Real sum = 0;
+    Vector3<Real> s;  // lever of the joint's point; a joint's constraints follow one another
     for (std::size_t c = 0; c < model.constraints.size(); ++c) {
         const Constraint& constraint = model.constraints[c];
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
-        const Vector3<Real> s = q[joint.i].lever(joint.at.s_local);
+        if (constraint.joint != last_joint) s = q[joint.i].lever(joint.at.s_local);
+        last_joint = constraint.joint;
         Wrench& wrench = wrenches[static_cast<std::size_t>(constraint.joint)];
         rows<Real>(constraint.kind, inputs.offset[c], q, [&](const Row<Real>& row) {
             // A constraint may list the joint's bodies in either order.

@@ -8,7 +8,7 @@
 namespace elastocheck::recursive::series {
 
 void move_to(Continuation& run, const State<double>& from, double tau) {
-    horner(run.c.x, tau, run.x);
+    horner(run.c.polynomial(), tau, run.x);
     displace(from, run.x, run.s.q);
     run.s.lambda = run.x.tail(run.s.m());
     run.go_to(polynomial(run.c.load, tau));

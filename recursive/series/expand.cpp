@@ -5,14 +5,30 @@
 #include "models/eigen/dense.hpp"
 
 namespace elastocheck::recursive::series {
+namespace {
+
+// |x_k| [m], as defined at reach(). Where constraints alone determine the motion, λ has a longer
+// series than the motion. A force counts as the displacement that it causes at the largest
+// stiffness.
+double size(const SteppingState& s, const Coefficients<double>& c, double metres_per_unit, int k) {
+    const int n = s.n();
+    const double max_stiffness = stiffest(s.system.M);
+    const double metres_per_force = max_stiffness > 0 ? 1 / max_stiffness : 0;
+    return std::hypot(c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n)).norm(),
+                      metres_per_force * c.x.col(k).tail(s.m()).norm(),
+                      k > 1 ? metres_per_unit * c.load[k] : 0.0);
+}
+
+}  // namespace
 
 double parameter(const SteppingState& s, Drive drive) {
     return drive == Drive::start ? s.parameters.t : s.parameters.a;
 }
 
-void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double a_1,
-            bool arc_length, const Vector<double>& previous_direction) {
+void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, const Extent& extent,
+            const Vector<double>& previous_direction) {
     const int n = s.n();
+    const bool arc_length = extent.arc_length;
     const auto W2 = s.system.weight.head(n).array().square();
     const auto inner = [&](const auto& a, const auto& b) {
         return (a.head(n).array() * W2 * b.head(n).array()).sum();
@@ -33,10 +49,10 @@ void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, dou
     if (arc_length) {
         const double size = std::sqrt(inner(c.unit, c.unit));
         const bool decreases =
-            previous_direction.isZero(0) ? a_1 < 0 : inner(c.unit, previous_direction) < 0;
+            previous_direction.isZero(0) ? extent.a_1 < 0 : inner(c.unit, previous_direction) < 0;
         c.load[1] = (decreases ? -1 : 1) / size;
     } else {
-        c.load[1] = a_1;
+        c.load[1] = extent.a_1;
     }
     c.x.col(1) = c.load[1] * c.unit;
     s.work.x = c.x.col(1);
@@ -59,23 +75,26 @@ void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, dou
         return !(s.work.x.head(n).norm() <= loses_digits * c.x.col(1).head(n).norm());
     };
     const auto keep_all = [] {};
-    compute_orders(e, c, s.work.x, OrderSteps{solve, straighten, loses, keep_all});
+    // The margin is for a singularity, which may shorten the range (reach()).
+    const auto suffices = [&](int k) {
+        constexpr int min_order = 8;
+        constexpr double margin = 1.25;
+        const auto exceeds = [&](int order) {
+            return size(s, c, extent.metres_per_unit, order) *
+                       std::pow(margin * extent.rest, order) >
+                   extent.tolerance;
+        };
+        return k >= min_order && k % 2 == 0 && !exceeds(k) && !exceeds(k - 1);
+    };
+    compute_orders(e, c, s.work.x, OrderSteps{solve, straighten, loses, keep_all, suffices});
 }
 
 double reach(const SteppingState& s, const Coefficients<double>& c, double tolerance,
              double metres_per_unit, double radius) {
-    const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
-    // Where constraints alone determine the motion, λ has a longer series than the motion. A force
-    // counts as the displacement that it causes at the largest stiffness.
-    const double max_stiffness = stiffest(s.system.M);
-    const double metres_per_force = max_stiffness > 0 ? 1 / max_stiffness : 0;
-    const auto size = [&](int k) {
-        return std::hypot(c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n)).norm(),
-                          metres_per_force * c.x.col(k).tail(s.m()).norm(),
-                          k > 1 ? metres_per_unit * c.load[k] : 0.0);
-    };
-    double last_size = size(p);
-    if (p > 1 && std::isfinite(radius)) last_size = std::max(last_size, size(p - 1) / radius);
+    const int p = c.order;
+    double last_size = size(s, c, metres_per_unit, p);
+    if (p > 1 && std::isfinite(radius))
+        last_size = std::max(last_size, size(s, c, metres_per_unit, p - 1) / radius);
     if (!std::isfinite(last_size)) return std::numeric_limits<double>::quiet_NaN();
     if (last_size == 0) return std::numeric_limits<double>::infinity();
     const double tau = std::pow(tolerance / last_size, 1.0 / p);
@@ -92,7 +111,7 @@ double reach(const SteppingState& s, const Coefficients<double>& c, double toler
 }
 
 Singularity nearest_singularity(const SteppingState& s, const Coefficients<double>& c) {
-    const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
+    const int n = s.n(), p = c.order;
     // The last six orders, which the nearest singularity dominates; y_2 is the lowest order used.
     const int first_order = std::max(4, p - 5);
     Singularity none{std::numeric_limits<double>::infinity(), 0, 1};
@@ -136,7 +155,7 @@ Singularity nearest_singularity(const SteppingState& s, const Coefficients<doubl
     return {std::abs(tau), std::abs(std::arg(tau)), (A * fit - b).norm() / b.norm()};
 }
 
-void horner(const Eigen::MatrixXd& c, double tau, Vector<double>& value) {
+void horner(const Eigen::Ref<const Eigen::MatrixXd>& c, double tau, Vector<double>& value) {
     const Eigen::Index p = c.cols() - 1;
     value = c.col(p);
     for (Eigen::Index k = p; k-- > 0;) value = value * tau + c.col(k);

@@ -1,6 +1,8 @@
 // One expansion of the branch in a power series, its range of validity and nearest singularity.
 #pragma once
 
+#include <limits>
+
 #include "recursive/series/equations.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/stepping/stepping_state.hpp"
@@ -14,35 +16,40 @@ struct Coefficients {
     Vector<Real> load;  // a_k
     Vector<Real> unit;  // x̂, the solution for a unit of a
     Vector<Real> none;  // zero, for pass `known`
+    int order;          // the highest that is computed, at most p; beyond it x and load are zero
+
+    auto polynomial() const { return x.leftCols(order + 1); }
 };
 
 template <class Real>
 Coefficients<Real> reserve_coefficients(int unknowns, int order) {
     return {Matrix<Real>::Zero(unknowns, order + 1), Vector<Real>::Zero(order + 1),
-            Vector<Real>::Zero(unknowns), Vector<Real>::Zero(unknowns)};
+            Vector<Real>::Zero(unknowns), Vector<Real>::Zero(unknowns), order};
 }
 
 // The steps of compute_orders() that differ between its callers.
-template <class Solve, class Straighten, class Loses, class Keep>
+template <class Solve, class Straighten, class Loses, class Keep, class Suffices>
 struct OrderSteps {
     Solve solve;            // (): sets x to the solution for the right-hand side (-G, -Φ)
     Straighten straighten;  // (k): makes x_k, in x, orthogonal to x_1 by a_k, for arc length
     // (correct): whether x_1 loses digits, so that all orders are corrected; correct() sets x to
     // the correction of x_1
     Loses loses;
-    Keep keep;  // (): sets to zero the corrections in x that are not needed
+    Keep keep;          // (): sets to zero the corrections in x that are not needed
+    Suffices suffices;  // (k): whether the orders up to k are enough
 };
-template <class Solve, class Straighten, class Loses, class Keep>
-OrderSteps(Solve, Straighten, Loses, Keep) -> OrderSteps<Solve, Straighten, Loses, Keep>;
+template <class Solve, class Straighten, class Loses, class Keep, class Suffices>
+OrderSteps(Solve, Straighten, Loses, Keep, Suffices)
+    -> OrderSteps<Solve, Straighten, Loses, Keep, Suffices>;
 
-// Computes the orders 1 ... p after begin() and pass `known` of order 0. x_1 = a_1 x̂ is in c.x and
-// in `x`, a workspace.
+// Computes the orders 1 ... p, or those that suffice, after begin() and pass `known` of order 0.
+// x_1 = a_1 x̂ is in c.x and in `x`, a workspace.
 //
 // Residual correction of x_k: coefficient k of (G, Φ) evaluated element by element with x_k, and
 // solved with the same factors. It removes the rounding of the assembled matrix.
-template <class Real, class Solve, class Straighten, class Loses, class Keep>
+template <class Real, class... Steps>
 void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x,
-                    const OrderSteps<Solve, Straighten, Loses, Keep>& steps) {
+                    const OrderSteps<Steps...>& steps) {
     const auto correct = [&](int k) {
         assign(e, k, x, c.load[k]);
         evaluate(e, {k, Pass::known});
@@ -70,10 +77,13 @@ void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x,
                 evaluate(e, {k, Pass::known});
             }
         }
+        c.order = k;
+        const bool last = k == e.order() || steps.suffices(k);
         // a curved law needs its last deformation coefficient for knots
-        if (k == e.order() && !e.curved) break;
+        if (last && !e.curved) break;
         assign(e, k, x, c.load[k]);
         evaluate(e, {k, Pass::change});
+        if (last) break;
     }
 }
 
@@ -82,11 +92,21 @@ void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x,
 // not help.
 inline constexpr double loses_digits = 1e-13;
 
-// Computes the polynomial x(τ) about (s.q, s.lambda, s.a), with the factors in s.system. `a_1` is
-// a_1 with a as parameter. With arc length only its sign counts, or, where `previous_direction` [n] is
-// not zero, the direction of that motion. Allocates nothing.
-void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double a_1,
-            bool arc_length, const Vector<double>& previous_direction);
+// What an expansion is computed for. With arc length only the sign of a_1 counts, or, where
+// previous_direction [n] is not zero, the direction of that motion.
+struct Extent {
+    double a_1 = 0;
+    // The lowest order is taken whose range of truncation reaches τ = `rest` with this tolerance.
+    double rest = std::numeric_limits<double>::infinity();
+    double tolerance = 0;        // [m]
+    double metres_per_unit = 0;  // as in reach()
+    bool arc_length = false;
+};
+
+// Computes the polynomial x(τ) about (s.q, s.lambda, s.a), with the factors in s.system. Allocates
+// nothing.
+void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, const Extent& extent,
+            const Vector<double>& previous_direction);
 
 // The present parameter of the equations: a, or t while settling.
 double parameter(const SteppingState& s, Drive drive);
@@ -106,7 +126,7 @@ double reach(const SteppingState& s, const Coefficients<double>& c, double toler
 Singularity nearest_singularity(const SteppingState& s, const Coefficients<double>& c);
 
 // Evaluates Σ c_k τ^k, c_k the columns of c.
-void horner(const Eigen::MatrixXd& c, double tau, Vector<double>& value);
+void horner(const Eigen::Ref<const Eigen::MatrixXd>& c, double tau, Vector<double>& value);
 
 // Moves the configuration `from` by x = (r, 2 g; ...).
 void displace(const State<double>& from, const Eigen::Ref<const Vector<double>>& x,

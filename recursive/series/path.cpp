@@ -99,8 +99,8 @@ void stop_at_knots(const Continuation& run, Range& range) {
     const double reach = range.tau;
     std::vector<std::pair<Crossing, PieceExit>> exits;
     for (std::size_t k = 0; k < run.curves.size(); ++k) {
-        const auto exit = exit_from_piece(deformation_series(run.e, run.curves[k]), run.curves[k],
-                                          reach, run.knot_tolerance);
+        const auto exit = exit_from_piece(deformation_series(run.e, run.curves[k], run.c.order),
+                                          run.curves[k], reach, run.knot_tolerance);
         if (!exit) continue;
         exits.push_back({{k, exit->direction}, *exit});
         if (exit->wrong_piece) range.wrong_pieces.push_back(exits.back().first);
@@ -110,7 +110,7 @@ void stop_at_knots(const Continuation& run, Range& range) {
     // Several deformations may reach their knots at the same τ.
     for (const auto& [crossing, exit] : exits)
         if (exit.tau <= range.tau ||
-            is_at_knot(deformation_series(run.e, run.curves[crossing.curve]),
+            is_at_knot(deformation_series(run.e, run.curves[crossing.curve], run.c.order),
                        run.curves[crossing.curve], crossing.direction, range.tau,
                        run.knot_tolerance))
             range.crossings.push_back(crossing);
@@ -196,8 +196,8 @@ Outcome accept_expansion(Continuation& run, const State<double>& from, Range& ra
 
         move_to(run, from, range.tau);
         if (range.reaches_end && !run.by_arc()) run.go_to(run.last_parameter);
-        run.previous_direction =
-            run.by_arc() ? derivative(run.c.x, range.tau) : Vector<double>(run.c.x.col(1));
+        run.previous_direction = run.by_arc() ? derivative(run.c.polynomial(), range.tau)
+                                              : Vector<double>(run.c.x.col(1));
         const Outcome outcome = correct_at_end(run, &certificate, certificate.error_end);
         const double error = certificate.error_end;
         if (outcome == Outcome::converged && error <= accepted * run.options.tolerance)
@@ -206,7 +206,7 @@ Outcome accept_expansion(Continuation& run, const State<double>& from, Range& ra
             outcome == Outcome::inconsistent_constraints)
             return outcome;
         ++run.path.rejected;
-        const double factor = std::pow(run.options.tolerance / error, 1.0 / (run.e.order() + 1));
+        const double factor = std::pow(run.options.tolerance / error, 1.0 / (run.c.order + 1));
         range = {.tau = range.tau * (outcome == Outcome::converged
                                          ? std::clamp(safety * factor, min_factor, max_factor)
                                          : factor_without_error)};
@@ -269,7 +269,14 @@ Outcome expand_here(Continuation& run, Singularity& singularity, Range& range) {
     std::vector<std::vector<Piece>> tried;
     bool together = true;
     for (;;) {
-        expand(run.s, run.e, run.c, run.a_1, run.by_arc(), run.previous_direction);
+        const double rest = (run.last_parameter - run.parameter_now()) / run.a_1;
+        expand(run.s, run.e, run.c,
+               {.a_1 = run.a_1,
+                .rest = run.by_arc() ? std::numeric_limits<double>::infinity() : rest,
+                .tolerance = run.options.tolerance,
+                .metres_per_unit = run.metres_per_unit,
+                .arc_length = run.by_arc()},
+               run.previous_direction);
         singularity = nearest_singularity(run.s, run.c);
         if (const Outcome o = range_of_validity(run, run.parameter_now(), singularity, range);
             o != Outcome::converged)
@@ -323,6 +330,7 @@ Outcome expand_shared(Continuation& run, const SharedStart& shared, Singularity&
     double power = 1;
     for (Eigen::Index k = 0; k < shared.x.cols(); ++k, power *= r)
         run.c.x.col(k) = power * shared.x.col(k);
+    run.c.order = static_cast<int>(shared.x.cols()) - 1;
     run.c.load = shared.load;
     run.c.load[1] = run.a_1;
     singularity = nearest_singularity(run.s, run.c);
@@ -356,7 +364,7 @@ Outcome note_start(Continuation& run, const StartConditions& conditions) {
         *shared = {s.q,
                    s.lambda,
                    s.system.held.value,
-                   run.c.x,
+                   run.c.polynomial(),
                    run.c.load,
                    log_determinant(s.system),
                    run.sign_at_start,
@@ -427,9 +435,9 @@ Outcome follow_to_end(Continuation& run, const StartStability* known = nullptr,
             return o;
         const Outcome event = stop_at_event(run, from, range);
         if (run.by_arc()) record_limit_points(run, range.tau);
-        run.path.expansions.push_back({poses_of(from), run.c.x, run.c.load, range.tau,
-                                       static_cast<int>(range.crossings.size()), singularity,
-                                       certificate});
+        run.path.expansions.push_back(
+            {poses_of(from), run.c.polynomial(), run.c.load.head(run.c.order + 1), range.tau,
+             static_cast<int>(range.crossings.size()), singularity, certificate});
         knots_crossed += range.crossings.size();
         if (event != Outcome::converged) return event;
 

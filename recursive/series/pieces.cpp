@@ -126,9 +126,9 @@ bool cross_knot(CurvePiece& f, int direction) {
            rounding * std::max(std::abs(slope_before), std::abs(slope_after));
 }
 
-Eigen::VectorXd deformation_series(const Equations<double>& e, const CurvePiece& f) {
-    Eigen::VectorXd x(e.order() + 1);
-    for (int k = 0; k <= e.order(); ++k) x[k] = deformation(e, f.elastic, f.axis, k);
+Eigen::VectorXd deformation_series(const Equations<double>& e, const CurvePiece& f, int order) {
+    Eigen::VectorXd x(order + 1);
+    for (int k = 0; k <= order; ++k) x[k] = deformation(e, f.elastic, f.axis, k);
     return x;
 }
 

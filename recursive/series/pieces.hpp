@@ -28,8 +28,8 @@ struct CurvePiece {
 std::vector<CurvePiece> curves_of(const Model& model);
 void find_piece(const Equations<double>& e, CurvePiece& curve);
 
-// Coefficients of the curve's deformation in the last expansion [p + 1].
-Eigen::VectorXd deformation_series(const Equations<double>& e, const CurvePiece& curve);
+// Coefficients of the curve's deformation in the last expansion, up to an order [order + 1].
+Eigen::VectorXd deformation_series(const Equations<double>& e, const CurvePiece& curve, int order);
 
 // Sets the piece of the curve in the equations, or in the inputs.
 void set_piece(const CurvePiece& curve, Equations<double>& e);

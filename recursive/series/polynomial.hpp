@@ -48,7 +48,7 @@ std::optional<double> first_zero(Function f, double reach) {
 }
 
 // x'(τ) of the polynomial with the columns c.
-inline Vector<double> derivative(const Eigen::MatrixXd& c, double tau) {
+inline Vector<double> derivative(const Eigen::Ref<const Eigen::MatrixXd>& c, double tau) {
     Vector<double> d = Vector<double>::Zero(c.rows());
     for (Eigen::Index k = c.cols() - 1; k >= 1; --k) {
         d *= tau;

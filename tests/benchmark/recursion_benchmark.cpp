@@ -144,7 +144,7 @@ int main() {
         if (has_steps(method))
             row(
                 fmt::format("sweep by `{}` / 600 LU", method.name), [&] { sweep(method); }, bare);
-    for (const int order : {16, 20, 24})
+    for (const int order : {16, 24})
         row(
             fmt::format("branches by `series`, order {} / LU", order), [=] { branches(order); },
             bare, 600);

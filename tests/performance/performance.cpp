@@ -21,7 +21,7 @@ Outcome published(const Model& model, const Branch& branch, const Analysis& anal
     return recursive::solve(model, branch, {.steps = 300}, analysis).outcome;
 }
 Outcome polynomials(const Model& model, const Branch& branch, const Analysis& analysis) {
-    return recursive::series::follow(model, branch, {.order = 24}, analysis).outcome;
+    return recursive::series::follow(model, branch, {}, analysis).outcome;
 }
 Outcome series(const Model& model, const Branch& branch, const Analysis& analysis) {
     return recursive::solve(model, branch,

@@ -105,7 +105,7 @@ TEST(Allocation, ExpansionsOfTheSeriesReuseTheirCoefficients) {
         const Vector<double> ahead = Vector<double>::Zero(s.n() + s.m());
         for (const bool arc_length : {false, true}) {
             const long before = allocations;
-            series::expand(s, e, c, branch.to, arc_length, ahead);
+            series::expand(s, e, c, {.a_1 = branch.to, .arc_length = arc_length}, ahead);
             EXPECT_EQ(allocations - before, 0) << name;
             EXPECT_GT(c.x.col(1).norm(), 0) << name;
         }

@@ -146,7 +146,7 @@ TEST(SharedStart, SidesSolvedTogetherEqualEachSolvedAlone) {
             sides = model.branches;
         }
         const Analysis analysis = analyse(model);
-        const recursive::Series options{.order = 24};
+        const recursive::Series options;
         const auto together = series::follow_sides(model, sides, options, analysis);
         ASSERT_EQ(together.size(), sides.size());
         for (std::size_t k = 0; k < sides.size(); ++k) {
