@@ -41,8 +41,7 @@ Analysis analyse(const Model& model, const EliminationOrder& reused_order) {
     external_force<double>(model, undriven, inputs, q, result.R_d);
     result.R_d -= elastic_force<double>(model, inputs, q);
     result.Phi_d = Phi;
-    result.at_rest =
-        is_at_rest(system, result.R_d, Phi, 10 * std::numeric_limits<double>::epsilon() * L);
+    result.at_rest = is_at_rest(system, result.R_d, Phi, L);
     if (result.at_rest && curves_of(model).empty() && result.pivot_ratio > 0) {
         SteppingState s(model, undriven, result);
         s.setup.consistent = true;

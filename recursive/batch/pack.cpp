@@ -126,9 +126,7 @@ void Pack::prepare(int lane, const Branch& branch) {
     external_force<double>(s.model, undriven, s.inputs, s.q, s.start.R_d);
     s.start.R_d -= elastic_force<double>(s.model, s.inputs, s.q);
     s.start.Phi_d = s.work.Phi;
-    const double size = s.setup.length + reach(s.q);
-    slot.at_rest = is_at_rest(s.system, s.start.R_d, s.work.Phi,
-                              10 * std::numeric_limits<double>::epsilon() * size);
+    slot.at_rest = is_at_rest(s.system, s.start.R_d, s.work.Phi, s.setup.length);
     if (!s.start.R_d.allFinite() || !s.work.Phi.allFinite()) slot.inside = false;
 }
 

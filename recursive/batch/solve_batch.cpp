@@ -2,7 +2,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "elastocheck/recursive.hpp"
+#include "elastocheck/batch.hpp"
 #include "models/structure.hpp"
 #include "recursive/batch/pack.hpp"
 

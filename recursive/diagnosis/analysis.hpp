@@ -46,10 +46,11 @@ struct Analysis {
     std::shared_ptr<const series::Start> settled;  // null before series::keep_start()
 };
 
-// Whether residuals at the design position are rounding, `rounding` [m] that of its coordinates:
-// |Φ| up to it, forces up to it times the largest stiffness.
+// Whether residuals at the design position are rounding, 10 ε L: |Φ| up to it, forces up to it times
+// the largest stiffness. `length`: L.
 inline bool is_at_rest(const SaddlePoint<double>& system, const Vector<double>& R_d,
-                       const Vector<double>& Phi_d, double rounding) {
+                       const Vector<double>& Phi_d, double length) {
+    const double rounding = 10 * std::numeric_limits<double>::epsilon() * length;
     const auto largest = [](const auto& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; };
     return largest(R_d.cwiseQuotient(system.weight.head(system.n))) <=
                rounding * stiffest(system.M) &&
