@@ -210,10 +210,11 @@ Table one_column(const char* id, const char* heading, const char* caption,
 
 void add_trim(Result& result, const compare::TrimRecord& trim) {
     Rows adjusted, conditions;
-    for (const auto& a : trim.adjusted) adjusted.push_back({a.name, a.by, symbol(a.unit), a.makes});
+    for (const auto& a : trim.adjusted)
+        adjusted.push_back({a.name, a.change, symbol(a.unit), a.resulting});
     for (const auto& c : trim.conditions)
-        conditions.push_back(
-            {c.name, c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed)});
+        conditions.push_back({c.name, c.target, symbol(c.unit), std::abs(c.residual),
+                              std::abs(c.confirming_residual)});
     add(result,
         {.columns = {words("number"),
                      number("by", "", Digits::four),
