@@ -34,9 +34,6 @@ void add(Result& result, Table table, const std::string& none = {}) {
     result.tables.push_back(std::move(table));
 }
 
-std::string body_name(const Model& model, BodyId body) {
-    return body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
-}
 const std::string& joint_name(const Model& model, int joint) {
     return model.joints[static_cast<std::size_t>(joint)].name;
 }
