@@ -43,7 +43,7 @@ double wheelbase_by_pivots(const Subject& x) {
         const Subject drawn = x.other_wheel(w).drawn();
         const double patch = drawn.patch().position.y();
         if (!drawn.wheel().steering_axis || is_flat(drawn)) return patch;
-        return patch + drawn.axis_from(drawn.patch().position).y();
+        return patch + drawn.axis_from(drawn.patch()).y();
     };
     const std::size_t left = left_wheel(x.model);
     return x.model.vehicle->wheelbase / (y(left) - y(1 - left));
@@ -231,10 +231,7 @@ const Entry of_patch[] = {
     Entry(Owner::wheel, "track_change", Unit::mm,
           "lateral displacement of this wheel's contact patch from its design position, positive "
           "outwards",
-          "",
-          [](const Subject& x) {
-              return x.side() * (x.patch().position.y() - x.drawn().patch().position.y());
-          },
+          "", [](const Subject& x) { return x.side() * x.patch_travel().y(); },
           {.sources = "half-track change",
            .live_rank = {.heave = 6, .roll = 6},
            .rig_headings = "track change, half track change",
@@ -248,7 +245,7 @@ const Entry of_patch[] = {
           "",
           [](const Subject& x) {
               const int forward = x.model.vehicle->axle == Axle::front ? +1 : -1;
-              return forward * (x.patch().position.x() - x.drawn().patch().position.x());
+              return forward * x.patch_travel().x();
           },
           {.sources = "only with a `vehicle` in the scene, which has the axle",
            .rig_headings = "wheelbase change"}),
@@ -278,9 +275,7 @@ const Entry of_patch[] = {
           "distance across the wheel from the contact patch to the intersection of the steering "
           "axis with the road (the horizontal plane through the patch), positive inboard; "
           "undefined where the axis lies flatter than 0.1 rad",
-          "", unless_flat<[](const Subject& x) {
-              return -x.across().dot(x.axis_from(x.patch().position));
-          }>,
+          "", unless_flat<[](const Subject& x) { return -x.across().dot(x.axis_from(x.patch())); }>,
           {.sources = "-n·(p - c). Steering-axis offset at ground, kingpin offset; Reimpell's r_σ",
            .may_be_undefined = true,
            .at_rest = true,
@@ -290,9 +285,7 @@ const Entry of_patch[] = {
           "distance along the wheel from the contact patch to the intersection of the steering "
           "axis with the road (the horizontal plane through the patch), positive in front; "
           "undefined where the axis lies flatter than 0.1 rad",
-          "", unless_flat<[](const Subject& x) {
-              return x.along().dot(x.axis_from(x.patch().position));
-          }>,
+          "", unless_flat<[](const Subject& x) { return x.along().dot(x.axis_from(x.patch())); }>,
           {.sources = "h·(p - c). Castor offset at ground, caster trail",
            .may_be_undefined = true,
            .at_rest = true,
@@ -465,38 +458,38 @@ const Entry angle_definitions[] = {
           "trail on the road times the cosine of the caster: perpendicular to the steering axis",
           "",
           [](const Subject& x) {
-              return x.axis_from(x.patch().position).dot(x.along()) * std::cos(x.caster());
+              return x.axis_from(x.patch()).dot(x.along()) * std::cos(x.caster());
           },
           {.sources = "mechanical trail of a kinematics program (tests/outside/README.md)"}),
     Entry(Owner::wheel_with_steering_axis, "mechanical_trail@centre", Unit::mm,
           "distance along the wheel from the wheel centre to the steering axis at its height", "",
-          [](const Subject& x) { return x.axis_from(x.centre().position).dot(x.along()); },
+          [](const Subject& x) { return x.axis_from(x.centre()).dot(x.along()); },
           {.sources = "ISO 8855: castor offset at wheel centre; hub trail",
            .definition_set = "iso8855"}),
     Entry(Owner::wheel_with_steering_axis, "mechanical_trail@ground_axes", Unit::mm,
           "distance along x from the contact patch to the steering axis on the road", "",
-          [](const Subject& x) { return x.axis_from(x.patch().position).x(); },
+          [](const Subject& x) { return x.axis_from(x.patch()).x(); },
           {.sources = "SAE J670e: caster offset, in side elevation", .definition_set = "sae"}),
     Entry(
         Owner::wheel_with_steering_axis, "scrub_radius@centre", Unit::mm,
         "distance across the wheel from the wheel centre to the steering axis at its height", "",
-        [](const Subject& x) { return -x.axis_from(x.centre().position).dot(x.across()); },
+        [](const Subject& x) { return -x.axis_from(x.centre()).dot(x.across()); },
         {.sources = "ISO 8855: steering-axis offset at wheel centre", .definition_set = "iso8855"}),
     Entry(Owner::wheel_with_steering_axis, "scrub_radius@ground_axes", Unit::mm,
           "distance along y from the contact patch to the steering axis on the road, positive "
           "inboard",
-          "", [](const Subject& x) { return -x.side() * x.axis_from(x.patch().position).y(); },
+          "", [](const Subject& x) { return -x.side() * x.axis_from(x.patch()).y(); },
           {.sources = "SAE J670e: kingpin offset at the ground, in front elevation",
            .definition_set = "sae"}),
     Entry(Owner::wheel_with_steering_axis, "scrub_radius@distance", Unit::mm,
           "distance on the road from the contact patch to the steering axis, in any direction", "",
           [](const Subject& x) {
-              const Vector3d p = x.axis_from(x.patch().position);
+              const Vector3d p = x.axis_from(x.patch());
               return std::hypot(p.x(), p.y());
           },
           {.sources = "ISO 8855: scrub radius", .definition_set = "iso8855"}),
     Entry(Owner::wheel, "travel@patch", Unit::mm, "vertical displacement of the contact patch", "",
-          [](const Subject& x) { return x.patch().position.z() - x.drawn().patch().position.z(); },
+          [](const Subject& x) { return x.patch_travel().z(); },
           {.sources = "deflection at the tyre"}),
     Entry(Owner::wheel, "travel@lowest", Unit::mm,
           "vertical displacement of the lowest point of a circle of the drawn radius in the "
@@ -506,9 +499,7 @@ const Entry angle_definitions[] = {
     Entry(
         Owner::wheel, "track_change@centre", Unit::mm,
         "lateral displacement of the wheel centre, outwards", "",
-        [](const Subject& x) {
-            return x.side() * (x.centre().position.y() - x.drawn().centre().position.y());
-        },
+        [](const Subject& x) { return x.side() * x.centre_travel().y(); },
         {.sources = "half track at the wheel centre",
          .block = {"lateral", Block::Component::lateral, true,
                    "displacement of the wheel centre along the y axis of this file from the design "
@@ -521,7 +512,7 @@ const Entry angle_definitions[] = {
     Entry(
         Owner::wheel_of_vehicle, "wheelbase_change@centre", Unit::mm,
         "longitudinal displacement of the wheel centre, forward", "",
-        [](const Subject& x) { return x.centre().position.x() - x.drawn().centre().position.x(); },
+        [](const Subject& x) { return x.centre_travel().x(); },
         {.sources = "wheelbase at the wheel centres",
          .block = {"longitudinal", Block::Component::none, false,
                    "displacement of the wheel centre along x from the design position, forward"}}),

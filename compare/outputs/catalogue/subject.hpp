@@ -53,6 +53,9 @@ struct Subject {
     }
     PlacedPoint centre() const { return placed(wheel().body, wheel().centre_local); }
     PlacedPoint patch() const { return placed(wheel().contact); }
+    // From the design position.
+    Vector3d centre_travel() const { return centre().position - drawn().centre().position; }
+    Vector3d patch_travel() const { return patch().position - drawn().patch().position; }
     // The patch as a point of the carrier: while the wheel is braked it turns with the carrier.
     PlacedPoint braked_patch() const {
         if (!wheel().rolls()) return patch();
@@ -84,10 +87,10 @@ struct Subject {
         const auto& [lower, upper] = *wheel().steering_axis;
         return placed(upper).position - placed(lower).position;
     }
-    Vector3d axis_from(const Vector3d& at) const {
-        const Vector3d lower = placed(wheel().steering_axis->lower).position,
-                       u = placed(wheel().steering_axis->upper).position - lower;
-        return lower + u * ((at.z() - lower.z()) / u.z()) - at;
+    Vector3d axis_from(const PlacedPoint& point) const {
+        const Vector3d p = point.position, u = axis(),
+                       lower = placed(wheel().steering_axis->lower).position;
+        return lower + u * ((p.z() - lower.z()) / u.z()) - p;
     }
 
     double toe() const {
