@@ -4,6 +4,7 @@
 // kind calls each_member() and needs no change for a new kind. The equations of a kind belong to the legs.
 #pragma once
 
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -450,6 +451,12 @@ inline int driven_element(const Driven& driven) {
     int found = -1;
     each_member(driven, [&](ElasticIndex<const int> elastic) { found = elastic.value; });
     return found;
+}
+
+// Name of a body of a scene or model; "ground" for the ground.
+template <class S>
+std::string body_name(const S& scene, BodyId body) {
+    return body == ground ? "ground" : scene.bodies[static_cast<std::size_t>(body)].name;
 }
 
 // Calls f(LoadKind&) for every load of a scene or model: the static ones, then those of branches.

@@ -144,7 +144,7 @@ void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
 // part of their path.
 bool settles_otherwise(const Method& method, Outcome outcome) {
     const auto* linear = std::get_if<Linear>(&method.kind);
-    return (!linear || linear->follow == everything) &&
+    return (!linear || linear->stored == all_follow) &&
            (outcome == Outcome::limit_point || outcome == Outcome::bifurcation_point ||
             outcome == Outcome::singular || outcome == Outcome::branch_lost ||
             outcome == Outcome::inconsistent_constraints);

@@ -85,9 +85,9 @@ Assessment assess(const Model& model, const Comparison& comparison, const Tolera
     std::vector<bool> judged(comparison.channels.size());
     for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
         const bool by_abscissa = kind == ReadingKind::equal_abscissa;
-        std::optional<Worst>&position = by_abscissa ? result.position_across : result.position,
-        &angle = by_abscissa ? result.angle_across : result.angle,
-        &other = by_abscissa ? result.other_across : result.other;
+        std::optional<Worst>&position = by_abscissa ? result.position_at_abscissa : result.position,
+        &angle = by_abscissa ? result.angle_at_abscissa : result.angle,
+        &other = by_abscissa ? result.other_at_abscissa : result.other;
         // Worst deviations of outputs that are not main, and of rates that may be undefined: near a zero of the
         // denominator of a rate a small error is a large share.
         std::optional<Worst> other_position, other_angle, quotient;

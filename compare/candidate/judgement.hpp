@@ -20,13 +20,14 @@ struct Assessment {
     // Largest deviations; empty where nothing is compared. They are taken from the main outputs,
     // unless these are within their limits and another position or angle takes a larger share of
     // its own limit.
-    std::optional<Worst> position, angle;                // at equal parameter (load, jack travel)
-    std::optional<Worst> position_across, angle_across;  // at equal abscissa: equal travel
+    std::optional<Worst> position, angle;  // at equal parameter (load, jack travel)
+    // at equal abscissa: equal travel
+    std::optional<Worst> position_at_abscissa, angle_at_abscissa;
     // Deviation of an output that is neither position nor angle (forces, moments, drive forces,
     // rates) with the largest share of its limit, or of its extent where it has no limit. A rate
     // that may be undefined is taken only where all others are within their limits. At equal
     // abscissa the uncertainty of the interpolation is subtracted.
-    std::optional<Worst> other, other_across;
+    std::optional<Worst> other, other_at_abscissa;
     std::optional<RateError> wheel_rate;  // the one with the largest relative error
     bool exact = false;                   // every deviation is within rounding
     int outputs = 0;                      // number of judged outputs ...

@@ -156,10 +156,10 @@ std::optional<std::vector<Motions>> held_by_jacks(const std::vector<Motions>& fr
     if (wheels == 0) return {};
     Eigen::MatrixXd z(wheels, free.size()), C(wheels, wheels);
     for (std::size_t w = 0; w < wheels; ++w) {
-        const Placed centre = Subject{model, &state, w}.centre();
+        const PlacedPoint centre = Subject{model, &state, w}.centre();
         for (std::size_t k = 0; k < free.size(); ++k)
             z(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(k)) =
-                Subject::moved_by(free[k], centre).z();
+                Subject::displacement(free[k], centre).z();
     }
     const auto lifted_at = [&](std::size_t w) { return per_wheel * w + first_centre_force + 2; };
     for (std::size_t w = 0; w < wheels; ++w)
@@ -321,10 +321,11 @@ Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibri
                 const Subject wheel{model, &state, static_cast<std::size_t>(i)};
                 const bool centre = point == WheelPoint::centre;
                 C.block<6, 1>(6 * i, 6 * j + k)
-                    << wheel.moved_by(motions, centre ? wheel.centre() : wheel.patch()),
-                    wheel.turned_by(motions);
+                    << wheel.displacement(motions, centre ? wheel.centre() : wheel.patch()),
+                    wheel.rotation(motions);
                 // longitudinal: of the point held by the brake, where that force acts
-                if (!centre) C(6 * i, 6 * j + k) = wheel.moved_by(motions, wheel.braked()).x();
+                if (!centre)
+                    C(6 * i, 6 * j + k) = wheel.displacement(motions, wheel.braked_patch()).x();
             }
         }
     return C;

@@ -288,7 +288,7 @@ void apply(const Trim& trim, const VectorXd& p, Scene& scene) {
     scene.trim.reset();
 }
 
-// TrimRecord::Adjusted::makes of an adjusted quantity; `driven` is its driver in the model.
+// TrimRecord::Adjustment::resulting of an adjusted quantity; `driven` is its driver in the model.
 std::string resulting_value(const Scene& scene, const Driven& adjusted, const TrimProblem& problem,
                             const Driven& driven, const BranchSide& held,
                             const Equilibrium& state) {
@@ -434,12 +434,12 @@ std::optional<TrimAttempt> confirm_trim(const TrimProblem& problem, const TrimIt
     const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&it.current.state, 1}));
     for (std::size_t k = 0; k < record.conditions.size(); ++k) {
         auto& c = record.conditions[k];
-        c.confirmed = in_unit(c.unit) * second.residual[static_cast<Index>(k)];
+        c.confirming_residual = in_unit(c.unit) * second.residual[static_cast<Index>(k)];
         const double bound = c.unit == Unit::deg ? bounds.angle : bounds.length;
-        if (!(std::isfinite(c.confirmed) && std::abs(c.confirmed) <= bound))
+        if (!(std::isfinite(c.confirming_residual) && std::abs(c.confirming_residual) <= bound))
             record.detail = fmt::format(
                 "not confirmed: the {} leg misses '{}' by {:.3g} {}, at most {:.3g} is allowed",
-                name(record.confirmed_by), c.name, c.confirmed, symbol(c.unit), bound);
+                name(record.confirmed_by), c.name, c.confirming_residual, symbol(c.unit), bound);
     }
     return std::nullopt;
 }
@@ -454,12 +454,13 @@ bool record_conditions(const TrimProblem& problem, const TrimIteration& it, Trim
                                      in_unit(unit) * it.current.residual[i], std::nan("")});
     }
     if (it.current.residual.norm() <= accepted_residual) return true;
-    const auto worst = std::ranges::max_element(
-        record.conditions, {}, [](const auto& c) { return std::abs(c.missed) / in_unit(c.unit); });
+    const auto worst = std::ranges::max_element(record.conditions, {}, [](const auto& c) {
+        return std::abs(c.residual) / in_unit(c.unit);
+    });
     record.outcome = Outcome::iteration_limit;
     record.detail =
         fmt::format("the conditions cannot be met: the closest iterate misses '{}' by {:.3g} {}{}",
-                    worst->name, worst->missed, symbol(worst->unit), it.stop_reason);
+                    worst->name, worst->residual, symbol(worst->unit), it.stop_reason);
     return false;
 }
 

@@ -35,7 +35,7 @@ struct TrimStart {
 };
 
 // trim() by the series alone, for a program without the references. No second reference confirms
-// it: `confirmed` of its conditions is NaN, and `confirmed_by` is the series.
+// it: `confirming_residual` of its conditions is NaN, and `confirmed_by` is the series.
 //
 // With a `start` the equations are solved from there by Broyden's method, to the same accuracy, and
 // every state settles from the last one; where that does not converge, as without a start. A start of

@@ -35,10 +35,6 @@ struct Sources {
     std::vector<Pickup> pickups;
 };
 
-std::string body_name(const Model& model, BodyId body) {
-    return body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
-}
-
 void add(const Model& model, Source source, std::string connection, Sources& sources) {
     const Vector3d drawn_point = position(design_state(model).poses, source.at);
     sources.pickups.push_back({body_name(model, source.body), std::move(connection), drawn_point});

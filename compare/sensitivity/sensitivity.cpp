@@ -47,7 +47,7 @@ VectorXd adjusted(const Trimmed& trimmed) {
     VectorXd x(std::ssize(trimmed.record->adjusted));
     for (Index k = 0; k < x.size(); ++k) {
         const auto& one = trimmed.record->adjusted[static_cast<std::size_t>(k)];
-        x[k] = one.by / in_unit(one.unit);
+        x[k] = one.change / in_unit(one.unit);
     }
     return x;
 }

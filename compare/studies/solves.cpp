@@ -16,9 +16,9 @@ namespace {
 // Key of a method: all that its result depends on, which excludes its name and formal order.
 std::string key(const recursive::Method& method) {
     return std::visit(overloaded{[](const recursive::Linear& m) {
-                                     return fmt::format("linear {:d} {:d} {:d} {:d}",
-                                                        m.follow.lever, m.follow.axis,
-                                                        m.follow.load, m.closed);
+                                     return fmt::format(
+                                         "linear {:d} {:d} {:d} {:d}", m.stored.lever_follows,
+                                         m.stored.axis_follows, m.stored.load_follows, m.closed);
                                  },
                                  [](const recursive::Consistent& m) {
                                      return fmt::format("consistent {}", static_cast<int>(m.solve));

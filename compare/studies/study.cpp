@@ -393,7 +393,7 @@ BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
     for (unsigned bits = 0; bits < combinations; ++bits) {
         const recursive::Method method{
             .kind =
-                recursive::Linear{.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
+                recursive::Linear{.stored = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
         for (const int N : steps) {
             PathCurve path = level_of(solves, side, method, N);
             if (path.outcome != Outcome::converged) {

@@ -171,10 +171,10 @@ Table worst_of(const Assessment& a) {
     using W = NamedWorst;
     std::vector<W> rows{{"position", "parameter", &a.position},
                         {"angle", "parameter", &a.angle},
-                        {"position", "abscissa", &a.position_across},
-                        {"angle", "abscissa", &a.angle_across},
+                        {"position", "abscissa", &a.position_at_abscissa},
+                        {"angle", "abscissa", &a.angle_at_abscissa},
                         {"other", "parameter", &a.other},
-                        {"other", "abscissa", &a.other_across}};
+                        {"other", "abscissa", &a.other_at_abscissa}};
     std::erase_if(rows, [](const W& row) { return !row.worst->has_value(); });
     constexpr Digits hidden = Digits::hidden;
     return table<W>(

@@ -187,9 +187,7 @@ struct Drawn {
                     largest = std::max(largest, (a.at - b.at).norm());
         return largest;
     }
-    std::string name(BodyId body) const {
-        return body == ground ? "ground" : scene.bodies[static_cast<std::size_t>(body)].name;
-    }
+    std::string name(BodyId body) const { return body_name(scene, body); }
 };
 
 Drawn drawn(const Scene& scene) {

@@ -38,21 +38,22 @@ namespace elastocheck::recursive {
 
 // Which forces stored by earlier steps rotate with the bodies. In the published sum only the lever
 // of the load follows.
-struct Follow {
-    bool lever = false;  // the stored force of an element acts at the current attachment points
-    // the stored force takes the current direction and size of the element's law
-    bool axis = false;
+struct StoredForces {
+    // the force of an element acts at the current attachment points
+    bool lever_follows = false;
+    // it has the current direction and size of the element's law
+    bool axis_follows = false;
     // The applied load acts at the current position of its point; a follower rotates with its body,
     // since f_ext of (28) is that of the current configuration.
-    bool load = true;
+    bool load_follows = true;
 
-    friend bool operator==(const Follow&, const Follow&) = default;
+    friend bool operator==(const StoredForces&, const StoredForces&) = default;
 };
-inline constexpr Follow everything{true, true, true};
+inline constexpr StoredForces all_follow{true, true, true};
 
 // Equal steps with the stiffness matrix K of eq. (19): published, closed, balanced.
 struct Linear {
-    Follow follow = {};
+    StoredForces stored = {};
     bool closed = false;  // lower row -Φ(qⁿ; aⁿ⁺¹) instead of -∂Φ/∂a Δa
 };
 // Equal steps with the consistent tangent and the true forces: tangent, chord, midpoint.
@@ -87,7 +88,7 @@ struct Method {
 inline constexpr std::array methods{
     Method{},
     Method{"closed", 0, Linear{.closed = true}},
-    Method{"balanced", 1, Linear{.follow = everything, .closed = true}},
+    Method{"balanced", 1, Linear{.stored = all_follow, .closed = true}},
     Method{"tangent", 2, Consistent{Consistent::Solve::once}},
     Method{"chord", 3, Consistent{Consistent::Solve::corrected}},
     Method{"midpoint", 3, Consistent{Consistent::Solve::midpoint}},

@@ -36,22 +36,22 @@
 namespace elastocheck::compare {
 
 struct TrimRecord {
-    struct Adjusted {
+    struct Adjustment {
         std::string name;  // "springs.coil.preload"
         Unit unit = Unit::newton;
-        double by = 0;  // found change relative to the value in the scene
-        std::string
-            makes;  // resulting values: "force 3521.4 N in compression, free length 412.3 mm"
+        double change = 0;  // of the value in the scene
+        // the values with it: "force 3521.4 N in compression, free length 412.3 mm"
+        std::string resulting;
     };
-    struct Met {
+    struct Condition {
         std::string name;  // "left.travel"
         Unit unit = Unit::mm;
         double target = 0;
-        double missed = 0;     // residual by the equilibrium leg's state
-        double confirmed = 0;  // residual by the state of the second reference
+        double residual = 0;             // by the equilibrium leg's state
+        double confirming_residual = 0;  // by the state of the second reference
     };
-    std::vector<Adjusted> adjusted;  // of Trim::adjust, then of every balanced bushing
-    std::vector<Met> conditions;
+    std::vector<Adjustment> adjusted;  // of Trim::adjust, then of every balanced bushing
+    std::vector<Condition> conditions;
     Trim::Bushings bushings = Trim::Bushings::unloaded;
     int iterations = 0;              // of Newton's method
     Leg confirmed_by = Leg::energy;  // or the series, where the energy leg does not apply

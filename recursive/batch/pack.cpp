@@ -25,22 +25,22 @@ void set_parameter(SteppingState& s, Drive drive, double to) {
     s.a = s.parameters.a;
 }
 
-// Sets the state to the polynomial about `from` at τ.
-void move_to(Slot& slot, Drive drive, double tau) {
-    SteppingState& s = *slot.s;
-    series::horner(slot.c.x, tau, slot.x);
-    series::displace(slot.from, slot.x, s.q);
-    s.lambda = slot.x.tail(s.m());
-    set_parameter(s, drive, series::polynomial(slot.c.load, tau));
+// Sets the state to the polynomial about the expansion point at τ.
+void move_to(LaneState& state, Drive drive, double tau) {
+    SteppingState& s = *state.stepping;
+    series::horner(state.expansion.x, tau, state.x);
+    series::displace(state.expansion_point, state.x, s.q);
+    s.lambda = state.x.tail(s.m());
+    set_parameter(s, drive, series::polynomial(state.expansion.load, tau));
 }
 
 // Reads the coefficients of the curves' deformations in the last expansion.
-void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int lane) {
-    slot.deformations.resize(e.order() + 1, static_cast<Eigen::Index>(slot.curves.size()));
-    for (std::size_t c = 0; c < slot.curves.size(); ++c)
+void read_deformations(const series::Equations<Lanes>& e, LaneState& state, int lane) {
+    state.deformations.resize(e.order() + 1, static_cast<Eigen::Index>(state.curves.size()));
+    for (std::size_t c = 0; c < state.curves.size(); ++c)
         for (int k = 0; k <= e.order(); ++k)
-            slot.deformations(k, static_cast<Eigen::Index>(c)) =
-                series::deformation(e, slot.curves[c].elastic, slot.curves[c].axis, k)[lane];
+            state.deformations(k, static_cast<Eigen::Index>(c)) =
+                series::deformation(e, state.curves[c].elastic, state.curves[c].axis, k)[lane];
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ Pack::Pack(const Model& model, const Analysis& analysis, const BatchOptions& bat
         if (const auto k = static_cast<std::size_t>(source); k < covered.size())  // else border
             covered[k] = true;
     for (std::size_t k = 0; k < covered.size(); ++k)
-        if (!covered[k]) outside.push_back(static_cast<int>(k));
+        if (!covered[k]) omitted_entries.push_back(static_cast<int>(k));
     for (std::size_t k = 0; k < model.branches.size(); ++k) {
         const auto same = [&](const auto& group) {
             return series::same_drivers(model.branches[group.front()], model.branches[k]);
@@ -72,53 +72,55 @@ Pack::Pack(const Model& model, const Analysis& analysis, const BatchOptions& bat
                              series::equations<Lanes>(model, branch, order, Drive::rate)});
     }
     const int unknowns = system.n + system.m;
-    first = present = series::reserve_coefficients<Lanes>(unknowns, order);
+    start_expansion = expansion = series::reserve_coefficients<Lanes>(unknowns, order);
     x.setZero(unknowns);
-    for (Slot& slot : slots) {
-        slot.c = series::reserve_coefficients<double>(unknowns, order);
-        slot.paths.resize(model.branches.size());
+    for (LaneState& state : lanes) {
+        state.expansion = series::reserve_coefficients<double>(unknowns, order);
+        state.paths.resize(model.branches.size());
     }
 }
 
-Mask Pack::inside() const {
+Mask Pack::in_lockstep() const {
     Mask mask{};
-    for (std::size_t k = 0; k < slots.size(); ++k) mask[k] = slots[k].inside;
+    for (std::size_t k = 0; k < lanes.size(); ++k) mask[k] = lanes[k].in_lockstep;
     return mask;
 }
-Mask Pack::going() const {
+Mask Pack::under_way() const {
     Mask mask{};
-    for (std::size_t k = 0; k < slots.size(); ++k) mask[k] = slots[k].inside && slots[k].going;
+    for (std::size_t k = 0; k < lanes.size(); ++k)
+        mask[k] = lanes[k].in_lockstep && lanes[k].under_way;
     return mask;
 }
 
-void Pack::follow(std::span<const Model* const> variants) {
-    for (std::size_t k = 0; k < slots.size(); ++k) {
-        Slot& slot = slots[k];
-        slot.inside = k < variants.size();
-        if (!slot.inside) continue;
-        slot.model = *variants[k];
-        if (far_centre(slot.model)) slot.inside = false;
+void Pack::solve_variants(std::span<const Model* const> variants) {
+    for (std::size_t k = 0; k < lanes.size(); ++k) {
+        LaneState& state = lanes[k];
+        state.in_lockstep = k < variants.size();
+        if (!state.in_lockstep) continue;
+        state.model = *variants[k];
+        if (far_centre(state.model)) state.in_lockstep = false;
     }
-    for (std::size_t group = 0; group < groups.size(); ++group) follow_group(group);
+    for (std::size_t group = 0; group < groups.size(); ++group) solve_group(group);
 }
 
 // Sets the lane to the design position of its variant: state, inputs, residuals, matrix.
 void Pack::prepare(int lane, const Branch& branch) {
-    Slot& slot = slots[static_cast<std::size_t>(lane)];
-    slot.branch = branch;
-    if (!slot.s) slot.s = std::make_unique<SteppingState>(slot.model, slot.branch, design);
-    SteppingState& s = *slot.s;
+    LaneState& state = lanes[static_cast<std::size_t>(lane)];
+    state.branch = branch;
+    if (!state.stepping)
+        state.stepping = std::make_unique<SteppingState>(state.model, state.branch, design);
+    SteppingState& s = *state.stepping;
     s.setup.consistent = true;
     s.counts = {};
-    s.q = design_state<double>(slot.model);
+    s.q = design_state<double>(state.model);
     s.lambda.setZero();
-    s.start.drawn = inputs_as_drawn<double>(slot.model);
+    s.start.drawn = inputs_as_drawn<double>(state.model);
     s.inputs = s.start.drawn;
-    s.setup.length = characteristic_length(slot.model);
+    s.setup.length = characteristic_length(state.model);
     for (int b = 0; b < s.n() / 6; ++b)
         s.system.weight.segment(6 * b + 3, 3).setConstant(s.setup.length);
     s.system.held.value = design.system.held.value;
-    slot.curves = series::curves_of(slot.model);
+    state.curves = series::curves_of(state.model);
     const Branch undriven;
     go_to(s, {0, 0});
     assemble_constraints<double>(s.model, s.inputs, s.q, s.system.M, s.work.Phi);
@@ -126,30 +128,31 @@ void Pack::prepare(int lane, const Branch& branch) {
     external_force<double>(s.model, undriven, s.inputs, s.q, s.start.R_d);
     s.start.R_d -= elastic_force<double>(s.model, s.inputs, s.q);
     s.start.Phi_d = s.work.Phi;
-    slot.at_rest = is_at_rest(s.system, s.start.R_d, s.work.Phi, s.setup.length);
-    if (!s.start.R_d.allFinite() || !s.work.Phi.allFinite()) slot.inside = false;
+    state.at_rest = is_at_rest(s.system, s.start.R_d, s.work.Phi, s.setup.length);
+    if (!s.start.R_d.allFinite() || !s.work.Phi.allFinite()) state.in_lockstep = false;
 }
 
-void Pack::follow_group(std::size_t group) {
+void Pack::solve_group(std::size_t group) {
     const std::vector<std::size_t>& branches = groups[group];
     bool settles = false;
-    each(inside(), [&](Slot& slot, int lane) {
-        const Branch& front = slot.model.branches[branches.front()];
-        slot.inside = has_energy(slot.model, front);
+    each(in_lockstep(), [&](LaneState& state, int lane) {
+        const Branch& front = state.model.branches[branches.front()];
+        state.in_lockstep = has_energy(state.model, front);
         for (const std::size_t k : branches) {
-            const Branch& branch = slot.model.branches[k];
-            slot.inside = slot.inside && series::same_drivers(front, branch) && branch.to != 0 &&
-                          std::isfinite(branch.to);
+            const Branch& branch = state.model.branches[k];
+            state.in_lockstep = state.in_lockstep && series::same_drivers(front, branch) &&
+                                branch.to != 0 && std::isfinite(branch.to);
         }
-        if (slot.inside) prepare(lane, front);
-        if (slot.inside) settles = settles || !slot.at_rest || !starts_as_drawn(front);
+        if (state.in_lockstep) prepare(lane, front);
+        if (state.in_lockstep) settles = settles || !state.at_rest || !starts_as_drawn(front);
     });
     if (settles) {
         solve_branch(group, Drive::start, true);
-        each(inside(), [&](Slot& slot, int) {
-            SteppingState& s = *slot.s;
+        each(in_lockstep(), [&](LaneState& state, int) {
+            SteppingState& s = *state.stepping;
             if (s.start.Phi_d.norm() <= guard::closed) s.start.Phi_d.setZero();
-            if (settled(s, Outcome::converged, 0.0) != Outcome::converged) slot.inside = false;
+            if (settled(s, Outcome::converged, 0.0) != Outcome::converged)
+                state.in_lockstep = false;
         });
     }
     solve_branch(group, Drive::rate, !settles);
@@ -157,48 +160,50 @@ void Pack::follow_group(std::size_t group) {
 
 // Writes the present pieces of a lane's curves into the equations and the inputs.
 void Pack::use_pieces(series::Equations<Lanes>& e, int lane) {
-    Slot& slot = slots[static_cast<std::size_t>(lane)];
-    for (const series::CurvePiece& f : slot.curves) {
+    LaneState& state = lanes[static_cast<std::size_t>(lane)];
+    for (const series::CurvePiece& f : state.curves) {
         const auto piece = static_cast<std::size_t>(f.piece);
         series::CubicSeries<Lanes>& cubic = series::cubic_of(e, f.elastic, f.axis);
         for (std::size_t k = 0; k < 4; ++k) set_lane(cubic.c[k], lane, f.curve->pieces[piece][k]);
         set_lane(cubic.about, lane, f.curve->knots[piece == 0 ? 0 : piece - 1]);
-        series::set_piece(f, slot.s->inputs);
+        series::set_piece(f, state.stepping->inputs);
     }
 }
 
 void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
                            const std::vector<LaneEnds>& ends) {
-    each(inside(), [&](Slot& slot, int) { set_parameter(*slot.s, drive, 0); });
+    each(in_lockstep(), [&](LaneState& state, int) { set_parameter(*state.stepping, drive, 0); });
     if (e.curved) {
-        each(inside(),
-             [&](Slot& slot, int lane) { series::begin(e, slot.s->q, slot.s->lambda, 0, lane); });
+        each(in_lockstep(), [&](LaneState& state, int lane) {
+            series::begin(e, state.stepping->q, state.stepping->lambda, 0, lane);
+        });
         evaluate(e, {0, series::Pass::known});
-        each(inside(), [&](Slot& slot, int lane) {
-            for (series::CurvePiece& f : slot.curves)
+        each(in_lockstep(), [&](LaneState& state, int lane) {
+            for (series::CurvePiece& f : state.curves)
                 f.piece =
                     piece_at<double>(*f.curve, series::deformation(e, f.elastic, f.axis, 0)[lane]);
             use_pieces(e, lane);
         });
     }
-    each(inside(), [&](Slot& slot, int lane) {
-        SteppingState& s = *slot.s;
+    each(in_lockstep(), [&](LaneState& state, int lane) {
+        SteppingState& s = *state.stepping;
         for (const auto& end : ends) {
             set_parameter(s, drive, end[static_cast<std::size_t>(lane)]);
-            slot.inside = slot.inside && !(drive == Drive::start
-                                               ? loads_idle_mode(s)
-                                               : check_idle_load_here(s, 0) != Outcome::converged);
+            state.in_lockstep =
+                state.in_lockstep &&
+                !(drive == Drive::start ? loads_idle_mode(s)
+                                        : check_idle_load_here(s, 0) != Outcome::converged);
         }
         set_parameter(s, drive, 0);
-        if (!slot.inside) return;
+        if (!state.in_lockstep) return;
         e.curved ? assemble(lane) : load_matrix(lane);  // without curves that of prepare()
     });
     // The first elimination gives the held directions of the variant, the second holds them.
     if (design.system.held.size() > 0) {
-        factorise(inside(), false);
-        each(inside(), [&](Slot&, int lane) { load_matrix(lane); });
+        factorise(in_lockstep(), false);
+        each(in_lockstep(), [&](LaneState&, int lane) { load_matrix(lane); });
     }
-    factorise(inside(), true);
+    factorise(in_lockstep(), true);
 }
 
 // Computes the polynomials about the states of the lanes, with the factors of the last elimination.
@@ -206,8 +211,8 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
                   const LaneEnds& to) {
     const SaddlePoint<double>& saddle_point = design.system;
     const int n = saddle_point.n, m = saddle_point.m;
-    each(inside(), [&](Slot& slot, int lane) {
-        SteppingState& s = *slot.s;
+    each(in_lockstep(), [&](LaneState& state, int lane) {
+        SteppingState& s = *state.stepping;
         series::begin(e, s.q, s.lambda, series::parameter(s, drive), lane);
         drive_at(s, drive, 1.0, s.q, s.lambda);
         load_rhs(lane);
@@ -246,7 +251,7 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
                     correction += x[k] * x[k];
                     whole += c.x(k, 1) * c.x(k, 1);
                 }
-                each(inside(), [&](Slot&, int lane) {
+                each(in_lockstep(), [&](LaneState&, int lane) {
                     const bool too_large =
                         !(std::sqrt(correction[lane]) <= loses_digits * std::sqrt(whole[lane]));
                     set_lane(corrected, lane, too_large ? 1 : 0);
@@ -263,87 +268,87 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
 
 // Shortens the range of a lane to where the first deformation leaves its piece. The variant leaves
 // the lane where one does so at τ = 0: its expansion began on the wrong piece.
-static void stop_at_knots(Slot& slot, const series::KnotTolerance& near) {
+static void stop_at_knots(LaneState& state, const series::KnotTolerance& near) {
     std::vector<series::PieceExit> met;
     std::vector<std::size_t> crossed;
-    slot.crossings.clear();
+    state.crossings.clear();
     const auto column = [&](std::size_t k) {
-        return Eigen::VectorXd(slot.deformations.col(static_cast<Eigen::Index>(k)));
+        return Eigen::VectorXd(state.deformations.col(static_cast<Eigen::Index>(k)));
     };
-    const double reach = slot.reached;
-    for (std::size_t k = 0; k < slot.curves.size(); ++k)
-        if (const auto there = series::exit_from_piece(column(k), slot.curves[k], reach, near)) {
-            met.push_back(*there);
+    const double reach = state.tau_end;
+    for (std::size_t k = 0; k < state.curves.size(); ++k)
+        if (const auto exit = series::exit_from_piece(column(k), state.curves[k], reach, near)) {
+            met.push_back(*exit);
             crossed.push_back(k);
-            if (there->wrong_piece) slot.inside = false;
-            if (there->tau < slot.reached) {
-                slot.reached = there->tau;
-                slot.last = false;
+            if (exit->wrong_piece) state.in_lockstep = false;
+            if (exit->tau < state.tau_end) {
+                state.tau_end = exit->tau;
+                state.ends_side = false;
             }
         }
     // Several deformations may reach their knots at the same τ.
     for (std::size_t k = 0; k < met.size(); ++k)
-        if (met[k].tau <= slot.reached ||
-            series::is_at_knot(column(crossed[k]), slot.curves[crossed[k]], met[k].direction,
-                               slot.reached, near))
-            slot.crossings.emplace_back(crossed[k], met[k].direction);
+        if (met[k].tau <= state.tau_end ||
+            series::is_at_knot(column(crossed[k]), state.curves[crossed[k]], met[k].direction,
+                               state.tau_end, near))
+            state.crossings.emplace_back(crossed[k], met[k].direction);
 }
 
 // Range of validity of a lane's polynomial. The variant leaves the lane near a limit point.
 void Pack::find_range(const series::Coefficients<Lanes>& c, int lane, Drive drive, double to) {
-    Slot& slot = slots[static_cast<std::size_t>(lane)];
-    SteppingState& s = *slot.s;
-    for (Eigen::Index k = 0; k < c.x.size(); ++k) slot.c.x.data()[k] = c.x.data()[k][lane];
-    for (Eigen::Index k = 0; k < c.load.size(); ++k) slot.c.load[k] = c.load[k][lane];
-    slot.from = s.q;
-    const series::Singularity nearest = series::nearest_singularity(s, slot.c);
+    LaneState& state = lanes[static_cast<std::size_t>(lane)];
+    SteppingState& s = *state.stepping;
+    for (Eigen::Index k = 0; k < c.x.size(); ++k) state.expansion.x.data()[k] = c.x.data()[k][lane];
+    for (Eigen::Index k = 0; k < c.load.size(); ++k) state.expansion.load[k] = c.load[k][lane];
+    state.expansion_point = s.q;
+    const series::Singularity nearest = series::nearest_singularity(s, state.expansion);
     const double tolerance = options.series.tolerance, per_unit = s.setup.length / std::abs(to),
-                 tau = series::reach(s, slot.c, tolerance, per_unit, nearest.radius),
+                 tau = series::reach(s, state.expansion, tolerance, per_unit, nearest.radius),
                  rest = (to - series::parameter(s, drive)) / to;
-    slot.last = tau >= rest;
-    slot.reached = slot.last ? rest : tau;
+    state.ends_side = tau >= rest;
+    state.tau_end = state.ends_side ? rest : tau;
     if (!(tau > 0) || !(tau >= 1e-9)) {
-        slot.inside = false;
+        state.in_lockstep = false;
         return;
     }
-    const bool whole = slot.last;
-    stop_at_knots(slot, {s.setup.length, 0.1 * tolerance, 10 * tolerance});
+    const bool reaches_end = state.ends_side;
+    stop_at_knots(state, {s.setup.length, 0.1 * tolerance, 10 * tolerance});
     constexpr double close = 1e-4;
     const bool straight_ahead = nearest.angle < 1e-3 && nearest.misfit < 1e-2;
-    if (!whole && nearest.radius < close && straight_ahead) slot.inside = false;
+    if (!reaches_end && nearest.radius < close && straight_ahead) state.in_lockstep = false;
 }
 
 // Records the points of the branch in the accepted range.
 void Pack::sample(int lane, std::size_t branch) {
-    Slot& slot = slots[static_cast<std::size_t>(lane)];
-    SteppingState& s = *slot.s;
-    EquilibriumPath& path = slot.paths[branch];
+    LaneState& state = lanes[static_cast<std::size_t>(lane)];
+    SteppingState& s = *state.stepping;
+    EquilibriumPath& path = state.paths[branch];
     const auto points = static_cast<std::size_t>(options.points);
-    const double to = slot.model.branches[branch].to, end = s.a;
-    const Vector<double>& load = slot.c.load;
+    const double to = state.model.branches[branch].to, end = s.a;
+    const Vector<double>& load = state.expansion.load;
     const auto load_at = [&](std::size_t k) {
         return to * static_cast<double>(k) / static_cast<double>(options.points);
     };
     constexpr double eps = std::numeric_limits<double>::epsilon();
     std::size_t count = 0;
-    powers.resize(slot.c.x.cols(), static_cast<Eigen::Index>(points) + 1);
-    for (; slot.next + count <= points; ++count) {
-        const double a = load_at(slot.next + count), tau = (a - load[0]) / load[1],
-                     slack = 1e-12 * slot.reached +
+    powers.resize(state.expansion.x.cols(), static_cast<Eigen::Index>(points) + 1);
+    for (; state.next_point + count <= points; ++count) {
+        const double a = load_at(state.next_point + count), tau = (a - load[0]) / load[1],
+                     slack = 1e-12 * state.tau_end +
                              4 * eps * (std::abs(a) + std::abs(load[0])) / std::abs(load[1]);
-        if (!slot.last && tau > slot.reached + slack) break;
+        if (!state.ends_side && tau > state.tau_end + slack) break;
         double power = 1;
-        const double inside = std::clamp(tau, 0.0, slot.reached);
-        for (Eigen::Index k = 0; k < powers.rows(); ++k, power *= inside)
+        const double t = std::clamp(tau, 0.0, state.tau_end);
+        for (Eigen::Index k = 0; k < powers.rows(); ++k, power *= t)
             powers(k, static_cast<Eigen::Index>(count)) = power;
     }
-    values.noalias() = slot.c.x * powers.leftCols(static_cast<Eigen::Index>(count));
+    values.noalias() = state.expansion.x * powers.leftCols(static_cast<Eigen::Index>(count));
     for (std::size_t k = 0; k < count; ++k) {
         const auto at_tau = values.col(static_cast<Eigen::Index>(k));
-        Equilibrium& to_point = path.points[slot.next + k];
-        point = slot.from;
-        series::displace(slot.from, at_tau, point);
-        to_point.load = load_at(slot.next + k);
+        Equilibrium& to_point = path.points[state.next_point + k];
+        point = state.expansion_point;
+        series::displace(state.expansion_point, at_tau, point);
+        to_point.load = load_at(state.next_point + k);
         if (options.wrenches) {
             set_parameter(s, Drive::rate, to_point.load);
             const Vector<double> lambda = at_tau.tail(s.m());
@@ -354,26 +359,27 @@ void Pack::sample(int lane, std::size_t branch) {
             to_point.constraint_error = std::numeric_limits<double>::quiet_NaN();
         }
     }
-    slot.next += count;
+    state.next_point += count;
     if (options.wrenches) set_parameter(s, Drive::rate, end);
 }
 
 // Changes to the pieces behind the knots at the ends of the ranges.
 void Pack::cross_knots(series::Equations<Lanes>& e) {
     Mask jumping{};
-    each(going(), [&](Slot& slot, int lane) {
-        for (const auto& [k, direction] : slot.crossings)
-            if (series::cross_knot(slot.curves[k], direction))
+    each(under_way(), [&](LaneState& state, int lane) {
+        for (const auto& [k, direction] : state.crossings)
+            if (series::cross_knot(state.curves[k], direction))
                 jumping[static_cast<std::size_t>(lane)] = true;
-        if (slot.crossings.empty()) return;
+        if (state.crossings.empty()) return;
         use_pieces(e, lane);
         if (jumping[static_cast<std::size_t>(lane)]) assemble(lane);
     });
     if (std::ranges::count(jumping, true) == 0) return;
     factorise(jumping, false);
-    each(jumping, [&](Slot& slot, int lane) {
-        slot.inside = slot.inside && static_cast<int>(lu.sign[lane]) == slot.sign_at_start;
-        slot.log_begin = log_determinant(lu, lane);
+    each(jumping, [&](LaneState& state, int lane) {
+        state.in_lockstep =
+            state.in_lockstep && static_cast<int>(lu.sign[lane]) == state.sign_at_start;
+        state.log_det = log_determinant(lu, lane);
     });
 }
 
@@ -383,29 +389,29 @@ std::vector<LaneEnds> Pack::load_group(std::size_t group, Drive drive) {
     const std::vector<std::size_t>& branches = groups[group];
     std::vector<LaneEnds> ends(rate ? branches.size() : 1);
     for (auto& end : ends) end.fill(1);
-    each(inside(), [&](Slot& slot, int lane) {
+    each(in_lockstep(), [&](LaneState& state, int lane) {
         const auto k = static_cast<std::size_t>(lane);
-        series::take(e, slot.model, slot.branch, lane);
+        series::take(e, state.model, state.branch, lane);
         for (std::size_t side = 0; rate && side < ends.size(); ++side)
-            ends[side][k] = slot.model.branches[branches[side]].to;
+            ends[side][k] = state.model.branches[branches[side]].to;
         for (Eigen::Index row = 0; !rate && row < e.G_d.size(); ++row)
-            set_lane(e.G_d[row], lane, -slot.s->start.R_d[row]);
+            set_lane(e.G_d[row], lane, -state.stepping->start.R_d[row]);
         for (Eigen::Index row = 0; !rate && row < e.Phi_d.size(); ++row)
-            set_lane(e.Phi_d[row], lane, slot.s->start.Phi_d[row]);
+            set_lane(e.Phi_d[row], lane, state.stepping->start.Phi_d[row]);
     });
     series::settle_on_constants(e);
     return ends;
 }
 
 void Pack::keep_start(const series::Equations<Lanes>& e) {
-    each(inside(), [&](Slot& slot, int lane) {
-        read_deformations(e, slot, lane);
-        slot.deformations_at_start = slot.deformations;
-        slot.curves_at_start = slot.curves;
-        slot.q_start = slot.s->q;
-        slot.lambda_start = slot.s->lambda;
-        slot.sign_at_start = static_cast<int>(lu.sign[lane]);
-        slot.log_at_start = log_determinant(lu, lane);
+    each(in_lockstep(), [&](LaneState& state, int lane) {
+        read_deformations(e, state, lane);
+        state.deformations_at_start = state.deformations;
+        state.curves_at_start = state.curves;
+        state.q_start = state.stepping->q;
+        state.lambda_start = state.stepping->lambda;
+        state.sign_at_start = static_cast<int>(lu.sign[lane]);
+        state.log_det_at_start = log_determinant(lu, lane);
     });
 }
 
@@ -413,7 +419,7 @@ void Pack::keep_start(const series::Equations<Lanes>& e) {
 // coefficient k times rᵏ, r the quotient of the sides' ends.
 void Pack::begin_side(series::Equations<Lanes>& e, Drive drive, const std::vector<LaneEnds>& ends,
                       std::size_t side) {
-    present = first;
+    expansion = start_expansion;
     const auto share = [&](int lane) {
         const auto k = static_cast<std::size_t>(lane);
         return ends[side][k] / ends.front()[k];
@@ -421,51 +427,52 @@ void Pack::begin_side(series::Equations<Lanes>& e, Drive drive, const std::vecto
     if (side > 0) {
         const Lanes shares = each_lane(share);
         Lanes power = 1;
-        for (Eigen::Index k = 1; k < present.x.cols(); ++k) {
+        for (Eigen::Index k = 1; k < expansion.x.cols(); ++k) {
             power *= shares;
-            for (Eigen::Index row = 0; row < present.x.rows(); ++row) present.x(row, k) *= power;
+            for (Eigen::Index row = 0; row < expansion.x.rows(); ++row)
+                expansion.x(row, k) *= power;
         }
-        present.load[1] *= shares;
+        expansion.load[1] *= shares;
     }
-    each(inside(), [&](Slot& slot, int lane) {
-        slot.s->q = slot.q_start;
-        slot.s->lambda = slot.lambda_start;
-        set_parameter(*slot.s, drive, 0);
-        slot.log_begin = slot.log_at_start;
-        slot.deformations = slot.deformations_at_start;
-        slot.curves = slot.curves_at_start;
+    each(in_lockstep(), [&](LaneState& state, int lane) {
+        state.stepping->q = state.q_start;
+        state.stepping->lambda = state.lambda_start;
+        set_parameter(*state.stepping, drive, 0);
+        state.log_det = state.log_det_at_start;
+        state.deformations = state.deformations_at_start;
+        state.curves = state.curves_at_start;
         use_pieces(e, lane);
         double power = 1;
-        for (Eigen::Index row = 0; row < slot.deformations.rows(); ++row) {
-            slot.deformations.row(row) *= power;
+        for (Eigen::Index row = 0; row < state.deformations.rows(); ++row) {
+            state.deformations.row(row) *= power;
             power *= share(lane);
         }
-        slot.going = true;
-        slot.next = 0;
+        state.under_way = true;
+        state.next_point = 0;
     });
 }
 
 void Pack::clear_paths(std::size_t branch) {
-    each(inside(), [&](Slot& slot, int) {
-        EquilibriumPath& path = slot.paths[branch];
+    each(in_lockstep(), [&](LaneState& state, int) {
+        EquilibriumPath& path = state.paths[branch];
         path.outcome = Outcome::converged;
         path.detail.clear();
-        const Equilibrium blank{0, std::vector<Pose>(slot.model.bodies.size()),
-                                std::vector<Wrench>(slot.model.joints.size()), 0};
+        const Equilibrium blank{0, std::vector<Pose>(state.model.bodies.size()),
+                                std::vector<Wrench>(state.model.joints.size()), 0};
         path.points.resize(static_cast<std::size_t>(options.points) + 1, blank);
     });
 }
 
 void Pack::measure_middle(Drive drive) {
-    each(going(), [&](Slot& slot, int lane) {
-        move_to(slot, drive, slot.reached / 2);
+    each(under_way(), [&](LaneState& state, int lane) {
+        move_to(state, drive, state.tau_end / 2);
         assemble(lane);
     });
-    factorise(going(), false);
-    each(going(), [&](Slot& slot, int lane) {
-        slot.at_middle = static_cast<int>(lu.sign[lane]) == slot.sign_at_start
-                             ? std::exp2(log_determinant(lu, lane) - slot.log_begin)
-                             : -1;
+    factorise(under_way(), false);
+    each(under_way(), [&](LaneState& state, int lane) {
+        state.det_ratio_at_middle = static_cast<int>(lu.sign[lane]) == state.sign_at_start
+                                        ? std::exp2(log_determinant(lu, lane) - state.log_det)
+                                        : -1;
     });
 }
 
@@ -477,11 +484,11 @@ void Pack::solve_branch(std::size_t group, Drive drive, bool from_design) {
     if (from_design)
         start_at_design(e, drive, ends);
     else
-        each(inside(), [&](Slot& slot, int lane) {
-            set_parameter(*slot.s, drive, 0);
+        each(in_lockstep(), [&](LaneState& state, int lane) {
+            set_parameter(*state.stepping, drive, 0);
             use_pieces(e, lane);
         });
-    expand(e, first, drive, ends.front());
+    expand(e, start_expansion, drive, ends.front());
     Matrix<Lanes> softest_at_start, softest;
     if (rate) judge_start(softest_at_start);
     keep_start(e);
@@ -490,29 +497,31 @@ void Pack::solve_branch(std::size_t group, Drive drive, bool from_design) {
         begin_side(e, drive, ends, side);
         if (rate) clear_paths(branches[side]);
         int knots = 0;
-        for (const auto& f : slots.front().curves) knots += static_cast<int>(f.curve->knots.size());
+        for (const auto& f : lanes.front().curves) knots += static_cast<int>(f.curve->knots.size());
         const int max_expansions = options.series.expansions * (1 + knots);
-        for (int k = 0; std::ranges::count(going(), true) > 0; ++k) {
+        for (int k = 0; std::ranges::count(under_way(), true) > 0; ++k) {
             if (k == max_expansions) {
-                each(going(), [](Slot& slot, int) { slot.inside = false; });
+                each(under_way(), [](LaneState& state, int) { state.in_lockstep = false; });
                 break;
             }
             if (k > 0) {
-                expand(e, present, drive, ends[side]);
-                each(going(), [&](Slot& slot, int lane) { read_deformations(e, slot, lane); });
+                expand(e, expansion, drive, ends[side]);
+                each(under_way(),
+                     [&](LaneState& state, int lane) { read_deformations(e, state, lane); });
             }
-            each(going(), [&](Slot&, int lane) {
-                find_range(present, lane, drive, ends[side][static_cast<std::size_t>(lane)]);
+            each(under_way(), [&](LaneState&, int lane) {
+                find_range(expansion, lane, drive, ends[side][static_cast<std::size_t>(lane)]);
             });
             if (rate) measure_middle(drive);
             correct_ends(drive, ends[side]);
             check_ends(rate, softest);
-            each(going(), [&](Slot& slot, int lane) {
+            each(under_way(), [&](LaneState& state, int lane) {
                 if (rate) sample(lane, branches[side]);
-                slot.going = !slot.last;
-                if (slot.going || !rate) return;
-                slot.paths[branches[side]].counts = slot.s->counts;
-                if (slot.next != static_cast<std::size_t>(options.points) + 1) slot.inside = false;
+                state.under_way = !state.ends_side;
+                if (state.under_way || !rate) return;
+                state.paths[branches[side]].counts = state.stepping->counts;
+                if (state.next_point != static_cast<std::size_t>(options.points) + 1)
+                    state.in_lockstep = false;
             });
             cross_knots(e);
         }

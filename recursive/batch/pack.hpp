@@ -23,31 +23,32 @@
 namespace elastocheck::recursive::batch {
 
 // A variant in its lane.
-struct Slot {
+struct LaneState {
     Model model;    // a copy: the state refers to it
     Branch branch;  // with the drivers of the present group
-    std::unique_ptr<SteppingState> s;
-    bool inside = false;   // holds a variant that has not left
-    bool at_rest = false;  // as Analysis::at_rest
+    std::unique_ptr<SteppingState> stepping;
+    bool in_lockstep = false;  // holds a variant that has not left
+    bool at_rest = false;      // as Analysis::at_rest
     std::vector<series::CurvePiece> curves, curves_at_start;
     // curves that are at a knot at the end of the present expansion, and the directions
     std::vector<std::pair<std::size_t, int>> crossings;
     Matrix<double> deformations, deformations_at_start;  // of the curves, their coefficients
-    series::Coefficients<double> c;                      // of the present expansion
+    series::Coefficients<double> expansion;              // the present one
+    State<double> expansion_point;                       // at its τ = 0
+    Vector<double> x;                                    // its value, (Δq, λ)
     std::vector<EquilibriumPath> paths;                  // of the branches
-    State<double> from;                                  // at τ = 0 of the present expansion
     State<double> q_start;                               // at the start of the branches
-    Vector<double> lambda_start, x;
-    int sign_at_start = 0;    // sign of the determinant at the start of the branches
-    double log_at_start = 0;  // log₂ |determinant| there
-    double log_begin = 0;     // log₂ |determinant| at the start of the expansion
-    double at_middle = 1;     // determinant in the middle of the expansion over that at its start
-    double error = 0;         // of the present expansion at its end [m]
-    double reached = 0;       // τ at the end of the present expansion
-    bool last = false;        // whether that is the end of the branch
-    bool going = false;       // has not reached the end of the present side
-    std::size_t next = 0;     // next point of the branch to be recorded
-    double last_correction = 0;  // size of the last Newton correction [m]
+    Vector<double> lambda_start;
+    int sign_at_start = 0;           // sign of the determinant at the start of the branches
+    double log_det_at_start = 0;     // log₂ |determinant| there
+    double log_det = 0;              // log₂ |determinant| at the expansion point
+    double det_ratio_at_middle = 1;  // determinant in the middle of the expansion over that
+    double error = 0;                // of the present expansion at its end [m]
+    double tau_end = 0;              // τ there
+    bool ends_side = false;          // whether that is the end of the present side
+    bool under_way = false;          // has not reached the end of the present side
+    std::size_t next_point = 0;      // of the branch, to be recorded
+    double last_correction = 0;      // size of the last Newton correction [m]
 };
 
 using Mask = std::array<bool, Lanes::count>;
@@ -56,39 +57,39 @@ using LaneEnds = std::array<double, Lanes::count>;  // parameter at the end of a
 struct Pack {
     const Analysis& design;
     const BatchOptions& options;
-    std::array<Slot, Lanes::count> slots;
+    std::array<LaneState, Lanes::count> lanes;
     Factors lu;
     std::vector<Lanes> rhs, solution;
-    std::vector<int> outside;                      // positions in M.values that the pattern omits
+    std::vector<int> omitted_entries;              // positions in M.values that the pattern omits
     std::vector<std::vector<std::size_t>> groups;  // branches with the same drivers
 
     Pack(const Model& model, const Analysis& analysis, const BatchOptions& batch_options);
 
-    // Follows all branches of the variants, one to a lane, at most four. The slots that are
-    // `inside` afterwards have their paths; the other variants are to be solved alone.
-    void follow(std::span<const Model* const> variants);
+    // Solves all branches of the variants, one to a lane, at most four. The lanes that are still
+    // in lockstep have their paths; the variants of the others are to be solved alone.
+    void solve_variants(std::span<const Model* const> variants);
 
   private:
     struct Group {
         series::Equations<Lanes> start, rate;
     };
-    std::vector<Group> equations;  // of the groups
-    series::Coefficients<Lanes> first, present;
+    std::vector<Group> equations;                            // of the groups
+    series::Coefficients<Lanes> start_expansion, expansion;  // of all lanes
     Vector<Lanes> x;
     Matrix<Lanes> definite;  // workspace of judge_start() [6nb × 6nb]
     Matrix<double> powers, values;
     State<double> point;
 
-    Mask inside() const;
-    Mask going() const;
+    Mask in_lockstep() const;
+    Mask under_way() const;
     template <class Visit>
     void each(const Mask& mask, Visit&& visit) {
-        for (std::size_t k = 0; k < slots.size(); ++k)
-            if (mask[k] && slots[k].inside) visit(slots[k], static_cast<int>(k));
+        for (std::size_t k = 0; k < lanes.size(); ++k)
+            if (mask[k] && lanes[k].in_lockstep) visit(lanes[k], static_cast<int>(k));
     }
 
     void prepare(int lane, const Branch& branch);
-    void follow_group(std::size_t group);
+    void solve_group(std::size_t group);
     void assemble(int lane);
     void load_matrix(int lane);
     void factorise(const Mask& mask, bool at_design);

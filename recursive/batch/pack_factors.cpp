@@ -18,8 +18,8 @@ constexpr double largest_multiplier = 1e4;  // as series_state() in recursive/se
 }  // namespace
 
 void Pack::assemble(int lane) {
-    Slot& slot = slots[static_cast<std::size_t>(lane)];
-    SteppingState& s = *slot.s;
+    LaneState& state = lanes[static_cast<std::size_t>(lane)];
+    SteppingState& s = *state.stepping;
     assemble_constraints<double>(s.model, s.inputs, s.q, s.system.M, s.work.Phi);
     add_consistent_tangent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M);
     load_matrix(lane);
@@ -27,10 +27,10 @@ void Pack::assemble(int lane) {
 
 // Scales and borders the matrix of a lane.
 void Pack::load_matrix(int lane) {
-    Slot& slot = slots[static_cast<std::size_t>(lane)];
-    SteppingState& s = *slot.s;
-    for (const int k : outside)
-        if (s.system.M.values[static_cast<std::size_t>(k)] != 0) slot.inside = false;
+    LaneState& state = lanes[static_cast<std::size_t>(lane)];
+    SteppingState& s = *state.stepping;
+    for (const int k : omitted_entries)
+        if (s.system.M.values[static_cast<std::size_t>(k)] != 0) state.in_lockstep = false;
     set_border(s.system);
     const SparseLU<double>& entries = s.system.lu;
     for (std::size_t e = 0; e < lu.values.size(); ++e)
@@ -48,8 +48,8 @@ void Pack::factorise(const Mask& mask, bool at_design) {
         std::fill(rhs.begin(), rhs.end(), Lanes(0));
         rhs[static_cast<std::size_t>(shared.n + shared.m + c)] = 1;
         solve(lu, rhs.data(), solution.data());
-        each(mask, [&](Slot& slot, int lane) {
-            Held<double>& held = slot.s->system.held;
+        each(mask, [&](LaneState& state, int lane) {
+            Held<double>& held = state.stepping->system.held;
             for (int e = held.begin(c); e < held.end(c); ++e) {
                 const int row = held.row[static_cast<std::size_t>(e)];
                 held.value[static_cast<std::size_t>(e)] =
@@ -57,21 +57,22 @@ void Pack::factorise(const Mask& mask, bool at_design) {
             }
         });
     }
-    each(mask, [&](Slot& slot, int lane) {
-        SteppingState& s = *slot.s;
+    each(mask, [&](LaneState& state, int lane) {
+        SteppingState& s = *state.stepping;
         ++s.counts.factorisations;
         orthonormalise(s.system);
         const double ratio = lu.min_pivot[lane] / lu.largest_pivot[lane];
         const bool regular = lu.finite[lane] == 0 && is_regular(s, ratio) &&
                              lu.largest_multiplier[lane] <= largest_multiplier &&
                              check_factors(s, s.q, ratio) == Outcome::converged;
-        slot.inside = regular && (!at_design || (ratio > min_share_of_ratio * design.pivot_ratio &&
-                                                 strain_of_held(s, s.q) <= max_strain_of_held));
+        state.in_lockstep =
+            regular && (!at_design || (ratio > min_share_of_ratio * design.pivot_ratio &&
+                                       strain_of_held(s, s.q) <= max_strain_of_held));
     });
 }
 
 void Pack::load_rhs(int lane) {
-    const SteppingState& s = *slots[static_cast<std::size_t>(lane)].s;
+    const SteppingState& s = *lanes[static_cast<std::size_t>(lane)].stepping;
     const int n = s.n(), m = s.m();
     const auto put = [&](int k, double value) {
         set_lane(rhs[static_cast<std::size_t>(k)], lane, value * s.system.scale[k]);
@@ -84,8 +85,8 @@ void Pack::load_rhs(int lane) {
 
 void Pack::back_substitute(const Mask& mask) {
     solve(lu, rhs.data(), solution.data());
-    each(mask, [&](Slot& slot, int lane) {
-        SteppingState& s = *slot.s;
+    each(mask, [&](LaneState& state, int lane) {
+        SteppingState& s = *state.stepping;
         for (int k = 0; k < s.n() + s.m(); ++k)
             s.work.x[k] = solution[static_cast<std::size_t>(k)][lane] * s.system.scale[k];
         ++s.counts.iterations;
@@ -94,53 +95,54 @@ void Pack::back_substitute(const Mask& mask) {
 
 // Newton corrections at the ends of the ranges; the last factors serve the next expansion.
 void Pack::correct_ends(Drive drive, const LaneEnds& to) {
-    Mask correcting = going();
-    each(correcting, [&](Slot& slot, int lane) {
-        move_to(slot, drive, slot.reached);
-        if (slot.last) set_parameter(*slot.s, drive, to[static_cast<std::size_t>(lane)]);
-        slot.last_correction = std::numeric_limits<double>::infinity();
+    Mask correcting = under_way();
+    each(correcting, [&](LaneState& state, int lane) {
+        move_to(state, drive, state.tau_end);
+        if (state.ends_side)
+            set_parameter(*state.stepping, drive, to[static_cast<std::size_t>(lane)]);
+        state.last_correction = std::numeric_limits<double>::infinity();
     });
     constexpr int max_corrections = 8;
     for (int k = 0; k < max_corrections && std::ranges::count(correcting, true) > 0; ++k) {
-        each(correcting, [&](Slot&, int lane) { assemble(lane); });
+        each(correcting, [&](LaneState&, int lane) { assemble(lane); });
         factorise(correcting, false);
-        each(correcting, [&](Slot& slot, int lane) {
-            residual_at(*slot.s, slot.s->q, slot.s->lambda);
+        each(correcting, [&](LaneState& state, int lane) {
+            residual_at(*state.stepping, state.stepping->q, state.stepping->lambda);
             load_rhs(lane);
         });
         back_substitute(correcting);
-        for (std::size_t lane = 0; lane < slots.size(); ++lane) {
-            Slot& slot = slots[lane];
-            correcting[lane] = correcting[lane] && slot.inside;
+        for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
+            LaneState& state = lanes[lane];
+            correcting[lane] = correcting[lane] && state.in_lockstep;
             if (!correcting[lane]) continue;
-            SteppingState& s = *slot.s;
+            SteppingState& s = *state.stepping;
             const double size = std::sqrt(size_of_solution(s));
             if (!s.work.x.allFinite() || check_idle_load_here(s, size) != Outcome::converged) {
-                slot.inside = correcting[lane] = false;
+                state.in_lockstep = correcting[lane] = false;
                 continue;
             }
-            if (k == 0) slot.error = size;
-            if (!(size < slot.last_correction)) {  // at rounding level
+            if (k == 0) state.error = size;
+            if (!(size < state.last_correction)) {  // at rounding level
                 correcting[lane] = false;
                 continue;
             }
-            slot.last_correction = size;
+            state.last_correction = size;
             s.step.dq = s.work.x.head(s.n());
             advance(s.q, s.step.dq);
             s.lambda += s.work.x.tail(s.m());
             const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.setup.length;
             // No expansion starts at the end of a branch: the first correction, which is the error
             // there, is enough.
-            correcting[lane] = !(slot.last && drive == Drive::rate) &&
+            correcting[lane] = !(state.ends_side && drive == Drive::rate) &&
                                !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
         }
     }
-    each(going(), [&](Slot& slot, int) {
-        SteppingState& s = *slot.s;
-        if (!(slot.error <= 10 * options.series.tolerance)) slot.inside = false;
+    each(under_way(), [&](LaneState& state, int) {
+        SteppingState& s = *state.stepping;
+        if (!(state.error <= 10 * options.series.tolerance)) state.in_lockstep = false;
         if (has_redundancy(s)) {
             residual_at(s, s.q, s.lambda);
-            if (is_inconsistent(s, s.q)) slot.inside = false;
+            if (is_inconsistent(s, s.q)) state.in_lockstep = false;
         }
     });
 }

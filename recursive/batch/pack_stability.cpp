@@ -109,7 +109,9 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
     Vector<Lanes> W(n), W2(n);
     for (int k = 0; k < n; ++k) {
         W[k] = 1;
-        each(mask, [&](Slot& slot, int lane) { set_lane(W[k], lane, slot.s->system.weight[k]); });
+        each(mask, [&](LaneState& state, int lane) {
+            set_lane(W[k], lane, state.stepping->system.weight[k]);
+        });
         W2[k] = W[k] * W[k];
     }
     const auto inner = [&](const Matrix<Lanes>& A, Eigen::Index a, const Matrix<Lanes>& B,
@@ -130,9 +132,9 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
             const Lanes remainder = inner(U, c, U, c), inverse = 1 / sqrt(remainder);
             for (int k = 0; k < n; ++k) U(k, c) *= inverse;
             // The scalar path would drop a dependent vector. A lane cannot, so its variant leaves it.
-            each(mask, [&](Slot& slot, int lane) {
+            each(mask, [&](LaneState& state, int lane) {
                 if (!(remainder[lane] > zero_tolerance * zero_tolerance * square[lane]))
-                    slot.inside = false;
+                    state.in_lockstep = false;
             });
         }
     };
@@ -160,7 +162,7 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
         U = V;
         orthonormalise_columns();
     }
-    each(mask, [&](Slot&, int lane) {
+    each(mask, [&](LaneState&, int lane) {
         Eigen::MatrixXd H_lane(H.rows(), H.cols());
         for (Eigen::Index k = 0; k < H.size(); ++k) H_lane.data()[k] = H.data()[k][lane];
         stiffness[static_cast<std::size_t>(lane)] = detail::min_of(H_lane);
@@ -179,15 +181,16 @@ std::array<LeastStiffness, Lanes::count> Pack::min_stiffness(const Mask& mask, M
 // factorisation. `definite` holds the lower half.
 void Pack::judge_start(Matrix<Lanes>& softest) {
     const int n = design.system.n;
-    const auto least = min_stiffness(inside(), softest);
-    if (n > max_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
-    each(inside(), [&](Slot& slot, int lane) {
+    const auto least = min_stiffness(in_lockstep(), softest);
+    if (n > max_coordinates)
+        each(in_lockstep(), [](LaneState& state, int) { state.in_lockstep = false; });
+    each(in_lockstep(), [&](LaneState& state, int lane) {
         const auto& [mu, of_energy] = least[static_cast<std::size_t>(lane)];
-        slot.inside = of_energy && mu > 0 && !may_be_unstable_idle(*slot.s);
+        state.in_lockstep = of_energy && mu > 0 && !may_be_unstable_idle(*state.stepping);
     });
     definite.setZero(n, n);
-    each(inside(), [&](Slot& slot, int lane) {
-        const SteppingState& s = *slot.s;
+    each(in_lockstep(), [&](LaneState& state, int lane) {
+        const SteppingState& s = *state.stepping;
         LaneMatrix A{definite, lane};
         const double stiffness = add_tangent(s, A);
         add_constraint_penalty(s, stiffness, A);
@@ -196,24 +199,28 @@ void Pack::judge_start(Matrix<Lanes>& softest) {
         add_idle_penalty(s, stiffness, A);
     });
     const Lanes min_of_all = min_pivot(definite);
-    each(inside(), [&](Slot& slot, int lane) { slot.inside = min_of_all[lane] > 0; });
+    each(in_lockstep(),
+         [&](LaneState& state, int lane) { state.in_lockstep = min_of_all[lane] > 0; });
 }
 
 // Checks the determinant's sign and reversed elements at the ends of the ranges; with stiffness
 // also the stability there and the determinant in between.
 void Pack::check_ends(bool with_stiffness, Matrix<Lanes>& softest) {
     std::array<LeastStiffness, Lanes::count> least{};
-    if (with_stiffness) least = min_stiffness(going(), softest);
-    each(going(), [&](Slot& slot, int lane) {
+    if (with_stiffness) least = min_stiffness(under_way(), softest);
+    each(under_way(), [&](LaneState& state, int lane) {
         const double log_end = log_determinant(lu, lane);
-        slot.inside = static_cast<int>(lu.sign[lane]) == slot.sign_at_start &&
-                      !any_reversed(slot.s->model, slot.from, slot.s->q);
+        state.in_lockstep =
+            static_cast<int>(lu.sign[lane]) == state.sign_at_start &&
+            !any_reversed(state.stepping->model, state.expansion_point, state.stepping->q);
         if (with_stiffness) {
             const auto& [mu, of_energy] = least[static_cast<std::size_t>(lane)];
-            slot.inside = slot.inside && of_energy && mu > 0 && !may_be_unstable_idle(*slot.s) &&
-                          !may_reach_zero({1, slot.at_middle, std::exp2(log_end - slot.log_begin)});
+            state.in_lockstep =
+                state.in_lockstep && of_energy && mu > 0 &&
+                !may_be_unstable_idle(*state.stepping) &&
+                !may_reach_zero({1, state.det_ratio_at_middle, std::exp2(log_end - state.log_det)});
         }
-        slot.log_begin = log_end;
+        state.log_det = log_end;
     });
 }
 

@@ -41,15 +41,15 @@ void solve_batch(const Model& design, const Analysis& analysis, std::span<const 
         if (together.empty()) return;
         models.clear();
         for (const std::size_t v : together) models.push_back(&variants[v]);
-        pack->follow(models);
+        pack->solve_variants(models);
         for (std::size_t lane = 0; lane < together.size(); ++lane) {
-            const batch::Slot& slot = pack->slots[lane];
-            if (!slot.inside) {
+            const batch::LaneState& state = pack->lanes[lane];
+            if (!state.in_lockstep) {
                 solve_alone(together[lane], variants[together[lane]], options, visit);
                 continue;
             }
-            for (std::size_t k = 0; k < slot.paths.size(); ++k)
-                visit(together[lane], k, slot.paths[k]);
+            for (std::size_t k = 0; k < state.paths.size(); ++k)
+                visit(together[lane], k, state.paths[k]);
         }
         together.clear();
     };

@@ -27,12 +27,12 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Eigenvalues of a 6×6 matrix with unit diagonal above its rounding (some 1e-15).
+// An eigenvalue of a 6×6 matrix with unit diagonal is zero below this; its rounding is some 1e-15.
 constexpr double stiffness_threshold = 1e-13;
 // A lever is a difference of coordinates: rounding bound for a zero lever, relative
 // to the coordinates.
 constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
-constexpr double part_threshold = 1e-7;  // smallest entry of a unit combination that counts
+constexpr double part_threshold = 1e-7;  // smaller entries of a unit vector count as zero
 
 // Rows of the model during assembly, each on at most two bodies.
 struct Stack {
@@ -84,16 +84,16 @@ Rows without(const Rows& rows, const std::vector<int>& omitted) {
     return stack.rows(rows.cols());
 }
 
-// Δq = physical · (Δr, L Δπ)
-VectorXd physical_of(Eigen::Index n, double length) {
-    VectorXd physical = VectorXd::Ones(n);
-    for (Eigen::Index k = 3; k < n; k += 6) physical.segment<3>(k).setConstant(1 / length);
-    return physical;
+// Factors of (Δr, L Δπ) that give Δq = (Δr, Δπ).
+VectorXd coordinate_scales(Eigen::Index n, double length) {
+    VectorXd scales = VectorXd::Ones(n);
+    for (Eigen::Index k = 3; k < n; k += 6) scales.segment<3>(k).setConstant(1 / length);
+    return scales;
 }
 
 // Φ_q with respect to (Δr, L Δπ), with rows of unit length.
 struct ConstraintRows {
-    VectorXd physical;
+    VectorXd scales;
     Rows Phi_q;
     VectorXd length;  // of the rows before they were scaled
 };
@@ -105,8 +105,8 @@ ConstraintRows constraint_rows_of(const Model& model, const Inputs<double>& inpu
         stack.put(row.j, row.on_j());
         stack.next();
     });
-    ConstraintRows result{physical_of(coordinates(model), L), {}, {}};
-    result.Phi_q = stack.rows(coordinates(model)) * result.physical.asDiagonal();
+    ConstraintRows result{coordinate_scales(coordinates(model), L), {}, {}};
+    result.Phi_q = stack.rows(coordinates(model)) * result.scales.asDiagonal();
     result.length = normalise(result.Phi_q);
     return result;
 }
@@ -260,8 +260,8 @@ void find_undetermined(const std::vector<int>& joint_of_row, const Columns& depe
         result.determined.size());  // union-find: parent of each joint; root = smallest of its set
     std::iota(set.begin(), set.end(), 0);
     const auto smallest = [&](int joint) {
-        const auto to = [&](int j) -> int& { return set[static_cast<std::size_t>(j)]; };
-        while (to(joint) != joint) joint = to(joint) = to(to(joint));
+        const auto parent = [&](int j) -> int& { return set[static_cast<std::size_t>(j)]; };
+        while (parent(joint) != joint) joint = parent(joint) = parent(parent(joint));
         return joint;
     };
     for (int c = 0; c < dependencies.outerSize(); ++c) {
@@ -308,9 +308,9 @@ void find_redundant(const std::vector<int>& joint_of_row, const DependentRows& d
     for (std::size_t k = 0; k < share_of_joint.size(); ++k) {
         auto& shares = result.redundant[k].shares;
         shares.assign(share_of_joint[k].begin(), share_of_joint[k].end());
-        double whole = 0;
-        for (const auto& [joint, part] : shares) whole += part;
-        for (auto& [joint, part] : shares) part /= whole;
+        double sum = 0;
+        for (const auto& [joint, share] : shares) sum += share;
+        for (auto& [joint, share] : shares) share /= sum;
         std::ranges::stable_sort(shares, std::greater{}, &std::pair<int, double>::second);
     }
     for (Redundancy& r : result.redundant) {
@@ -371,23 +371,23 @@ std::vector<std::string> outputs_moved(const Model& model, const State<double>& 
 }
 
 // An idle mode from its column in (Δr, L Δπ), with the sign that makes the largest entry positive.
-IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
+IdleMode idle_mode(const Columns& modes, int column, const VectorXd& scales) {
     double largest = 0;
     Columns::InnerIterator z(modes, column);
     for (; z; ++z)
         if (std::abs(z.value()) > std::abs(largest)) largest = z.value();
     IdleMode mode;
     mode.dq.resize(modes.rows());
-    double most = 0;
+    double largest_motion = 0;
     for (z = Columns::InnerIterator(modes, column); z;) {
         const auto body = static_cast<BodyId>(z.row() / 6);
         double moved = 0;
         for (; z && z.row() / 6 == body; ++z) {
             moved += z.value() * z.value();
-            mode.dq.insertBack(z.row()) = (largest < 0 ? -1 : 1) * (physical[z.row()] * z.value());
+            mode.dq.insertBack(z.row()) = (largest < 0 ? -1 : 1) * (scales[z.row()] * z.value());
         }
-        if (moved > most || mode.body == ground) {  // also if NaN
-            most = moved;
+        if (moved > largest_motion || mode.body == ground) {  // also if NaN
+            largest_motion = moved;
             mode.body = body;
         }
     }
@@ -411,9 +411,9 @@ void name_motion(const Model& model, const State<double>& q,
 
 IdleMode motion_of(const Model& model, const std::vector<Pose>& poses, const VectorXd& dq,
                    double length) {
-    const VectorXd physical = physical_of(dq.size(), length);
-    const Columns scaled = VectorXd(dq.cwiseQuotient(physical)).sparseView();
-    IdleMode mode = idle_mode(scaled, 0, physical);
+    const VectorXd scales = coordinate_scales(dq.size(), length);
+    const Columns scaled = VectorXd(dq.cwiseQuotient(scales)).sparseView();
+    IdleMode mode = idle_mode(scaled, 0, scales);
     name_motion(model, state_of<double>(poses), attachments(model), length, mode);
     return mode;
 }
@@ -424,13 +424,13 @@ double characteristic_length(const Model& model) {
     const auto distance = [&](BodyId b) {
         return model.bodies[static_cast<std::size_t>(b)].design.r.norm();
     };
-    const auto take = [&](const auto& end) {
+    const auto add_lever = [&](const auto& end) {
         if (end.body == ground || end.s_local.norm() <= lever_rounding * distance(end.body)) return;
         sum += end.s_local.squaredNorm();
         ++count;
     };
-    for (const auto& c : model.constraints) each_point(c.kind, take);
-    for (const auto& e : model.elastics) each_point(e.kind, take);
+    for (const auto& c : model.constraints) each_point(c.kind, add_lever);
+    for (const auto& e : model.elastics) each_point(e.kind, add_lever);
     return count > 0 ? std::sqrt(sum / count) : 1.0;
 }
 
@@ -445,7 +445,8 @@ std::vector<int> dependent_rows(const Model& model) {
 
 std::vector<SelfStress> self_stresses(const Model& model, const Branch& branch,
                                       std::span<const int> dependent, const Equilibrium& state) {
-    constexpr double per_error = 100, largest_remainder = 0.05;
+    // A row counts as dependent up to this remainder, in constraint errors, and at most.
+    constexpr double per_error = 100, max_remainder = 0.05;
     const auto is_finite = [](const Pose& at) {
         return at.r.allFinite() && at.p.coeffs().allFinite();
     };
@@ -456,7 +457,7 @@ std::vector<SelfStress> self_stresses(const Model& model, const Branch& branch,
     const ConstraintRows rows = constraint_rows_of(model, inputs, q, L);
     const double error = state.constraint_error / std::min(1.0, L);
     const DependentRows found = find_dependent_rows(
-        rows.Phi_q, dependent, std::clamp(per_error * error, rank_threshold, largest_remainder));
+        rows.Phi_q, dependent, std::clamp(per_error * error, rank_threshold, max_remainder));
     std::vector<SelfStress> list;
     for (std::size_t c = 0; c < found.rows.size(); ++c) {
         const VectorXd y = found.dependencies.col(static_cast<Eigen::Index>(c));
@@ -493,7 +494,7 @@ Diagnosis diagnose(const Model& model) {
 
     const VectorXd Phi = constraint_values<double>(model, inputs, q);
     result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
-    auto [physical, Phi_q, row_length] = constraint_rows_of(model, inputs, q, L);
+    auto [scales, Phi_q, row_length] = constraint_rows_of(model, inputs, q, L);
     const DependentRows dependent = find_dependent_rows(Phi_q);
     result.rank = m - static_cast<int>(dependent.rows.size());
     std::vector<int> joint_of_row;  // ascending
@@ -506,7 +507,7 @@ Diagnosis diagnose(const Model& model) {
     find_undetermined(joint_of_row, dependent.dependencies, result);
 
     // Modes of single bodies first; appended as rows they make the other modes orthogonal to them.
-    Rows elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
+    Rows elastic = elastic_rows(model, inputs, q) * scales.asDiagonal();
     normalise(elastic);
     Phi_q = without(Phi_q, dependent.rows);
     const Rows straining = stacked({Phi_q, elastic}, n);
@@ -515,23 +516,23 @@ Diagnosis diagnose(const Model& model) {
     const auto attached = attachments(model);
     for (const Columns* modes : {&single, &several})
         for (int c = 0; c < modes->outerSize(); ++c) {
-            IdleMode& mode = result.idle.emplace_back(idle_mode(*modes, c, physical));
+            IdleMode& mode = result.idle.emplace_back(idle_mode(*modes, c, scales));
             name_motion(model, q, attached, L, mode);
             mode.spins = mode.spins && modes == &single;
         }
 
-    std::vector<Eigen::Triplet<double>> held;
+    std::vector<Eigen::Triplet<double>> entries;
     int column = 0;
     for (const IdleMode& mode : result.idle) {
         for (Eigen::SparseVector<double>::InnerIterator z(mode.dq); z; ++z)
-            held.emplace_back(z.index(), column, z.value());
+            entries.emplace_back(z.index(), column, z.value());
         ++column;
     }
     for (int c = 0; c < dependent.dependencies.outerSize(); ++c, ++column)
         for (Columns::InnerIterator y(dependent.dependencies, c); y; ++y)  // λ of the unscaled rows
-            held.emplace_back(n + y.row(), column, y.value() / row_length[y.row()]);
+            entries.emplace_back(n + y.row(), column, y.value() / row_length[y.row()]);
     result.null_space.resize(n + m, column);
-    result.null_space.setFromTriplets(held.begin(), held.end());
+    result.null_space.setFromTriplets(entries.begin(), entries.end());
 
     // f_ext(0) - f_elast, projected on the motions that the constraints allow.
     VectorXd f = VectorXd::Zero(n);
@@ -539,7 +540,7 @@ Diagnosis diagnose(const Model& model) {
     f -= elastic_force<double>(model, inputs, q);
     if (!f.isZero(0))
         result.imbalance =
-            orthogonal_component(Phi_q, physical.asDiagonal() * f).cwiseAbs().maxCoeff();
+            orthogonal_component(Phi_q, scales.asDiagonal() * f).cwiseAbs().maxCoeff();
     return result;
 }
 

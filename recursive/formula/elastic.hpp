@@ -214,7 +214,7 @@ Matrix<Real> stiffness(const Model& model, const Inputs<Real>& inputs, const Sta
 //
 //   on j: ( F, s_j × F + M )   on i: ( -F, -(s_i + D) × F - M ),  D = p_j - p_i
 //
-// In the middle, d = Sᵀ x and δd = Sᵀ δx + d̃ P δφ add F' to the moment:
+// With the frame in the middle, d = Sᵀ x and δd = Sᵀ δx + d̃ P δφ add F' to the moment:
 //
 //   E = ⎡ Sᵀ  d̃ P ⎤      F_x = S F'      M_φ = Hᵀ M' - Pᵀ (d × F')
 //       ⎣ 0    H  ⎦
@@ -293,7 +293,7 @@ ElementForce<Real> force_of_preload(const Bushing& e, const Vector6<Real>& chang
     return force_of_stress<Real>(e, deformation<Real>(e, q), change);
 }
 
-// The arguments of the law: ℓ - ℓ₀ first, or e - e₀.
+// The argument of the law: (ℓ - ℓ₀, 0, ...) of a spring, e - e₀ of a bushing.
 template <class Real>
 Vector6<Real> deflections(const AxialSpring& e, const Rest<Real>& rest, const State<Real>& q) {
     Vector6<Real> x = Vector6<Real>::Zero();

@@ -9,9 +9,9 @@ namespace elastocheck::recursive {
 namespace {
 
 // K_G in the place of K, all other entries zero.
-void assemble_delayed(const SteppingState& s, const Follow& follow, SaddleMatrix<double>& G) {
+void assemble_delayed(const SteppingState& s, const StoredForces& forces, SaddleMatrix<double>& G) {
     std::fill(G.values.begin(), G.values.end(), 0.);
-    if (follow.lever || follow.axis) {
+    if (forces.lever_follows || forces.axis_follows) {
         SaddleMatrix<double> levers = G;
         for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
             const ElasticKind& kind = s.model.elastics[k].kind;
@@ -21,18 +21,18 @@ void assemble_delayed(const SteppingState& s, const Follow& follow, SaddleMatrix
                                        formulation != nullptr && formulation->offset_moment,
                                        levers);
         }
-        if (follow.axis) {
+        if (forces.axis_follows) {
             SaddleMatrix<double> K = G;
             add_stiffness<double>(s.model, s.inputs, s.q, K);
             add_elastic_tangent<double>(s.model, s.inputs, s.q, G);
             for (std::size_t k = 0; k < G.values.size(); ++k)
-                G.values[k] -= K.values[k] + (follow.lever ? 0. : levers.values[k]);
+                G.values[k] -= K.values[k] + (forces.lever_follows ? 0. : levers.values[k]);
         } else {
             G = levers;
         }
     }
     add_curvature<double>(s.model, s.inputs, s.q, s.lambda, G);
-    if (follow.load) add_load_stiffness<double>(s.model, s.branch, s.inputs, s.q, G);
+    if (forces.load_follows) add_load_stiffness<double>(s.model, s.branch, s.inputs, s.q, G);
 }
 
 // G u for the top left block of G.
@@ -86,7 +86,7 @@ double delayed_stiffness(const Model& model, const Branch& branch, const Method&
     back_substitute(s);
     s.lambda = s.work.x.tail(s.m());
     SaddleMatrix<double> G = s.system.M;
-    assemble_delayed(s, linear->follow, G);
+    assemble_delayed(s, linear->stored, G);
     return largest(s, G);
 }
 

@@ -4,11 +4,11 @@ namespace elastocheck::recursive {
 namespace {
 
 // f_ext for the step, less `unreleased_share` of the imbalance R_d = f_ext - f_elast at the design
-// position; the share falls from 1 to 0 while the start settles. If follow.load is false, the applied
-// load keeps its moment and only the increment acts at the current lever.
-void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amount,
+// position; the share falls from 1 to 0 while the start settles. Where the load does not
+// follow, it keeps its moment, and only the increment acts at the current lever.
+void apply_load(SteppingState& s, const StoredForces& forces, Drive drive, double amount,
                 double unreleased_share) {
-    if (follow.load) {
+    if (forces.load_follows) {
         external_force<double>(s.model, s.branch, s.inputs, s.q, s.work.applied);
         if (unreleased_share != 0) s.work.applied -= unreleased_share * s.start.R_d;
     } else {
@@ -17,60 +17,59 @@ void apply_load(SteppingState& s, const Follow& follow, Drive drive, double amou
     }
 }
 
-// Updates the stored forces, f_elast at the new configuration, according to `follow`:
+// Updates the stored forces, f_elast at the new configuration, according to `forces`:
 //
 //   nothing   f_elast⁺ = f_ext - Φ_q(qⁿ)ᵀ λⁿ: the upper row just solved. With it the next right-
 //             hand side f_ext - f_elast is that of (29), and by induction that of (28)
 //   lever     each element's sum of K_T Δr', K_R Δπ, at the current attachment points
 //   axis      each element's true force, its increments added at the levers of their step
-//   both      the law itself, which store_driven() evaluates at the inputs of the next step
-void store(SteppingState& s, const Follow& follow) {
-    if (follow.lever && follow.axis) return;
-    if (!follow.lever && !follow.axis) {
+//   both      the law itself, which add_driven_change() evaluates at the inputs of the next step
+void update_stored_forces(SteppingState& s, const StoredForces& forces) {
+    if (forces.lever_follows && forces.axis_follows) return;
+    if (!forces.lever_follows && !forces.axis_follows) {
         constraint_force(s.system.M, s.lambda, s.work.force);
         s.work.stored = s.work.applied - s.work.force;
         return;
     }
-    if (follow.lever) s.work.stored.setZero();
+    if (forces.lever_follows) s.work.stored.setZero();
     for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
         const ElasticKind& kind = s.model.elastics[k].kind;
         const auto [i, j] = bodies_of(kind);
-        ElementForce<double>& stored = s.work.element[k];
+        ElementForce<double>& sum = s.work.element[k];
         const ElementForce<double> current = element_force<double>(kind, s.inputs.rest[k], s.q);
         const auto motion = [&](BodyId b) -> Vector6<double> {
             return b == ground ? Vector6<double>::Zero()
                                : Vector6<double>(s.step.dq.segment<6>(6 * b));
         };
         const auto k_e = element_stiffness<double>(kind, s.inputs.rest[k], s.step.before);
-        if (follow.lever) {
+        if (forces.lever_follows) {
             const Vector6<double> dq_i = motion(k_e.i), dq_j = motion(k_e.j);
             Vector6<double> de;  // Δr'_j - Δr'_i, eqs. (13), (12); Δπ_j - Δπ_i
             de << dq_j.head<3>() - k_e.s_j.cross(dq_j.tail<3>()) - dq_i.head<3>() +
                       k_e.s_i.cross(dq_i.tail<3>()),
                 dq_j.tail<3>() - dq_i.tail<3>();
             const Vector6<double> df = k_e.K * de;
-            stored = {stored.F + df.head<3>(), stored.M + df.tail<3>(), current.lever_i,
-                      current.lever_j};
-            add_element_force<double>(i, j, stored, s.work.stored);
+            sum = {sum.F + df.head<3>(), sum.M + df.tail<3>(), current.lever_i, current.lever_j};
+            add_element_force<double>(i, j, sum, s.work.stored);
         } else {
-            const ElementForce<double> increment{current.F - stored.F, current.M - stored.M,
-                                                 k_e.s_i, k_e.s_j};
+            const ElementForce<double> increment{current.F - sum.F, current.M - sum.M, k_e.s_i,
+                                                 k_e.s_j};
             add_element_force<double>(i, j, increment, s.work.stored);
-            stored = current;
+            sum = current;
         }
     }
 }
 
 // Adds the change of f_elast at qⁿ by the drivers in this step, ∂f_elast/∂a Δa, to
 // the stored forces.
-void store_driven(SteppingState& s, const Follow& follow, Drive drive, double amount) {
-    if (follow.lever && follow.axis)
+void add_driven_change(SteppingState& s, const StoredForces& forces, Drive drive, double amount) {
+    if (forces.lever_follows && forces.axis_follows)
         return elastic_force<double>(s.model, s.inputs, s.q, s.work.stored);
     for_each_stored_rate<double>({s.model, s.branch, s.inputs, drive, amount, s.q},
                                  [&](std::size_t k, const ElementForce<double>& force) {
                                      const auto [i, j] = bodies_of(s.model.elastics[k].kind);
                                      add_element_force<double>(i, j, force, s.work.stored);
-                                     if (!follow.lever && !follow.axis) return;
+                                     if (!forces.lever_follows && !forces.axis_follows) return;
                                      s.work.element[k].F += force.F;
                                      s.work.element[k].M += force.M;
                                  });
@@ -106,8 +105,8 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
         if (drive == Drive::start) s.work.lower -= amount * s.start.Phi_d;
     }
     go_to(s, next);
-    apply_load(s, method.follow, drive, amount, 1 - next.t);
-    store_driven(s, method.follow, drive, amount);
+    apply_load(s, method.stored, drive, amount, 1 - next.t);
+    add_driven_change(s, method.stored, drive, amount);
     if (!method.closed) go_to(s, present);
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
@@ -129,7 +128,7 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
     advance(s.q, s.step.dq);
     s.a = next.a;
     pass_kinks(s);
-    store(s, method.follow);
+    update_stored_forces(s, method.stored);
     return Outcome::converged;
 }
 

@@ -34,8 +34,8 @@ inline EquilibriumPath sweep(const Model& model, const Branch& branch, const Opt
     };
     stop = {};
     if (const auto* method = std::get_if<Linear>(&options.method.kind)) {
-        const bool follows = method->follow.lever || method->follow.axis;
-        const bool true_forces = method->follow == everything;
+        const bool follows = method->stored.lever_follows || method->stored.axis_follows;
+        const bool true_forces = method->stored == all_follow;
         path.outcome = true_forces ? settle(s) : settle(s, *method, N);
         s.setup.consistent = false;
         if (path.outcome == Outcome::converged)

@@ -431,7 +431,7 @@ struct ProvedPiece {
     Piece piece;
     bool proved = false, over_knot = false;
     Held held = {};
-    bool pushed = false;  // `held` or its gap exceeds the tolerance
+    bool is_excessive = false;  // `held` or its gap exceeds the tolerance
 };
 
 // Proves one curve of equilibria from `from` to `to`, whose ends lie within the tube of the piece.
@@ -462,20 +462,20 @@ ProvedPiece prove_section(const NodeSolver& solver, Section& s, bool over_knots,
     result.proved = result.proved && solver.is_sound(s.to);
     if (!result.proved) return result;
     result.held = held_over(solver, piece);
-    result.pushed = result.held.held > tolerance.held || result.held.gap > tolerance.gap;
-    result.proved = !result.pushed && s.to.box.size() > 0 && ends_are_inside();
+    result.is_excessive = result.held.held > tolerance.held || result.held.gap > tolerance.gap;
+    result.proved = !result.is_excessive && s.to.box.size() > 0 && ends_are_inside();
     return result;
 }
 
 // Why no piece is proved past `place`.
-std::string why_it_ends(const NodeSolver& solver, const Held& pushed, const Tolerance& tolerance,
+std::string why_it_ends(const NodeSolver& solver, const Held& excess, const Tolerance& tolerance,
                         const std::string& place) {
-    if (pushed.held > tolerance.held)
+    if (excess.held > tolerance.held)
         return fmt::format("past {} the idle motion of {} is loaded by up to {:.2g} N or N·m",
-                           place, idle_bodies(solver.system, solver.border), pushed.held);
-    if (pushed.gap > tolerance.gap)
+                           place, idle_bodies(solver.system, solver.border), excess.held);
+    if (excess.gap > tolerance.gap)
         return fmt::format("past {} joints {} have a gap of up to {:.2g} m or rad", place,
-                           redundant_joints(solver.system, solver.border), pushed.gap);
+                           redundant_joints(solver.system, solver.border), excess.gap);
     return fmt::format(
         "no piece is proved past {}: the branch turns back or bifurcates, or a law ends", place);
 }
@@ -538,7 +538,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     constexpr double min_step = 1e-13, first_step = 0.02, knot_step = 1e-6;
     constexpr int max_knot_pieces = 40;  // consecutive
     double h = first_step * range;
-    Held held, pushed;
+    Held held, excess;
     Section section{solver.node(tube.from), {}, {}};
     if (!section.from.found)
         return open(fmt::format("Newton's method does not converge near the state at {}",
@@ -556,12 +556,12 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         const bool is_last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = is_last ? end : tube.to + h;
         if (a1 == tube.to || std::abs(h) < min_step * std::abs(range))
-            return open(why_it_ends(solver, pushed, tolerance, place(tube.to)));
+            return open(why_it_ends(solver, excess, tolerance, place(tube.to)));
         section.to = halved && section.middle.a == a1 ? section.middle : solver.node(a1);
         section.middle = solver.node(tube.to / 2 + a1 / 2);
         const ProvedPiece proved_piece =
             prove_section(solver, section, std::abs(h) < knot_step * std::abs(range), tolerance);
-        if (proved_piece.pushed) pushed = proved_piece.held;
+        if (proved_piece.is_excessive) excess = proved_piece.held;
         if (!proved_piece.proved) {
             h /= 2;
             halved = true;
@@ -576,7 +576,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
               std::span(mapped).subspan(first_state, next_state - first_state));
         held.held = std::max(held.held, proved_piece.held.held);
         held.gap = std::max(held.gap, proved_piece.held.gap);
-        pushed = {};
+        excess = {};
         ++tube.pieces;
         tube.knots += crosses_a_knot(system, proved_piece.piece) ? 1 : 0;
         tube.to = a1;

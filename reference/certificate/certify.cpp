@@ -423,7 +423,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
     if (const ProvedBox* near = box_at(known, system, state.load))
         if (auto decided = by_known_box(*near, mapped, tolerance)) return *std::move(decided);
 
-    auto [problem, approximate, there] = equilibrium_near(system, mapped.z, state.load);
+    auto [problem, approximate, border_check] = equilibrium_near(system, mapped.z, state.load);
     const Interval a = state.load;
     if (problem.border.too_large)
         return open(
@@ -446,7 +446,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             const Held held = held_by(system, problem.border, mu);
             certificate.held = held.held;
             certificate.gap = held.gap;
-            const bool balanced = there.sound && certificate.held <= tolerance.held &&
+            const bool balanced = border_check.sound && certificate.held <= tolerance.held &&
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.state = ProofState::proved;
@@ -482,11 +482,11 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                 as_text(certificate.error));
         else
             certificate.detail = "no equilibrium is found near the state either";
-        if (there.pushed)
+        if (border_check.idle_motion_loaded)
             say(certificate.detail,
                 fmt::format("the idle motion of {} is loaded by {:.2g} N or N·m",
                             idle_bodies(system, problem.border), certificate.held));
-        if (there.open)
+        if (border_check.redundant_row_gap)
             say(certificate.detail,
                 fmt::format("joints {} have a gap of {:.2g} m or rad",
                             redundant_joints(system, problem.border), certificate.gap));

@@ -65,7 +65,7 @@ Residuals residuals(const Model& given_model, const Branch& branch,
     // An orientation counts as a direction too: it must be a unit quaternion.
     for (const auto& pose : state.poses)
         worst.direction = max_or_nan(worst.direction, std::abs(pose.p.norm() - 1));
-    if (without_potential(model, branch) ||
+    if (why_not_conservative(model, branch) ||
         !within_laws(model, turning_bushings(model, course), state.poses))
         worst.force = worst.moment = unknown;
     for (std::size_t b = 0; b < state.poses.size(); ++b) {

@@ -66,7 +66,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         throw std::invalid_argument("the model has parts that are inactive on branch '" +
                                     branch.name + "', or the branch has two sides");
     EquilibriumPath result;
-    if (const auto culprit = without_potential(model, branch)) {
+    if (const auto culprit = why_not_conservative(model, branch)) {
         result.outcome = Outcome::not_conservative;
         result.detail = fmt::format("branch '{}': {}", branch.name, *culprit);
         return result;

@@ -30,7 +30,7 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     if (state.poses.size() != model.bodies.size())
         throw std::invalid_argument("the state belongs to another model");
     StateTangent t;
-    if (const auto what = without_potential(model, branch)) {
+    if (const auto what = why_not_conservative(model, branch)) {
         t.failure = {Outcome::not_conservative, *what};
         return t;
     }

@@ -110,13 +110,13 @@ json trim_json(const compare::TrimRecord& trim) {
     json adjusted = json::array(), conditions = json::array();
     for (const auto& a : trim.adjusted)
         adjusted.push_back(
-            {{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
+            {{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.change}, {"makes", a.resulting}});
     for (const auto& c : trim.conditions)
         conditions.push_back({{"name", c.name},
                               {"unit", symbol(c.unit)},
                               {"requested", c.target},
-                              {"missed", c.missed},
-                              {"missed_by_confirming_leg", c.confirmed}});
+                              {"missed", c.residual},
+                              {"missed_by_confirming_leg", c.confirming_residual}});
     return {{"adjusted", adjusted},
             {"conditions", conditions},
             {"iterations", trim.iterations},

@@ -383,10 +383,8 @@ Drawing drawing_of(const Scene& scene, const Model& model, const compare::Compar
     drawing.design = placed(sketch, sketch.design());
     for (std::size_t k = 0; k < sketch.points.size(); ++k) {
         const BodyId body = sketch.points[k].body;
-        drawing.points.push_back(
-            {sketch.names[k],
-             body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name,
-             sketch.is_hardpoint[k], drawing.design.points[k]});
+        drawing.points.push_back({sketch.names[k], body_name(model, body), sketch.is_hardpoint[k],
+                                  drawing.design.points[k]});
     }
     drawing.links = std::move(sketch.links);
     drawing.symbols = symbols_of(sketch);

@@ -34,9 +34,6 @@ void add(Result& result, Table table, const std::string& none = {}) {
     result.tables.push_back(std::move(table));
 }
 
-std::string body_name(const Model& model, BodyId body) {
-    return body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
-}
 const std::string& joint_name(const Model& model, int joint) {
     return model.joints[static_cast<std::size_t>(joint)].name;
 }
@@ -210,10 +207,11 @@ Table one_column(const char* id, const char* heading, const char* caption,
 
 void add_trim(Result& result, const compare::TrimRecord& trim) {
     Rows adjusted, conditions;
-    for (const auto& a : trim.adjusted) adjusted.push_back({a.name, a.by, symbol(a.unit), a.makes});
+    for (const auto& a : trim.adjusted)
+        adjusted.push_back({a.name, a.change, symbol(a.unit), a.resulting});
     for (const auto& c : trim.conditions)
-        conditions.push_back(
-            {c.name, c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed)});
+        conditions.push_back({c.name, c.target, symbol(c.unit), std::abs(c.residual),
+                              std::abs(c.confirming_residual)});
     add(result,
         {.columns = {words("number"),
                      number("by", "", Digits::four),

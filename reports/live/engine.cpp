@@ -308,9 +308,9 @@ Answer solve(Session& session, const Request& request) {
         json list = json::array();
         for (const auto& adjusted : trimmed.record->adjusted)
             list.push_back({{"name", adjusted.name},
-                            {"by", adjusted.by},
+                            {"by", adjusted.change},
                             {"unit", symbol(adjusted.unit)},
-                            {"makes", adjusted.makes}});
+                            {"makes", adjusted.resulting}});
         answer.head["trim"] = std::move(list);
     }
     const Model model = compile(trimmed.scene);

@@ -23,8 +23,8 @@ std::string errors(double mm, double deg) {
 
 // Largest error at equal abscissa of a method at the ends of the branches, with as many steps a branch
 // or, as the study has them, fewer. A side of a two-sided branch takes half of them.
-void add_across(MethodRow& row, const SceneAnalyses& scene,
-                const std::vector<compare::StepRow>& steps, double count) {
+void add_errors_at_abscissa(MethodRow& row, const SceneAnalyses& scene,
+                            const std::vector<compare::StepRow>& steps, double count) {
     std::map<std::string, double> taken;  // per side, its largest allowed number of steps
     const auto allowed = [&](const std::string& side) {
         const auto& branches = scene.comparison.branches;
@@ -33,12 +33,12 @@ void add_across(MethodRow& row, const SceneAnalyses& scene,
                    ? count
                    : count / 2;
     };
-    const auto across = [&](const compare::StepRow& r) {
+    const auto at_abscissa = [&](const compare::StepRow& r) {
         return r.method == row.method && r.reading != compare::parameter_reading("N") &&
                r.reading != compare::parameter_reading("");
     };
     for (const auto& r : steps)
-        if (across(r)) {
+        if (at_abscissa(r)) {
             double& most = taken[r.branch];
             if (r.steps <= allowed(r.branch)) most = std::max(most, r.steps);
         }
@@ -47,12 +47,12 @@ void add_across(MethodRow& row, const SceneAnalyses& scene,
     double mm = -1, deg = -1;
     for (const auto& r : steps) {
         const auto n = taken.find(r.branch);
-        if (!across(r) || n == taken.end() || r.steps != n->second) continue;
+        if (!at_abscissa(r) || n == taken.end() || r.steps != n->second) continue;
         if (r.unit == "mm") mm = compare::worse(mm, std::abs(r.error));
         if (r.unit == "deg") deg = compare::worse(deg, std::abs(r.error));
     }
-    if (mm >= 0) row.mm_across = mm;
-    if (deg >= 0) row.deg_across = deg;
+    if (mm >= 0) row.mm_at_abscissa = mm;
+    if (deg >= 0) row.deg_at_abscissa = deg;
 }
 
 // A deviation of the published recursion; NaN without one.
@@ -136,7 +136,7 @@ std::vector<MethodRow> studied(const SceneAnalyses& scene, const compare::Trade&
                       .cost = best->price / full,
                       .within = share(*best) <= 1,
                       .chosen = best->recommended};
-        add_across(row, scene, steps, best->steps);
+        add_errors_at_abscissa(row, scene, steps, best->steps);
         rows.push_back(row);
     }
     return rows;
@@ -152,8 +152,8 @@ std::vector<MethodRow> method_rows(const SceneAnalyses& scene) {
                         .setting = "steps of the scene",
                         .mm = max_of(judgement->position),
                         .deg = max_of(judgement->angle),
-                        .mm_across = max_of(judgement->position_across),
-                        .deg_across = max_of(judgement->angle_across),
+                        .mm_at_abscissa = max_of(judgement->position_at_abscissa),
+                        .deg_at_abscissa = max_of(judgement->angle_at_abscissa),
                         .within = judgement->verdict == compare::Grade::pass});
     std::ranges::stable_sort(rows, [](const MethodRow& a, const MethodRow& b) {
         return a.within != b.within ? a.within : !(a.cost >= b.cost) && std::isfinite(a.cost);
@@ -187,8 +187,8 @@ std::string method_sentence(const SceneAnalyses& scene) {
     const auto& judgement = scene.judgement;
     if (!judgement) return text;
     const std::string load = errors(max_of(judgement->position), max_of(judgement->angle)),
-                      travel = errors(max_of(judgement->position_across),
-                                      max_of(judgement->angle_across));
+                      travel = errors(max_of(judgement->position_at_abscissa),
+                                      max_of(judgement->angle_at_abscissa));
     if (load.empty() && travel.empty()) return text;
     return fmt::format("{}{}The published recursion is off by up to {}{}{}{}.", text,
                        text.empty() ? "" : " ", load.empty() ? travel : load,

@@ -20,8 +20,8 @@ struct MethodRow {
     // abscissa; NaN where not studied
     double mm = std::numeric_limits<double>::quiet_NaN();
     double deg = std::numeric_limits<double>::quiet_NaN();
-    double mm_across = std::numeric_limits<double>::quiet_NaN();
-    double deg_across = std::numeric_limits<double>::quiet_NaN();
+    double mm_at_abscissa = std::numeric_limits<double>::quiet_NaN();
+    double deg_at_abscissa = std::numeric_limits<double>::quiet_NaN();
     double cost = std::numeric_limits<double>::quiet_NaN();  // work over that of the full solution
     bool within = false;                                     // of the tolerance
     bool chosen = false;                                     // recommended

@@ -201,9 +201,7 @@ std::optional<double> clearance_of(const ScalarLaw& law) {
 }
 
 std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
-    const auto body = [&](BodyId b) {
-        return b == ground ? std::string("ground") : model.bodies[static_cast<std::size_t>(b)].name;
-    };
+    const auto body = [&](BodyId b) { return body_name(model, b); };
     const Formulations written = written_formulations(scene);
     std::vector<ElementLine> lines;
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {

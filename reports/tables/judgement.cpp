@@ -40,8 +40,8 @@ std::string other_of(const Assessment& j) {
     };
     const bool at_equal_position =
         !std::isnan(share_of_limit(j.other)) &&
-        !(share_of_limit(j.other_across) <= (1 + 1e-6) * share_of_limit(j.other));
-    const auto& worst = at_equal_position ? j.other_across : j.other;
+        !(share_of_limit(j.other_at_abscissa) <= (1 + 1e-6) * share_of_limit(j.other));
+    const auto& worst = at_equal_position ? j.other_at_abscissa : j.other;
     if (!worst || !(worst->max >= zero_share * worst->extent || std::isnan(worst->max))) return "";
     return fmt::format("{}, {} of its extent ({}, branch {}{})", size(*worst, worst->limit),
                        percent(worst->max / worst->extent), as_words(worst->channel), worst->branch,
@@ -53,8 +53,8 @@ std::string other_of(const Assessment& j) {
 std::string worst_of(const Assessment& j) {
     std::vector<std::string> parts;
     for (const auto& [at_parameter, at_position, limit] :
-         {std::tuple(&j.position, &j.position_across, j.tolerance.mm),
-          std::tuple(&j.angle, &j.angle_across, j.tolerance.deg)}) {
+         {std::tuple(&j.position, &j.position_at_abscissa, j.tolerance.mm),
+          std::tuple(&j.angle, &j.angle_at_abscissa, j.tolerance.deg)}) {
         const bool at_equal_position =
             *at_position &&
             (!*at_parameter || (!std::isnan((*at_parameter)->max) &&

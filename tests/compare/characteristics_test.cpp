@@ -471,7 +471,8 @@ TEST(Characteristics, RollCentreFromJackForceEqualsThatFromPatchMotion) {
         const double y = position(is.state.poses, patch).y();
         // The jack acts at the centre; the rise of the patch differs slightly with camber.
         const double rises =
-            Subject::moved_by(is.response.travel[0], Subject{model, &is.state}.placed(patch)).z();
+            Subject::displacement(is.response.travel[0], Subject{model, &is.state}.placed(patch))
+                .z();
         EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;
     }
 }

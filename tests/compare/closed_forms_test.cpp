@@ -308,7 +308,7 @@ TEST(Stop, MethodsThatSumStepsKeepTheErrorOfTheStepThatClosesIt) {
                 return behind * (1 / block.k - 1 / (block.k + stop));
             };
             const auto* linear = std::get_if<recursive::Linear>(&method.kind);
-            const bool sums = linear && !(linear->follow == recursive::everything);
+            const bool sums = linear && !(linear->stored == recursive::all_follow);
             const auto error = [&](const Equilibrium& point) {
                 return 0.4 - point.poses[0].r.z() - block.down(point.load);
             };

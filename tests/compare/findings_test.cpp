@@ -130,8 +130,8 @@ TEST(Findings, TheWorstDeviationIsTheLargestOfAnyBranch) {
     for (const auto& [kind, unit, worst] :
          {std::tuple{ReadingKind::equal_parameter, Unit::mm, found.position},
           {ReadingKind::equal_parameter, Unit::deg, found.angle},
-          {ReadingKind::equal_abscissa, Unit::mm, found.position_across},
-          {ReadingKind::equal_abscissa, Unit::deg, found.angle_across}}) {
+          {ReadingKind::equal_abscissa, Unit::mm, found.position_at_abscissa},
+          {ReadingKind::equal_abscissa, Unit::deg, found.angle_at_abscissa}}) {
         ASSERT_TRUE(worst);
         for (const auto& branch : compared().branches)
             for (std::size_t c = 0; c < compared().channels.size(); ++c)

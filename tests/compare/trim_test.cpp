@@ -69,11 +69,11 @@ TEST(Trim, PreloadOfASpringUnderABlockIsItsWeight) {
     scene.trim = Trim{{preload(scene, "coil")}, {height()}};
     const Trimmed found = trim(scene);
     ASSERT_TRUE(found.record && found.record->reached()) << found.record->detail;
-    EXPECT_NEAR(found.record->adjusted[0].by, 500, 1e-6);
+    EXPECT_NEAR(found.record->adjusted[0].change, 500, 1e-6);
     EXPECT_NEAR(std::get<AxialSpring>(found.scene.elastics[0].kind).free_length, 0.4 + 500 / 20e3,
                 1e-10);
-    EXPECT_TRUE(contains(found.record->adjusted[0].makes, "force 500 N in compression"))
-        << found.record->adjusted[0].makes;
+    EXPECT_TRUE(contains(found.record->adjusted[0].resulting, "force 500 N in compression"))
+        << found.record->adjusted[0].resulting;
     EXPECT_EQ(found.record->confirmed_by, Leg::energy);
     EXPECT_FALSE(found.scene.trim) << "trimmed once";
 }
@@ -84,15 +84,15 @@ TEST(Trim, ConditionOnAHeightOtherThanTheDesignIsReached) {
     scene.trim = Trim{{preload(scene, "coil")}, {height(-0.03)}};
     const Trimmed found = trim(scene);
     ASSERT_TRUE(found.record->reached()) << found.record->detail;
-    EXPECT_NEAR(found.record->adjusted[0].by, 500 - 0.03 * 20e3, 1e-6);
+    EXPECT_NEAR(found.record->adjusted[0].change, 500 - 0.03 * 20e3, 1e-6);
     EXPECT_NEAR(found.record->conditions[0].target, -30, 1e-12);
 }
 
 TEST(Trim, WheelRestsAtItsDesignPositionOnEveryBranchAndInBothReferences) {
     const Trimmed found = trim(mcpherson());
     ASSERT_TRUE(found.record->reached()) << found.record->detail;
-    EXPECT_GT(found.record->adjusted[0].by, 3000);
-    EXPECT_LT(found.record->adjusted[0].by, 6000);
+    EXPECT_GT(found.record->adjusted[0].change, 3000);
+    EXPECT_LT(found.record->adjusted[0].change, 6000);
     const Model model = compile(found.scene);
     const auto list = channels(model);
     const auto travel = static_cast<std::size_t>(find_channel(list, "travel"));
@@ -106,7 +106,7 @@ TEST(Trim, WheelRestsAtItsDesignPositionOnEveryBranchAndInBothReferences) {
         EXPECT_LE(std::abs(evaluate(model, list, energy.points.front())[travel]), 1e-6)
             << branch.name;
     }
-    EXPECT_LE(std::abs(found.record->conditions[0].confirmed), 1e-6);
+    EXPECT_LE(std::abs(found.record->conditions[0].confirming_residual), 1e-6);
 }
 
 TEST(Trim, SceneWithoutATrimIsUnchanged) {
@@ -136,10 +136,10 @@ TEST(Trim, SeriesFromAnyStartGivesTheTrimOfTheReferences) {
             const auto &a = by_references.record->adjusted, &b = by_series.record->adjusted;
             ASSERT_EQ(a.size(), b.size());
             for (std::size_t k = 0; k < a.size(); ++k)
-                EXPECT_NEAR(a[k].by, b[k].by, 1e-7 * std::max(1.0, std::abs(a[k].by)))
+                EXPECT_NEAR(a[k].change, b[k].change, 1e-7 * std::max(1.0, std::abs(a[k].change)))
                     << name << ": " << a[k].name;
             for (const auto& condition : by_series.record->conditions)
-                EXPECT_LE(std::abs(condition.missed), 1e-9) << condition.name;
+                EXPECT_LE(std::abs(condition.residual), 1e-9) << condition.name;
         }
     }
 }
@@ -224,7 +224,7 @@ TEST(Trim, SymmetricSidesGetEqualAdjustments) {
     const Trimmed found = trim(scene);
     ASSERT_TRUE(found.record->reached()) << found.record->detail;
     for (const auto& adjusted : found.record->adjusted)
-        EXPECT_NEAR(adjusted.by, 500, 1e-6) << adjusted.name;
+        EXPECT_NEAR(adjusted.change, 500, 1e-6) << adjusted.name;
 }
 
 // Bushings with preloads such that the drawn position is the equilibrium: every leg settles there,

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "elastocheck/read_scene.hpp"
+#include "models/kinds.hpp"
 #include "tests/models/fixtures.hpp"
 
 namespace elastocheck {
@@ -125,9 +126,6 @@ const Elastic& named(const Scene& scene, const std::string& name) {
     for (const Elastic& elastic : scene.elastics)
         if (elastic.name == name) return elastic;
     throw std::out_of_range(name);
-}
-std::string body_name(const Scene& scene, BodyId body) {
-    return body == ground ? "ground" : scene.bodies.at(static_cast<std::size_t>(body)).name;
 }
 Vector3d place(const Scene& scene, const Marker& m) {
     return m.s_local + (m.body == ground

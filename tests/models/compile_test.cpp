@@ -411,11 +411,6 @@ struct RandomScene {
     }
 };
 
-template <class Owner>
-std::string body_name(const Owner& owner, BodyId body) {
-    return body == ground ? "ground" : owner.bodies.at(static_cast<std::size_t>(body)).name;
-}
-
 template <class Owner, class Part>
 std::string ends(const Owner& owner, const Part& part) {
     const auto [i, j] = elastocheck::ends(part);

@@ -91,12 +91,12 @@ TEST(DelayedForces, LeverAndAxisTermsAddUpToTheGeometricTangent) {
     const auto path =
         solve(model, branch, {.method = *find_method("series"), .steps = 4}, analysis);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    const auto of = [&](const Follow& follow) {
-        return delayed_stiffness(model, branch, {"", 0, Linear{.follow = follow}}, analysis,
+    const auto of = [&](const StoredForces& forces) {
+        return delayed_stiffness(model, branch, {"", 0, Linear{.stored = forces}}, analysis,
                                  path.points.back());
     };
-    const double none = of({}), lever = of({.lever = true}), axis = of({.axis = true}),
-                 both = of(everything);
+    const double none = of({}), lever = of({.lever_follows = true}),
+                 axis = of({.axis_follows = true}), both = of(all_follow);
     for (const double share : {none, lever, axis, both})
         EXPECT_TRUE(std::isfinite(share) && share >= 0) << share;
     EXPECT_NE(lever, none);

@@ -133,7 +133,7 @@ TEST(Methods, PublishedSumWithAllTermsConvergesToTheEquilibrium) {
     const Model model = compile(support::scene("bushing_pair"));
     const auto exact = truth(model, model.branches[0]);
     Method method;
-    method.kind = Linear{.follow = everything};
+    method.kind = Linear{.stored = all_follow};
     const auto coarse =
                    solve(model, model.branches[0], {.method = method, .steps = 200, .record = 10}),
                fine =

@@ -35,7 +35,8 @@ TEST(Assessment, VanishingDeviationsAreCalledRoundOff) {
     auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     j.requested = false, j.verdict = Grade::pass, j.wheel_rate.reset();
     for (auto* worst : {&j.position, &j.angle}) (*worst)->max = 1e-12;
-    for (auto* worst : {&j.position_across, &j.angle_across, &j.other, &j.other_across})
+    for (auto* worst :
+         {&j.position_at_abscissa, &j.angle_at_abscissa, &j.other, &j.other_at_abscissa})
         worst->reset();
     expect_parts(sentence(j), {"The linear recursion as published is exact to round-off; "},
                  {"nothing"});
@@ -186,18 +187,18 @@ TEST(Assessment, SentenceSaysWhetherEqualLoadOrEqualTravelExceedsTheTolerance) {
     j.verdict = Grade::fail;
     j.tolerance = {2, 1};
     j.position = compare::Worst{"roll", "left.wheel_centre_z", compare::Unit::mm, 1.3, 1.3, 50};
-    j.position_across =
+    j.position_at_abscissa =
         compare::Worst{"roll", "right.wheel_centre_z", compare::Unit::mm, 4.8, 4.8, 50};
     expect_parts(sentence(j),
                  {"by up to 4.8\u00a0mm (right.wheel centre z, branch roll, at equal position)"});
-    j.position_across->max = 1.2;
+    j.position_at_abscissa->max = 1.2;
     expect_parts(sentence(j), {"1.3\u00a0mm (left.wheel centre z, branch roll)"});
     // A small excess, or a value near zero, is shown with enough digits.
     j.tolerance.mm = 1.2999;
     expect_parts(sentence(j), {"by up to 1.3 mm"});
     j.position->max = 1.30004, j.tolerance.mm = 1.3;
     expect_parts(sentence(j), {"by up to 1.30004 mm"});
-    j.position->max = 3e-13, j.position_across->max = 1e-13, j.tolerance.mm = 1e-300;
+    j.position->max = 3e-13, j.position_at_abscissa->max = 1e-13, j.tolerance.mm = 1e-300;
     expect_parts(sentence(j), {"by up to 3.0e-13 mm"});
 }
 

@@ -202,7 +202,7 @@ TEST(Sections, TrustSentenceClaimsNoAgreementForAnUnfinishedReference) {
 TEST(Sections, MethodsSectionHasATableOfErrorsAndTolerances) {
     SceneAnalyses scene = sample_scene();
     scene.judgement->position->max = 2.5;
-    scene.judgement->angle_across->max = 0.25;
+    scene.judgement->angle_at_abscissa->max = 0.25;
     const std::string text = said(scene, "methods");
     expect_parts(text,
                  {"The cheapest method within 0.01\u00a0mm and 0.001\u00a0deg is series",

@@ -40,10 +40,10 @@ double unless_flat(const Subject& x) {
 // drawn, or between the patches for a wheel without an axis.
 double wheelbase_by_pivots(const Subject& x) {
     const auto y = [&](std::size_t w) {
-        const Subject drawn = x.of(w).drawn();
-        const double patch = drawn.patch().at.y();
+        const Subject drawn = x.other_wheel(w).drawn();
+        const double patch = drawn.patch().position.y();
         if (!drawn.wheel().steering_axis || is_flat(drawn)) return patch;
-        return patch + drawn.axis_from(drawn.patch().at).y();
+        return patch + drawn.axis_from(drawn.patch()).y();
     };
     const std::size_t left = left_wheel(x.model);
     return x.model.vehicle->wheelbase / (y(left) - y(1 - left));
@@ -55,7 +55,7 @@ struct SteerAngles {
 std::optional<SteerAngles> steer_angles(const Subject& x) {
     constexpr double least = 2 * std::numbers::pi / 180;
     const std::size_t l = left_wheel(x.model);
-    const double left = -x.of(l).toe(), right = x.of(1 - l).toe();
+    const double left = -x.other_wheel(l).toe(), right = x.other_wheel(1 - l).toe();
     if (!(left * right > 0 && std::min(std::abs(left), std::abs(right)) >= least))
         return std::nullopt;
     return SteerAngles{left, right};
@@ -105,17 +105,17 @@ double roll_centre_by_planes(const Subject& subject) {
     };
     std::vector<PatchLine> lines;
     for (std::size_t w = 0; w < subject.model.wheels.size(); ++w) {
-        const Subject wheel = subject.of(w);
+        const Subject wheel = subject.other_wheel(w);
         const auto planes = wishbone_planes(wheel);
         if (planes.size() != 2) return undefined;
-        const double x = wheel.drawn().centre().at.x();
+        const double x = wheel.drawn().centre().position.x();
         const auto& [a, b] = std::pair(planes[0].normal, planes[1].normal);
         const double p = planes[0].offset - a.x() * x, q = planes[1].offset - b.x() * x,
                      determinant = a.y() * b.z() - a.z() * b.y();
         // instant centre (y, z) = (n_y, n_z) / determinant by Cramer's rule; at infinity, where only the
         // slope is defined, for parallel planes
         const double n_y = p * b.z() - q * a.z(), n_z = a.y() * q - b.y() * p;
-        const Vector3d patch = wheel.patch().at;
+        const Vector3d patch = wheel.patch().position;
         lines.push_back({patch.y(), patch.z(),
                          (n_z - determinant * patch.z()) / (n_y - determinant * patch.y())});
     }
@@ -128,29 +128,32 @@ double roll_centre_by_planes(const Subject& subject) {
     return std::isfinite(z) ? z - (left.z + right.z) / 2 : undefined;
 }
 
-double wheel_travel(const Subject& x) { return x.centre().at.z() - x.drawn().centre().at.z(); }
+double wheel_travel(const Subject& x) {
+    return x.centre().position.z() - x.drawn().centre().position.z();
+}
 double compression(const Subject& x, const Point& i, const Point& j) {
     const auto length = [&](const Subject& at) {
-        return (at.placed(j).at - at.placed(i).at).norm();
+        return (at.placed(j).position - at.placed(i).position).norm();
     };
     return length(x.drawn()) - length(x);
 }
 
 // Roll of the body of an axle relative to its wheels, about x, and the moment that causes it.
 double roll_angle(const Subject& x) {
-    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
-    const Vector3d from_left = right.centre().at - left.centre().at;
+    const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
+    const Vector3d from_left = right.centre().position - left.centre().position;
     return std::atan(from_left.z() / -from_left.y());
 }
 double roll_moment(const Subject& x) {
     if (x.branch == nullptr) return nan;
-    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
     const auto load = [&](const Subject& of) {
         return wheel_load(x.model, *x.branch, *x.state, of.k);
     };
     const double difference = load(right) - load(left);
-    return std::isfinite(difference) ? difference * (left.patch().at.y() - right.patch().at.y()) / 2
-                                     : undefined;
+    return std::isfinite(difference)
+               ? difference * (left.patch().position.y() - right.patch().position.y()) / 2
+               : undefined;
 }
 
 // ---- Positions: one entry per axis.
@@ -228,8 +231,7 @@ const Entry of_patch[] = {
     Entry(Owner::wheel, "track_change", Unit::mm,
           "lateral displacement of this wheel's contact patch from its design position, positive "
           "outwards",
-          "",
-          [](const Subject& x) { return x.side() * (x.patch().at.y() - x.drawn().patch().at.y()); },
+          "", [](const Subject& x) { return x.side() * x.patch_travel().y(); },
           {.sources = "half-track change",
            .live_rank = {.heave = 6, .roll = 6},
            .rig_headings = "track change, half track change",
@@ -243,7 +245,7 @@ const Entry of_patch[] = {
           "",
           [](const Subject& x) {
               const int forward = x.model.vehicle->axle == Axle::front ? +1 : -1;
-              return forward * (x.patch().at.x() - x.drawn().patch().at.x());
+              return forward * x.patch_travel().x();
           },
           {.sources = "only with a `vehicle` in the scene, which has the axle",
            .rig_headings = "wheelbase change"}),
@@ -273,8 +275,7 @@ const Entry of_patch[] = {
           "distance across the wheel from the contact patch to the intersection of the steering "
           "axis with the road (the horizontal plane through the patch), positive inboard; "
           "undefined where the axis lies flatter than 0.1 rad",
-          "",
-          unless_flat<[](const Subject& x) { return -x.across().dot(x.axis_from(x.patch().at)); }>,
+          "", unless_flat<[](const Subject& x) { return -x.across().dot(x.axis_from(x.patch())); }>,
           {.sources = "-n·(p - c). Steering-axis offset at ground, kingpin offset; Reimpell's r_σ",
            .may_be_undefined = true,
            .at_rest = true,
@@ -284,8 +285,7 @@ const Entry of_patch[] = {
           "distance along the wheel from the contact patch to the intersection of the steering "
           "axis with the road (the horizontal plane through the patch), positive in front; "
           "undefined where the axis lies flatter than 0.1 rad",
-          "",
-          unless_flat<[](const Subject& x) { return x.along().dot(x.axis_from(x.patch().at)); }>,
+          "", unless_flat<[](const Subject& x) { return x.along().dot(x.axis_from(x.patch())); }>,
           {.sources = "h·(p - c). Castor offset at ground, caster trail",
            .may_be_undefined = true,
            .at_rest = true,
@@ -297,7 +297,8 @@ const Entry of_patch[] = {
           "",
           [](const Subject& x) {
               const std::size_t left = left_wheel(x.model);
-              return x.of(left).patch().at.y() - x.of(1 - left).patch().at.y();
+              return x.other_wheel(left).patch().position.y() -
+                     x.other_wheel(1 - left).patch().position.y();
           },
           {.sources = "in scenes with one left and one right wheel", .at_rest = true}),
     Entry(Owner::axle, std::string(figure::roll_angle), Unit::deg,
@@ -423,7 +424,7 @@ const Entry angle_definitions[] = {
                      "angle of the wheel plane to the x axis about z, right-handed about the z "
                      "axis of this file"}}),
     Entry(Owner::two_wheels, "toe@axle", Unit::deg, "sum of the toe of both wheels", "",
-          [](const Subject& x) { return x.of(0).toe() + x.of(1).toe(); },
+          [](const Subject& x) { return x.other_wheel(0).toe() + x.other_wheel(1).toe(); },
           {.sources = "ISO 8855 7.1.7: total toe angle", .definition_set = "iso8855"}),
     Entry(Owner::wheel, "camber@lateral", Unit::deg,
           "inclination of an axis that is lateral in the design position, plus the drawn camber",
@@ -457,38 +458,38 @@ const Entry angle_definitions[] = {
           "trail on the road times the cosine of the caster: perpendicular to the steering axis",
           "",
           [](const Subject& x) {
-              return x.axis_from(x.patch().at).dot(x.along()) * std::cos(x.caster());
+              return x.axis_from(x.patch()).dot(x.along()) * std::cos(x.caster());
           },
           {.sources = "mechanical trail of a kinematics program (tests/outside/README.md)"}),
     Entry(Owner::wheel_with_steering_axis, "mechanical_trail@centre", Unit::mm,
           "distance along the wheel from the wheel centre to the steering axis at its height", "",
-          [](const Subject& x) { return x.axis_from(x.centre().at).dot(x.along()); },
+          [](const Subject& x) { return x.axis_from(x.centre()).dot(x.along()); },
           {.sources = "ISO 8855: castor offset at wheel centre; hub trail",
            .definition_set = "iso8855"}),
     Entry(Owner::wheel_with_steering_axis, "mechanical_trail@ground_axes", Unit::mm,
           "distance along x from the contact patch to the steering axis on the road", "",
-          [](const Subject& x) { return x.axis_from(x.patch().at).x(); },
+          [](const Subject& x) { return x.axis_from(x.patch()).x(); },
           {.sources = "SAE J670e: caster offset, in side elevation", .definition_set = "sae"}),
     Entry(
         Owner::wheel_with_steering_axis, "scrub_radius@centre", Unit::mm,
         "distance across the wheel from the wheel centre to the steering axis at its height", "",
-        [](const Subject& x) { return -x.axis_from(x.centre().at).dot(x.across()); },
+        [](const Subject& x) { return -x.axis_from(x.centre()).dot(x.across()); },
         {.sources = "ISO 8855: steering-axis offset at wheel centre", .definition_set = "iso8855"}),
     Entry(Owner::wheel_with_steering_axis, "scrub_radius@ground_axes", Unit::mm,
           "distance along y from the contact patch to the steering axis on the road, positive "
           "inboard",
-          "", [](const Subject& x) { return -x.side() * x.axis_from(x.patch().at).y(); },
+          "", [](const Subject& x) { return -x.side() * x.axis_from(x.patch()).y(); },
           {.sources = "SAE J670e: kingpin offset at the ground, in front elevation",
            .definition_set = "sae"}),
     Entry(Owner::wheel_with_steering_axis, "scrub_radius@distance", Unit::mm,
           "distance on the road from the contact patch to the steering axis, in any direction", "",
           [](const Subject& x) {
-              const Vector3d p = x.axis_from(x.patch().at);
+              const Vector3d p = x.axis_from(x.patch());
               return std::hypot(p.x(), p.y());
           },
           {.sources = "ISO 8855: scrub radius", .definition_set = "iso8855"}),
     Entry(Owner::wheel, "travel@patch", Unit::mm, "vertical displacement of the contact patch", "",
-          [](const Subject& x) { return x.patch().at.z() - x.drawn().patch().at.z(); },
+          [](const Subject& x) { return x.patch_travel().z(); },
           {.sources = "deflection at the tyre"}),
     Entry(Owner::wheel, "travel@lowest", Unit::mm,
           "vertical displacement of the lowest point of a circle of the drawn radius in the "
@@ -498,7 +499,7 @@ const Entry angle_definitions[] = {
     Entry(
         Owner::wheel, "track_change@centre", Unit::mm,
         "lateral displacement of the wheel centre, outwards", "",
-        [](const Subject& x) { return x.side() * (x.centre().at.y() - x.drawn().centre().at.y()); },
+        [](const Subject& x) { return x.side() * x.centre_travel().y(); },
         {.sources = "half track at the wheel centre",
          .block = {"lateral", Block::Component::lateral, true,
                    "displacement of the wheel centre along the y axis of this file from the design "
@@ -511,7 +512,7 @@ const Entry angle_definitions[] = {
     Entry(
         Owner::wheel_of_vehicle, "wheelbase_change@centre", Unit::mm,
         "longitudinal displacement of the wheel centre, forward", "",
-        [](const Subject& x) { return x.centre().at.x() - x.drawn().centre().at.x(); },
+        [](const Subject& x) { return x.centre_travel().x(); },
         {.sources = "wheelbase at the wheel centres",
          .block = {"longitudinal", Block::Component::none, false,
                    "displacement of the wheel centre along x from the design position, forward"}}),

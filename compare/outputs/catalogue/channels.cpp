@@ -26,7 +26,7 @@ const ModelJoint& joint_of(const Model& model, int joint) {
 // ---- Formulas: values in SI, one function per type that a channel reads.
 
 double read(const Subject& subject, const Coordinate& c) {
-    return subject.placed(c.at).at[c.axis] - c.counted_from;
+    return subject.placed(c.at).position[c.axis] - c.counted_from;
 }
 double read(const Subject& subject, const Catalogued& c) {
     // needs the response, which is not known here
@@ -42,7 +42,7 @@ double read(const Subject& subject, const Effort& c) {
         overloaded{
             [&](const DistanceBetween& b) {
                 return on_i.force.dot(
-                    (subject.placed(b.i).at - subject.placed(b.j).at).normalized());
+                    (subject.placed(b.i).position - subject.placed(b.j).position).normalized());
             },
             [&](const PointInPlane& p) { return on_i.force.dot(subject.direction(p.normal_j)); },
             [&](const DirectionAtAngle& a) {
@@ -57,7 +57,7 @@ double read(const Subject& subject, const AxialForce& c) {
     const auto k = static_cast<std::size_t>(c.constraint);
     const auto& rod = std::get<DistanceBetween>(subject.model.constraints[k].kind);
     return subject.wrench(c.joint).force.dot(
-        (subject.placed(rod.j).at - subject.placed(rod.i).at).normalized());
+        (subject.placed(rod.j).position - subject.placed(rod.i).position).normalized());
 }
 double read(const Subject& subject, const Reaction& c) {
     const Wrench on_i = subject.wrench(c.joint);
@@ -65,7 +65,7 @@ double read(const Subject& subject, const Reaction& c) {
 }
 double read(const Subject& subject, const Total& c) {
     const auto point = [&](int joint) {
-        return subject.placed(joint_of(subject.model, joint).at).at;
+        return subject.placed(joint_of(subject.model, joint).at).position;
     };
     const Vector3d about = point(c.joints.front());
     double sum = 0;

@@ -96,12 +96,13 @@ const std::vector<ForceTest>& force_tests() {
 double value(const Subject& x, int cause, double sign, double other, MeasuredChange measured) {
     const auto change_under_load_on = [&](std::size_t w) {
         const auto& motions = x.response->jacked[w][static_cast<std::size_t>(cause)];
-        const Placed loaded_point = cause < first_moment         ? x.centre()
-                                    : cause == first_patch_force ? x.braked()
-                                                                 : x.patch();
-        return measured == MeasuredChange::toe      ? x.toe(motions)
-               : measured == MeasuredChange::camber ? x.camber(motions)
-                                                    : x.moved_by(motions, loaded_point)[cause % 3];
+        const PlacedPoint loaded_point = cause < first_moment         ? x.centre()
+                                         : cause == first_patch_force ? x.braked_patch()
+                                                                      : x.patch();
+        return measured == MeasuredChange::toe ? x.toe(motions)
+               : measured == MeasuredChange::camber
+                   ? x.camber(motions)
+                   : x.displacement(motions, loaded_point)[cause % 3];
     };
     const double alone = change_under_load_on(x.k);
     double sum = alone;

@@ -34,7 +34,7 @@ double value_without_free_response(const Subject& wheel) {
 Motions heave_motions(const Subject& wheel) {
     const auto& travel = wheel.response->travel;
     const double scale =
-        wheel.response->tied ? 1 / wheel.moved_by(travel.front(), wheel.centre()).z() : 1;
+        wheel.response->tied ? 1 / wheel.displacement(travel.front(), wheel.centre()).z() : 1;
     std::vector<std::pair<double, const Motions*>> terms;
     for (const Motions& motions : travel) terms.emplace_back(scale, &motions);
     return weighted_sum(terms);
@@ -42,14 +42,14 @@ Motions heave_motions(const Subject& wheel) {
 Motions roll_motions(const Subject& wheel) {
     std::vector<std::pair<double, const Motions*>> terms;
     for (std::size_t w = 0; w < wheel.model.wheels.size(); ++w)
-        terms.emplace_back(wheel.of(w).side(), &wheel.response->travel[w]);
+        terms.emplace_back(wheel.other_wheel(w).side(), &wheel.response->travel[w]);
     return weighted_sum(terms);
 }
-double vertical_rate(const Subject& wheel, int force, const Placed& point, double other) {
+double vertical_rate(const Subject& wheel, int force, const PlacedPoint& point, double other) {
     if (wheel.response->free.empty()) return value_without_free_response(wheel);
-    return ratio(1,
-                 wheel.moved_by(axle_motions(wheel.response->free, wheel, force, other), point).z(),
-                 max_stiffness);
+    return ratio(
+        1, wheel.displacement(axle_motions(wheel.response->free, wheel, force, other), point).z(),
+        max_stiffness);
 }
 
 }  // namespace elastocheck::compare

@@ -48,6 +48,6 @@ Vector3d side_instant_centre(const Subject& wheel);
 // Vertical force over the rise of `point` that it causes [N/m], positive where a force up raises the
 // point, without jacks and tyres. The force has wrench index `force`; `other` times as much acts on the
 // other wheels. `undefined` where the point does not rise.
-double vertical_rate(const Subject& wheel, int force, const Placed& point, double other = 1);
+double vertical_rate(const Subject& wheel, int force, const PlacedPoint& point, double other = 1);
 
 }  // namespace elastocheck::compare

@@ -36,12 +36,12 @@ constexpr auto instant_axis = "virtual steering axis of multi-link suspensions";
 //   from the side   (x, z): (v_z, -v_x) / ω_y      from the front   (y, z): (-v_z, v_y) / ω_x
 double front_view_arm(const Subject& x) {
     const Motions heave = heave_motions(x);
-    return ratio(x.side() * x.moved_by(heave, x.centre()).z(), x.turned_by(heave).x(),
+    return ratio(x.side() * x.displacement(heave, x.centre()).z(), x.rotation(heave).x(),
                  max_distance);
 }
 double side_view_arm(const Subject& x) {
     const Motions heave = heave_motions(x);
-    return ratio(x.moved_by(heave, x.centre()).z(), x.turned_by(heave).y(), max_distance);
+    return ratio(x.displacement(heave, x.centre()).z(), x.rotation(heave).y(), max_distance);
 }
 
 // Virtual steering axis: screw axis of the carrier when the rack moves at constant wheel-centre height.
@@ -51,13 +51,13 @@ struct Axis {
 };
 std::optional<Axis> steering_axis(const Subject& x) {
     if (x.response->steering.empty()) return std::nullopt;
-    const Vector3d omega = x.turned_by(x.response->steering),
-                   v = x.moved_by(x.response->steering, x.centre());
+    const Vector3d omega = x.rotation(x.response->steering),
+                   v = x.displacement(x.response->steering, x.centre());
     const double rate = omega.norm();
     if (!(v.norm() <= max_distance * rate) || !(std::abs(omega.z()) > 1e-6 * rate))
         return std::nullopt;
     return Axis{omega.normalized() * (omega.z() > 0 ? 1 : -1),
-                x.centre().at + omega.cross(v) / omega.squaredNorm()};
+                x.centre().position + omega.cross(v) / omega.squaredNorm()};
 }
 double caster_steered(const Subject& x) {
     const auto axis = steering_axis(x);
@@ -69,7 +69,7 @@ double kingpin_steered(const Subject& x) {
 }
 // Vector from the patch to the intersection of the axis with the road [m].
 Vector3d patch_to_axis_on_road(const Subject& x, const Axis& axis) {
-    const Vector3d patch = x.patch().at;
+    const Vector3d patch = x.patch().position;
     return axis.through + axis.n * ((patch.z() - axis.through.z()) / axis.n.z()) - patch;
 }
 double scrub_steered(const Subject& x) {
@@ -88,7 +88,7 @@ double overall_steering_ratio(const Subject& x) {
     double to_the_left =
         0;  // sum of the steer angles of the wheels per displacement of the rack [rad/m]
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
-        to_the_left -= x.of(w).side() * x.of(w).toe(x.response->steering);
+        to_the_left -= x.other_wheel(w).side() * x.other_wheel(w).toe(x.response->steering);
     const auto n = static_cast<double>(x.model.wheels.size());
     return ratio(n / rack_per_hand_wheel(x.model), to_the_left, max_distance);
 }
@@ -105,8 +105,8 @@ double ride_rate(const Subject& x) {
 // height of the centre of gravity (Milliken & Milliken, Race Car Vehicle Dynamics, 1995, ch. 17): by
 // virtual work the links carry the vertical force tan φ = dx / dz per unit of longitudinal force at a
 // point that all wheels, raised together, move by (dx, dz).
-double anti(const Subject& x, const Placed& point, double share, double sign) {
-    const Vector3d d = x.moved_by(heave_motions(x.of(0)), point);
+double anti(const Subject& x, const PlacedPoint& point, double share, double sign) {
+    const Vector3d d = x.displacement(heave_motions(x.other_wheel(0)), point);
     const Vehicle& vehicle = *x.model.vehicle;
     return sign * share * ratio(d.x(), d.z(), max_distance) * vehicle.wheelbase / vehicle.cg_height;
 }
@@ -115,7 +115,7 @@ double anti(const Subject& x, const Placed& point, double share, double sign) {
 double anti_by_planes(const Subject& x, const Vector3d& patch, double share, double sign) {
     const auto planes = wishbone_planes(x);
     if (planes.size() != 2) return undefined;
-    const double y = x.centre().at.y();
+    const double y = x.centre().position.y();
     Eigen::Matrix2d A;
     Vector2d b;
     for (int k = 0; k < 2; ++k) {
@@ -134,18 +134,20 @@ double brake_share(const Subject& x) { return x.model.vehicle->brake_share; }
 double drive_share(const Subject& x) { return x.model.vehicle->drive_share; }
 // Point at which a driving force acts on the links: the patch where an axle housing carries the drive
 // torque, the wheel centre where the car body carries it through a shaft.
-Placed driving_force_point(const Subject& x) {
-    const bool housing = is_axle(x.model) &&
-                         FixedBodies(x.model).are_one(x.of(0).wheel().body, x.of(1).wheel().body);
-    return housing ? x.braked() : x.centre();
+PlacedPoint driving_force_point(const Subject& x) {
+    const bool housing =
+        is_axle(x.model) &&
+        FixedBodies(x.model).are_one(x.other_wheel(0).wheel().body, x.other_wheel(1).wheel().body);
+    return housing ? x.braked_patch() : x.centre();
 }
 
 // ---- Springs and dampers.
 
 // Shortening of a spring or damper per travel of the wheel centres.
-double shortening(const Subject& x, const Placed& i, const Placed& j) {
-    const Motions motions = heave_motions(x.of(0));
-    const Vector3d D = j.at - i.at, dD = x.moved_by(motions, j) - x.moved_by(motions, i);
+double shortening(const Subject& x, const PlacedPoint& i, const PlacedPoint& j) {
+    const Motions motions = heave_motions(x.other_wheel(0));
+    const Vector3d D = j.position - i.position,
+                   dD = x.displacement(motions, j) - x.displacement(motions, i);
     return -(D.dot(dD) / D.norm());
 }
 double spring_ratio(const Subject& x) {
@@ -158,10 +160,11 @@ double damper_ratio(const Subject& x) {
 }
 // Mean over the patches of a function of their displacements per travel of the wheel centres.
 double mean_of_patches(const Subject& x, double (*function)(const Vector3d& displacement)) {
-    const Motions motions = heave_motions(x.of(0));
+    const Motions motions = heave_motions(x.other_wheel(0));
     double mean = 0;
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
-        mean += function(x.moved_by(motions, x.of(w).patch())) / double(x.model.wheels.size());
+        mean += function(x.displacement(motions, x.other_wheel(w).patch())) /
+                double(x.model.wheels.size());
     return mean;
 }
 double mean_rise(const Subject& x) {
@@ -186,9 +189,9 @@ double steer_on_tyres(const Subject& x) {
     const std::size_t n = free.size();
     if (under_force == nullptr || n > 2) return value_without_free_response(x);
     const auto rise = [&](const Motions& motions, std::size_t w) {
-        return x.moved_by(motions, x.of(w).patch()).z();
+        return x.displacement(motions, x.other_wheel(w).patch()).z();
     };
-    const auto k = [&](std::size_t w) { return x.of(w).wheel().tyre_rate; };
+    const auto k = [&](std::size_t w) { return x.other_wheel(w).wheel().tyre_rate; };
     const auto entry = [&](std::size_t i, std::size_t j) {
         return double(i == j ? 1 : 0) + k(i) * rise(free[j][first_patch_force + 2], i);
     };
@@ -230,17 +233,18 @@ const Entry over_travel[] = {
           "positive where the top leans out in jounce",
           always_defined, [](const Subject& x) { return x.camber(heave_motions(x)); },
           {.sources = "ride camber, camber gain", .is_key_figure = true, .explained = true}),
-    Entry(Owner::wheel, "track_gradient", Unit::mm_per_100mm,
-          "lateral displacement of the contact patch over travel, all wheels rising by the same "
-          "amount; positive outwards in jounce",
-          always_defined,
-          [](const Subject& x) { return x.side() * x.moved_by(heave_motions(x), x.patch()).y(); },
-          {.sources = "half-track change, lateral scrub"}),
+    Entry(
+        Owner::wheel, "track_gradient", Unit::mm_per_100mm,
+        "lateral displacement of the contact patch over travel, all wheels rising by the same "
+        "amount; positive outwards in jounce",
+        always_defined,
+        [](const Subject& x) { return x.side() * x.displacement(heave_motions(x), x.patch()).y(); },
+        {.sources = "half-track change, lateral scrub"}),
     Entry(Owner::wheel, "recession_gradient", Unit::mm_per_100mm,
           "longitudinal displacement of the wheel centre over travel, all wheels rising by the "
           "same amount; positive to the back in jounce",
           always_defined,
-          [](const Subject& x) { return -x.moved_by(heave_motions(x), x.centre()).x(); },
+          [](const Subject& x) { return -x.displacement(heave_motions(x), x.centre()).x(); },
           {.sources = "wheel recession"}),
     Entry(Owner::wheel, "front_view_swing_arm", Unit::mm,
           "lateral distance from the wheel centre to the instant centre of the carrier seen from "
@@ -325,7 +329,8 @@ const Entry of_response[] = {
           "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
           "patch: share of the load transfer under braking that the links carry; positive where "
           "they resist dive",
-          no_vertical, [](const Subject& x) { return anti(x, x.braked(), brake_share(x), 1); },
+          no_vertical,
+          [](const Subject& x) { return anti(x, x.braked_patch(), brake_share(x), 1); },
           {.sources = milliken,
            .is_key_figure = true,
            .explained = true,
@@ -345,7 +350,8 @@ const Entry of_response[] = {
           "brake_share · wheelbase / cg_height · rearward over vertical displacement of the "
           "contact patch: share of the load transfer under braking that the links carry; positive "
           "where they resist lift of the rear",
-          no_vertical, [](const Subject& x) { return anti(x, x.braked(), brake_share(x), -1); },
+          no_vertical,
+          [](const Subject& x) { return anti(x, x.braked_patch(), brake_share(x), -1); },
           {.sources = milliken,
            .drawings = {{DrawnAbscissa::travel, 13, "Anti-lift",
                          "positive where the links resist"}}}),
@@ -384,7 +390,7 @@ const Entry rate_definitions[] = {
           always_defined,
           [](const Subject& x) {
               const auto by = heave_motions(x);
-              return ratio(x.toe(by), x.moved_by(by, x.patch()).z(), max_distance);
+              return ratio(x.toe(by), x.displacement(by, x.patch()).z(), max_distance);
           },
           {.sources = "deflection counted at the tyre"}),
     Entry(Owner::wheel_of_axle, "bump_steer@alone", Unit::deg_per_m,
@@ -399,7 +405,8 @@ const Entry rate_definitions[] = {
           "the front; positive inboard",
           endless_in_front,
           [](const Subject& x) {
-              return front_view_arm(x) + x.side() * (x.patch().at.y() - x.centre().at.y());
+              return front_view_arm(x) +
+                     x.side() * (x.patch().position.y() - x.centre().position.y());
           },
           {.sources = "SAE J670e: swing arm radius, from the centre of tire contact",
            .definition_set = "sae",
@@ -414,7 +421,9 @@ const Entry rate_definitions[] = {
           "longitudinal distance from the contact patch to the instant centre of the carrier seen "
           "from the side; positive ahead of the wheel",
           endless_from_side,
-          [](const Subject& x) { return side_view_arm(x) + x.centre().at.x() - x.patch().at.x(); },
+          [](const Subject& x) {
+              return side_view_arm(x) + x.centre().position.x() - x.patch().position.x();
+          },
           {.sources = "drawings in side view", .swing_arm = true}),
     Entry(Owner::wheel, "wheel_rate@patch", Unit::newton_per_mm,
           "vertical force over vertical displacement, both of the contact patch, all wheels with "
@@ -437,7 +446,9 @@ const Entry rate_definitions[] = {
           {.sources = "single wheel bump", .needs_free_response = true}),
     Entry(Owner::axle, "wheel_rate@axle", Unit::newton_per_mm,
           "sum of the wheel rates of both wheels", no_rate,
-          [](const Subject& x) { return wheel_rate(x.of(0)) + wheel_rate(x.of(1)); },
+          [](const Subject& x) {
+              return wheel_rate(x.other_wheel(0)) + wheel_rate(x.other_wheel(1));
+          },
           {.sources = "axle rate; ride models of half a car", .needs_free_response = true}),
 };
 
@@ -477,26 +488,28 @@ const Entry further_rate_definitions[] = {
     Entry(Owner::front_wheel, "anti_dive@whole", Unit::percent,
           "wheelbase / cg_height · forward over vertical displacement of the contact patch: per "
           "cent of the load transfer if this axle braked alone",
-          no_vertical, [](const Subject& x) { return anti(x, x.braked(), 1, 1); },
+          no_vertical, [](const Subject& x) { return anti(x, x.braked_patch(), 1, 1); },
           {.sources = "programs without a brake distribution"}),
     Entry(Owner::front_wheel, "anti_dive@planes", Unit::percent,
           "brake_share · wheelbase / cg_height · slope of the line from the contact patch to the "
           "instant centre of the side view, where the planes of both wishbones meet the "
           "longitudinal plane through the wheel centre",
           no_vertical,
-          [](const Subject& x) { return anti_by_planes(x, x.patch().at, brake_share(x), 1); },
+          [](const Subject& x) { return anti_by_planes(x, x.patch().position, brake_share(x), 1); },
           {.sources = "drawings in side view", .definition_set = "planes"}),
-    Entry(Owner::rear_wheel, "anti_squat@planes", Unit::percent,
-          "drive_share · wheelbase / cg_height · slope of the line from the wheel centre to the "
-          "instant centre of the side view, where the planes of both wishbones meet the "
-          "longitudinal plane through the wheel centre",
-          no_vertical,
-          [](const Subject& x) { return anti_by_planes(x, x.centre().at, drive_share(x), -1); },
-          {.sources = "drawings in side view", .definition_set = "planes"}),
+    Entry(
+        Owner::rear_wheel, "anti_squat@planes", Unit::percent,
+        "drive_share · wheelbase / cg_height · slope of the line from the wheel centre to the "
+        "instant centre of the side view, where the planes of both wishbones meet the "
+        "longitudinal plane through the wheel centre",
+        no_vertical,
+        [](const Subject& x) { return anti_by_planes(x, x.centre().position, drive_share(x), -1); },
+        {.sources = "drawings in side view", .definition_set = "planes"}),
     Entry(Owner::front_wheel, "anti_lift@outboard", Unit::percent,
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the contact "
           "patch: the carrier carries the drive torque",
-          no_vertical, [](const Subject& x) { return anti(x, x.braked(), drive_share(x), 1); },
+          no_vertical,
+          [](const Subject& x) { return anti(x, x.braked_patch(), drive_share(x), 1); },
           {.sources = "wheel hub motors; live axles"}),
     Entry(Owner::rear_wheel, "anti_lift@inboard", Unit::percent,
           "brake_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
@@ -506,12 +519,13 @@ const Entry further_rate_definitions[] = {
     Entry(Owner::rear_wheel, "anti_lift@whole", Unit::percent,
           "wheelbase / cg_height · rearward over vertical displacement of the contact patch: per "
           "cent of the load transfer if this axle braked alone",
-          no_vertical, [](const Subject& x) { return anti(x, x.braked(), 1, -1); },
+          no_vertical, [](const Subject& x) { return anti(x, x.braked_patch(), 1, -1); },
           {.sources = "programs without a brake distribution"}),
     Entry(Owner::rear_wheel, "anti_squat@outboard", Unit::percent,
           "drive_share · wheelbase / cg_height · rearward over vertical displacement of the "
           "contact patch: the carrier carries the drive torque",
-          no_vertical, [](const Subject& x) { return anti(x, x.braked(), drive_share(x), -1); },
+          no_vertical,
+          [](const Subject& x) { return anti(x, x.braked_patch(), drive_share(x), -1); },
           {.sources = "wheel hub motors; live axles"}),
     Entry(Owner::rear_wheel, "anti_squat@whole", Unit::percent,
           "wheelbase / cg_height · rearward over vertical displacement of the wheel centre (of a "
@@ -580,15 +594,15 @@ Vector3d front_instant_centre(const Subject& x) {
     const Motions heave = heave_motions(x);
     const double arm = front_view_arm(x);
     if (!std::isfinite(arm)) return Vector3d::Constant(undefined);
-    const double up = x.moved_by(heave, x.centre()).y() / x.turned_by(heave).x();
-    return x.centre().at + Vector3d(0, -x.side() * arm, up);
+    const double up = x.displacement(heave, x.centre()).y() / x.rotation(heave).x();
+    return x.centre().position + Vector3d(0, -x.side() * arm, up);
 }
 Vector3d side_instant_centre(const Subject& x) {
     const Motions heave = heave_motions(x);
     const double arm = side_view_arm(x);
     if (!std::isfinite(arm)) return Vector3d::Constant(undefined);
-    const double up = -x.moved_by(heave, x.centre()).x() / x.turned_by(heave).y();
-    return x.centre().at + Vector3d(arm, 0, up);
+    const double up = -x.displacement(heave, x.centre()).x() / x.rotation(heave).y();
+    return x.centre().position + Vector3d(arm, 0, up);
 }
 
 void add_rates(std::vector<Entry>& all) {

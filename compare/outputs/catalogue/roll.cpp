@@ -17,7 +17,9 @@ constexpr auto no_roll_centre = "no finite roll centre";
 // the track, the other one goes down by as much.
 Motions rolled_towards(const Subject& x) {
     Motions roll = roll_motions(x);
-    const double half = std::abs(x.of(0).patch().at.y() - x.of(1).patch().at.y()) / 2 * x.side();
+    const double half =
+        std::abs(x.other_wheel(0).patch().position.y() - x.other_wheel(1).patch().position.y()) /
+        2 * x.side();
     for (auto& motion : roll) {
         motion.dr *= half;
         motion.dpi *= half;
@@ -48,7 +50,7 @@ std::optional<Vector2d> intersection(const Eigen::Matrix2d& A, const Vector2d& b
 //
 // `point`: the patch c, or by another definition the wheel centre. Returns y, and z above the road; none
 // at infinity.
-std::optional<Vector2d> centre_of_axle(const Subject& x, Placed (Subject::*point)() const) {
+std::optional<Vector2d> centre_of_axle(const Subject& x, PlacedPoint (Subject::*point)() const) {
     const auto front_view = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
     if (x.response->tied) return std::nullopt;
     const Motions roll = roll_motions(x);
@@ -56,11 +58,11 @@ std::optional<Vector2d> centre_of_axle(const Subject& x, Placed (Subject::*point
     Vector2d c[2], b;
     double above = 0;  // mean height of the points above the road
     for (std::size_t w = 0; w < 2; ++w) {
-        const Placed placed = (x.of(w).*point)();
-        c[w] = front_view(placed.at);
-        above += (placed.at.z() - x.of(w).patch().at.z()) / 2;
+        const PlacedPoint placed = (x.other_wheel(w).*point)();
+        c[w] = front_view(placed.position);
+        above += (placed.position.z() - x.other_wheel(w).patch().position.z()) / 2;
         A.row(static_cast<Eigen::Index>(w)) =
-            front_view(x.moved_by(roll, placed)).normalized().transpose();
+            front_view(x.displacement(roll, placed)).normalized().transpose();
     }
     const Vector2d middle = (c[0] + c[1]) / 2;
     for (int w = 0; w < 2; ++w) b[w] = A.row(w).dot(c[w] - middle);
@@ -68,14 +70,15 @@ std::optional<Vector2d> centre_of_axle(const Subject& x, Placed (Subject::*point
     if (!P) return std::nullopt;
     return Vector2d(middle.x() + P->x(), P->y() + above);
 }
-double roll_centre(const Subject& x, Placed (Subject::*point)() const) {
+double roll_centre(const Subject& x, PlacedPoint (Subject::*point)() const) {
     if (is_axle(x.model)) {
         const auto centre = centre_of_axle(x, point);
         return centre ? centre->y() : undefined;
     }
-    const Placed of = (x.*point)();
-    const Vector3d d = x.moved_by(x.response->travel[0], of);
-    return ratio(of.at.y() * d.y(), d.z(), max_distance) + of.at.z() - x.patch().at.z();
+    const PlacedPoint reference = (x.*point)();
+    const Vector3d d = x.displacement(x.response->travel[0], reference);
+    return ratio(reference.position.y() * d.y(), d.z(), max_distance) + reference.position.z() -
+           x.patch().position.z();
 }
 // Lateral forces f_y on all patches in one direction, with vertical forces f_z that hold the wheel
 // centres at their height (of an axle: opposite ones that prevent roll); the roll centre is where the
@@ -87,15 +90,15 @@ double roll_centre_by_forces(const Subject& x) {
     const ResponsesByWheel& free = x.response->free;
     if (free.empty()) return value_without_free_response(x);
     const auto rise = [](const Subject& wheel, const Motions& motions) {
-        return wheel.moved_by(motions, wheel.centre()).z();
+        return wheel.displacement(motions, wheel.centre()).z();
     };
     if (!is_axle(x.model))
-        return ratio(x.patch().at.y() * rise(x, free[0][first_patch_force + 1]),
+        return ratio(x.patch().position.y() * rise(x, free[0][first_patch_force + 1]),
                      rise(x, free[0][first_patch_force + 2]), max_distance);
     if (x.response->tied) return undefined;
-    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
     const auto roll = [&](const Motions& by) { return rise(left, by) - rise(right, by); };
-    return ratio((left.patch().at.y() - right.patch().at.y()) / 2 *
+    return ratio((left.patch().position.y() - right.patch().position.y()) / 2 *
                      roll(axle_motions(free, left, first_patch_force + 1, 1)),
                  roll(axle_motions(free, left, first_patch_force + 2, -1)), max_distance);
 }
@@ -105,10 +108,11 @@ double roll_centre_by_forces(const Subject& x) {
 double roll_stiffness(const Subject& x) {
     if (x.response->free.empty()) return value_without_free_response(x);
     if (x.response->tied) return undefined;
-    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
     const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
-    const double track = left.patch().at.y() - right.patch().at.y();
-    const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
+    const double track = left.patch().position.y() - right.patch().position.y();
+    const double rise =
+        x.displacement(by, left.centre()).z() - x.displacement(by, right.centre()).z();
     return ratio(track * track, rise, max_stiffness);
 }
 
@@ -125,9 +129,10 @@ Carries carries(const Elastic& elastic) {
 double roll_stiffness_by(const Subject& x, Carries kind) {
     const double whole = roll_stiffness(x);
     if (!std::isfinite(whole)) return whole;
-    const Subject left = x.of(left_wheel(x.model)), right = x.of(1 - left.k);
+    const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
     const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
-    const double rise = x.moved_by(by, left.centre()).z() - x.moved_by(by, right.centre()).z();
+    const double rise =
+        x.displacement(by, left.centre()).z() - x.displacement(by, right.centre()).z();
     constexpr double step = 1e-5;  // [m] of the rise, to either side
     const Equilibrium above = moved_by(*x.state, by, step / rise),
                       below = moved_by(*x.state, by, -step / rise);
@@ -251,11 +256,12 @@ std::vector<Vector3> points_of_figures(const Model& model, const Equilibrium& st
     for (std::size_t w = 0; w < model.wheels.size(); ++w) {
         const Subject x = subject(w);
         const auto& axis = x.wheel().steering_axis;
-        points.push_back(axis ? Vector3(x.placed(axis->lower).at) : none);
-        points.push_back(axis ? Vector3(x.placed(axis->upper).at) : none);
+        points.push_back(axis ? Vector3(x.placed(axis->lower).position) : none);
+        points.push_back(axis ? Vector3(x.placed(axis->upper).position) : none);
         points.push_back(moves ? front_instant_centre(x) : none);
         points.push_back(moves ? side_instant_centre(x) : none);
-        roll += Vector3(x.centre().at.x(), 0, x.patch().at.z()) / double(model.wheels.size());
+        roll += Vector3(x.centre().position.x(), 0, x.patch().position.z()) /
+                double(model.wheels.size());
     }
     if (model.wheels.empty()) return points;
     if (!moves || (model.wheels.size() > 1 && !is_axle(model)))

@@ -15,10 +15,10 @@ namespace elastocheck::compare {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Point of a body: its position `at`, and its vector `lever` from the origin of the body, ground axes [m].
-struct Placed {
+// Point of a body: its position, and its vector `lever` from the origin of the body, ground axes [m].
+struct PlacedPoint {
     BodyId body;
-    Vector3d at, lever;
+    Vector3d position, lever;
 };
 
 struct Subject {
@@ -31,7 +31,7 @@ struct Subject {
     // The same part in the design position.
     Subject drawn() const { return {model, nullptr, k}; }
     // Another wheel in the same state.
-    Subject of(std::size_t other) const { return {model, state, other, branch, response}; }
+    Subject other_wheel(std::size_t other) const { return {model, state, other, branch, response}; }
 
     // ---- Positions and directions in the state, ground axes.
     const Wheel& wheel() const { return model.wheels[k]; }
@@ -42,22 +42,25 @@ struct Subject {
         const auto b = static_cast<std::size_t>(body);
         return state == nullptr ? model.bodies[b].design : state->poses[b];
     }
-    Placed placed(BodyId body, const Vector3d& s_local) const {
+    PlacedPoint placed(BodyId body, const Vector3d& s_local) const {
         const Vector3d s = pose(body).p * s_local;
         return {body, pose(body).r + s, s};
     }
-    Placed placed(const Point& p) const { return placed(p.body, p.s_local); }
+    PlacedPoint placed(const Point& p) const { return placed(p.body, p.s_local); }
     Vector3d direction(const Direction& u) const { return pose(u.body).p * u.u_local; }
     const Wrench& wrench(int joint) const {
         return state->reactions[static_cast<std::size_t>(joint)];
     }
-    Placed centre() const { return placed(wheel().body, wheel().centre_local); }
-    Placed patch() const { return placed(wheel().contact); }
+    PlacedPoint centre() const { return placed(wheel().body, wheel().centre_local); }
+    PlacedPoint patch() const { return placed(wheel().contact); }
+    // From the design position.
+    Vector3d centre_travel() const { return centre().position - drawn().centre().position; }
+    Vector3d patch_travel() const { return patch().position - drawn().patch().position; }
     // The patch as a point of the carrier: while the wheel is braked it turns with the carrier.
-    Placed braked() const {
+    PlacedPoint braked_patch() const {
         if (!wheel().rolls()) return patch();
-        const Vector3d at = patch().at;
-        return {wheel().body, at, at - pose(wheel().body).r};
+        const Vector3d p = patch().position;
+        return {wheel().body, p, p - pose(wheel().body).r};
     }
     // Spin axis of the wheel, and the axis of the carrier that is lateral in the design position. Both point
     // outboard.
@@ -76,18 +79,18 @@ struct Subject {
     Vector3d lowest() const {
         const Vector3d e = spin();
         const double radius = drawn_arm(model, wheel()).norm();
-        return centre().at + radius * (e * e.z() - Vector3d::UnitZ()).normalized();
+        return centre().position + radius * (e * e.z() - Vector3d::UnitZ()).normalized();
     }
 
     // Vector of the steering axis from its lower to its upper end; horizontal vector from a point to the axis.
     Vector3d axis() const {
         const auto& [lower, upper] = *wheel().steering_axis;
-        return placed(upper).at - placed(lower).at;
+        return placed(upper).position - placed(lower).position;
     }
-    Vector3d axis_from(const Vector3d& at) const {
-        const Vector3d lower = placed(wheel().steering_axis->lower).at,
-                       u = placed(wheel().steering_axis->upper).at - lower;
-        return lower + u * ((at.z() - lower.z()) / u.z()) - at;
+    Vector3d axis_from(const PlacedPoint& point) const {
+        const Vector3d p = point.position, u = axis(),
+                       lower = placed(wheel().steering_axis->lower).position;
+        return lower + u * ((p.z() - lower.z()) / u.z()) - p;
     }
 
     double toe() const {
@@ -114,8 +117,8 @@ struct Subject {
         const Vector3d e = spin(), de = turned(motions, wheel().body).cross(e);
         return -(de.z() / std::sqrt(1 - e.z() * e.z()));
     }
-    Vector3d turned_by(const Motions& motions) const { return turned(motions, wheel().body); }
-    static Vector3d moved_by(const Motions& motions, const Placed& point) {
+    Vector3d rotation(const Motions& motions) const { return turned(motions, wheel().body); }
+    static Vector3d displacement(const Motions& motions, const PlacedPoint& point) {
         if (point.body == ground) return Vector3d::Zero();
         const auto& body = motions[static_cast<std::size_t>(point.body)];
         return body.dr + body.dpi.cross(point.lever);
@@ -139,7 +142,7 @@ inline constexpr auto not_steered = "the steering is not driven or held on this 
 inline bool is_axle(const Model& model) {
     return model.wheels.size() == 2 && model.wheels[0].side * model.wheels[1].side < 0;
 }
-// Position of the left wheel of an axle; the other one is the right one.
+// Position of the left wheel of an axle in Model::wheels.
 inline std::size_t left_wheel(const Model& model) { return model.wheels[0].side > 0 ? 0 : 1; }
 
 // "ground axis x, positive forward"

@@ -17,14 +17,14 @@ std::vector<Vector3d> points_between(const Subject& x, const FixedBodies& fixed,
     for (const Constraint& constraint : x.model.constraints)
         std::visit(overloaded{[&](const CoincidentPoints& c) {
                                   if (fixed.are_two(c.i.body, c.j.body, body, other))
-                                      points.push_back(x.placed(c.i).at);
+                                      points.push_back(x.placed(c.i).position);
                               },
                               [](const auto&) {}},
                    constraint.kind);
     for (const auto& elastic : x.model.elastics)
         std::visit(overloaded{[&](const Bushing& b) {
                                   if (fixed.are_two(b.i.body, b.j.body, body, other))
-                                      points.push_back(x.placed(b.i.body, b.i.s_local).at);
+                                      points.push_back(x.placed(b.i.body, b.i.s_local).position);
                               },
                               [](const auto&) {}},
                    elastic.kind);

@@ -49,7 +49,7 @@ std::string Conversion::origin(int id) {
 }
 
 Value Conversion::function(const std::string& text, double time, std::vector<double>* events) {
-    std::vector<int> open;  // VARIABLEs within VARIABLEs
+    std::vector<int> nested;  // VARIABLEs whose functions are being evaluated
     Context context{.time = time, .drop_friction = options.drop_dynamics, .events = events};
     context.variable = [&](int id) -> Value {
         const auto unknown = [&](const char* why) {
@@ -57,7 +57,8 @@ Value Conversion::function(const std::string& text, double time, std::vector<dou
         };
         const auto found = variables.find(id);
         if (found == variables.end()) return unknown("there is no such VARIABLE");
-        if (std::ranges::find(open, id) != open.end() || open.size() > 20 || --variables_left < 0)
+        if (std::ranges::find(nested, id) != nested.end() || nested.size() > 20 ||
+            --variables_left < 0)
             return unknown("it depends on itself");
         const auto [function, is_new] = variable_functions.try_emplace(id);
         if (is_new) {
@@ -66,9 +67,9 @@ Value Conversion::function(const std::string& text, double time, std::vector<dou
             if (given && !s.has("ROUTINE")) function->second = *given;
         }
         if (!function->second) return unknown("a user-written function");
-        open.push_back(id);
+        nested.push_back(id);
         const Value value = static_value(*function->second, context);
-        open.pop_back();
+        nested.pop_back();
         return value;
     };
     return static_value(text, context);
@@ -290,7 +291,7 @@ void read_gravity(Conversion& c) {
 
 // ---- Outputs and branches for the scene.
 
-bool is_called(const Statement& s, const std::string& wanted) {
+bool is_named(const Statement& s, const std::string& wanted) {
     return s.name == wanted || std::to_string(s.id) == wanted ||
            capitals(s.name) == capitals(wanted);
 }
@@ -304,13 +305,13 @@ int wheel_body(Conversion& c, const Marker*& marker) {
     for (const auto& [id, part] : c.geometry.parts) {
         if (part.is_ground) continue;
         known.push_back(c.body(id));
-        if (c.body(id) != wanted && !is_called(*part.statement, wanted)) continue;
+        if (c.body(id) != wanted && !is_named(*part.statement, wanted)) continue;
         if (body) fail(fmt::format("{} names several parts", reader::quote(wanted)));
         body = id;
     }
     if (!body)
         for (const auto& [id, candidate] : c.geometry.markers) {
-            if (candidate.floats || !is_called(*candidate.statement, wanted)) continue;
+            if (candidate.floats || !is_named(*candidate.statement, wanted)) continue;
             if (std::exchange(marker, &candidate))
                 fail(fmt::format("{} names several markers; give the id of one",
                                  reader::quote(wanted)));

@@ -20,8 +20,8 @@ using Eigen::Matrix3d, Eigen::Vector3d;
 
 namespace {
 
-constexpr double parallel = 1e-9;  // largest angle between parallel frames [rad]
-constexpr double far = 0.05;  // distance of markers that is reported, in shares of the model's size
+constexpr double parallel = 1e-9;   // largest angle between parallel frames [rad]
+constexpr double far_apart = 0.05;  // markers are reported from this share of the model's size on
 
 std::string stiffness_text(const Matrix6& K) {
     std::string rows;
@@ -59,8 +59,8 @@ void put_bushing(Conversion& c, const Statement& s, const Marker& I, int part_j,
                                   std::array{"x", "y", "z", "rx", "ry", "rz"}[k],
                                   curve_of_rows(laws.curves[k], laws.extrapolates[k]));
     if (!curves.empty()) fields.add("curves", "{" + curves + "}");
-    const auto add = [&](const char* name, const Vector3d& v, double least, double scale) {
-        if (v.norm() > least) fields.add(name, triple(v, scale));
+    const auto add = [&](const char* name, const Vector3d& v, double threshold, double scale) {
+        if (v.norm() > threshold) fields.add(name, triple(v, scale));
     };
     const double size = c.geometry.size;
     add("undeformed", laws.x_0.head<3>() - J.A.transpose() * (I.pose.r - J.r), 1e-12 * size, size);
@@ -88,7 +88,7 @@ namespace {
 
 // Makes K symmetric. Returns the reason why a scene cannot represent it: asymmetric beyond the printed
 // digits, or indefinite; empty if it can.
-std::string symmetrised(Matrix6& K) {
+std::string symmetrise(Matrix6& K) {
     for (int i = 0; i < 6; ++i)
         for (int k = 0; k < i; ++k) {
             const double larger = std::max(std::abs(K(i, k)), std::abs(K(k, i)));
@@ -119,7 +119,7 @@ std::string symmetrised(Matrix6& K) {
 
 bool make_symmetric(Conversion& c, const Statement& s, Matrix6& K) {
     const Matrix6 written = K;
-    const std::string why = symmetrised(K);
+    const std::string why = symmetrise(K);
     if (!why.empty()) c.miss(s, why);
     const double off = (written - K).cwiseAbs().maxCoeff();
     if (why.empty() && off > 0)
@@ -138,7 +138,7 @@ void convert_bushing(Conversion& c, const Statement& s) {
     F << vector(s, "FORCE"), vector(s, "TORQUE");
     if (rates.minCoeff() < 0) return c.miss(s, "a negative rate, which a scene does not allow");
     const double apart = (I.pose.r - J.pose.r).norm();
-    if (apart > far * c.geometry.size)
+    if (apart > far_apart * c.geometry.size)
         c.warn(s,
                "its markers are {:.4g} {} apart in the file: it is preloaded by that deformation",
                apart, c.geometry.units.length_name);

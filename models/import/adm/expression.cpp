@@ -13,9 +13,9 @@
 namespace elastocheck::importer::adm {
 namespace {
 
-constexpr int deepest = 100;
+constexpr int max_depth = 100;
 constexpr std::size_t max_terms = 1000;
-constexpr std::size_t longest_function = 1 << 16;  // [bytes]
+constexpr std::size_t max_length = 1 << 16;  // [bytes]
 
 Value unknown(std::string why) { return {.unknown = std::move(why)}; }
 Value constant(double x) { return {.constant = x}; }
@@ -63,13 +63,13 @@ Value product(const Value& a, const Value& b) {
     return result;
 }
 
-Value quotient(const Value& a, const Value& by) {
-    if (!by.is_known()) return by;
-    if (!by.is_constant()) return unknown("a division by a displacement");
-    if (by.constant == 0) return unknown("a division by zero");
-    Value result = scaled(a, 1 / by.constant);
-    if (by.of_time) result.per_time = NAN;
-    inherit(result, by);
+Value quotient(const Value& a, const Value& b) {
+    if (!b.is_known()) return b;
+    if (!b.is_constant()) return unknown("a division by a displacement");
+    if (b.constant == 0) return unknown("a division by zero");
+    Value result = scaled(a, 1 / b.constant);
+    if (b.of_time) result.per_time = NAN;
+    inherit(result, b);
     return result;
 }
 
@@ -106,7 +106,8 @@ constexpr Function functions[] = {
 constexpr std::pair<std::string_view, double> constants[] = {
     {"PI", std::numbers::pi}, {"RTOD", 180 / std::numbers::pi}, {"DTOR", std::numbers::pi / 180}};
 constexpr std::string_view measures[] = {"DM", "DX", "DY", "DZ", "AX", "AY", "AZ"};
-constexpr std::string_view at_rest =
+// Functions of velocities and accelerations.
+constexpr std::string_view zero_at_rest =
     "VR VM VX VY VZ WM WX WY WZ ACCM ACCX ACCY ACCZ WDTM WDTX WDTY WDTZ";
 
 class Parser {
@@ -138,7 +139,7 @@ class Parser {
     }
 
     Value expression() {
-        if (++depth_ > deepest) return give_up("brackets nested too deep");
+        if (++depth_ > max_depth) return give_up("brackets nested too deep");
         Value value = operations("+-");
         --depth_;
         return value;
@@ -152,11 +153,11 @@ class Parser {
         for (skip(); !text_.empty() && operators.find(text_.front()) != operators.npos; skip()) {
             const char c = text_.front();
             text_.remove_prefix(1);
-            const Value by = operand();
-            value = c == '+'   ? sum(value, by)
-                    : c == '-' ? sum(value, scaled(by, -1))
-                    : c == '*' ? product(value, by)
-                               : quotient(value, by);
+            const Value right = operand();
+            value = c == '+'   ? sum(value, right)
+                    : c == '-' ? sum(value, scaled(right, -1))
+                    : c == '*' ? product(value, right)
+                               : quotient(value, right);
         }
         return value;
     }
@@ -170,7 +171,7 @@ class Parser {
         skip();
         if (text_.starts_with("**")) {
             text_.remove_prefix(2);
-            if (++depth_ > deepest) return give_up("powers nested too deep");
+            if (++depth_ > max_depth) return give_up("powers nested too deep");
             const Value exponent = power();
             --depth_;
             if (!base.is_known()) return base;
@@ -235,7 +236,7 @@ class Parser {
     }
 
     Value apply(const std::string& name, std::vector<Value>& p) const {
-        if (has_word(at_rest, name)) return {.of_velocity = true};
+        if (has_word(zero_at_rest, name)) return {.of_velocity = true};
         if (const auto found = std::ranges::find(measures, name); found != std::end(measures)) {
             Measure measure{.kind = static_cast<Measure::Kind>(found - std::begin(measures))};
             int* const to[] = {&measure.i, &measure.j, &measure.rm};
@@ -285,7 +286,7 @@ class Parser {
                 "friction (--drop dynamics leaves it out)");
         }
         if (name == "STEP" && p.size() == 5)
-            for (const std::size_t edge : {1, 3}) note_event(p[0], p[edge].constant);
+            for (const std::size_t k : {1, 3}) note_event(p[0], p[k].constant);
         if (result.of_time) result.per_time = NAN;
         if (numbers.size() < (is_unary ? 1 : function->least) ||
             numbers.size() > (is_unary ? 1 : function->most))
@@ -296,10 +297,10 @@ class Parser {
         return result;
     }
 
-    // Adds the time at which x, linear in TIME, has the value `at` to the events.
-    void note_event(const Value& x, double at) const {
+    // Adds the time at which x, linear in TIME, reaches `edge` to the events.
+    void note_event(const Value& x, double edge) const {
         if (!context_.events || !x.of_time || !std::isfinite(x.per_time) || x.per_time == 0) return;
-        const double time = context_.time + (at - x.constant) / x.per_time;
+        const double time = context_.time + (edge - x.constant) / x.per_time;
         if (time > 0 && std::isfinite(time)) context_.events->push_back(time);
     }
 
@@ -325,7 +326,7 @@ class Parser {
         if (!x.is_known()) return x.unknown;
         if (!x.curves.empty() || x.linear.size() != 1)
             return "a curve that is not over one displacement";
-        term.of = x.linear.begin()->first;
+        term.measure = x.linear.begin()->first;
         term.scale = x.linear.begin()->second;
         term.offset = x.constant;
         return {};
@@ -411,7 +412,7 @@ class Parser {
 }  // namespace
 
 Value static_value(std::string_view text, const Context& context) {
-    if (text.size() > longest_function) return unknown("too long for a function");
+    if (text.size() > max_length) return unknown("too long for a function");
     Parser parser(text, context);
     Value value = parser.parse();
     if (value.is_known() && !std::isfinite(value.constant))

@@ -22,13 +22,13 @@ struct Measure {
     auto operator<=>(const Measure&) const = default;
 };
 
-// factor · g(u), u = scale · x + offset, x the measure `of`:
+// factor · g(u), u = scale · x + offset, x the measure:
 //   spline   g(u) the interpolant of SPLINE/spline
 //   impact   g(u) = rate · p^exponent, or with a spline its value at p, p = max(contact - u, 0)
 struct CurveTerm {
     enum class Kind { spline, impact } kind = Kind::spline;
     double factor = 1;
-    Measure of;
+    Measure measure;
     double scale = 1, offset = 0;
     int spline = 0;        // id; 0: none
     bool is_akima = true;  // the spline is interpolated by Akima's method, else by a cubic spline

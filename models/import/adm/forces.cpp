@@ -15,21 +15,21 @@ using Eigen::Vector3d;
 
 struct StopLaw {
     bool is_bump = true;
-    double touches = 0;  // deformation x at which it touches
+    double contact = 0;  // deformation x at which it touches
     Rows curve = {};     // force over the penetration; empty: the rate applies
     double rate = 0;
     bool extrapolates = true;
 };
 
 // Restoring force f(x) = -value of one deformation x, in units of the scene.
-struct OneLaw {
-    double rate = 0;     // df/dx
-    double at_zero = 0;  // f(0)
-    Rows curve = {};     // replaces rate and at_zero
+struct ForceLaw {
+    double rate = 0;  // df/dx
+    double f_0 = 0;   // f(0)
+    Rows curve = {};  // replaces rate and f_0
     bool extrapolates = true;
     std::vector<StopLaw> stops = {};
 
-    bool is_zero() const { return curve.empty() && rate == 0 && at_zero == 0 && stops.empty(); }
+    bool is_zero() const { return curve.empty() && rate == 0 && f_0 == 0 && stops.empty(); }
 };
 
 constexpr int rows_of_power = 24;  // of the table of an impact with an exponent
@@ -68,11 +68,11 @@ struct LawConversion {
         return nullptr;
     }
 
-    std::string add_stop(const CurveTerm& term, OneLaw& law) const {
+    std::string add_stop(const CurveTerm& term, ForceLaw& law) const {
         if (!(term.factor > 0) == (term.scale > 0))
             return "a contact with a tensile force, which no stop of a scene has";
         StopLaw stop{.is_bump = term.scale > 0,
-                     .touches = (term.contact - term.offset) / term.scale * unit};
+                     .contact = (term.contact - term.offset) / term.scale * unit};
         const double scale = std::abs(term.scale), size = std::abs(term.factor);
         if (term.spline != 0) {
             std::string why;
@@ -99,7 +99,7 @@ struct LawConversion {
     // factor · p^exponent as a table.
     void tabulate(double factor, double exponent, StopLaw& stop) const {
         const double depth = std::max(
-            std::abs(stop.is_bump ? stop.touches - from : to - stop.touches), 1e-3 * (to - from));
+            std::abs(stop.is_bump ? stop.contact - from : to - stop.contact), 1e-3 * (to - from));
         for (int n = 0; n <= rows_of_power; ++n) {
             const double p = depth * n * n / (rows_of_power * rows_of_power);
             stop.curve.emplace_back(p, factor * std::pow(p, exponent));
@@ -112,7 +112,7 @@ struct LawConversion {
                depth, unit_of_x);
     }
 
-    std::string add_curve(const CurveTerm& term, OneLaw& law) const {
+    std::string add_curve(const CurveTerm& term, ForceLaw& law) const {
         if (!law.curve.empty()) return "a sum of two splines";
         std::string why;
         const Table* points = points_of(term, why);
@@ -126,15 +126,15 @@ struct LawConversion {
         return {};
     }
 
-    std::string convert(const Value& value, OneLaw& law) const {
+    std::string convert(const Value& value, ForceLaw& law) const {
         for (const auto& [measure, k] : value.linear) law.rate += -k * force / unit;
-        law.at_zero = -value.constant * force;
+        law.f_0 = -value.constant * force;
         for (const CurveTerm& term : value.curves)
             if (const std::string why = term.kind == CurveTerm::Kind::impact ? add_stop(term, law)
                                                                              : add_curve(term, law);
                 !why.empty())
                 return why;
-        for (auto& [x, f] : law.curve) f += law.rate * x + law.at_zero;
+        for (auto& [x, f] : law.curve) f += law.rate * x + law.f_0;
         for (std::size_t n = 1; n < law.curve.size(); ++n)
             if (!(law.curve[n].second >= law.curve[n - 1].second))
                 return fmt::format(
@@ -147,11 +147,11 @@ struct LawConversion {
     }
 };
 
-void add_stops(Fields& fields, const OneLaw& law, double drawn, const std::string& ending) {
+void add_stops(Fields& fields, const ForceLaw& law, double drawn, const std::string& ending) {
     for (const StopLaw& stop : law.stops) {
         Fields stop_fields;
         stop_fields.add("clearance",
-                        computed(stop.is_bump ? drawn - stop.touches : stop.touches - drawn,
+                        computed(stop.is_bump ? drawn - stop.contact : stop.contact - drawn,
                                  std::max(1.0, std::abs(drawn))));
         if (stop.curve.empty())
             stop_fields.add("rate", stop.rate);
@@ -170,7 +170,7 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         return Fields{}.add("bodies", bodies).add("from", c.point(I)).add("to", c.point(J));
     };
     if (!(drawn > 1e-9 * c.geometry.size)) return c.miss(s, "its ends coincide in the file");
-    OneLaw law;
+    ForceLaw law;
     const std::string why = LawConversion{c, s, false, 0, 2 * drawn}.convert(value, law);
     if (!why.empty()) return c.miss(s, why);
     if (law.stops.size() > 2 ||
@@ -187,7 +187,7 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         const double h = 0.5 * drawn;
         fields.add("curve", curve_of_rows({{-h, f - slope * h}, {h, f + slope * h}}, true));
     };
-    const double free = -law.at_zero / law.rate;  // free length of a linear law
+    const double free = -law.f_0 / law.rate;  // free length of a linear law
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
         fields.add("curve", curve_of_rows(law.curve, law.extrapolates));
@@ -196,9 +196,9 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         if (free < drawn * (1 - 1e-9))
             c.warn(s, "this spring is in tension at the position in the file");
     } else if (law.rate > 0) {  // as a table, since a free length must be positive
-        add_line(law.at_zero + law.rate * drawn, law.rate);
-    } else if (law.at_zero != 0) {
-        add_line(law.at_zero, 0);
+        add_line(law.f_0 + law.rate * drawn, law.rate);
+    } else if (law.f_0 != 0) {
+        add_line(law.f_0, 0);
     } else {
         add_stops(fields, law, drawn, "");
         c.draft.stops.push_back({name, fields.braced(), s.place()});
@@ -216,7 +216,7 @@ void put_torsion(Conversion& c, const Statement& s, const Marker& I, const Marke
         s.fail("the axes z of I and J are {:.3g} deg apart; a torque needs one axis",
                off * 180 / std::numbers::pi);
     const double drawn = angle_about_z(I, J);
-    OneLaw law;
+    ForceLaw law;
     const std::string why = LawConversion{c, s, true, -3.14, 3.14}.convert(value, law);
     if (!why.empty()) return c.miss(s, why);
     if (!law.stops.empty()) return c.miss(s, "a stop of a rotation, which a scene does not have");
@@ -228,8 +228,8 @@ void put_torsion(Conversion& c, const Statement& s, const Marker& I, const Marke
         fields.add("curve", curve_of_rows(law.curve, law.extrapolates));
     } else {
         fields.add("rate", law.rate);
-        const double moment = law.at_zero + law.rate * drawn;
-        if (std::abs(moment) > 1e-12 * (std::abs(law.at_zero) + std::abs(law.rate)))
+        const double moment = law.f_0 + law.rate * drawn;
+        if (std::abs(moment) > 1e-12 * (std::abs(law.f_0) + std::abs(law.rate)))
             fields.add("preload_moment", computed(moment));
     }
     c.draft.torsion_springs.push_back({c.name(c.element_names, s), fields.braced(), s.place()});
@@ -304,8 +304,8 @@ void put_load(Conversion& c, const Statement& s, const Marker& I,
 // A scene has no branch for a force between two parts that changes with time. If all its values lie
 // between the first and the last, it is held at the last, with a warning. Returns the reason if
 // that is not possible; else empty.
-std::string held_at_its_end(Conversion& c, const Statement& s, const TimeFunction& time_function,
-                            Value& value) {
+std::string hold_final_value(Conversion& c, const Statement& s, const TimeFunction& time_function,
+                             Value& value) {
     if (!time_function.varies()) return {};
     const double first = time_function.path.front(), last = time_function.path.back();
     const double round_off = 1e-12 * (time_function.most - time_function.least);
@@ -347,7 +347,7 @@ void convert_sforce(Conversion& c, const Statement& s) {
         c.count("SFORCE");
         return put_load(c, s, I, {{J.axis(2), rotates, time_function}}, follows);
     }
-    if (const std::string why = held_at_its_end(c, s, time_function, value); !why.empty())
+    if (const std::string why = hold_final_value(c, s, time_function, value); !why.empty())
         return c.miss(s, why);
     if (!c.is_between_two(s, I, J)) return;
     // Expresses the value by DM(I, J) = DM(J, I), or by AZ(I, J) = -AZ(J, I).
@@ -364,8 +364,8 @@ void convert_sforce(Conversion& c, const Statement& s) {
         own.linear[{.kind = kind}] += sign(measure) * k;
     }
     for (CurveTerm term : value.curves) {
-        is_own &= sign(term.of) != 0;
-        term.scale *= sign(term.of);
+        is_own &= sign(term.measure) != 0;
+        term.scale *= sign(term.measure);
         own.curves.push_back(term);
     }
     if (!is_own) return c.miss(s, "a force that depends on a displacement between other markers");
@@ -428,7 +428,7 @@ struct VectorForce {
                 K(r, axis) += -sign * k;
             }
             for (CurveTerm term : value[component].curves) {
-                if (axis_of(term.of, sign) != r) return other;
+                if (axis_of(term.measure, sign) != r) return other;
                 if (term.kind == CurveTerm::Kind::impact)
                     return name + ": a contact in one direction of a vector";
                 term.scale *= sign;
@@ -440,7 +440,7 @@ struct VectorForce {
 
     // Sets the curve of one component, to which the rate of its stiffness is added.
     std::string put_curve(int row, const Value& own) {
-        OneLaw law;
+        ForceLaw law;
         const double rate = laws.K(row, row);
         const auto component = static_cast<std::size_t>(row);
         std::string why = LawConversion{c, s, row >= 3, -1, 1}.convert(own, law);
@@ -509,7 +509,7 @@ void convert_vector(Conversion& c, const Statement& s) {
     }
     Vector6 F;
     for (std::size_t k = 0; k < 6; ++k) {
-        if (const std::string why = held_at_its_end(c, s, time_functions[k], force.value[k]);
+        if (const std::string why = hold_final_value(c, s, time_functions[k], force.value[k]);
             !why.empty())
             return c.miss(s, "{}: {}", components[k], why);
         F[static_cast<int>(k)] = force.value[k].constant;

@@ -18,7 +18,7 @@ Vector3d vector(const Statement& s, std::string_view argument) {
 
 namespace {
 
-constexpr std::size_t longest_chain = 100;  // of markers in markers
+constexpr std::size_t max_chain = 100;  // of markers, each given relative to the next (RM)
 
 // Size in SI of an entry of a table of units.
 double size_of(const reader::Value& table, std::string_view name) {
@@ -77,7 +77,7 @@ Units read_units(const Dataset& data, const std::string& file) {
     return units;
 }
 
-Matrix3d about(int axis, double angle) {
+Matrix3d rotation_about(int axis, double angle) {
     return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
 }
 
@@ -91,7 +91,7 @@ Frame read_frame(const Statement& s, const char* origin, const char* z_name, con
     if (s.has("REULER")) {
         if (has_z || has_x) s.fail("REULER together with {} or {}", z_name, x_name);
         const auto a = s.numbers("REULER", 3, 3, Statement::Unit::angle);
-        frame.A = about(2, a[0]) * about(0, a[1]) * about(2, a[2]);
+        frame.A = rotation_about(2, a[0]) * rotation_about(0, a[1]) * rotation_about(2, a[2]);
         return frame;
     }
     if (!has_z && !has_x) return frame;
@@ -128,34 +128,34 @@ Part read_part(const Statement& s, const Units& units) {
 // Pose of a marker in its part, or in another marker of the part.
 struct Local {
     Frame frame;
-    int in = 0;  // id of that marker; 0: in the part
+    int reference = 0;  // id of that marker; 0: the part
 };
 
 // Expresses the pose of a marker, and of all markers on its chain of RM references, in the part.
 void resolve(const Geometry& geometry, int id, std::map<int, Local>& local) {
     std::vector<int> chain;
-    for (int next = id; next; next = local.at(next).in) {
+    for (int next = id; next; next = local.at(next).reference) {
         if (!chain.empty()) {
             const Marker& from = geometry.markers.at(chain.back());
             const auto to = geometry.markers.find(next);
             if (to == geometry.markers.end())
                 from.statement->fail("RM: there is no MARKER/{}", next);
-            if (chain.size() == longest_chain || std::ranges::find(chain, next) != chain.end())
+            if (chain.size() == max_chain || std::ranges::find(chain, next) != chain.end())
                 from.statement->fail(
                     "RM: MARKER/{} refers to itself, or by a chain of more than {} markers", next,
-                    longest_chain);
+                    max_chain);
             if (to->second.part != from.part)
                 from.statement->fail("RM: MARKER/{} is on another part", next);
         }
         chain.push_back(next);
     }
     for (std::size_t k = chain.size() - 1; k-- > 0;)
-        local.at(chain[k]) = {placed(local.at(chain[k + 1]).frame, local.at(chain[k]).frame)};
+        local.at(chain[k]) = {composed(local.at(chain[k + 1]).frame, local.at(chain[k]).frame)};
 }
 
 }  // namespace
 
-Frame placed(const Frame& a, const Frame& b) { return {a.r + a.A * b.r, a.A * b.A}; }
+Frame composed(const Frame& a, const Frame& b) { return {a.r + a.A * b.r, a.A * b.A}; }
 
 Geometry read_geometry(const Dataset& data, const std::string& file) {
     Geometry geometry{.units = read_units(data, file), .parts = {}, .markers = {}};
@@ -190,7 +190,7 @@ Geometry read_geometry(const Dataset& data, const std::string& file) {
         resolve(geometry, id, local);
         const auto part = geometry.parts.find(marker.part);
         const Frame& frame = local.at(id).frame;
-        marker.pose = part == geometry.parts.end() ? frame : placed(part->second.pose, frame);
+        marker.pose = part == geometry.parts.end() ? frame : composed(part->second.pose, frame);
         if (!marker.floats) box.extend(marker.pose.r);
     }
     for (const auto& [id, part] : geometry.parts)

@@ -32,7 +32,7 @@ struct Frame {
     Eigen::Matrix3d A = Eigen::Matrix3d::Identity();  // its axes as columns
 };
 // b, given in the axes of a, in the axes in which a is given.
-Frame placed(const Frame& a, const Frame& b_in_a);
+Frame composed(const Frame& a, const Frame& b_in_a);
 
 struct Part {
     const Statement* statement = nullptr;

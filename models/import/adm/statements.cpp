@@ -65,7 +65,7 @@ struct LineReader {
     Dataset& data;
     const std::string& file;
     std::string name = {};      // of the next statement
-    bool goes_on = false;       // the line before ended with "&"
+    bool continues = false;     // the line before ended with "&"
     bool in_statement = false;  // a continuation is allowed
 
     [[noreturn]] void fail(const std::string& what) const {
@@ -110,8 +110,8 @@ struct LineReader {
         }
         line = trimmed(line.substr(0, mark));
         if (line.empty()) return;
-        const bool continued = std::exchange(goes_on, line.ends_with('&'));
-        if (goes_on) line = trimmed(line.substr(0, line.size() - 1));
+        const bool continued = std::exchange(continues, line.ends_with('&'));
+        if (continues) line = trimmed(line.substr(0, line.size() - 1));
         if (!line.starts_with(',') && !continued) return begin(line);
         if (!in_statement) fail("continuation line without a statement before it");
         if (line.starts_with(',')) line.remove_prefix(1);

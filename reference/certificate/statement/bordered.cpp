@@ -182,7 +182,7 @@ VectorXd rounding_of_equations(const System& system, const VectorXd& z, double a
     VectorXd size = VectorXd::Zero(system.n());
     const Geometry fixed = geometry(system, doubles(z), a);
     for (int b = 0; b < system.bodies; ++b) {
-        const double acting = fixed.acts[static_cast<std::size_t>(b)];
+        const double acting = fixed.force_sizes[static_cast<std::size_t>(b)];
         size.segment<3>(system.balance(b)).setConstant(acting);
         size.segment<3>(system.balance(b) + 3).setConstant(acting * system.length);
     }
@@ -245,10 +245,10 @@ struct NullSpaces {
 // Size of the acting forces on the body of each balance row [N]; on a body without any, the largest
 // of all bodies, so that the rows can be divided by it.
 VectorXd acting_forces(const System& system, const Geometry& fixed) {
-    const double largest = *std::ranges::max_element(fixed.acts);
+    const double largest = *std::ranges::max_element(fixed.force_sizes);
     VectorXd acting(6 * system.bodies);
     for (Index k = 0; k < acting.size(); ++k) {
-        const double on_body = fixed.acts[static_cast<std::size_t>(k / 6)];
+        const double on_body = fixed.force_sizes[static_cast<std::size_t>(k / 6)];
         acting[k] = on_body > 0 ? on_body : largest > 0 ? largest : 1;
     }
     return acting;
@@ -626,28 +626,31 @@ NearEquilibrium equilibrium_from(const System& system, const VectorXd& z, const 
     Problem problem{system, border_at(system, z, a, zero_tolerance, &values), z_g, false, {}, {}};
     VectorXd y = VectorXd::Zero(problem.size());
     y.head(system.n()) = z;
-    Approximate found = newton(problem, y, a, &values);
+    Approximate equilibrium = newton(problem, y, a, &values);
     BorderCheck check;
-    if (found.settled && found.y.allFinite()) {
+    if (equilibrium.settled && equilibrium.y.allFinite()) {
         const Border& border = problem.border;
         // z is the equilibrium, so its border is that of the equilibrium. If the rounding of the
         // stored coordinates loads an idle motion or opens a gap, the border is evaluated again at
         // the corrected state.
         const bool is_at_start = zero_tolerance == rounding && !border.too_large &&
                                  !border.idle_motion_loaded && !border.redundant_row_gap &&
-                                 size_of(problem, found.y - y) <= rounding;
+                                 size_of(problem, equilibrium.y - y) <= rounding;
         // Without a border the factors show that J is regular where they were computed, and their
         // margin covers the movement since then.
-        const bool is_regular = border.count() == 0 &&
-                                found.J.rcond() > surely_regular * std::max(rounding, found.since);
-        check = is_at_start || is_regular ? BorderCheck{true} : check_border(problem, found.y, a);
+        const bool is_regular =
+            border.count() == 0 &&
+            equilibrium.J.rcond() > surely_regular * std::max(rounding, equilibrium.since);
+        check =
+            is_at_start || is_regular ? BorderCheck{true} : check_border(problem, equilibrium.y, a);
     }
-    return {std::move(problem), std::move(found), check};
+    return {std::move(problem), std::move(equilibrium), check};
 }
 
 // Whether the border at the equilibrium has as many columns as that at the start.
-bool has_the_border_of_its_start(const NearEquilibrium& equilibrium) {
-    return equilibrium.there.sound || equilibrium.there.pushed || equilibrium.there.open;
+bool has_border_of_start(const NearEquilibrium& near) {
+    return near.border_check.sound || near.border_check.idle_motion_loaded ||
+           near.border_check.redundant_row_gap;
 }
 
 }  // namespace
@@ -655,14 +658,14 @@ bool has_the_border_of_its_start(const NearEquilibrium& equilibrium) {
 NearEquilibrium equilibrium_near(const System& system, const VectorXd& z, double a) {
     const double rounding = zero_tolerance_of_rounding(system);
     NearEquilibrium direct = equilibrium_from(system, z, z, a, rounding);
-    if (has_the_border_of_its_start(direct)) return direct;
+    if (has_border_of_start(direct)) return direct;
     // Away from an equilibrium an idle motion has some stiffness, and Newton's method would diverge
     // along it. So these motions are first taken into the border, by the looser threshold.
     NearEquilibrium loose = equilibrium_from(system, z, z, a, loose_zero_tolerance);
-    if (!loose.found.settled) return direct;
+    if (!loose.equilibrium.settled) return direct;
     NearEquilibrium repeated =
-        equilibrium_from(system, loose.found.y.head(system.n()), z, a, rounding);
-    return has_the_border_of_its_start(repeated) ? repeated : loose;
+        equilibrium_from(system, loose.equilibrium.y.head(system.n()), z, a, rounding);
+    return has_border_of_start(repeated) ? repeated : loose;
 }
 
 }  // namespace elastocheck::reference::certificate

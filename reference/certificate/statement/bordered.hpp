@@ -107,19 +107,19 @@ Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a,
                    const Values<double>* system_values = nullptr);
 
 // Validity of a border at y. `sound`: as many motions and rows are structurally idle or redundant
-// at y, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond
-// rounding. Nothing is proved unless it is sound.
+// at y, no idle motion is loaded and no redundant row has a gap beyond rounding. Nothing is proved
+// unless it is sound.
 struct BorderCheck {
-    bool sound = false, pushed = false, open = false;
+    bool sound = false, idle_motion_loaded = false, redundant_row_gap = false;
 };
 BorderCheck check_border(const Problem& problem, const Eigen::VectorXd& y, double a);
 
-// Floating-point equilibrium near z, if one was found (`found.settled`), with the check of its
-// border at that equilibrium.
+// Floating-point equilibrium near z, if one was found (`equilibrium.settled`), and the check of
+// the border there.
 struct NearEquilibrium {
     Problem problem;
-    Approximate found;
-    BorderCheck there;
+    Approximate equilibrium;
+    BorderCheck border_check;
 };
 NearEquilibrium equilibrium_near(const System& system, const Eigen::VectorXd& z, double a);
 

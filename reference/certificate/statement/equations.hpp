@@ -24,12 +24,13 @@ struct Frame {
 
 // Wrench on one body: a force, and a moment about its origin.
 template <class T>
-struct Acting {
+struct BodyWrench {
     Vec<T> force, moment;
 };
+// Wrenches of an element or a reaction on its two bodies.
 template <class T>
-struct OnBoth {
-    Acting<T> i, j;
+struct WrenchPair {
+    BodyWrench<T> i, j;
 };
 
 template <class T>
@@ -43,8 +44,8 @@ Vec<T> position(const Frame<T>& body, const Eigen::Vector3d& s_local) {
 
 // Force F at x and moment M on i, and the opposite of both on j.
 template <class T>
-OnBoth<T> opposed(const Vec<T>& F, const Vec<T>& M, const Vec<T>& x, const Frame<T>& i,
-                  const Frame<T>& j) {
+WrenchPair<T> opposed(const Vec<T>& F, const Vec<T>& M, const Vec<T>& x, const Frame<T>& i,
+                      const Frame<T>& j) {
     return {{F, cross(x - i.r, F) + M}, {-F, -(cross(x - j.r, F) + M)}};
 }
 
@@ -62,8 +63,8 @@ T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i
 // Wrenches of a spring on its bodies. δℓ = n · (δp_j - δp_i), n from i to j: the tensile force
 // f(ℓ - ℓ₀) acts along n on i and against it on j.
 template <class T, class ForceOf>
-OnBoth<T> pulling(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
-                  const Frame<T>& j, const ForceOf& f) {
+WrenchPair<T> element_wrenches(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
+                               const Frame<T>& j, const ForceOf& f) {
     using std::sqrt;
     const Vec<T> p_i = position(i, spring.i.s_local), D = position(j, spring.j.s_local) - p_i;
     const T length = sqrt(squared(D));
@@ -72,10 +73,10 @@ OnBoth<T> pulling(const AxialSpring& spring, const T& free_length, const Frame<T
     return opposed(F, none, p_i, i, j);
 }
 
-// Deformation of a bushing. Where it does not depend on the relative rotation of its markers
-// (`rotational` is false) the angles are not computed, and may be arbitrary.
+// Relative pose of the markers of a bushing, and its deformation. Where the law does
+// not depend on the angles (`rotational` is false), they are not computed, and may be arbitrary.
 template <class T>
-struct Measured {
+struct RelativePose {
     Vec<T> p_j, D;     // marker j, and from marker i to it
     Quat<T> A_i, B;    // axes of marker i to ground axes; of j to i
     Quat<T> half;      // C, C² = B: frame in the middle only
@@ -84,9 +85,9 @@ struct Measured {
     std::array<T, 6> e;
 };
 template <class T>
-Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
-                     const Frame<T>& j) {
-    Measured<T> m;
+RelativePose<T> relative_pose(const Bushing& bushing, bool rotational, const Frame<T>& i,
+                              const Frame<T>& j) {
+    RelativePose<T> m;
     m.p_j = position(j, bushing.j.s_local);
     m.D = m.p_j - position(i, bushing.i.s_local);
     m.A_i = product(i.p, unit_quaternion<T>(bushing.i.A_local));
@@ -107,7 +108,7 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
 
 // e - e₀, e₀ the undeformed position, whose d_z its driver increases by `rise`.
 template <class T>
-std::array<T, 6> deformation(const Bushing& bushing, const T& rise, const Measured<T>& m) {
+std::array<T, 6> deformation(const Bushing& bushing, const T& rise, const RelativePose<T>& m) {
     std::array<T, 6> e = m.e;
     e[2] = e[2] - rise;
     for (std::size_t k = 0; k < 6; ++k)
@@ -131,8 +132,9 @@ std::array<T, 6> deformation(const Bushing& bushing, const T& rise, const Measur
 // Not conjugate: A_i g, or A_f g, which are equal for a frame on i. Without the offset moment, F
 // acts on i at p_i, and D × F on neither body.
 template <class T>
-OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& f_g, const Measured<T>& m,
-                 bool rotational, const Frame<T>& i, const Frame<T>& j) {
+WrenchPair<T> element_wrenches(const Bushing& bushing, const std::array<T, 6>& f_g,
+                               const RelativePose<T>& m, bool rotational, const Frame<T>& i,
+                               const Frame<T>& j) {
     const Formulation& formulation = bushing.formulation;
     const Vec<T> F = turned(m.A_f, Vec<T>{{f_g[0], f_g[1], f_g[2]}});
     Vec<T> M = constant<T>(Eigen::Vector3d::Zero());
@@ -143,7 +145,7 @@ OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& f_g, const Meas
         M = turned(m.A_i, g);
     }
     if (!formulation.offset_moment) {
-        OnBoth<T> on = opposed(F, M, m.p_j, i, j);
+        WrenchPair<T> on = opposed(F, M, m.p_j, i, j);
         on.i.moment = on.i.moment - cross(m.D, F);
         return on;
     }
@@ -163,7 +165,7 @@ OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& f_g, const Meas
 template <class T>
 struct Row {
     T Phi;
-    OnBoth<T> reaction;
+    WrenchPair<T> reaction;
 };
 template <class T, std::size_t n = 1>
 using Rows = std::array<Row<T>, n>;
@@ -221,26 +223,26 @@ Rows<T> rows_of(const DirectionAtAngle& c, const T& value, const Frame<T>& i, co
 // ---- Loads of unit factor
 
 template <class T>
-Acting<T> acting(const DeadForce& load, const Frame<T>& body) {
+BodyWrench<T> load_wrench(const DeadForce& load, const Frame<T>& body) {
     const Vec<T> f = constant<T>(load.f);
     return {f, cross(lever(body, load.at.s_local), f)};
 }
 template <class T>
-Acting<T> acting(const DeadMoment& load, const Frame<T>&) {
+BodyWrench<T> load_wrench(const DeadMoment& load, const Frame<T>&) {
     return {constant<T>(Eigen::Vector3d::Zero()), constant<T>(load.m)};
 }
 template <class T>
-Acting<T> acting(const FollowerForce& load, const Frame<T>& body) {
+BodyWrench<T> load_wrench(const FollowerForce& load, const Frame<T>& body) {
     const Vec<T> f = lever(body, load.f_local);
     return {f, cross(lever(body, load.at.s_local), f)};
 }
 template <class T>
-Acting<T> acting(const FollowerMoment& load, const Frame<T>& body) {
+BodyWrench<T> load_wrench(const FollowerMoment& load, const Frame<T>& body) {
     return {constant<T>(Eigen::Vector3d::Zero()), lever(body, load.m_local)};
 }
 // Moment (p - r) × f on the carrier, p a point of the wheel.
 template <class T>
-Acting<T> acting(const BrakeForce& load, const Frame<T>& carrier, const Frame<T>& wheel) {
+BodyWrench<T> load_wrench(const BrakeForce& load, const Frame<T>& carrier, const Frame<T>& wheel) {
     const Vec<T> f = constant<T>(load.f);
     return {f, cross(position(wheel, load.patch.s_local) - carrier.r, f)};
 }

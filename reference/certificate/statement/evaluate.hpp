@@ -28,7 +28,7 @@ struct Assembly {
     std::vector<Slope<S>> slopes = {};  // of all parts, one after the other
     bool fixed_forces = false;          // elastic forces are constant: slopes of the geometry alone
     // Σ |force| + |moment| / L of the parts on each body; not computed if empty
-    std::vector<double> acts = {};
+    std::vector<double> force_sizes = {};
 
     // ---- Bodies, with or without slopes
 
@@ -104,19 +104,20 @@ struct Assembly {
     }
 
     template <class T>
-    void add_to_acts(BodyId body, const Acting<T>& on, double times = 1) {
-        if (acts.empty()) return;
+    void add_force_size(BodyId body, const BodyWrench<T>& on, double times = 1) {
+        if (force_sizes.empty()) return;
         double force = 0, moment = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             force = std::max(force, mag(range(on.force[k])));
             moment = std::max(moment, mag(range(on.moment[k])));
         }
-        acts[static_cast<std::size_t>(body)] += std::abs(times) * (force + moment / system.length);
+        force_sizes[static_cast<std::size_t>(body)] +=
+            std::abs(times) * (force + moment / system.length);
     }
     template <class T>
-    void add(const Slots& slots, BodyId body, const Acting<T>& on) {
+    void add(const Slots& slots, BodyId body, const BodyWrench<T>& on) {
         if (body == ground) return;
-        add_to_acts(body, on);
+        add_force_size(body, on);
         const int row = system.balance(body);
         for (int k = 0; k < 3; ++k) {
             add(slots, row + k, on.force[static_cast<std::size_t>(k)]);
@@ -125,9 +126,10 @@ struct Assembly {
     }
     // Adds the action times R, the unknown in column `column`.
     template <class T>
-    void add_times(const Slots& slots, BodyId body, const Acting<T>& on, const S& R, int column) {
+    void add_times(const Slots& slots, BodyId body, const BodyWrench<T>& on, const S& R,
+                   int column) {
         if (body == ground) return;
-        add_to_acts(body, on, mag(range(R)));
+        add_force_size(body, on, mag(range(R)));
         const int row = system.balance(body);
         const auto add_row = [&](int to, const T& x) {
             add(slots, to, T(x * R));
@@ -149,18 +151,18 @@ struct Assembly {
             [&](const auto& kind) {
                 const Slots slots{kind.i.body, kind.j.body};
                 const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
-                if (has_no_more(kind, path)) return;
-                const OnBoth<T> on = acting_at(kind, path, i, j);
+                if (is_separated(kind, path)) return;
+                const WrenchPair<T> on = wrenches_at(kind, path, i, j);
                 add(slots, slots.i, on.i);
                 add(slots, slots.j, on.j);
             },
             system.model->elastics[e].kind);
     }
     // Whether the only law of an element is separated.
-    static bool has_no_more(const AxialSpring&, const ElementPath& path) {
+    static bool is_separated(const AxialSpring&, const ElementPath& path) {
         return path.separated[0];
     }
-    static bool has_no_more(const Bushing&, const ElementPath&) { return false; }
+    static bool is_separated(const Bushing&, const ElementPath&) { return false; }
     // Deformations of an element; `back`: with the slopes of turned_back().
     template <class T>
     std::array<T, 6> deformations_at(const AxialSpring& spring, const ElementPath& path,
@@ -173,23 +175,23 @@ struct Assembly {
     std::array<T, 6> deformations_at(const Bushing& bushing, const ElementPath& path,
                                      const Frame<T>& i, const Frame<T>& j,
                                      bool back = false) const {
-        const Measured<T> m = measured(bushing, path.rotational, i, j);
+        const RelativePose<T> m = relative_pose(bushing, path.rotational, i, j);
         const std::array<T, 6> e = deformation(bushing, path.free_length.at(parameter<T>()), m);
         if (!back) return e;
         return turned_back(e, path, m.A_f, +1);
     }
     template <class T>
-    OnBoth<T> acting_at(const AxialSpring& spring, const ElementPath& path, const Frame<T>& i,
-                        const Frame<T>& j) {
-        return pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
+    WrenchPair<T> wrenches_at(const AxialSpring& spring, const ElementPath& path, const Frame<T>& i,
+                              const Frame<T>& j) {
+        return element_wrenches(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
             const T f = force(spring.law, x);
             return fixed_forces ? constant_of(f) : as_one(f, 0);
         });
     }
     template <class T>
-    OnBoth<T> acting_at(const Bushing& bushing, const ElementPath& path, const Frame<T>& i,
-                        const Frame<T>& j) {
-        const Measured<T> m = measured(bushing, path.rotational, i, j);
+    WrenchPair<T> wrenches_at(const Bushing& bushing, const ElementPath& path, const Frame<T>& i,
+                              const Frame<T>& j) {
+        const RelativePose<T> m = relative_pose(bushing, path.rotational, i, j);
         const T raised = path.free_length.at(parameter<T>());
         std::array<T, 6> u = force(bushing.law, deformation(bushing, raised, m), path.separated);
         for (std::size_t k = 0; k < 6; ++k)
@@ -198,7 +200,7 @@ struct Assembly {
             for (T& x : u) x = constant_of(x);
             u = turned_back(u, path, m.A_f, -1);
         }
-        return acting(bushing, u, m, path.rotational, i, j);
+        return element_wrenches(bushing, u, m, path.rotational, i, j);
     }
 
     // The force k of an element as one number in all equations: its middle, with a derivative of
@@ -249,30 +251,31 @@ struct Assembly {
 
     // Deformation of one separated law, and the actions of its unit force.
     template <class T>
-    struct OfOne {
+    struct UnitAction {
         T x;
-        OnBoth<T> on;
+        WrenchPair<T> on;
     };
     template <class T>
-    OfOne<T> of_one(const AxialSpring& spring, const ElementPath& path, std::size_t,
-                    const Frame<T>& i, const Frame<T>& j) {
-        OfOne<T> result;
-        result.on = pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
-            result.x = x;
-            return constant<T>(1.);
-        });
+    UnitAction<T> unit_action(const AxialSpring& spring, const ElementPath& path, std::size_t,
+                              const Frame<T>& i, const Frame<T>& j) {
+        UnitAction<T> result;
+        result.on =
+            element_wrenches(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
+                result.x = x;
+                return constant<T>(1.);
+            });
         return result;
     }
     template <class T>
-    OfOne<T> of_one(const Bushing& bushing, const ElementPath& path, std::size_t axis,
-                    const Frame<T>& i, const Frame<T>& j) {
-        const Measured<T> m = measured(bushing, path.rotational, i, j);
+    UnitAction<T> unit_action(const Bushing& bushing, const ElementPath& path, std::size_t axis,
+                              const Frame<T>& i, const Frame<T>& j) {
+        const RelativePose<T> m = relative_pose(bushing, path.rotational, i, j);
         std::array<T, 6> u;
         u.fill(constant<T>(0.));
         u[axis] = constant<T>(1.);
         const T raised = path.free_length.at(parameter<T>());
         return {deformation(bushing, raised, m)[axis],
-                acting(bushing, u, m, path.rotational, i, j)};
+                element_wrenches(bushing, u, m, path.rotational, i, j)};
     }
     template <class T>
     void curve(std::size_t c) {
@@ -284,8 +287,8 @@ struct Assembly {
             [&](const auto& kind) {
                 const Slots slots{kind.i.body, kind.j.body};
                 const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
-                const OfOne<T> one =
-                    of_one(kind, system.elements[separated.element], separated.axis, i, j);
+                const UnitAction<T> one =
+                    unit_action(kind, system.elements[separated.element], separated.axis, i, j);
                 add(slots, to, T(one.x - x));
                 add_times(slots, slots.i, one.on.i, f, f_at);
                 add_times(slots, slots.j, one.on.j, f, f_at);
@@ -334,14 +337,15 @@ struct Assembly {
         const Slots slots = slots_of(path.kind);
         const auto body = frame<T>(slots.i, 0);
         const T factor = path.factor.at(parameter<T>());
-        const Acting<T> on = std::visit(
-            overloaded{[&](const auto& kind) { return acting(kind, body); },
+        const BodyWrench<T> on = std::visit(
+            overloaded{[&](const auto& kind) { return load_wrench(kind, body); },
                        [&](const BrakeForce& brake) {
                            const bool own = brake.patch.body == brake.body;
-                           return acting(brake, body, own ? body : frame<T>(slots.j, slots.at_j()));
+                           return load_wrench(brake, body,
+                                              own ? body : frame<T>(slots.j, slots.at_j()));
                        }},
             path.kind);
-        add(slots, slots.i, Acting<T>{on.force * factor, on.moment * factor});
+        add(slots, slots.i, BodyWrench<T>{on.force * factor, on.moment * factor});
     }
 
     template <class T>
@@ -419,7 +423,7 @@ Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Sl
 // Action on the joint's body i, moved from the body's origin to the joint's point.
 template <class S>
 JointWrench<S> about_joint(const Assembly<S>& assembly, const ModelJoint& joint,
-                           const Acting<S>& on) {
+                           const BodyWrench<S>& on) {
     const Vec<S> arm = position(assembly.template frame<S>(joint.at.body, 0), joint.at.s_local) -
                        assembly.template frame<S>(joint.i, 0).r;
     return {on.force, on.moment - cross(arm, on.force)};

@@ -13,9 +13,9 @@ template std::vector<JointWrench<double>> unit_wrenches(const System&, int,
 Geometry geometry(const System& system, const std::vector<double>& z, double a) {
     Assembly<double> sum{system, z, a, {}};
     sum.fixed_forces = true;
-    sum.acts.assign(static_cast<std::size_t>(system.bodies), 0);
+    sum.force_sizes.assign(static_cast<std::size_t>(system.bodies), 0);
     assemble<double, Dual<double, 8>, Dual<double, 15>>(sum, Slopes::yes);
-    return {std::move(sum.out.J), std::move(sum.acts)};
+    return {std::move(sum.out.J), std::move(sum.force_sizes)};
 }
 
 Eigen::MatrixXd deformation_slopes(const System& system, std::size_t element,

@@ -127,7 +127,7 @@ Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z,
 // Σ |force| + |moment| / L over its elements, reactions and loads [N].
 struct Geometry {
     SparseRows<double> J;
-    std::vector<double> acts;
+    std::vector<double> force_sizes;
 };
 Geometry geometry(const System& system, const std::vector<double>& z, double a);
 // ∂e/∂z of the deformation of an element, springs in the first row only [6 × 7 nb].

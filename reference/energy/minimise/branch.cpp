@@ -89,13 +89,14 @@ VectorXd resisted_increment(const Path& path, const State& from, const State& to
     return xi - idle * (idle.transpose() * xi);
 }
 
-bool without_potential(const Path& path) {
-    return path.course.start.without_potential() || path.course.rate.without_potential();
+bool has_unsymmetric_stiffness(const Path& path) {
+    return path.course.start.has_unsymmetric_stiffness() ||
+           path.course.rate.has_unsymmetric_stiffness();
 }
 
-// A of K = H + A; empty without a load without potential.
+// A of K = H + A; empty where no load has one.
 std::optional<MatrixXd> unsymmetric_stiffness(const Path& path, const State& state) {
-    if (!without_potential(path)) return {};
+    if (!has_unsymmetric_stiffness(path)) return {};
     return load_stiffness(at(path.course, state.a), path.scales, state.poses);
 }
 
@@ -152,7 +153,7 @@ bool is_spent(const Modes& at_start, const Modes& modes) {
 // So w |t| keeps its value at a limit point, and goes to zero with w at a bifurcation. Under a load
 // without potential w is that of the minimum and does not classify the branch.
 Failure spent_mode(const Path& path, const Continuation& continuation, const VectorXd& t) {
-    if (without_potential(path)) return Failure{Outcome::branch_lost, unstable};
+    if (has_unsymmetric_stiffness(path)) return Failure{Outcome::branch_lost, unstable};
     constexpr double min_product = 0.02;  // of w |t| at the start
     const auto softest = path.start_modes.idle_motions().cols();
     const double share =
@@ -388,7 +389,7 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
             state = std::move(attempt.state);
         }
         if (largest(xi) <= path.scales.roundoff) break;  // the next chart would be the same
-        if (!prescribed.without_potential()) continue;
+        if (!prescribed.has_unsymmetric_stiffness()) continue;
         // A new centre rotates the moments relative to the bodies, and moves the patches. Without
         // this Newton increment the charts converge only linearly.
         const VectorXd newton_xi = newton_increment(state, unsymmetric_stiffness(path, state),

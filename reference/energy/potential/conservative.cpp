@@ -30,7 +30,7 @@ bool preloads(const Branch& branch, int element) {
 
 }  // namespace
 
-std::optional<std::string> without_potential(const Model& model, const Branch& branch) {
+std::optional<std::string> why_not_conservative(const Model& model, const Branch& branch) {
     for (const auto& load : model.static_loads)
         if (follows(load)) return why(load);
     for (const auto& driver : branch.drivers) {

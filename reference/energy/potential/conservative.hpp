@@ -11,6 +11,6 @@ namespace elastocheck::reference::energy {
 // The first load or bushing that acts somewhere along the branch and has no energy, with the
 // reason; empty for a conservative model. A follower on ground, a follower held at zero, and a
 // bushing without law and preload do not act.
-std::optional<std::string> without_potential(const Model& model, const Branch& branch);
+std::optional<std::string> why_not_conservative(const Model& model, const Branch& branch);
 
 }  // namespace elastocheck::reference::energy

@@ -24,8 +24,9 @@ struct Prescribed {
     Eigen::VectorXd gap;       // Φ = gap instead of Φ = 0, row by row [m]
     Eigen::VectorXd strength;  // s - 1, s the factor of each element's law
 
-    // Whether loads act that have a potential only at the centre of a chart (chart.hpp).
-    bool without_potential() const { return !moments.empty() || !brakes.empty(); }
+    // Whether loads act that have a potential only at the centre of a chart (chart.hpp), and an
+    // unsymmetric stiffness.
+    bool has_unsymmetric_stiffness() const { return !moments.empty() || !brakes.empty(); }
 };
 
 // No loads, all other quantities as in the model.

@@ -11,12 +11,12 @@ namespace {
 
 using Eigen::VectorXd;
 
-// Name of the body with the largest of the six entries that each has in `by_body` [n].
-std::string body_with_largest(const System& system, const VectorXd& by_body) {
+// Name of the body whose six entries of the vector [n] are largest.
+std::string body_with_largest(const System& system, const VectorXd& vector) {
     double largest_part = -1;
     std::string name;
     for (int body = 0; body < system.bodies; ++body) {
-        const double part = by_body.segment<6>(6 * body).norm();
+        const double part = vector.segment<6>(6 * body).norm();
         if (part > largest_part * 1.000001) {
             largest_part = part;
             name = system.model->bodies[static_cast<std::size_t>(body)].name;
@@ -25,16 +25,15 @@ std::string body_with_largest(const System& system, const VectorXd& by_body) {
     return name;
 }
 
-// Names of the joints that take part in a dependency of the constraints, `left` [m], one entry per
-// row.
-std::string joints_in(const System& system, const VectorXd& left) {
+// Names of the joints with entries in a vector of the constraint rows [m], such as a dependency.
+std::string joints_in(const System& system, const VectorXd& vector) {
     constexpr double min_part = 1e-6;  // below round-off
     std::string names;
     int row = 0, last = -1;
     for (const auto& constraint : system.model->constraints) {
-        const double part = left.segment(row, rows(constraint.kind)).norm();
+        const double part = vector.segment(row, rows(constraint.kind)).norm();
         row += rows(constraint.kind);
-        if (!(part > min_part * left.norm()) || constraint.joint == last) continue;
+        if (!(part > min_part * vector.norm()) || constraint.joint == last) continue;
         last = constraint.joint;
         names += (names.empty() ? "'" : ", '") +
                  system.model->joints[static_cast<std::size_t>(last)].name + "'";
@@ -74,9 +73,9 @@ constexpr double gap_tolerance = 1e-9;
 // bifurcation it goes to zero with μ.
 bool turns_back(const Continuation& continuation) {
     constexpr double max_stiffness = 0.15, min_product = 0.02;  // relative to their values at a = 0
-    const double share = continuation.current.stiffness.least / continuation.first_stiffness;
-    return continuation.stage == Stage::branch && std::abs(share) <= max_stiffness &&
-           std::abs(share) * pose_size(continuation.system, continuation.current.tangent) >=
+    const double stiffness = continuation.current.stiffness.least / continuation.first_stiffness;
+    return continuation.stage == Stage::branch && std::abs(stiffness) <= max_stiffness &&
+           std::abs(stiffness) * pose_size(continuation.system, continuation.current.tangent) >=
                min_product * continuation.first_tangent;
 }
 

@@ -46,7 +46,7 @@ struct Spectrum {
         modulus = std::min(modulus, std::abs(mu));
         negative += real && mu.real() < 0;
     }
-    Stiffness of(const System& system, double round_off) const {
+    Stiffness stiffness(const System& system, double round_off) const {
         if (system.conservative) return {lowest, round_off};
         return {negative % 2 == 0 ? modulus : -modulus, round_off, negative};
     }
@@ -172,11 +172,11 @@ struct Ritz {
     VectorXd last;
 };
 std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
-    constexpr double may_matter = 1e-3;
+    constexpr double max_asymmetry = 1e-3;
     if (const MatrixXd S = (H + H.transpose()) / 2; conservative) {
         const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
         if (solver.info() != Eigen::Success) return std::nullopt;
-        if ((H - S).norm() <= may_matter * solver.eigenvalues().cwiseAbs().maxCoeff())
+        if ((H - S).norm() <= max_asymmetry * solver.eigenvalues().cwiseAbs().maxCoeff())
             return Ritz{solver.eigenvalues(),
                         solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
     }
@@ -185,11 +185,11 @@ std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
     return Ritz{solver.eigenvalues(), solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
 }
 
-// Eigenvalues of M next to zero by Arnoldi's method on M⁻¹, whose largest they are: the first ones,
+// Eigenvalues of M near zero by Arnoldi's method on M⁻¹, whose largest they are: the first ones,
 // to a relative error of 1e-8, as soon as the very first has converged; or `all`, which is the
 // complete spectrum without multiplicity if at most `max_values` motions are free.
-std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative,
-                                     bool all) {
+std::optional<Spectrum> eigenvalues_near_zero(const Inverse& inverse, Index n, Index free,
+                                              bool conservative, bool all) {
     constexpr Index max_values = 200, steps_between_checks = 4;
     constexpr double tolerance = 1e-8, round_off = 1e-14;
     const Index size = std::min(max_values, free);
@@ -257,7 +257,7 @@ std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J,
     const auto spectrum = spectrum_of_few(system, J, idle, redundant);
     if (!spectrum) return std::nullopt;
     Stiffness result =
-        spectrum->of(system, eigenvalue_round_off * largest_entry(balance_rows(system, J)));
+        spectrum->stiffness(system, eigenvalue_round_off * largest_entry(balance_rows(system, J)));
     result.redundant = redundant;
     result.log_determinant = spectrum->log_product;
     return result;
@@ -280,9 +280,9 @@ Stiffness stiffness(const System& system, const Linearisation& linearisation) {
     const bool is_surely_stable =
         system.conservative && surely_stable(K, constraint_rows(system, linearisation.J),
                                              linearisation.modes, std::max(size, 1.0), round_off);
-    const auto spectrum =
-        next_to_zero(Inverse(linearisation, n), n, free, system.conservative, !is_surely_stable);
-    Stiffness result = spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
+    const auto spectrum = eigenvalues_near_zero(Inverse(linearisation, n), n, free,
+                                                system.conservative, !is_surely_stable);
+    Stiffness result = spectrum ? spectrum->stiffness(system, round_off) : Stiffness{nan, nan};
     result.redundant = redundant;
     return result;
 }

@@ -33,11 +33,11 @@ struct Interaction {
 // Actions of an element on its two bodies: opposite, unless its formulation applies the force to
 // each body at a different point.
 template <class T>
-struct OnBoth {
+struct InteractionPair {
     Interaction<T> i, j;
 };
 template <class T>
-OnBoth<T> opposed(const Interaction<T>& on_i) {
+InteractionPair<T> opposed(const Interaction<T>& on_i) {
     return {on_i, {-on_i.force, -on_i.moment, on_i.at}};
 }
 
@@ -66,8 +66,8 @@ T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i
 
 // A spring pulls its ends together with N = u'(ℓ - ℓ₀) + preload along e = (p_j - p_i) / ℓ.
 template <class T>
-OnBoth<T> interaction(const AxialSpring& spring, const T& free_length, const T& preload, int piece,
-                      const Frame<T>& i, const Frame<T>& j) {
+InteractionPair<T> interaction(const AxialSpring& spring, const T& free_length, const T& preload,
+                               int piece, const Frame<T>& i, const Frame<T>& j) {
     using std::sqrt;
     const Vec3<T> p_i = position(i, spring.i.s_local), p_j = position(j, spring.j.s_local);
     const Vec3<T> along = p_j - p_i;
@@ -79,11 +79,11 @@ OnBoth<T> interaction(const AxialSpring& spring, const T& free_length, const T& 
     return opposed(on_i);
 }
 
-// Deformation of a bushing. Where neither law nor preload depend on the relative rotation of the
-// markers (`rotational` is false), the rotation may be arbitrarily large, and the angles, which
-// have singularities, are not computed.
+// Relative pose of the markers of a bushing, and its deformation. Where neither law nor
+// preload depend on the relative rotation (`rotational` is false), it may be arbitrarily large, and
+// the angles, which have singularities, are not computed.
 template <class T>
-struct Measured {
+struct RelativePose {
     Vec3<T> p_i, p_j;          // the markers [m]
     Eigen::Quaternion<T> A_i;  // axes of marker i to ground axes
     Eigen::Quaternion<T> A_f;  // axes of the frame to ground axes
@@ -93,9 +93,9 @@ struct Measured {
 };
 
 template <class T>
-Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
-                     const Frame<T>& j) {
-    Measured<T> m;
+RelativePose<T> relative_pose(const Bushing& bushing, bool rotational, const Frame<T>& i,
+                              const Frame<T>& j) {
+    RelativePose<T> m;
     m.p_i = position(i, bushing.i.s_local);
     m.p_j = position(j, bushing.j.s_local);
     m.A_i = product(i.p, bushing.i.A_local);
@@ -135,29 +135,28 @@ Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
 // Not conjugate (frame on i): the moment is A_i g, although it is not conjugate to θ. Without
 // offset moment, D × F acts on neither body: F acts on each at its own marker.
 template <class T>
-OnBoth<T> interaction(const Bushing& bushing, const Measured<T>& measured_at, const Vec6<T>& fg,
-                      bool rotational) {
+InteractionPair<T> interaction(const Bushing& bushing, const RelativePose<T>& markers,
+                               const Vec6<T>& fg, bool rotational) {
     const Formulation& formulation = bushing.formulation;
     Interaction<T> on_i;
-    on_i.force = turned(measured_at.A_f, Vec3<T>(fg.template head<3>()));
-    on_i.at = measured_at.p_j;
+    on_i.force = turned(markers.A_f, Vec3<T>(fg.template head<3>()));
+    on_i.at = markers.p_j;
     if (rotational) {
         const Vec3<T> g = fg.template tail<3>();
         Vec3<T> m = g;
         if (formulation.conjugate)
-            m = measured_at.angles.a[0] * g[0] + measured_at.angles.a[1] * g[1] +
-                measured_at.angles.a[2] * g[2];
-        on_i.moment = turned(measured_at.A_i, m);
+            m = markers.angles.a[0] * g[0] + markers.angles.a[1] * g[1] +
+                markers.angles.a[2] * g[2];
+        on_i.moment = turned(markers.A_i, m);
     }
     if (!formulation.offset_moment) {
-        OnBoth<T> on = opposed(on_i);
-        on.i.at = measured_at.p_i;
+        InteractionPair<T> on = opposed(on_i);
+        on.i.at = markers.p_i;
         return on;
     }
     if (formulation.frame == Formulation::Frame::middle) {
-        const Vec3<T> offset = cross(Vec3<T>(measured_at.p_j - measured_at.p_i), on_i.force);
-        on_i.moment -=
-            (offset + cross(turned(measured_at.A_i, measured_at.half_turn), offset)) * T(0.5);
+        const Vec3<T> offset = cross(Vec3<T>(markers.p_j - markers.p_i), on_i.force);
+        on_i.moment -= (offset + cross(turned(markers.A_i, markers.half_turn), offset)) * T(0.5);
     }
     return opposed(on_i);
 }

@@ -138,7 +138,7 @@ Vec6<T> preload_at(const ElementPath& path, const T& a) {
 // e - e₀ of a bushing at a.
 template <class T>
 Vec6<T> deformed(const Bushing& bushing, const ElementPath& path, const T& a,
-                 const Measured<T>& at) {
+                 const RelativePose<T>& at) {
     Vec6<T> e = at.e - bushing.undeformed.cast<T>();
     e[2] -= path.free_length.at(a);
     return e;
@@ -153,8 +153,8 @@ struct FramePair {
 
 // Actions of element e on its two bodies.
 template <class T>
-OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const T& held,
-                      const Pieces& pieces, const FramePair<T>& frames) {
+InteractionPair<T> interaction(const System& system, std::size_t e, const T& a, const T& held,
+                               const Pieces& pieces, const FramePair<T>& frames) {
     const ElementPath& path = system.elements[e];
     const ElementPieces& on = pieces.empty() ? all_by_themselves : pieces[e];
     return std::visit(
@@ -167,8 +167,8 @@ OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const T& 
                        Vec6<T> preload = preload_at(path, a);
                        if (system.grows)
                            for (int k = 0; k < 6; ++k) preload[k] -= held * path.stored[k];
-                       const Measured<T> at =
-                           measured(bushing, path.rotational, frames.i, frames.j);
+                       const RelativePose<T> at =
+                           relative_pose(bushing, path.rotational, frames.i, frames.j);
                        const Vec6<T> law =
                            gradient(bushing.law, deformed(bushing, path, a, at), on);
                        return interaction(bushing, at, Vec6<T>(law + preload), path.rotational);
@@ -188,7 +188,7 @@ Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Fram
                                  },
                                  [&](const Bushing& bushing) {
                                      return deformed(bushing, path, a,
-                                                     measured(bushing, path.rotational, i, j));
+                                                     relative_pose(bushing, path.rotational, i, j));
                                  }},
                       system.model->elastics[e].kind);
 }

@@ -174,7 +174,7 @@ Table summary(const std::list<ScenePart>& parts) {
             return worst ? quantity(worst->max, symbol(worst->unit)) : "–";
         };
         double other = -1;
-        for (const auto& worst : {judgement.other, judgement.other_across})
+        for (const auto& worst : {judgement.other, judgement.other_at_abscissa})
             if (worst && worst->extent > 0) other = std::max(other, worst->max / worst->extent);
         const auto& rate = judgement.wheel_rate;
         table.rows.push_back({part.scene.scene.name,
@@ -183,8 +183,8 @@ Table summary(const std::list<ScenePart>& parts) {
                                                        : "–",
                               none ? "–" : chosen->method + ", " + chosen->setting,
                               none ? "–" : percent(chosen->cost), size(judgement.position),
-                              size(judgement.position_across), size(judgement.angle),
-                              size(judgement.angle_across),
+                              size(judgement.position_at_abscissa), size(judgement.angle),
+                              size(judgement.angle_at_abscissa),
                               !rate ? "–"
                                     : fmt::format("{} too {}", percent(std::abs(rate->off)),
                                                   rate->off < 0 ? "soft" : "stiff"),

@@ -17,8 +17,8 @@ std::optional<Section> methods_section(const SceneAnalyses& scene) {
     const auto rows = method_rows(scene);
     section.words = {{"sentence", sentence}, {"studied", scene.trade.has_value()}};
     if (rows.empty()) return section;
-    section.words["not_across"] = std::ranges::any_of(rows, [](const MethodRow& row) {
-        return std::isnan(row.mm_across) && std::isnan(row.deg_across);
+    section.words["not_at_equal_travel"] = std::ranges::any_of(rows, [](const MethodRow& row) {
+        return std::isnan(row.mm_at_abscissa) && std::isnan(row.deg_at_abscissa);
     });
     using enum Digits;
     using M = MethodRow;
@@ -32,8 +32,8 @@ std::optional<Section> methods_section(const SceneAnalyses& scene) {
                                              : "no"; }},
          {"error at equal load or drive", size, &M::mm, "", "mm"},
          {"angle", size, &M::deg, "", "deg"},
-         {"error at equal travel", size, &M::mm_across, "", "mm"},
-         {"angle", size, &M::deg_across, "", "deg"},
+         {"error at equal travel", size, &M::mm_at_abscissa, "", "mm"},
+         {"angle", size, &M::deg_at_abscissa, "", "deg"},
          {"work, of the full solution", percent, &M::cost}},
         rows);
     section.tables.push_back(std::move(table));

@@ -1,5 +1,7 @@
 // The wheel centres seen from the front, dragged, turned by a key, from the top, and nearer.
-const seen={wrong,requests:performance.getEntriesByType('resource').length,hidden:getComputedStyle(fixed).display};
-press('Front');seen.front=centres();drag(60,0);seen.dragged=centres();drag(-60,0);seen.back=centres();
+const seen={wrong,requests:performance.getEntriesByType('resource').length,
+  hidden:getComputedStyle(fixed).display};
+press('Front');seen.front=centres();
+drag(60,0);seen.dragged=centres();drag(-60,0);seen.back=centres();
 key('ArrowRight');seen.key=centres();press('Top');seen.top=centres();press('+');seen.near=centres();
-seen.focus=svg.tabIndex;seen.buttons=[...document.querySelectorAll('.turn button')].map(b=>b.ariaLabel);
+seen.focus=svg.tabIndex;seen.buttons=buttons().map(b=>b.ariaLabel);
