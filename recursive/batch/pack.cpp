@@ -263,6 +263,7 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
             [&] {
                 for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = only_where(corrected, x[k]);
             },
+            // All orders: which of them suffice would depend on the other lanes.
             [](int) { return false; }});
 }
 

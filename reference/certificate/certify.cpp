@@ -497,6 +497,12 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         return open(
             "Krawczyk's operator contracts in no box: the stiffness is too close to singular for "
             "double precision, or a law ends here");
+    if (within(certificate.error, tolerance))
+        return open(fmt::format(
+            "a state is proved within {} that needs {:.2g} N or N·m on an idle motion and "
+            "a gap of {:.2g} m or rad in redundant joints; allowed: {:.2g}, {:.2g}",
+            as_text(certificate.error), certificate.held, certificate.gap, tolerance.held,
+            tolerance.gap));
     return open(fmt::format(
         "an equilibrium is proved within {}, beyond the tolerance; that none is within the "
         "tolerance could not be proved",
