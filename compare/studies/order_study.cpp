@@ -25,7 +25,8 @@ OrderLevel level_of(const Solves& solves, const BranchSide& side, const Referenc
                     double tolerance, int order) {
     const auto path = recursive::series::follow(
         side.model, side.branch,
-        {.order = order, .tolerance = tolerance, .expansions = max_expansions}, *side.analysis);
+        {.order = order, .last_order = order, .tolerance = tolerance, .expansions = max_expansions},
+        *side.analysis);
     const auto points = recursive::series::sample(side.model, path, side.branch, side.branch.steps);
     const Curve found = curve(solves.model, solves.channels, side.branch, points.points);
     OrderLevel level{.order = order,

@@ -16,7 +16,7 @@
 #include "compare/outputs/catalogue/catalogue.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
-#include "elastocheck/batch.hpp"
+#include "elastocheck/recursive_batch.hpp"
 #include "models/branch.hpp"
 #include "models/structure.hpp"
 

@@ -70,7 +70,9 @@ struct Adaptive {
     double angle_tolerance = 1.745e-5;  // ... and orientation [rad] at any point of the branch
 };
 struct Series {
-    int order = 24;  // p; an expansion ends at the lowest order that reaches the end of the branch
+    int order = 16;  // p
+    // The end of the branch is reached by the lowest order that does, up to this one.
+    int last_order = 24;
     // truncation error of any body's position [m], and of its orientation times the model's size [m]
     double tolerance = 1e-12;
     // maximum number; as many again for each knot of a curve that the branch crosses

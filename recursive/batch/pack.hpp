@@ -15,7 +15,7 @@
 #include <memory>
 #include <span>
 
-#include "elastocheck/batch.hpp"
+#include "elastocheck/recursive_batch.hpp"
 #include "recursive/batch/kernels.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"

@@ -2,7 +2,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "elastocheck/batch.hpp"
+#include "elastocheck/recursive_batch.hpp"
 #include "models/structure.hpp"
 #include "recursive/batch/pack.hpp"
 

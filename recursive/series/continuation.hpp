@@ -47,8 +47,9 @@ struct Continuation {
                  const recursive::Series& options_, Drive drive)
         : s(s_),
           options(options_),
-          e(equations<double>(s.model, s.branch, options.order, drive)),
-          c(reserve_coefficients<double>(s.n() + s.m(), options.order)),
+          e(equations<double>(s.model, s.branch, std::max(options.order, options.last_order),
+                              drive)),
+          c(reserve_coefficients<double>(s.n() + s.m(), e.order())),
           curves(curves_),
           // A corrected point may miss a knot by the accepted error, ten tolerances.
           knot_tolerance{.length = s.setup.length,

@@ -75,16 +75,19 @@ void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, con
         return !(s.work.x.head(n).norm() <= loses_digits * c.x.col(1).head(n).norm());
     };
     const auto keep_all = [] {};
-    // The margin is for a singularity, which may shorten the range (reach()).
+    // The margin is for a singularity, which may shorten the range (reach()), and for the accuracy of
+    // λ. From p on the orders go on only where they are likely to reach the end, as the range grows
+    // by about (|x| / tolerance)^(1/p - 1/k).
     const auto suffices = [&](int k) {
         constexpr int min_order = 8;
-        constexpr double margin = 1.25;
-        const auto exceeds = [&](int order) {
-            return size(s, c, extent.metres_per_unit, order) *
-                       std::pow(margin * extent.rest, order) >
-                   extent.tolerance;
+        constexpr double margin = 2, growth = 1.7;
+        const auto exceeds = [&](int order, double tau) {
+            return !(size(s, c, extent.metres_per_unit, order) * std::pow(tau, order) <=
+                     extent.tolerance);
         };
-        return k >= min_order && k % 2 == 0 && !exceeds(k) && !exceeds(k - 1);
+        if (k < min_order || k % 2 != 0) return k == extent.order;
+        if (k >= extent.order && exceeds(k, extent.rest / growth)) return true;
+        return !exceeds(k, margin * extent.rest) && !exceeds(k - 1, margin * extent.rest);
     };
     compute_orders(e, c, s.work.x, OrderSteps{solve, straighten, loses, keep_all, suffices});
 }

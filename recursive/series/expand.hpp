@@ -96,7 +96,8 @@ inline constexpr double loses_digits = 1e-13;
 // previous_direction [n] is not zero, the direction of that motion.
 struct Extent {
     double a_1 = 0;
-    // The lowest order is taken whose range of truncation reaches τ = `rest` with this tolerance.
+    int order = 0;  // p
+    // A lower or higher order is taken where its range of truncation reaches τ = `rest` by it.
     double rest = std::numeric_limits<double>::infinity();
     double tolerance = 0;        // [m]
     double metres_per_unit = 0;  // as in reach()

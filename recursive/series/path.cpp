@@ -272,6 +272,7 @@ Outcome expand_here(Continuation& run, Singularity& singularity, Range& range) {
         const double rest = (run.last_parameter - run.parameter_now()) / run.a_1;
         expand(run.s, run.e, run.c,
                {.a_1 = run.a_1,
+                .order = run.options.order,
                 .rest = run.by_arc() ? std::numeric_limits<double>::infinity() : rest,
                 .tolerance = run.options.tolerance,
                 .metres_per_unit = run.metres_per_unit,

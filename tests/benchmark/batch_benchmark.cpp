@@ -16,7 +16,7 @@
 #include "elastocheck/channels.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "elastocheck/batch.hpp"
+#include "elastocheck/recursive_batch.hpp"
 #include "recursive/batch/kernels.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 

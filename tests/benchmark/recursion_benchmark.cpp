@@ -111,8 +111,8 @@ void series() {  // 1e-12 m
     });
 }
 void branches(int order) {  // 1e-12 m, nothing evaluated
-    recursive::series::follow_sides(mcpherson(), mcpherson().branches, {.order = order},
-                                    analysis());
+    recursive::series::follow_sides(mcpherson(), mcpherson().branches,
+                                    {.order = order, .last_order = order}, analysis());
 }
 
 double seconds(const std::function<void()>& work) {

@@ -26,7 +26,7 @@ const std::vector<Part> parts{
     {"models/reader", {"read_scene"}, {"models"}},  // before the part whose folder it is in
     {"models/import", {}, {"models/reader", "models"}},
     {"models", {"mechanism", "scene", "model", "compile", "equilibrium_path"}, {}},
-    {"recursive", {"recursive", "recursive_method"}, {"models"}},
+    {"recursive", {"recursive", "recursive_batch", "recursive_method"}, {"models"}},
     {"reference/equilibrium", {"equilibrium"}, {"models"}},
     {"reference/energy", {"energy"}, {"models"}},
     {"reference/certificate", {}, {"models"}},

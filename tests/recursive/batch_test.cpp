@@ -6,7 +6,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "elastocheck/batch.hpp"
+#include "elastocheck/recursive_batch.hpp"
 #include "models/branch.hpp"
 #include "recursive/batch/kernels.hpp"
 #include "recursive/diagnosis/analysis.hpp"

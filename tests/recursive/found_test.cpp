@@ -32,7 +32,8 @@ TEST(Series, LimitPointBeforeAKnotIsReported) {
 TEST(Series, InstabilityInsideOneExpansionIsDetected) {
     const Model model = found("unstable-inside-an-expansion");
     for (const int order : {8, 16, 24}) {
-        const auto path = series::follow(model, model.branches[0], {.order = order});
+        const auto path =
+            series::follow(model, model.branches[0], {.order = order, .last_order = order});
         EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << order << ": " << path.detail;
         ASSERT_FALSE(path.expansions.empty());
         const auto place = series::Place{path.expansions.size() - 1, path.expansions.back().reach};

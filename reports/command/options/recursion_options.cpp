@@ -25,7 +25,7 @@ recursive::Options recursion(const RecursionRequest& request) {
     belongs(request.expansions > 0, series, "--expansions", "series");
     belongs(request.arc_length, series, "--arc-length", "series");
     if (series) {
-        if (request.order > 0) series->order = request.order;
+        if (request.order > 0) series->order = series->last_order = request.order;
         if (request.expansions > 0) series->expansions = request.expansions;
         series->arc_length = request.arc_length;
     }

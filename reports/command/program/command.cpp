@@ -120,7 +120,10 @@ void add_recursion(CLI::App& command, RecursionRequest& request) {
     command.add_option(
         "--tolerance", request.tolerance,
         "error tolerance of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)");
-    command.add_option("--order", request.order, "of the series (default: 16)")
+    command
+        .add_option(
+            "--order", request.order,
+            "of the series (default: 16; up to 24 where that reaches the end of the branch)")
         ->check(CLI::Range(1, 60));
     command
         .add_option("--expansions", request.expansions,

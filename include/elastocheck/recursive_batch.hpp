@@ -7,8 +7,9 @@
 namespace elastocheck::recursive {
 
 struct BatchOptions {
-    Series series = {};  // over the parameter of the branch, not arc length
-    int points = 20;     // equal increments between recorded points of a branch
+    // Every expansion of a lane has this order; over the parameter of the branch, not arc length.
+    Series series = {.order = 24};
+    int points = 20;  // equal increments between recorded points of a branch
     // Record the joint wrenches of the points, and |Φ|; else the wrenches are zero, |Φ| is NaN.
     bool wrenches = true;
 };
