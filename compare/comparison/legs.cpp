@@ -233,6 +233,7 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
             const bool with_free = std::ranges::any_of(channels, needs_free_response);
             response =
                 wheel_response(side, solver, steering_joint(model), state, analyses, with_free);
+            response->rack_per_hand_wheel = rack_per_hand_wheel(model);
         }
         row.values[c] =
             in_unit(channels[c].unit) *
