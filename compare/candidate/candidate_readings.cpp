@@ -52,15 +52,15 @@ class Reference {
         return nan;
     }
 
-    // Solves the branch at these loads and its steps before them; at() then has the outputs.
+    // Solves the branch at these loads, each of reference_load(), and its steps before them; at() then has
+    // the outputs. The last step may lie beyond the branch by its rounding.
     void visit(const std::vector<double>& loads) {
         Analyses analyses;
         for (const auto& side : sides_) {
             const double to = side.branch.to;
             std::vector<double> requested;
             for (const double load : loads)
-                if (std::isfinite(load) && load * to >= 0 && std::abs(load) <= std::abs(to) &&
-                    at(load) == nullptr)
+                if (std::isfinite(load) && load * to >= 0 && at(load) == nullptr)
                     requested.push_back(load);
             if (requested.empty()) continue;
             const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };

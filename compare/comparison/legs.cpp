@@ -143,6 +143,10 @@ std::string label(const Branch& side) {
     return fmt::format("{} to {:.4g} {}", side.name, in_unit(unit) * side.to, symbol(unit));
 }
 
+bool is_stiffness(Unit unit) {
+    return unit == Unit::newton_per_mm || unit == Unit::newton_metre_per_deg;
+}
+
 }  // namespace
 
 const char* name(Leg leg) {
@@ -218,7 +222,7 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
     for (std::size_t c = 0; c < channels.size(); ++c) {
         if (channels[c].kind() != ChannelKind::characteristic) continue;
         // At the corner of a law a stiffness has two values; rounding would select one of them.
-        if (channels[c].unit == Unit::newton_per_mm && channels[c].may_be_undefined()) {
+        if (is_stiffness(channels[c].unit) && channels[c].may_be_undefined()) {
             if (!corner) corner = at_corner(side.model, side.branch, state);
             if (*corner) {
                 row.values[c] = undefined;
@@ -229,6 +233,7 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
             const bool with_free = std::ranges::any_of(channels, needs_free_response);
             response =
                 wheel_response(side, solver, steering_joint(model), state, analyses, with_free);
+            response->rack_per_hand_wheel = rack_per_hand_wheel(model);
         }
         row.values[c] =
             in_unit(channels[c].unit) *

@@ -62,16 +62,17 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
         }
         return positions;
     }
+    std::vector<std::vector<double>> x_of_branches;  // empty: no point lies on the branch
+    for (const auto& branch : branches)
+        x_of_branches.push_back(abscissa_values(branch.run(Leg::equilibrium).curve, channel));
     for (std::size_t a = 0; a < branches.size(); ++a)
         for (std::size_t b = 0; b < a; ++b)
-            if (!on_opposite_sides(model.branches[a], model.branches[b]))
+            if (!x_of_branches[a].empty() && !x_of_branches[b].empty() &&
+                !on_opposite_sides(model.branches[a], model.branches[b]))
                 throw std::invalid_argument(
                     fmt::format("branches '{}' and '{}' are on the same side; each point needs the "
                                 "name of its branch",
                                 branches[b].branch, branches[a].branch));
-    std::vector<std::vector<double>> x_of_branches;
-    for (const auto& branch : branches)
-        x_of_branches.push_back(abscissa_values(branch.run(Leg::equilibrium).curve, channel));
     for (const double place : x) {
         const auto match = std::ranges::find_if(
             x_of_branches,

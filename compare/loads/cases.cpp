@@ -86,17 +86,6 @@ void add_acceleration(const Scene& scene, const CaseInput& input, Branch& branch
             branch.name));
 }
 
-void check_heights(const LoadCase& load_case, const Scene& scene) {
-    for (const auto& held : load_case.inputs)
-        for (const auto& force : load_case.inputs)
-            if (held.kind == Kind::travel && force.kind == Kind::patch_force && force.axis == 2 &&
-                force.of == held.of)
-                throw std::invalid_argument(fmt::format(
-                    "case '{}' has the travel and the vertical force of wheel '{}': one follows "
-                    "from the other; leave one cell empty",
-                    load_case.name, scene.wheels[held.of].name));
-}
-
 Branch branch_of(const LoadCase& load_case, const Model& drawn, Scene& scene) {
     check_heights(load_case, scene);
     Branch branch;
@@ -122,6 +111,19 @@ Branch branch_of(const LoadCase& load_case, const Model& drawn, Scene& scene) {
 }
 
 }  // namespace
+
+void check_heights(const LoadCase& load_case, const Scene& scene) {
+    for (const auto& held : load_case.inputs)
+        for (const auto& force : load_case.inputs)
+            if (held.kind == Kind::travel && force.kind == Kind::patch_force && force.axis == 2 &&
+                force.of == held.of) {
+                const std::string& name = scene.wheels[held.of].name;
+                throw std::invalid_argument(fmt::format(
+                    "case '{}' has the travel and the vertical force of {}: one follows from the "
+                    "other; leave one cell empty",
+                    load_case.name, name.empty() ? "the wheel" : "wheel '" + name + "'"));
+            }
+}
 
 Scene with_cases(Scene scene, const std::vector<LoadCase>& cases) {
     const Model drawn = compile(scene, Detail::everything);

@@ -38,6 +38,10 @@ struct LoadCase {
     std::vector<CaseInput> inputs;
 };
 
+// Throws std::invalid_argument for a case that with_cases() refuses as it has the height of a wheel and the
+// force that holds it there.
+void check_heights(const LoadCase& load_case, const Scene& scene);
+
 // The scene with the cases in place of its branches. Static loads stay; the force at a patch is the
 // whole force there, so that a case adds what a static load lacks. Throws std::invalid_argument for a
 // case with a vertical force at the patch of a wheel whose travel it holds, and for an acceleration

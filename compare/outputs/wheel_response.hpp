@@ -26,6 +26,7 @@ struct WheelResponse {
     std::vector<Motions> travel;
     // Of the jacked model: the steering joint moves by 1 m or 1 rad. Empty without a steering joint.
     Motions steering;
+    double rack_per_hand_wheel = 0;  // that of the scene, also on a branch that holds the rack
     // Per wheel and wrench index, of the jacked model: motions per N or N·m.
     std::vector<std::array<Motions, wrench_count>> jacked;
     // The same of the free model; empty where `why_not_free` has a reason.

@@ -122,12 +122,15 @@ TEST(Definitions, SideViewPlanesGiveTheAntiDiveOfArmsOnLateralAxes) {
     }
 }
 
-// With one rate k of both wheels in roll a couple of forces F on the track t turns the axle by
-// φ = 2 F / (k t):  F t / φ = k t² / 2. The roll centre of the mirrored state is the mirrored one.
+// With one rate k of both wheels in roll a couple of forces F on the track t turns the line of the wheel
+// centres, c apart, by φ = 2 F / (k c):  F t / φ = k t c / 2. The roll centre of the mirrored state is the
+// mirrored one.
 TEST(Definitions, RollStiffnessFollowsFromWheelRatesAndRollCentreIsMirrored) {
     const Outputs at(standing("front_axle"), "roll", 4);
-    const double t = 1e-3 * at("track"), k = 1e3 * at("left.wheel_rate_in_roll");
-    EXPECT_NEAR(at("roll_stiffness"), k * t * t / 2 / degrees, 1e-6);
+    const double t = 1e-3 * at("track"), c = 2e-3 * at("left.wheel_centre_y"),
+                 k = 1e3 * at("left.wheel_rate_in_roll");
+    EXPECT_GT(t - c, 1e-4);
+    EXPECT_NEAR(at("roll_stiffness"), k * t * c / 2 / degrees, 1e-6);
     EXPECT_NEAR(at("roll_centre_lateral"), 0, 1e-6);
     const auto across = at.over("roll_centre_lateral"), height = at.over("roll_centre_height");
     EXPECT_GT(std::abs(across.front()), 1);
@@ -159,12 +162,15 @@ TEST(Definitions, PartsOfTheRollStiffnessAddUpWithoutPreloads) {
     const std::string text =
         std::regex_replace(support::text_of(std::string(ELASTOCHECK_SCENES) + "/twist_beam.yaml"),
                            std::regex("    preload: 3700\n|trim:\n(  .*\n)+"), "");
-    const Outputs at(compile(parse_scene(text, "twist_beam.yaml")));
-    double sum = 0;
-    for (const char* part : {"springs", "bar", "rubber"})
-        sum += at(fmt::format("roll_stiffness_of_{}", part));
-    EXPECT_GT(sum, 500);  // N·m/deg
-    EXPECT_NEAR(sum, at("roll_stiffness"), 1e-9 * sum);
+    for (const char* patch : {"0.740", "0.720"}) {  // below the wheel centre, and beside it
+        const std::vector<Setting> settings{{"points.contact_left.y", patch}};
+        const Outputs at(compile(parse_scene(text, "twist_beam.yaml", settings)));
+        double sum = 0;
+        for (const char* part : {"springs", "bar", "rubber"})
+            sum += at(fmt::format("roll_stiffness_of_{}", part));
+        EXPECT_GT(sum, 500);  // N·m/deg
+        EXPECT_NEAR(sum, at("roll_stiffness"), 1e-9 * sum) << patch;
+    }
 }
 
 TEST(Definitions, TurningCircleIsTwiceTheWheelbaseOverTheSineOfTheOuterAngle) {
@@ -268,7 +274,7 @@ TEST(DefinitionRates, RatesOfAWheelOnRigidLinksEqualHandCalculation) {
 
 TEST(DefinitionRates, RatesOfAnAxleFollowFromHeaveRollAndSingleWheels) {
     const Outputs at(standing("front_axle"));
-    const double half = at("track") / 2e3;  // [m]
+    const double half = at("left.wheel_centre_y") / 1e3;  // [m]
     for (const std::string side : {"left.", "right."}) {
         const auto of = [&](const char* name) { return at(side + name); };
         expect_near(of("lateral_force_steer@parallel") + of("lateral_force_steer@opposed"),

@@ -90,7 +90,7 @@ double overall_steering_ratio(const Subject& x) {
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
         to_the_left -= x.other_wheel(w).side() * x.other_wheel(w).toe(x.response->steering);
     const auto n = static_cast<double>(x.model.wheels.size());
-    return ratio(n / rack_per_hand_wheel(x.model), to_the_left, max_distance);
+    return ratio(n / x.response->rack_per_hand_wheel, to_the_left, max_distance);
 }
 
 // ---- Stiffness and rates.

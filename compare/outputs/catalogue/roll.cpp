@@ -13,16 +13,26 @@ namespace {
 
 constexpr auto no_roll_centre = "no finite roll centre";
 
-// Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by half
-// the track, the other one goes down by as much.
+// Change of the angle of the line through the wheel centres under `motions` [rad], positive where the
+// left wheel rises: with (y, z) from the right centre to the left one
+//
+//   φ = atan(z / y)      dφ = (y dz - z dy) / (y² + z²)
+double turn_of_axle(const Subject& x, const Motions& motions) {
+    const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
+    const Vector3d line = left.centre().position - right.centre().position,
+                   d = x.displacement(motions, left.centre()) -
+                       x.displacement(motions, right.centre());
+    return (line.y() * d.z() - line.z() * d.y()) / (line.y() * line.y() + line.z() * line.z());
+}
+
+// Body roll by 1 rad towards this wheel of an axle, against the line through the wheel centres: this
+// wheel rises, the other one goes down by as much.
 Motions rolled_towards(const Subject& x) {
     Motions roll = roll_motions(x);
-    const double half =
-        std::abs(x.other_wheel(0).patch().position.y() - x.other_wheel(1).patch().position.y()) /
-        2 * x.side();
+    const double scale = x.side() / turn_of_axle(x, roll);
     for (auto& motion : roll) {
-        motion.dr *= half;
-        motion.dpi *= half;
+        motion.dr *= scale;
+        motion.dpi *= scale;
     }
     return roll;
 }
@@ -104,16 +114,14 @@ double roll_centre_by_forces(const Subject& x) {
 }
 
 // Unit forces on the patches, up on the left and down on the right one, are the moment t, the track, and
-// turn the line through the wheel centres by φ = (z_left - z_right) / t:  stiffness t / φ.
+// turn the line through the wheel centres by φ:  stiffness t / φ.
 double roll_stiffness(const Subject& x) {
     if (x.response->free.empty()) return value_without_free_response(x);
     if (x.response->tied) return undefined;
     const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
     const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
-    const double track = left.patch().position.y() - right.patch().position.y();
-    const double rise =
-        x.displacement(by, left.centre()).z() - x.displacement(by, right.centre()).z();
-    return ratio(track * track, rise, max_stiffness);
+    return ratio(left.patch().position.y() - right.patch().position.y(), turn_of_axle(x, by),
+                 max_stiffness);
 }
 
 // The part of the elements of one kind in the roll stiffness. The work of the unit forces is the rise of
@@ -132,7 +140,7 @@ double roll_stiffness_by(const Subject& x, Carries kind) {
     const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
     const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
     const double rise =
-        x.displacement(by, left.centre()).z() - x.displacement(by, right.centre()).z();
+        x.displacement(by, left.patch()).z() - x.displacement(by, right.patch()).z();
     constexpr double step = 1e-5;  // [m] of the rise, to either side
     const Equilibrium above = moved_by(*x.state, by, step / rise),
                       below = moved_by(*x.state, by, -step / rise);
@@ -202,11 +210,12 @@ const Entry of_roll[] = {
     roll_stiffness_by(Carries::bar, "bar",
                       "torsion springs and beams (anti-roll bars, twist beams)"),
     roll_stiffness_by(Carries::bushing, "rubber", "bushings"),
-    Entry(Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
-          "change of toe over the roll of the car body towards this wheel, wheels on the road; "
-          "positive towards toe-in",
-          does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::toe); },
-          {.sources = "roll steer coefficient", .is_key_figure = true, .cause = "roll"}),
+    Entry(
+        Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
+        "change of toe over the roll of the car body towards this wheel, against the line through "
+        "the wheel centres; positive towards toe-in",
+        does_not_roll, [](const Subject& x) { return in_roll(x, &Subject::toe); },
+        {.sources = "roll steer coefficient", .is_key_figure = true, .cause = "roll"}),
     Entry(Owner::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
           "change of camber against the car body over its roll towards this wheel; positive where "
           "the top leans out",

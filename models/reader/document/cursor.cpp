@@ -167,7 +167,7 @@ double Cursor::number(const std::string& unit) const {
     return x;
 }
 
-bool Cursor::yes_or_no() const { return one_of("yes or no", {"true", "false"}) == 0; }
+bool Cursor::yes_or_no() const { return one_of("a truth value", {"true", "false"}) == 0; }
 
 int Cursor::whole_number(int min, int max) const {
     if (accesses) accesses->read.insert(value);

@@ -87,9 +87,11 @@ const Command compare_command{
                          "add the spread of the outputs over the bushing formulations of tools");
         command.add_flag("--definitions", request->definitions,
                          "add the figures by other definitions, of standards and tools");
-        command.add_option("--within", request->within,
-                           "give a verdict by this accuracy: mm, deg, N, Nm, and % of the extent "
-                           "of forces, moments and rates (with --method: 0.01mm,0.001deg,1%)");
+        command.add_option(
+            "--within", request->within,
+            "give a verdict by this accuracy: mm, deg, N, Nm, and % of the extent "
+            "of forces, moments and rates (with --method: 0.01mm,0.001deg,1%); the exit "
+            "code of a failed verdict is 0, unlike that of judge");
         add_recursion(command, request->recursion);
         as_word(command.add_option(
                     "--method", request->recursion.method,

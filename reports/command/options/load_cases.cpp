@@ -112,6 +112,11 @@ std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::
         if (std::ranges::find(cases, load_case.name, &compare::LoadCase::name) != cases.end())
             fail_at(file, line,
                     fmt::format("case: {} is given twice", reader::quote(load_case.name)));
+        try {
+            compare::check_heights(load_case, scene);
+        } catch (const std::invalid_argument& error) {
+            fail_at(file, line, error.what());
+        }
         cases.push_back(std::move(load_case));
     };
     read_sheet(csv, file, max_cases, head, row);
