@@ -226,10 +226,10 @@ std::vector<Values<Interval>> coefficients(const Problem& problem, const Piece& 
 }
 
 // |Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1.
-VectorXd step(const std::vector<MatrixXd>& Y, const std::vector<Values<Interval>>& F) {
+VectorXd defect_bound(const std::vector<MatrixXd>& Y, const std::vector<Values<Interval>>& F) {
     VectorXd sum = VectorXd::Zero(Y.front().rows());
     for (const auto& part : F)
-        for (const MatrixXd& factor : Y) sum += step(factor, part);
+        for (const MatrixXd& factor : Y) sum += defect_bound(factor, part);
     return sum * (1 + 1e-14);
 }
 
@@ -301,12 +301,12 @@ void enclose(const NodeSolver& solver, Node& node) {
     const Interval a = node.a;
     const Values<Interval> F = residual(problem, thin(node.y), a);
     MatrixXd Y = node.Y;
-    VectorXd trial_radii = (3 * step(Y, F)).cwiseMax(1e-19);
+    VectorXd trial_radii = (3 * defect_bound(Y, F)).cwiseMax(1e-19);
     for (int trial = 0; trial < 4 && node.box.size() == 0 && trial_radii.allFinite(); ++trial) {
         const auto J = evaluate(problem, box(node.y, trial_radii), a, Slopes::yes).J;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return;
-        VectorXd r = passing(step(Y, F), rest);
+        VectorXd r = passing(defect_bound(Y, F), rest);
         if (r.size() == 0)
             // at a corner, where the inverse at ỹ belongs to one side
             Y = inverse(factors(middle(J)));
@@ -323,7 +323,7 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
     constexpr int J_order = order<SlopesAlong>;
     const auto F = coefficients<order<Along>>(problem, piece);
-    const VectorXd correction = step({Y0}, F);
+    const VectorXd correction = defect_bound({Y0}, F);
     if (!correction.allFinite() || !within(solver.system, correction, tolerance)) return false;
     // Radii over which F' is evaluated; at least those of the tube to be proved.
     VectorXd trial_radii = (4 * correction).cwiseMax(min_radii).cwiseMax(1e-18);
@@ -340,7 +340,7 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
             if (!J.back().finite) return false;
         }
         const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
-        piece.r = tube(step(Y, F).cwiseMax(min_radii), rest_along(Y, std::move(J)));
+        piece.r = tube(defect_bound(Y, F).cwiseMax(min_radii), rest_along(Y, std::move(J)));
         if (piece.r.size() == 0 || !within(solver.system, piece.r, tolerance)) return false;
         const auto R = piece.r.segment(7 * solver.system.bodies, solver.system.rows).array();
         if (!(R < 0.5 * std::min(tolerance.force, tolerance.moment)).all()) return false;
@@ -380,7 +380,7 @@ bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& min
         const auto J = slopes(trial_radii);
         const MatrixXd Y = inverse(factors(middle(J)));
         if (!Y.allFinite()) return false;
-        const VectorXd correction = step({Y}, F).cwiseMax(min_radii);
+        const VectorXd correction = defect_bound({Y}, F).cwiseMax(min_radii);
         if (!correction.allFinite() || !within(solver.system, correction, tolerance)) return false;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return false;

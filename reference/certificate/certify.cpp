@@ -41,9 +41,10 @@ struct Box {
     VectorXd r;
     SparseRows<Interval> J;  // Jacobian over the box, or one somewhat larger
     Eigen::MatrixXd Y;       // not of a large system
-    Contraction rest;        // of Y and J; not of a large system
+    Contraction rest;        // r -> bound of |I - Y J| r; not of a large system
     bool sampled = false;    // J is over poses within `sample`
-    double alone = 0;        // of a large system: t of the large box without another equilibrium
+    // of a large system: t of the large box without another equilibrium
+    double uniqueness_size = 0;
 };
 // All origins within t L and all quaternions within t, or the radii r where these are larger.
 VectorXd poses_within(const System& system, double t, VectorXd r) {
@@ -67,7 +68,7 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
     const Values<Interval> F = residual(problem, thin(approximate.y), Interval(a));
     Box result;
     result.Y = inverse(approximate.J);
-    VectorXd defect = step(result.Y, F);
+    VectorXd defect = defect_bound(result.Y, F);
     if (!defect.allFinite()) return result;
     result.r = (1.5 * defect).cwiseMax(least);
     for (int trial = -1; trial < trials && !result.proved; ++trial) {
@@ -75,7 +76,7 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
         result.J = evaluate(problem, box(approximate.y, over), Interval(a), Slopes::yes).J;
         if (trial > 0) {
             result.Y = inverse(factors(middle(result.J)));
-            defect = step(result.Y, F);
+            defect = defect_bound(result.Y, F);
             if (!defect.allFinite()) return result;
         }
         const Contraction& rest = result.rest = contraction(result.Y, result.J);
@@ -114,7 +115,7 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
 // Smallest max_i (|I - Y S| v)_i / v_i found by power iteration, which starts at v and leaves its
 // last vector there: over a box of another size I - Y S is about a multiple of this one, so that v
 // is a good start for it too. Below 1 the box contracts; below `enough` the search ends.
-double shrinks(const Contraction& rest, VectorXd& v, double enough = 0.9) {
+double contraction_ratio(const Contraction& rest, VectorXd& v, double enough = 0.9) {
     constexpr int iterations = 40, at_least = 5;
     const VectorXd start = v;
     double least = std::numeric_limits<double>::infinity();
@@ -130,11 +131,11 @@ double shrinks(const Contraction& rest, VectorXd& v, double enough = 0.9) {
     return least;
 }
 
-// Jacobian over the box of origins within t L and quaternions within t of ỹ, and over the box of y*.
 struct Sizes {
-    const VectorXd& small;  // r of the box of y*
+    const VectorXd& small;  // r of the small box
     double t;
 };
+// Jacobian over poses within t of ỹ (origins within t L), reactions and μ within the small box.
 SparseRows<Interval> over_large_box(const Problem& problem, const VectorXd& centre, double a,
                                     const Sizes& sizes) {
     const System& system = problem.system;
@@ -150,19 +151,21 @@ SparseRows<Interval> over_large_box(const Problem& problem, const VectorXd& cent
 
 // Largest t found for which the box of origins within t L and quaternions within t of ỹ contracts;
 // 0 if none does. Y is the inverse at ỹ, and where that fails the inverse at the middle of the
-// Jacobian. The ratio of shrinks() grows about in proportion to t, from the sampled box on, so that
-// t aims at a ratio of 0.99.
-double alone(const Problem& problem, const VectorXd& centre, double a, const Box& smallest) {
+// Jacobian. contraction_ratio() grows about in proportion to t, from the sampled box on, so that t aims
+// at a ratio of 0.99.
+double uniqueness_size(const Problem& problem, const VectorXd& centre, double a,
+                       const Box& smallest) {
     const VectorXd& small = smallest.r;
     constexpr int trials = 8;
     constexpr double largest = 0.05, enough = 0.85, aim = 0.99, corner = 0.2;
     double t = 2e-3, proved_t = 0, failed_t = std::numeric_limits<double>::infinity();
     VectorXd v = poses_within(problem.system, t, small);
-    if (smallest.sampled) t = std::min(largest, aim * sample / shrinks(smallest.rest, v, 0));
+    if (smallest.sampled)
+        t = std::min(largest, aim * sample / contraction_ratio(smallest.rest, v, 0));
     for (int trial = 0; trial < trials; ++trial) {
         const SparseRows<Interval> J = over_large_box(problem, centre, a, {small, t});
-        double ratio = shrinks(contraction(smallest.Y, J), v);
-        if (!(ratio < 1)) ratio = shrinks(contraction(inverse(factors(middle(J))), J), v);
+        double ratio = contraction_ratio(contraction(smallest.Y, J), v);
+        if (!(ratio < 1)) ratio = contraction_ratio(contraction(inverse(factors(middle(J))), J), v);
         if (ratio < 1) {
             proved_t = std::max(proved_t, t);
             t = std::min({largest, t * aim / std::max(ratio, 1e-3), 0.95 * failed_t});
@@ -186,27 +189,29 @@ double alone(const Problem& problem, const VectorXd& centre, double a, const Box
 // Estimate of a radius that passes, from solutions with the factors alone, since |Y F| needs all
 // rows of Y: the solution for the middle of F, and the root mean square of solutions for its radii
 // with random signs.
-VectorXd foreseen(const Factors& factors, const Values<Interval>& F) {
+VectorXd estimated_radius(const Factors& factors, const Values<Interval>& F) {
     constexpr int samples = 8;
-    constexpr double larger = 256;
+    constexpr double safety_factor = 256;
     std::minstd_rand random;
     const auto sign = [&] { return random() % 2 == 0 ? 1. : -1.; };
     const Index n = factors.size();
     VectorXd f(n), squares = VectorXd::Zero(n);
     for (Index i = 0; i < n; ++i) f[i] = mid(F.E[static_cast<std::size_t>(i)]);
     for (int k = 0; k < samples; ++k) {
-        VectorXd lost(n), rho = F.laws.rho;
-        for (Index i = 0; i < n; ++i) lost[i] = sign() * rad(F.E[static_cast<std::size_t>(i)]);
+        VectorXd perturbation(n), rho = F.laws.rho;
+        for (Index i = 0; i < n; ++i)
+            perturbation[i] = sign() * rad(F.E[static_cast<std::size_t>(i)]);
         for (double& part : rho) part *= sign();
-        for (const auto& [row, column, action] : F.laws.D) lost[row] += mid(action) * rho[column];
-        squares += factors.solve(lost).cwiseAbs2();
+        for (const auto& [row, column, action] : F.laws.D)
+            perturbation[row] += mid(action) * rho[column];
+        squares += factors.solve(perturbation).cwiseAbs2();
     }
-    return larger * (factors.solve(f).cwiseAbs() + (squares / samples).cwiseSqrt());
+    return safety_factor * (factors.solve(f).cwiseAbs() + (squares / samples).cwiseSqrt());
 }
 
 // v > 0 for large boxes: 1 for each pose (L for its origin), and for the reactions and μ 1e-4 of
 // the largest slope of a balance, so that no unknown dominates |I - Y S| v < v.
-VectorXd alike(const System& system, const SparseMatrix& M, Index size) {
+VectorXd balanced_scale(const System& system, const SparseMatrix& M, Index size) {
     const Index poses = 7 * system.bodies;
     double stiffest = 0;
     for (Index column = 0; column < poses; ++column)
@@ -226,7 +231,7 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
     const VectorXd& centre = approximate.y;
     const Values<Interval> F = residual(problem, thin(centre), Interval(a));
     Box result;
-    result.r = foreseen(approximate.J, F).cwiseMax(least);
+    result.r = estimated_radius(approximate.J, F).cwiseMax(least);
     for (int trial = 0; trial < trials && result.r.allFinite(); ++trial) {
         result.J = evaluate(problem, box(centre, result.r), Interval(a), Slopes::yes).J;
         std::vector<Split> J{split(result.J)};
@@ -239,7 +244,7 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
             J.push_back(recentred(over, J.front().M));
             sizes.push_back(t);
         }
-        const VectorXd v = alike(problem.system, J.front().M, problem.size());
+        const VectorXd v = balanced_scale(problem.system, J.front().M, problem.size());
         Eigen::MatrixXd r = v.replicate(1, std::ssize(J));
         r.col(0) = result.r;
         const OverRows rows = over_rows(approximate.J, F, J, r);
@@ -250,7 +255,8 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
             continue;
         }
         for (std::size_t k = sizes.size(); k-- > 0;)
-            if (all_less(rows.rest.col(static_cast<Index>(k) + 1), v)) result.alone = sizes[k];
+            if (all_less(rows.rest.col(static_cast<Index>(k) + 1), v))
+                result.uniqueness_size = sizes[k];
         result.r = image.cwiseMax(least);
         result.proved = true;
         return result;
@@ -396,7 +402,7 @@ std::optional<Certificate> by_known_box(const ProvedBox& known, const StateAt& m
     Certificate certificate = known.certificate;
     certificate.error = distance(mapped, {y.begin(), y.begin() + mapped.system.n()});
     if (within(certificate.error, tolerance)) {
-        certificate.unique = unique_around(mapped, known.y, known.alone);
+        certificate.unique = unique_around(mapped, known.y, known.uniqueness_size);
         return certificate;
     }
     if (!none_within(mapped, tolerance)) return {};
@@ -450,8 +456,9 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.state = ProofState::proved;
-                const double t = large ? smallest_box.alone
-                                       : alone(problem, approximate.y, state.load, smallest_box);
+                const double t =
+                    large ? smallest_box.uniqueness_size
+                          : uniqueness_size(problem, approximate.y, state.load, smallest_box);
                 certificate.unique = unique_around(mapped, approximate.y, t);
                 certificate.stable =
                     stable(problem, z, smallest_box.J) ||
@@ -521,7 +528,8 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
                     const Tolerance& tolerance, std::vector<ProvedBox>& known) {
     Certificate certificate = certify(make_system(model, branch), state, tolerance, known);
     if (certificate.state == ProofState::excluded || certificate.stable) return certificate;
-    // At the corner of a stiff stop the slopes inside the element vary too independently.
+    // At the corner of a stiff stop, intervals lose that the slopes of an element vary together
+    // (derivation.md, "Curves of laws").
     const System system = make_system(model, branch, Curves::separated);
     if (system.separated.empty()) return certificate;
     Certificate separated = certify(system, state, tolerance, known);

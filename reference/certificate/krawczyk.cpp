@@ -139,7 +139,7 @@ Parts parts_of(const Values<Interval>& F) {
     of.finite = true;
     return of;
 }
-VectorXd step(const MatrixXd& Y, const Parts& F) {
+VectorXd defect_bound(const MatrixXd& Y, const Parts& F) {
     if (!F.finite) return VectorXd::Constant(Y.rows(), std::numeric_limits<double>::infinity());
     return raised<VectorXd>((Y * F.f).cwiseAbs() + above(product(Y, F.D).cwiseAbs(), F.rho) +
                                 above(Y.cwiseAbs(), F.lost),
@@ -148,7 +148,9 @@ VectorXd step(const MatrixXd& Y, const Parts& F) {
 
 }  // namespace
 
-VectorXd step(const MatrixXd& Y, const Values<Interval>& F) { return step(Y, parts_of(F)); }
+VectorXd defect_bound(const MatrixXd& Y, const Values<Interval>& F) {
+    return defect_bound(Y, parts_of(F));
+}
 
 OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std::vector<Split>& J,
                    const MatrixXd& r) {
@@ -166,7 +168,7 @@ OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std:
     OverRows bounds{VectorXd(n), MatrixXd(n, r.cols())};
     for (Index from = 0; from < n; from += at_a_time) {
         const MatrixXd Y = factors.rows_of_inverse(from, std::min(at_a_time, n - from));
-        bounds.defect.segment(from, Y.rows()) = step(Y, parts);
+        bounds.defect.segment(from, Y.rows()) = defect_bound(Y, parts);
         bounds.rest.middleRows(from, Y.rows()) = raised<MatrixXd>(
             above_each(rest_of(from, Y, M), r) + above_each(Y.cwiseAbs(), lost), 4);
     }

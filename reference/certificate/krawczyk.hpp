@@ -52,7 +52,7 @@ Contraction contraction(const Eigen::MatrixXd& Y, const SparseRows<Interval>& J)
 Eigen::VectorXd passing(const Eigen::VectorXd& first, const Contraction& rest);
 
 // Upper bound of |Y F|.
-Eigen::VectorXd step(const Eigen::MatrixXd& Y, const Values<Interval>& F);
+Eigen::VectorXd defect_bound(const Eigen::MatrixXd& Y, const Values<Interval>& F);
 
 // The terms of the inequality for a system too large to keep Y. Each row of the inequality needs
 // the same row of Y alone, which is solved for and discarded.

@@ -105,7 +105,7 @@ struct Segment {
 Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, double delta) {
     Values<Interval> F = residual(problem, thin(y), Interval(0));
     F.E.back() += Interval(-delta, delta);
-    const VectorXd defect = step(Y, F);
+    const VectorXd defect = defect_bound(Y, F);
     Segment result;
     if (!defect.allFinite()) return result;
     // The box of a point (δ = 0) must fit into that of a segment, even where both are only
