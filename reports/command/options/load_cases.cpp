@@ -114,7 +114,7 @@ std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::
                     fmt::format("case: {} is given twice", reader::quote(load_case.name)));
         cases.push_back(std::move(load_case));
     };
-    read_sheet(csv, file, max_cases, head, row);
+    read_csv_table(csv, file, max_cases, head, row);
     return cases;
 }
 
