@@ -62,7 +62,7 @@ VectorXd poses_within(const System& system, double t, VectorXd r) {
 // Jacobian: across the knot of a stop that differs from the inverse at ỹ. `least` keeps
 // r above 0, as the strict inequality needs.
 constexpr double sample = 1e-10;
-Box smallest(const Problem& problem, const Approximate& approximate, double a) {
+Box smallest_box(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 8, iterations = 4;
     constexpr double least = 1e-20;
     const Values<Interval> F = residual(problem, thin(approximate.y), Interval(a));
@@ -93,7 +93,7 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
                 from = (1.01 * to).cwiseMax(least);
             }
         } else {
-            r = passing(defect, rest);
+            r = passing_radii(defect, rest);
         }
         if (r.size() > 0 && (r.array() <= result.r.array()).all()) {
             result.r = r;
@@ -225,7 +225,7 @@ VectorXd balanced_scale(const System& system, const SparseMatrix& M, Index size)
 
 // The smallest box and the large one in one pass over the rows of Y: the inequality for the first,
 // and of many larger boxes the largest that contracts.
-Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
+Box boxes_by_rows(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 5, larger_boxes = 14;
     constexpr double least = 1e-20, largest = 2e-3, shorter = 0.25;
     const VectorXd& centre = approximate.y;
@@ -289,7 +289,7 @@ Extent unique_around(const StateAt& mapped, const VectorXd& y, double t) {
 //
 // and a y that violates this proves that there is none. The rows of Y are used for y: each isolates
 // one unknown, the last ones the load on an idle motion or the gap of redundant rows.
-bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
+bool is_excluded(const StateAt& mapped, const Tolerance& tolerance) {
     const System& system = mapped.system;
     const double load = mapped.state.load;
     const Index n = system.n();
@@ -302,7 +302,7 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     const VectorXd delta = radii(mapped, tolerance);
     if (!delta.head(7 * system.bodies).allFinite()) return false;
     const auto around_state = box(mapped.z, delta);
-    if (delta.allFinite() && wrenches_apart(mapped, around_state, tolerance)) return true;
+    if (delta.allFinite() && has_wrench_apart(mapped, around_state, tolerance)) return true;
 
     VectorXd y = VectorXd::Zero(n + k);
     y.head(n) = mapped.z;
@@ -315,8 +315,8 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     const VectorXd epsilon = rounding_of_equations(system, mapped.z, load);
     VectorXd middle_of_E(n);
     for (Index i = 0; i < n; ++i) middle_of_E[i] = mid(E[static_cast<std::size_t>(i)]);
-    // The inequality for one y, in intervals.
-    const auto shows = [&](const auto& weights) {
+    // Whether y violates the inequality, in intervals.
+    const auto violates = [&](const auto& weights) {
         Interval left, right;
         std::vector<Interval> slopes(static_cast<std::size_t>(n));
         for (Index i = 0; i < n; ++i) {
@@ -339,7 +339,7 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
         const VectorXd left = (Y * middle_of_E).cwiseAbs(),
                        right = product(Y, slopes_of_E).cwiseAbs() * finite_delta;
         for (Index row = 0; row < Y.rows(); ++row)
-            if (left[row] > 0.5 * right[row] && shows(Y.row(row))) return true;
+            if (left[row] > 0.5 * right[row] && violates(Y.row(row))) return true;
     }
     return false;
 }
@@ -370,7 +370,7 @@ std::string on_knots(const System& system, const std::vector<Interval>& z, const
     for (std::size_t e = 0; e < x.size(); ++e) {
         bool is_on_knot = false;
         each_curve(system.model->elastics[e].kind, [&](std::size_t k, const Curve& curve) {
-            is_on_knot |= bounded(x[e][k]) && over_a_knot(curve, x[e][k]);
+            is_on_knot |= is_bounded(x[e][k]) && spans_knot(curve, x[e][k]);
         });
         if (is_on_knot)
             names +=
@@ -401,11 +401,11 @@ std::optional<Certificate> by_known_box(const ProvedBox& known, const StateAt& m
     const auto y = box(known.y, known.r);
     Certificate certificate = known.certificate;
     certificate.error = distance(mapped, {y.begin(), y.begin() + mapped.system.n()});
-    if (within(certificate.error, tolerance)) {
+    if (is_within(certificate.error, tolerance)) {
         certificate.unique = unique_around(mapped, known.y, known.uniqueness_size);
         return certificate;
     }
-    if (!none_within(mapped, tolerance)) return {};
+    if (!is_excluded(mapped, tolerance)) return {};
     return Certificate{.state = ProofState::excluded,
                        .detail = fmt::format("the nearest equilibrium found is {} away",
                                              as_text(certificate.error)),
@@ -439,10 +439,10 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
 
     if (approximate.settled && approximate.y.allFinite()) {
         const bool large = problem.size() > max_unknowns_of_curves;
-        const Box smallest_box = large ? by_rows(problem, approximate, state.load)
-                                       : smallest(problem, approximate, state.load);
-        if (smallest_box.proved) {
-            const VectorXd& r = smallest_box.r;
+        const Box small_box = large ? boxes_by_rows(problem, approximate, state.load)
+                                    : smallest_box(problem, approximate, state.load);
+        if (small_box.proved) {
+            const VectorXd& r = small_box.r;
             const auto enclosure = box(approximate.y, r);
             const std::vector<Interval> z(enclosure.begin(), enclosure.begin() + system.n());
             certificate.error = distance(mapped, z);
@@ -454,16 +454,16 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             certificate.gap = held.gap;
             const bool balanced = border_check.sound && certificate.held <= tolerance.held &&
                                   certificate.gap <= tolerance.gap;
-            if (within(certificate.error, tolerance) && balanced) {
+            if (is_within(certificate.error, tolerance) && balanced) {
                 certificate.state = ProofState::proved;
                 const double t =
-                    large ? smallest_box.uniqueness_size
-                          : uniqueness_size(problem, approximate.y, state.load, smallest_box);
+                    large ? small_box.uniqueness_size
+                          : uniqueness_size(problem, approximate.y, state.load, small_box);
                 certificate.unique = unique_around(mapped, approximate.y, t);
                 certificate.stable =
-                    stable(problem, z, smallest_box.J) ||
-                    (smallest_box.sampled &&
-                     stable(problem, z, evaluate(problem, enclosure, a, Slopes::yes).J));
+                    is_stable(problem, z, small_box.J) ||
+                    (small_box.sampled &&
+                     is_stable(problem, z, evaluate(problem, enclosure, a, Slopes::yes).J));
                 certificate.detail = statement(system, problem.border, held, "state");
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
                     say(certificate.detail,
@@ -477,7 +477,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             }
         }
     }
-    if (none_within(mapped, tolerance)) {
+    if (is_excluded(mapped, tolerance)) {
         certificate.state = ProofState::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail = fmt::format(
@@ -504,7 +504,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         return open(
             "Krawczyk's operator contracts in no box: the stiffness is too close to singular for "
             "double precision, or a law ends here");
-    if (within(certificate.error, tolerance))
+    if (is_within(certificate.error, tolerance))
         return open(fmt::format(
             "a state is proved within {} that needs {:.2g} N or N·m on an idle motion and "
             "a gap of {:.2g} m or rad in redundant joints; allowed: {:.2g}, {:.2g}",
